@@ -1,0 +1,128 @@
+"""Every exception this package raises on purpose.
+
+The class names the fault, the object keeps the data, and the message is one line: what was wrong, where
+(file and field), and what would be valid. `at` lets an outer room add the place that an inner room cannot
+know. Not for: programming errors of our own, which stay `AssertionError`.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+
+
+class ClearanceError(Exception):
+    """Base of all errors that a caller can provoke; its text is always one line.
+
+    Args:
+        problem: what was wrong, with the value given.
+        where: file and field, outermost first, e.g. `case.yaml: limits.fail`.
+        valid: what would have been valid.
+    """
+
+    def __init__(self, problem: str, *, where: str = "", valid: str = "") -> None:
+        super().__init__(problem)
+        self.problem = problem
+        self.where = where
+        self.valid = valid
+
+    def __str__(self) -> str:
+        place = f"{self.where}: " if self.where else ""
+        remedy = f"; {self.valid}" if self.valid else ""
+        return " ".join(f"{place}{self.problem}{remedy}".split())
+
+
+class BadInput(ClearanceError, ValueError):
+    """A value that cannot be used; the subclasses say why."""
+
+
+class MissingFile(BadInput):
+    """A file that is named but is not there or cannot be read."""
+
+
+class BadSyntax(BadInput):
+    """A file that is not of the format it should be (YAML, XML, CSV, mesh)."""
+
+
+class UnknownKey(BadInput):
+    """A key that the schema does not have."""
+
+
+class MissingKey(BadInput):
+    """A key that the schema requires."""
+
+
+class UnknownLink(BadInput):
+    """A link name that the robot does not have."""
+
+
+class UnknownObstacle(BadInput):
+    """An obstacle name that the scene does not have."""
+
+
+class UnknownJoint(BadInput):
+    """A joint name that the robot does not have."""
+
+
+class DuplicateName(BadInput):
+    """Two things of one kind with one name."""
+
+
+class NotFinite(BadInput):
+    """A NaN or an infinity where a number is needed."""
+
+
+class BadShape(BadInput):
+    """An array with the wrong number of rows or columns."""
+
+
+class BadDimension(BadInput):
+    """A length, radius or size that no solid can have."""
+
+
+class BadPose(BadInput):
+    """A quaternion or matrix that is not a rotation."""
+
+
+class EmptyMesh(BadInput):
+    """A mesh without faces."""
+
+
+class BadPolygon(BadInput):
+    """A face that is not a convex planar polygon, or refers to vertices that do not exist."""
+
+
+class BadTime(BadInput):
+    """Times that do not increase."""
+
+
+class NothingToMeasure(BadInput):
+    """A case in which no pair of bodies is left to measure."""
+
+
+class Unwritable(ClearanceError):
+    """A place for output that cannot be written."""
+
+
+class Unavailable(ClearanceError):
+    """An optional library that is needed for this call and is not installed."""
+
+
+@contextmanager
+def at(place: str) -> Iterator[None]:
+    """Puts `place` before the `where` of any ClearanceError raised inside."""
+    try:
+        yield
+    except ClearanceError as error:
+        error.where = f"{place}: {error.where}" if error.where else place
+        raise
+
+
+def nearest_name(given: str, valid: Iterable[str]) -> str:
+    """The remedy for a misspelt name: the nearest valid one, or the list of all."""
+    names = sorted(valid)
+    close = difflib.get_close_matches(given, names, n=1, cutoff=0.6)
+    if close:
+        return f"did you mean {close[0]!r}?"
+    return f"valid: {', '.join(names)}" if names else "there are none"

@@ -1,0 +1,74 @@
+"""The one decorator for compiled kernels, with a cache that notices every change.
+
+numba's own cache looks only at the file of the function itself and would silently return old code when a
+callee in another kernel file has changed. Here the cache folder's name is a hash of the kernel's file and
+of every kernel file it imports, so that an edit recompiles what depends on it and nothing else.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import os
+import re
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import numba
+
+_PACKAGE = Path(__file__).parent
+_KERNEL_IMPORT = re.compile(r"^\s*from clearance\.(kernels(?:\.\w+)+) import", re.MULTILINE)
+_decorating = threading.Lock()
+
+
+def kernel(function: Callable) -> Callable:
+    """The compiled form of `function`: nopython, without the GIL, cached on disk, IEEE arithmetic.
+
+    Division by zero yields inf or nan as in numpy instead of an exception. `NUMBA_DISABLE_JIT=1` leaves
+    the Python function; `NUMBA_BOUNDSCHECK=1` checks every index. `NUMBA_CACHE_DIR` moves the cache.
+    """
+    folder = _cache_root() / _source_key(Path(function.__code__.co_filename))
+    with _decorating:  # numba reads its cache folder from this global while it decorates
+        before = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = str(folder)
+        try:
+            return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+        finally:
+            numba.config.CACHE_DIR = before
+
+
+def inlined(function: Callable) -> Callable:
+    """A small function compiled into each kernel that calls it; it has no cache entry of its own."""
+    return numba.njit(nogil=True, error_model="numpy")(function)
+
+
+@functools.cache
+def _cache_root() -> Path:
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    if given:
+        return Path(given)
+    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
+    return Path(base) / "clearance" / "kernels"
+
+
+@functools.cache
+def _source_key(path: Path) -> str:
+    digest = hashlib.sha256()
+    for source in sorted(_closure(path)):
+        digest.update(source.name.encode() + source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _closure(path: Path) -> set[Path]:
+    """`path` and every kernel file that it imports, directly or not."""
+    found: set[Path] = set()
+    waiting = [path]
+    while waiting:
+        source = waiting.pop()
+        if source in found:
+            continue
+        found.add(source)
+        for module in _KERNEL_IMPORT.findall(source.read_text(encoding="utf-8")):
+            waiting.append(_PACKAGE.joinpath(*module.split(".")).with_suffix(".py"))
+    return found

@@ -1,0 +1,98 @@
+"""What a run found: plain data that reports, viewers and checks read and nobody changes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pyarrow as pa
+
+from clearance.world.case import Case, Unmeasured
+from clearance.world.motion import Motion
+
+
+@dataclass(frozen=True)
+class PairMinimum:
+    """The least clearance of one link-obstacle pair over the whole run."""
+
+    link: str
+    obstacle: str
+    clearance: float  # [m]
+    step: int
+    time: float  # [s]
+    point_link: tuple[float, float, float]  # world frame [m]
+    point_obstacle: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Disagreement:
+    """A step at which the peer's answer differs by more than the tolerance."""
+
+    step: int
+    clearance: float  # ours [m]
+    peer_clearance: float  # [m]
+    link: str
+    obstacle: str
+    peer_link: str
+    peer_obstacle: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """Our answers held against a peer's, step by step.
+
+    Attributes:
+        greatest_difference: [m] over all steps.
+        tolerance: [m] what counts as agreement.
+        worst_witness_error: [m] greatest | |link point - obstacle point| - clearance |, and distance of a
+            witness point from its body as the peer sees it.
+    """
+
+    peer: str
+    n_steps: int
+    greatest_difference: float
+    worst_step: int
+    tolerance: float
+    worst_witness_error: float
+    disagreements: tuple[Disagreement, ...] = ()
+
+    @property
+    def agrees(self) -> bool:
+        """True if no step differs by more than the tolerance."""
+        return not self.disagreements
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """The measured run of one case.
+
+    Attributes:
+        motions: one for each of `case.robots`.
+        steps: one row a step: step, time, clearance, link, obstacle, link_x … obstacle_z, status
+            ("clear" | "near" | "violated" | "contact"), tracking_error when simulated.
+        pair_minima: one entry a measured pair, least clearance first.
+        tally: counters by name (pairs, queries, nodes, polygons, …).
+        method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
+    """
+
+    case: Case
+    motions: tuple[Motion, ...]
+    steps: pa.Table
+    pair_minima: tuple[PairMinimum, ...]
+    unmeasured: tuple[Unmeasured, ...]
+    tally: dict[str, int]
+    method: str = "exact"
+    motion_kind: str = "kinematic"
+    cross_check: CrossCheck | None = None
+    notes: tuple[str, ...] = field(default_factory=tuple)
+
+    @property
+    def clearances(self) -> np.ndarray:
+        """(n,) [m]."""
+        return self.steps["clearance"].to_numpy()
+
+    @property
+    def worst_step(self) -> int:
+        """The first step of least clearance."""
+        return int(np.argmin(self.clearances))

@@ -1,0 +1,88 @@
+"""Forward kinematics: joint positions to the poses of all links. Not for: what the positions should be."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.errors import UnknownJoint, nearest_name
+from clearance.kernels.kinematics import FIXED, SLIDING, TURNING, forward
+from clearance.world.case import PlacedRobot
+from clearance.world.robot import Joint, JointKind, Robot
+
+_KERNEL_KIND = {
+    JointKind.FIXED: FIXED,
+    JointKind.REVOLUTE: TURNING,
+    JointKind.CONTINUOUS: TURNING,
+    JointKind.PRISMATIC: SLIDING,
+}
+
+
+def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
+    """The pose of every link at every step.
+
+    Args:
+        positions: (n, k) [rad] or [m], columns as `placed.robot.moving_joints`.
+
+    Returns:
+        (n, n_links, 4, 4) `world_from_link` [m], links as in `Robot.link_names`.
+    """
+    robot = placed.robot
+    n_links = len(robot.link_names)
+    index = {name: i for i, name in enumerate(robot.link_names)}
+    parents = np.zeros(n_links, dtype=np.int64)
+    kinds = np.zeros(n_links, dtype=np.int64)
+    fixed_parts = np.tile(np.eye(4), (n_links, 1, 1))
+    axes = np.zeros((n_links, 3))
+    for joint in robot.joints:
+        i = index[joint.child]
+        parents[i], kinds[i] = index[joint.parent], _KERNEL_KIND[joint.kind]
+        fixed_parts[i], axes[i] = joint.parent_from_joint, joint.axis
+    poses = np.empty((len(positions), n_links, 4, 4))
+    forward(
+        np.ascontiguousarray(placed.world_from_base, dtype=np.float64),
+        parents, kinds, fixed_parts, axes, _positions_by_link(robot, index, positions), poses,
+    )
+    return poses
+
+
+def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray) -> np.ndarray:
+    """(n, k) positions of all moving joints from the (n, len(joint_names)) that are given by name.
+
+    Joints that are not named take their value in `placed.fixed_positions`, else 0.
+
+    Raises:
+        UnknownJoint: a name that is not a moving joint of the robot.
+    """
+    columns = {joint.name: i for i, joint in enumerate(placed.robot.moving_joints)}
+    positions = np.zeros((len(given), len(columns)))
+    for name, value in placed.fixed_positions.items():
+        positions[:, _column(columns, name)] = value
+    for i_given, name in enumerate(joint_names):
+        positions[:, _column(columns, name)] = given[:, i_given]
+    return positions
+
+
+def _column(columns: dict[str, int], name: str) -> int:
+    if name not in columns:
+        raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, columns))
+    return columns[name]
+
+
+def _positions_by_link(robot: Robot, index: dict[str, int], moving: np.ndarray) -> np.ndarray:
+    columns = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
+    by_name = {joint.name: joint for joint in robot.joints}
+    positions = np.zeros((len(moving), len(robot.link_names)))
+    for joint in robot.joints:
+        if joint.kind is not JointKind.FIXED:
+            positions[:, index[joint.child]] = _position(joint, by_name, columns, moving)
+    return positions
+
+
+def _position(
+    joint: Joint, by_name: dict[str, Joint], columns: dict[str, int], moving: np.ndarray
+) -> np.ndarray:
+    """(n,) the position of a joint, following mimic chains to a moving joint."""
+    if joint.mimic is None:
+        return moving[:, columns[joint.name]]
+    master = _position(by_name[joint.mimic.joint], by_name, columns, moving)
+    return joint.mimic.multiplier * master + joint.mimic.offset

@@ -1,0 +1,40 @@
+"""How a robot really moves: joint positions over time, whoever made them (the trajectory or physics)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.world.case import PlacedRobot
+from clearance.world.kinematics import link_poses
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The motion of one placed robot.
+
+    Attributes:
+        times: (n,) [s].
+        positions: (n, k) [rad] or [m] the positions that occur, columns as `placed.robot.moving_joints`.
+        tracking_error: (n,) greatest |actual - asked| over the joints [rad or m]; zeros when kinematic.
+    """
+
+    placed: PlacedRobot
+    times: np.ndarray
+    positions: np.ndarray
+    tracking_error: np.ndarray
+
+    @property
+    def n_steps(self) -> int:
+        """Number of steps."""
+        return len(self.times)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the columns of `positions`."""
+        return tuple(joint.name for joint in self.placed.robot.moving_joints)
+
+    def poses(self, start: int = 0, stop: int | None = None) -> np.ndarray:
+        """(steps, n_links, 4, 4) `world_from_link` [m] of the steps `start` to `stop`."""
+        return link_poses(self.placed, self.positions[start:stop])

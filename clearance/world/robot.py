@@ -1,0 +1,73 @@
+"""A robot as links and joints: what moves with what. Not for: URDF (room `load`), poses (`kinematics`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from clearance.world.body import Body
+
+
+class JointKind(StrEnum):
+    """How a joint's child moves in its parent."""
+
+    FIXED = "fixed"
+    REVOLUTE = "revolute"
+    CONTINUOUS = "continuous"
+    PRISMATIC = "prismatic"
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A joint that follows another: position = multiplier * master + offset."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A connection of two links.
+
+    Attributes:
+        parent, child: link names.
+        parent_from_joint: (4, 4) pose of the child frame at position 0 [m].
+        axis: (3,) unit vector in the joint frame.
+        lower, upper: limits [rad] or [m]; infinite where there are none.
+    """
+
+    name: str
+    kind: JointKind
+    parent: str
+    child: str
+    parent_from_joint: np.ndarray
+    axis: np.ndarray = field(default_factory=lambda: np.array([1.0, 0.0, 0.0]))
+    lower: float = -np.inf
+    upper: float = np.inf
+    mimic: Mimic | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A tree of links.
+
+    Attributes:
+        link_names: every link, with or without a shape; the root first, parents before children.
+        joints: `len(link_names) - 1` joints, in the order of their child links.
+        bodies: the links that have a shape (in the link frame), in the order of `link_names`.
+        notes: what loading had to mend or leave out, one line each, for the report.
+    """
+
+    name: str
+    link_names: tuple[str, ...]
+    joints: tuple[Joint, ...]
+    bodies: tuple[Body, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def moving_joints(self) -> tuple[Joint, ...]:
+        """The joints that a trajectory can name: not fixed and not mimicking."""
+        return tuple(j for j in self.joints if j.kind is not JointKind.FIXED and j.mimic is None)
