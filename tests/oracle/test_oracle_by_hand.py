@@ -109,6 +109,26 @@ def test_a_triangle_through_a_square():
     assert oracle.polygon_distance_sq(SQUARE, beside) == Fraction(1, 4)
 
 
+@pytest.mark.parametrize("foot", [(0.5, 0.25), (0.5, 0.75)])
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_spike_through_either_half_of_a_square(foot, turned):
+    # far from all edges: only the piercing itself shows it, from above and from below
+    spike = [(*foot, -9), (*foot, 9), (5, 5, 9 if turned else -9)]
+    for square, blade in itertools.product((SQUARE, SQUARE[::-1]), (spike, spike[::-1])):
+        assert oracle.polygons_touch(square, blade)
+        assert oracle.polygons_touch(blade, square)
+    assert not oracle.polygons_touch(SQUARE, moved(spike, (0.75, 0, 0)))
+
+
+@pytest.mark.parametrize("k", range(4))
+def test_each_edge_counts_wherever_the_polygon_starts(k):
+    # the post x = -2 faces the middle of the edge x = 0, and nothing else, 2 away
+    post = [(-2, 0.5, -1), (-2, 0.5, 1), (-9, 0.5, 0)]
+    square = SQUARE[k:] + SQUARE[:k]
+    assert oracle.polygon_distance_sq(square, post) == 4
+    assert oracle.polygon_distance_sq(post, square) == 4
+
+
 def test_a_corner_over_a_face_is_decided_to_one_ulp():
     tip = lambda z: [(0.3, 0.4, z), (0.3, 0.4, 1), (0.2, 0.9, 1)]  # noqa: E731
     assert oracle.polygons_touch(SQUARE, tip(0.0))
