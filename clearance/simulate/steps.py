@@ -1,0 +1,89 @@
+"""Turns measurements into the table of steps and the list of pair minima that everybody reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+
+import numpy as np
+import pyarrow as pa
+
+from clearance.simulate.measure import Measurement
+from clearance.simulate.record import PairMinimum
+from clearance.world.case import Case, Limits
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+
+class Status(StrEnum):
+    """How a step stands against the limits, worst last."""
+
+    CLEAR = "clear"
+    NEAR = "near"
+    VIOLATED = "violated"
+    CONTACT = "contact"
+
+
+STATUSES = tuple(Status)
+
+
+def status_codes(clearance: np.ndarray, limits: Limits) -> np.ndarray:
+    """(n,) indices into `STATUSES`: contact at 0, violated below `fail`, near below `warn`."""
+    below = [clearance <= 0.0, clearance < limits.fail, clearance < limits.warn]
+    return np.select(below, [3, 2, 1], default=0)
+
+
+def step_table(
+    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement, with_error: bool
+) -> pa.Table:
+    """One row a step; columns as in `Record.steps`."""
+    links, obstacles = pair_names(case, pairs)
+    columns = {
+        "step": pa.array(np.arange(len(found.clearance))),
+        "time": pa.array(motions[0].times),
+        "clearance": pa.array(found.clearance),
+        "link": _names(links, found.pair),
+        "obstacle": _names(obstacles, found.pair),
+    }
+    for i_side, side in enumerate(("link", "obstacle")):
+        for i_axis, axis in enumerate("xyz"):
+            columns[f"{side}_{axis}"] = pa.array(found.points[:, i_side, i_axis])
+    columns["status"] = _names([str(s) for s in STATUSES], status_codes(found.clearance, case.limits))
+    if with_error:
+        columns["tracking_error"] = pa.array(np.max([m.tracking_error for m in motions], axis=0))
+    return pa.table(columns)
+
+
+def minimum_list(
+    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement
+) -> tuple[PairMinimum, ...]:
+    """The least clearance of every pair over the run, least first; ties in the order of the pairs."""
+    links, obstacles = pair_names(case, pairs)
+    order = np.argsort(found.pair_clearance, kind="stable")
+    return tuple(
+        PairMinimum(
+            link=links[i],
+            obstacle=obstacles[i],
+            clearance=float(found.pair_clearance[i]),
+            step=int(found.pair_step[i]),
+            time=float(motions[0].times[found.pair_step[i]]),
+            point_link=tuple(found.pair_points[i, 0].tolist()),
+            point_obstacle=tuple(found.pair_points[i, 1].tolist()),
+        )
+        for i in order
+    )
+
+
+def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]:
+    """The link and the obstacle of each pair; links carry their robot's name where there are several."""
+    several = len(case.robots) > 1
+    links = []
+    for pair in pairs:
+        robot = case.robots[pair.i_robot].robot
+        name = robot.bodies[pair.i_body].name
+        links.append(f"{robot.name}/{name}" if several else name)
+    return links, [case.obstacles[pair.i_obstacle].name for pair in pairs]
+
+
+def _names(names: Sequence[str], codes: np.ndarray) -> pa.Array:
+    return pa.array(names, type=pa.string()).take(pa.array(codes))
