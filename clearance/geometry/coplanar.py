@@ -22,7 +22,7 @@ class Polygons(NamedTuple):
     """Convex polygons with the same points as the triangles that they were made of.
 
     Attributes:
-        vertices: (n, 3) [m], all different.
+        vertices: (n, 3) [m], all different but for those that a face without area repeats.
         face_starts, face_vertices: as in `Polyhedron`.
         n_dropped: zero-area triangles left out, because a proper face holds all their points.
         n_degenerate: zero-area faces that are kept, because none does.
@@ -61,6 +61,7 @@ def merge_coplanar(vertices: np.ndarray, triangles: np.ndarray) -> Polygons:
         than 2^300 are left unmerged.
     Ties: the longest edges go first, equal ones by index; the result is the same every time.
     """
+    vertices = np.array(vertices, dtype=np.float64)
     firsts, kinds = distinct_vertices(vertices)
     points = vertices[firsts] + 0.0
     corners = np.ascontiguousarray(kinds[np.asarray(triangles, dtype=np.int64)])
@@ -82,9 +83,9 @@ def _within_exact_range(points: np.ndarray) -> bool:
 
 
 def _unmerged(points: np.ndarray, corners: np.ndarray) -> Polygons:
-    whole = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
-    starts = np.arange(0, 3 * np.count_nonzero(whole) + 1, 3)
-    return Polygons(points, starts, corners[whole].ravel(), int((~whole).sum()), 0)
+    none = np.full(len(corners), kernels.DEGENERATE)
+    faces = _Faces(np.arange(0, corners.size + 1, 3), corners.ravel(), none, none, none)
+    return _compact(points, faces, 0, 0)
 
 
 def _covered_outright(corners: np.ndarray, axes: np.ndarray) -> np.ndarray:
@@ -255,4 +256,8 @@ def _compact(points: np.ndarray, faces: _Faces, n_dropped: int, n_degenerate: in
     used = np.unique(faces.flat)
     index = np.zeros(len(points), dtype=np.int64)
     index[used] = np.arange(len(used))
-    return Polygons(points[used], faces.starts, index[faces.flat], n_dropped, n_degenerate)
+    flat = index[faces.flat]
+    repeated = np.flatnonzero(flat == flat[rings_of(faces.starts).behind])
+    vertices = np.concatenate([points[used], points[used][flat[repeated]]])
+    flat[repeated] = len(used) + np.arange(len(repeated))  # no index twice in a row, same points
+    return Polygons(vertices, faces.starts, flat, n_dropped, n_degenerate)
