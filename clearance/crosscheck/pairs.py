@@ -60,7 +60,7 @@ class Mover:
     name: str
 
 
-def measured_pairs(record: Record) -> tuple[list[Mover], list[PeerPair]]:
+def peer_pairs(record: Record) -> tuple[list[Mover], list[PeerPair]]:
     """The links that take part and every pair that the record does not list as unmeasured."""
     left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
     obstacles = [(o, peer_side(o.body)) for o in record.case.obstacles]

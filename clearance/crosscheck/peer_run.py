@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.crosscheck.bounds import greatest_displacements, lower_bound_boxes, world_boxes
 from clearance.crosscheck.containment import is_inside
-from clearance.crosscheck.pairs import PeerPair, measured_pairs
+from clearance.crosscheck.pairs import PeerPair, peer_pairs
 from clearance.simulate.record import Record
 
 _STEPS_AT_ONCE = 512
@@ -43,7 +43,7 @@ class PeerRun:
 
     def __init__(self, record: Record) -> None:
         self.record = record
-        self.movers, self.pairs = measured_pairs(record)
+        self.movers, self.pairs = peer_pairs(record)
         for pair in self.pairs:
             pair.obstacle.peer.place(pair.world_from_obstacle)
         self._i_movers = np.array([pair.i_mover for pair in self.pairs])

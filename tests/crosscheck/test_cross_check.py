@@ -55,8 +55,8 @@ def test_a_wrong_clearance_is_listed_with_both_answers(error):
 
 
 def test_a_nan_is_a_disagreement():
-    assert [row.step for row in cross_check(passing([0.8, np.nan, 0.2, 0.0001])).disagreements] ==
-    [1]
+    check = cross_check(passing([0.8, np.nan, 0.2, 0.0001]))
+    assert [row.step for row in check.disagreements] == [1]
 
 
 def test_a_witness_off_its_body_is_listed_though_the_distance_is_right():
@@ -112,7 +112,7 @@ def test_containment_is_contact_for_the_peer_too(link, obstacle):
 def test_one_of_two_parts_inside_is_contact():
     small = box(0.2, 0.2, 0.2)
     two = Polyhedron(
-        np.vstack([small.vertices, small.vertices + [5.0, 0, 0]]),
+        np.vstack([small.vertices, small.vertices + np.array([5.0, 0, 0])]),
         [*small.face_vertices.reshape(-1, 4), *(small.face_vertices.reshape(-1, 4) + 8)],
     )
     rows = [(0.0, "solid", (5.0, 0.0, 0.0), (5.0, 0.0, 0.0))]
@@ -124,8 +124,8 @@ def test_an_open_body_has_no_inside():
     lidless = box(2.0, 2.0, 2.0)
     open_box = Polyhedron(lidless.vertices, lidless.face_vertices.reshape(-1, 4)[:5])
     rows = [(0.9, "open", (0.0, 0.0, -0.1), (0.0, 0.0, -1.0))]
-    assert cross_check(rail_record(box(0.2, 0.2, 0.2), {"open": (open_box, (0, 0, 0))}, [0.0],
-    rows)).agrees
+    record = rail_record(box(0.2, 0.2, 0.2), {"open": (open_box, (0, 0, 0))}, [0.0], rows)
+    assert cross_check(record).agrees
 
 
 def test_a_triangle_without_area_does_not_make_a_contact():
@@ -141,8 +141,10 @@ def test_a_needle_over_a_face_is_no_contact():
     """Field, fault 1: in metres FCL says 0 where the gap is 5 micrometres."""
     size = 5e-5
     needle = Polyhedron(
-        np.array([[0, 0, 5e-6], [size * 1e-2, 0, size], [0, size * 1e-2, size], [-1e-6, -1e-6,
-        size]]), [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]],
+        np.array(
+            [[0, 0, 5e-6], [size * 1e-2, 0, size], [0, size * 1e-2, size], [-1e-6, -1e-6, size]]
+        ),
+        [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]],
     )
     plate = Polyhedron([[-size, -size, 0], [size, -size, 0], [0, size, 0]], [[0, 1, 2]])
     rows = [(5e-6, "plate", (0, 0, 5e-6), (0, 0, 0))]
