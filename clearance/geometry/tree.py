@@ -50,6 +50,7 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
         owned_vertices=stacked("owned_vertices", "vertices"),
         edge_starts=starts("edge_starts", "owned_edges"),
         owned_edges=stacked("owned_edges", "vertices"),
+        axes=stacked("axes"),
         centres=stacked("centres"),
         halves=stacked("halves"),
         children=_joined_children(parts, n_before["centres"], n_before["normals"]),
@@ -93,7 +94,7 @@ def _build(shape: Polyhedron) -> Surface:
     owned_vertices, vertex_starts = _owned(corners, face_of_corner, shape.n_faces)
     edges = np.stack([corners, corners[following]], axis=1)
     owned_edges, edge_starts = _owned(np.sort(edges, axis=1), face_of_corner, shape.n_faces)
-    centres, halves, children = _tree(vertices[corners], starts)
+    axes, centres, halves, children = _tree(vertices[corners], starts)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
     solid_faces = np.flatnonzero(shape.component_closed[shape.face_component])
@@ -107,6 +108,7 @@ def _build(shape: Polyhedron) -> Surface:
         owned_vertices=owned_vertices,
         edge_starts=edge_starts,
         owned_edges=owned_edges,
+        axes=axes,
         centres=centres,
         halves=halves,
         children=children,
@@ -158,11 +160,14 @@ def _owned(
     return np.ascontiguousarray(features[first]), np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
 
 
-def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    lows = np.minimum.reduceat(corner_points, starts[:-1], axis=0)
-    highs = np.maximum.reduceat(corner_points, starts[:-1], axis=0)
-    n_nodes = 2 * len(lows) - 1
-    centres, halves = np.empty((n_nodes, 3)), np.empty((n_nodes, 3))
-    children = np.empty((n_nodes, 2), dtype=np.int64)
-    build_tree(lows, highs, centres, halves, children)
-    return centres, halves, children
+def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Axes, centres, half sizes and children of the tree's nodes."""
+    n_nodes = 2 * len(starts) - 3
+    nodes = (
+        np.empty((n_nodes, 3, 3)),
+        np.empty((n_nodes, 3)),
+        np.empty((n_nodes, 3)),
+        np.empty((n_nodes, 2), dtype=np.int64),
+    )
+    build_tree(corner_points, starts, *nodes)
+    return nodes

@@ -25,11 +25,11 @@ def _solid_angle(x, y, z):
 
 @inlined
 def _in_box(surface, node, x):
-    return (
-        abs(x.x - surface.centres[node, 0]) <= surface.halves[node, 0]
-        and abs(x.y - surface.centres[node, 1]) <= surface.halves[node, 1]
-        and abs(x.z - surface.centres[node, 2]) <= surface.halves[node, 2]
-    )
+    d = sub(x, row(surface.centres, node))
+    for axis in range(3):
+        if abs(dot(row(surface.axes[node], axis), d)) > surface.halves[node, axis]:
+            return False
+    return True
 
 
 @inlined

@@ -1,11 +1,18 @@
 """Nearest-first descent of two trees: the exact nearest faces of two bodies, or a proof that they are far."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
 from clearance.jit import inlined
-from clearance.kernels.bounds import lower_bound_boxes_sq, rounding_slack
+from clearance.kernels.bounds import (
+    lower_bound_boxes_in_sight,
+    lower_bound_boxes_sq,
+    lower_bound_faces_in_sight,
+    rounding_slack,
+    sight_along,
+)
 from clearance.kernels.face_pair import Hit, nearest_of_faces
 from clearance.kernels.vec3 import Vec3
 
@@ -49,8 +56,19 @@ def nothing_yet(limit_sq):
 
 
 @inlined
-def _size(surface, node):
-    return surface.halves[node, 0] + surface.halves[node, 1] + surface.halves[node, 2]
+def _breadth(surface, node):
+    """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
+    x, y, z = surface.halves[node, 0], surface.halves[node, 1], surface.halves[node, 2]
+    return x + y + z - max(x, max(y, z))
+
+
+@inlined
+def _bound_sq(a, node_a, b, node_b, m, sight, slack, best_gap):
+    """A lower bound on the squared distance of two nodes: the cheap one in sight if that excludes them."""
+    in_sight = lower_bound_boxes_in_sight(a, node_a, b, node_b, sight) - slack
+    if in_sight > best_gap:
+        return in_sight * in_sight
+    return lower_bound_boxes_sq(a, node_a, b, node_b, m, slack)
 
 
 @inlined
@@ -61,11 +79,13 @@ def descend(a, root_a, b, root_b, m, best, scratch):
         m: `a_from_b`.
         best: where to start: a hit, or `nothing_yet(limit_sq)`; node pairs farther than it are not opened.
 
-    A node pair is left only if its lower bound exceeds the best distance, so that every face pair that
-    attains the minimum is measured, and the answer does not depend on the order of the search. It stops
-    at the first contact.
+    A pair of nodes or faces is left only if a lower bound exceeds the best distance, so that every face
+    pair that attains the minimum is measured, and the answer does not depend on the order of the search. It
+    stops at the first contact.
     """
     slack = rounding_slack(a, root_a, b, root_b, m)
+    best_gap = math.sqrt(best.gap_sq)
+    sight = sight_along(best.p, best.q, m)
     floor_sq = np.inf
     n_nodes = 1
     n_faces = 0
@@ -84,21 +104,28 @@ def descend(a, root_a, b, root_b, m, best, scratch):
         leaf_a = a.children[node_a, 1] < 0
         leaf_b = b.children[node_b, 1] < 0
         if leaf_a and leaf_b:
+            face_a, face_b = a.children[node_a, 0], b.children[node_b, 0]
+            in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
+            if in_sight > best_gap:
+                floor_sq = min(floor_sq, in_sight * in_sight)
+                continue
             n_faces += 1
-            best = nearest_of_faces(
-                a, a.children[node_a, 0], b, b.children[node_b, 0], m, bound_sq == 0.0, best
-            )
+            before_sq = best.gap_sq
+            best = nearest_of_faces(a, face_a, b, face_b, m, bound_sq == 0.0, best)
             if best.gap_sq == 0.0:
                 break
+            if best.gap_sq < before_sq:
+                best_gap = math.sqrt(best.gap_sq)
+                sight = sight_along(best.p, best.q, m)
             continue
-        if leaf_b or (not leaf_a and _size(a, node_a) >= _size(b, node_b)):
+        if leaf_b or (not leaf_a and _breadth(a, node_a) >= _breadth(b, node_b)):
             a0, a1 = a.children[node_a, 0], a.children[node_a, 1]
             b0, b1 = node_b, node_b
         else:
             a0, a1 = node_a, node_a
             b0, b1 = b.children[node_b, 0], b.children[node_b, 1]
-        first_sq = lower_bound_boxes_sq(a, a0, b, b0, m, slack)
-        second_sq = lower_bound_boxes_sq(a, a1, b, b1, m, slack)
+        first_sq = _bound_sq(a, a0, b, b0, m, sight, slack, best_gap)
+        second_sq = _bound_sq(a, a1, b, b1, m, sight, slack, best_gap)
         n_nodes += 2
         if first_sq < second_sq:
             a0, a1 = a1, a0

@@ -22,7 +22,8 @@ def _empty_surface(n):
         edges[i, 1] = (i + 1) % n
     return Surface(
         np.empty((n, 3)), ends, around, np.empty((1, 3)), np.empty((n, 3)), ends, around, ends, edges,
-        nodes, nodes, np.empty((0, 2), dtype=np.int64), none, none, none, none, none,
+        np.empty((0, 3, 3)), nodes, nodes, np.empty((0, 2), dtype=np.int64),
+        none, none, none, none, none,
     )  # fmt: skip
 
 

@@ -20,7 +20,8 @@ class Surface(NamedTuple):
         corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
         vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
         edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns.
-        centres, halves: (n, 3) [m] boxes of the tree's nodes in the body frame.
+        axes, centres, halves: (n, 3, 3) unit axes as rows, (n, 3) [m], (n, 3) [m]: boxes of the tree's
+            nodes in the body frame.
         children: (n, 2) node indices; for a leaf (face, -1).
         roots: (bodies,) root nodes.
         probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
@@ -36,6 +37,7 @@ class Surface(NamedTuple):
     owned_vertices: np.ndarray
     edge_starts: np.ndarray
     owned_edges: np.ndarray
+    axes: np.ndarray
     centres: np.ndarray
     halves: np.ndarray
     children: np.ndarray

@@ -19,6 +19,10 @@ GROWTH = 1.0 + 1e-9
 """Covers the rounding of a sum of up to four million displacements."""
 
 
+LOOK_AHEAD = 4.0
+"""Steps of mean travel beyond the best within which a pair is still measured, so that its bound lasts."""
+
+
 class World(NamedTuple):
     """What moves where.
 
@@ -125,7 +129,7 @@ def sweep(surface, world, first, last, rows, tally):
             if floor > best_gap:
                 tally[0] += 1
                 continue
-            limit = best_gap * 1.5
+            limit = best_gap + LOOK_AHEAD * (travel[body_a] + travel[body_b]) / max(1, step - first)
             measured = measure_pair(
                 surface, body_a, surface, body_b, pair_motion(world, pair, step), limit * limit,
                 seeds[pair, 0], seeds[pair, 1], floor > 0.0, scratch,
