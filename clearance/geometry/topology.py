@@ -69,8 +69,8 @@ def component_volumes(
     firsts = np.unique(component, return_index=True)[1]
     origins = vertices[triangles[firsts, 0]][component]
     a, b, c = (vertices[triangles[:, i]] - origins for i in range(3))
-    np.add.at(volumes, component, (a * np.cross(b, c)).sum(axis=1) / 6.0)
-    return volumes
+    np.add.at(volumes, component, (a * np.cross(b, c)).sum(axis=1))
+    return volumes / 6.0
 
 
 def inside_out_components(
