@@ -57,11 +57,16 @@ def read_collada(data: bytes) -> Triangles:
     except ClearanceError:
         raise
     except Exception as error:  # pycollada raises whatever its parsing hits
-        reason = getattr(error, "msg", None) or str(error) or type(error).__name__
-        raise BadSyntax(f"not a COLLADA file that can be read: {reason}") from None
+        raise BadSyntax(f"not a COLLADA file that can be read: {_reason(error)}") from None
     if not pieces:
         raise EmptyMesh("the mesh has no faces", valid="a scene that places at least one polygon")
     return _in_metres_z_up(_joined(pieces), document)
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, RuntimeError) and "reraise" in str(error):  # how pycollada refuses an element
+        return "it has an element that is not supported"
+    return getattr(error, "msg", None) or str(error) or type(error).__name__
 
 
 def _geometry_only(data: bytes) -> bytes:
