@@ -1,10 +1,11 @@
 """The first paper's distance, as published: `method="paper"`.
 
-Kept to be judged, not to be trusted: what it answers is the distance of two real points of the two
-surfaces, hence never below the true distance of the surfaces, and often above it (`PAPER.md` has
-the figures). It knows no contact: overlapping surfaces give what the iteration ends on, mostly 0
-to rounding but also positive values, and a body inside another the distance of their surfaces. So
-`error_bound` is infinite.
+Kept to be judged, not to be trusted: what it answers is the distance of two real points of the
+two surfaces, hence (to rounding) never below their true distance, and often above it; `PAPER.md`
+has the figures. It knows no contact: for overlapping bodies it answers what the iteration ends on,
+0 or more, and often infinity, because rule 2 cuts the faces that have passed each other; for a body
+inside another likewise. So `error_bound` is infinite, and an infinite distance means "nothing
+measured".
 
 Source: Lim, Oh, Kim, Kim & Kim, Development of an efficient algorithm for the minimum distance
 calculation between general polyhedra, sections 2 to 4.

@@ -133,7 +133,7 @@ def test_right_wherever_it_stops_inside_both():
 
 
 def test_counterexample_the_iteration_stops_at_a_point_that_is_no_minimum():
-    """Smallest found among integer triangles: true sqrt(2 / 11) = 0.426, answer 1, in two passes.
+    """Two small integer triangles: true sqrt(2 / 11) = 0.426, answer 1, in two passes.
 
     The references slide to one edge each and the step along those two edges is the last; the
     closest points lie on other edges.
@@ -146,7 +146,7 @@ def test_counterexample_the_iteration_stops_at_a_point_that_is_no_minimum():
 
 
 def test_counterexample_twenty_times_the_true_distance():
-    """Worst of 150,000 integer triangles with coordinates -2 to 4: true sqrt(2 / 559), answer
+    """Worst of a random search over coordinates -2 to 4: true sqrt(2 / 559), answer
     1.28.
     """
     other = np.array([[0, 4, 4], [3, 0, -2], [4, -1, 3]], dtype=float)
