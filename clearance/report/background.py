@@ -65,9 +65,9 @@ def _cross_check(check: dict[str, Any] | None) -> list[Html]:
     if check is None:
         return [element("p", "No cross-check was asked for.")]
     figures = (
-        f"{check['peer']} measured {count(check['n_steps'], 'step')} too: the greatest difference is "
-        f"{scientific_mm(check['greatest_difference'])} mm, at step {check['worst_step']:,}; witness points are "
-        f"off by at most {scientific_mm(check['worst_witness_error'])} mm; "
+        f"{check['peer']} measured {count(check['n_steps'], 'step')} too: the greatest difference "
+        f"is {scientific_mm(check['greatest_difference'])} mm, at step {check['worst_step']:,}; "
+        f"witness points are off by at most {scientific_mm(check['worst_witness_error'])} mm; "
         f"{scientific_mm(check['tolerance'])} mm counts as agreement."
     )
     if check["agrees"]:
@@ -76,8 +76,8 @@ def _cross_check(check: dict[str, Any] | None) -> list[Html]:
         element(
             "tr",
             element("td", f"{item['step']:,}", class_="number"),
-            element("td", repr(item["clearance"] * 1000), class_="number"),
-            element("td", repr(item["peer_clearance"] * 1000), class_="number"),
+            element("td", f"{item['clearance'] * 1000:.12g}", class_="number"),
+            element("td", f"{item['peer_clearance'] * 1000:.12g}", class_="number"),
             element("td", f"{item['link']} - {item['obstacle']}"),
             element("td", f"{item['peer_link']} - {item['peer_obstacle']}"),
             element("td", item["reason"]),

@@ -11,6 +11,7 @@ import platform
 from importlib import metadata
 from pathlib import Path, PurePosixPath
 
+from clearance import __version__
 from clearance.world.case import Case
 
 LIBRARIES = (
@@ -29,7 +30,7 @@ LIBRARIES = (
 
 def versions() -> dict[str, str]:
     """Versions of this package, of Python and of the libraries that can change a figure."""
-    found = {"clearance": _version("clearance"), "python": platform.python_version()}
+    found = {"clearance": __version__, "python": platform.python_version()}
     return found | {name: _version(name) for name in LIBRARIES}
 
 

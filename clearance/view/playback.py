@@ -62,17 +62,26 @@ class Playback:
         self.close()
 
 
-def show(what: Record | str | Path, open_browser: bool = True) -> Playback:
-    """A live viewer of a record, or of a folder that a report was written to.
+def show(what: Record | str | Path, open_browser: bool = True) -> None:
+    """Plays a record, or the folder of a report, until the user interrupts; prints the address.
 
     Raises:
-        MissingFile: the folder is not there or holds no report. BadSyntax: its replay cannot be
-            read.
+        MissingFile: the folder is not there or holds no report. BadSyntax: its replay is damaged.
     """
-    playback = Playback(replay_of(what) if isinstance(what, Record) else _replay_in(Path(what)))
-    if open_browser:
-        webbrowser.open(playback.url, new=2)
-    return playback
+    with play(what) as playback:
+        print(f"{playback.replay.name} is playing at {playback.url} (Ctrl-C ends it)", flush=True)
+        if open_browser:
+            webbrowser.open(playback.url, new=2)
+        playback.wait()
+
+
+def play(what: Record | str | Path) -> Playback:
+    """A live viewer of a record, or of the folder of a report, that runs in the background.
+
+    Raises:
+        MissingFile: the folder is not there or holds no report. BadSyntax: its replay is damaged.
+    """
+    return Playback(replay_of(what) if isinstance(what, Record) else _replay_in(Path(what)))
 
 
 def _replay_in(folder: Path) -> Replay:
@@ -184,8 +193,8 @@ _JUMP = (
 
 
 def _middles(times: np.ndarray) -> np.ndarray:
-    """(n,) a time inside each frame; the last frame has no end, so its own time."""
-    return np.append(0.5 * (times[:-1] + times[1:]), times[-1])
+    """(n,) a time inside each frame; the last one a little late, where meshcat stops at the end."""
+    return np.append(0.5 * (times[:-1] + times[1:]), times[-1] + 1e-3)
 
 
 def _free_side(replay: Replay) -> np.ndarray:
