@@ -1,6 +1,4 @@
-"""Names that a case takes from its robot and scene: each must be there, so that a typing error is
-no silent gap.
-"""
+"""Names that a case takes from robot and scene: a typing error must not be a silent gap."""
 
 from __future__ import annotations
 

@@ -76,9 +76,7 @@ def load_case(path: str | Path) -> Case:
 
 @dataclass(frozen=True)
 class _ScenePlace:
-    """Where the obstacles are written: the file (and field) for errors, the folder for mesh
-    files.
-    """
+    """Where the obstacles are written: file and field for errors, folder for mesh files."""
 
     place: str
     folder: Path

@@ -31,9 +31,7 @@ _IRRELEVANT = (
 )  # fmt: skip
 
 Z_FROM_Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-"""(3, 3) turns y up, z towards the viewer into z up, -y towards the viewer; x stays to the
-right.
-"""
+"""(3, 3) turns y up, z towards the viewer into z up, -y towards the viewer; x stays."""
 
 _Z_FROM = {
     "X_UP": np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]]),
@@ -64,15 +62,15 @@ def read_collada(data: bytes) -> Triangles:
 
 
 def _reason(error: Exception) -> str:
-    if isinstance(error, RuntimeError) and "reraise" in str(error):  # how pycollada refuses an element
+    if isinstance(error, RuntimeError) and "reraise" in str(
+        error
+    ):  # how pycollada refuses an element
         return "it has an element that is not supported"
     return getattr(error, "msg", None) or str(error) or type(error).__name__
 
 
 def _geometry_only(data: bytes) -> bytes:
-    """The document without what does not matter for shape, so that a missing texture is no
-    fault.
-    """
+    """The document without what has no shape, so that a missing texture is no fault."""
     from lxml import etree
 
     try:

@@ -50,9 +50,7 @@ class InputFiles:
         return self._contents[path]
 
     def shown(self, path: Path) -> str:
-        """How a path is written in messages and summaries: never with a part that only this machine
-        has.
-        """
+        """How a path is written in messages and summaries: the same on every machine."""
         path = Path(os.path.abspath(path))
         brought = _pybullet_data_folder()
         if brought is not None and path.is_relative_to(brought):
@@ -80,9 +78,7 @@ def read_bytes(path: Path, shown: str) -> bytes:
 
 
 def relative_path(path: Path, folder: Path) -> str:
-    """`path` as seen from `folder`, with `/`; the bare file name where they share nothing but the
-    root.
-    """
+    """`path` as seen from `folder`, with `/`; the bare name where they share only the root."""
     folder = Path(os.path.abspath(folder))
     try:
         shared = Path(os.path.commonpath([path, folder]))

@@ -1,6 +1,4 @@
-"""Joints of a URDF model to joints of ours: kinds, limits, axes of length one, mimics that lead
-somewhere.
-"""
+"""Joints of a URDF model to ours: kinds, limits, unit axes, mimics that lead somewhere."""
 
 from __future__ import annotations
 
@@ -73,9 +71,7 @@ def _axis(given: yourdfpy.Joint, kind: JointKind) -> np.ndarray:
 
 
 def _limits(given: yourdfpy.Joint, kind: JointKind) -> tuple[float, float]:
-    """Lower and upper limit, infinite where neither is written; of two, one that is not written is
-    0 (URDF).
-    """
+    """Lower and upper limit: infinite where neither is written, 0 where one is not (URDF)."""
     limit = given.limit
     if kind in (JointKind.FIXED, JointKind.CONTINUOUS) or limit is None:
         return -np.inf, np.inf

@@ -96,8 +96,11 @@ def _by_trimesh(data: bytes, suffix: str) -> Triangles:
 
 
 def _solid(triangles: Triangles) -> LoadedMesh:
-    shape = Polyhedron.from_triangles(triangles.vertices, triangles.corners)
+    given = Polyhedron.from_triangles(triangles.vertices, triangles.corners)
+    shape = given.outward()
     notes = [*triangles.notes, *_notes_on_flat(n_without_area(triangles), shape)]
+    if shape is not given:
+        notes.append("closed surfaces that were inside out are turned round")
     return LoadedMesh(shape, len(triangles.corners), tuple(notes))
 
 

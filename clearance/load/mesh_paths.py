@@ -1,6 +1,4 @@
-"""Where the mesh that a URDF names lies: `package://…`, `file://…`, absolute, or relative to the
-URDF.
-"""
+"""Where a mesh named in a URDF lies: `package://…`, `file://…`, absolute, or relative."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""The solids of one case's mesh files: a file that is named several times with one scale is made
-once.
-"""
+"""The solids of one case's mesh files: each file is made once for each scale."""
 
 from __future__ import annotations
 

@@ -1,6 +1,4 @@
-"""Joint names that a trajectory and a case give, held against the robot. Not for: values
-(`plausibility`).
-"""
+"""Joint names given by trajectory and case, held against the robot. Not for: values."""
 
 from __future__ import annotations
 

@@ -53,9 +53,7 @@ def obstacle_notes(obstacles: list[schema.Obstacle]) -> list[str]:
 
 
 def motion_notes(placed: PlacedRobot) -> list[str]:
-    """Notes on joints that leave their limits or look like degrees, in the trajectory and fixed
-    values.
-    """
+    """Notes on joints that leave their limits or whose values look like degrees."""
     joints = {joint.name: joint for joint in placed.robot.moving_joints}
     notes = []
     for name, column in zip(

@@ -51,9 +51,7 @@ def _cut_equal(vertices: np.ndarray, rows: np.ndarray, numbers: np.ndarray) -> n
 
 
 def _fans_cover(corners: np.ndarray) -> np.ndarray:
-    """(m,) whether the fan from the first corner covers each (k, 3) polygon: it is convex, or all
-    on a line.
-    """
+    """(m,) whether the fan from the first corner covers each (k, 3) polygon."""
     normals = _newell(corners)
     edges = np.roll(corners, -1, axis=1) - corners
     turns = np.einsum("mki,mi->mk", np.cross(np.roll(edges, 1, axis=1), edges), normals)

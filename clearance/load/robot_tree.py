@@ -1,6 +1,4 @@
-"""Links and joints put in order: one root, parents before children. Not for: what a joint does
-(`joints`).
-"""
+"""Links and joints in order: one root, parents before children. Not for: what joints do."""
 
 from __future__ import annotations
 
@@ -56,7 +54,8 @@ def _joint_above(names: Sequence[str], joints: Sequence[Joint]) -> dict[str, Joi
                 )
         if joint.child in above:
             raise BadInput(
-                f"link {joint.child!r} is the child of joints {above[joint.child].name!r} and {joint.name!r}",
+                f"link {joint.child!r} is the child of joints "
+                f"{above[joint.child].name!r} and {joint.name!r}",
                 valid="one parent for each link",
             )
         above[joint.child] = joint

@@ -1,6 +1,4 @@
-"""Obstacles of a case or scene file to solids that stand in the world. Not for: the schema they
-follow.
-"""
+"""Obstacles of a case or scene file to solids in the world. Not for: their schema."""
 
 from __future__ import annotations
 

@@ -104,7 +104,9 @@ class Pipe(Strict):
     @model_validator(mode="after")
     def _bends_only_with_path(self) -> Pipe:
         if self.path is None and self.bend_radius is not None:
-            raise BadInput("bend_radius is given without path", valid="a straight pipe has no bends")
+            raise BadInput(
+                "bend_radius is given without path", valid="a straight pipe has no bends"
+            )
         return self
 
 

@@ -1,6 +1,4 @@
-"""What the schema library objects to, as one line of ours: what was given, where, what would be
-valid.
-"""
+"""What the schema library objects to, as one line of ours: given, where, what is valid."""
 
 from __future__ import annotations
 

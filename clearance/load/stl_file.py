@@ -34,7 +34,7 @@ def read_stl(data: bytes) -> Triangles:
         return _text(data)
     raise BadSyntax(
         f"not an STL file: {len(data)} bytes",
-        valid="84 + 50 bytes a triangle as the header counts them, or text from 'solid' to 'endsolid'",
+        valid="84 + 50 bytes for each triangle of its header, or 'solid' … 'endsolid'",
     )
 
 

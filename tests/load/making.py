@@ -5,6 +5,7 @@ files.
 from __future__ import annotations
 
 import struct
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +52,7 @@ def signed_volume(shape) -> float:
     total = 0.0
     for i in range(shape.n_faces):
         corners = shape.face(i)
-        for b, c in zip(corners[1:-1], corners[2:], strict=True):
+        for b, c in pairwise(corners[1:]):
             total += np.dot(corners[0], np.cross(b, c)) / 6
     return float(total)
 

@@ -1,4 +1,6 @@
-"""COLLADA: unit and up axis are obeyed once, transforms and instances are placed, precision is kept."""
+"""COLLADA: unit and up axis are obeyed once, transforms and instances are placed, precision is
+kept.
+"""
 
 import numpy as np
 import pytest
@@ -12,7 +14,11 @@ WEDGE_TRIANGLES = "0 2 1 0 1 3 0 3 2 1 2 3"
 
 
 def document(
-    asset="", vertices=WEDGE, primitives=None, nodes='<node><instance_geometry url="#g"/></node>', more=""
+    asset="",
+    vertices=WEDGE,
+    primitives=None,
+    nodes='<node><instance_geometry url="#g"/></node>',
+    more="",
 ) -> bytes:
     primitives = primitives or (
         '<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>'
@@ -92,7 +98,9 @@ def test_node_transforms_are_applied_in_order_and_keep_faces_outward(transforms,
 
 def test_nested_nodes_and_instances_are_all_placed():
     inner = '<node><translate>0 0 10</translate><instance_geometry url="#g"/></node>'
-    nodes = f'<node><translate>5 0 0</translate>{inner}</node><node><instance_node url="#n"/></node>'
+    nodes = (
+        f'<node><translate>5 0 0</translate>{inner}</node><node><instance_node url="#n"/></node>'
+    )
     library = '<library_nodes><node id="n"><instance_geometry url="#g"/></node></library_nodes>'
     text = document(Z_UP, nodes=nodes).decode()
     text = text.replace("<library_visual_scenes>", library + "<library_visual_scenes>")
@@ -117,7 +125,10 @@ def test_polygons_of_several_primitives_are_kept_and_cut_inside():
 
 
 def test_triangle_strips_turn_every_other_triangle():
-    strip = '<tristrips count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>{}</p></tristrips>'
+    strip = (
+        '<tristrips count="1"><input semantic="VERTEX" source="#v" offset="0"/>'
+        "<p>{}</p></tristrips>"
+    )
     mesh = load(Z_UP, primitives=strip.format("0 2 1 3") + strip.format("1 3 0 2"))
     assert mesh.shape.closed and mesh.shape.oriented
     assert signed_volume(mesh.shape) == pytest.approx(1)
@@ -149,7 +160,10 @@ OUTSIDE = (
         (b"<COLLADA", BadSyntax),
         (b"<robot/>", BadSyntax),
         (document(Z_UP, nodes="<node/>"), EmptyMesh),
-        (document(Z_UP).replace(b"<scene>", b"<extra>").replace(b"</scene>", b"</extra>"), EmptyMesh),
+        (
+            document(Z_UP).replace(b"<scene>", b"<extra>").replace(b"</scene>", b"</extra>"),
+            EmptyMesh,
+        ),
         (document(Z_UP, vertices="nan 0 0 1 0 0 0 2 0 0 0 3"), NotFinite),
         (document(Z_UP, vertices="x 0 0 1 0 0 0 2 0 0 0 3"), BadSyntax),
         (document('<unit meter="0"/>' + Z_UP), BadDimension),
@@ -157,7 +171,10 @@ OUTSIDE = (
         (document(Z_UP, primitives=SHORT), BadSyntax),
         (document(Z_UP, primitives=OUTSIDE), (BadSyntax, BadPolygon)),
         (document(Z_UP, nodes='<node><instance_geometry url="#no"/></node>'), BadSyntax),
-        (document(Z_UP, nodes='<node><skew>1</skew><instance_geometry url="#g"/></node>'), BadSyntax),
+        (
+            document(Z_UP, nodes='<node><skew>1</skew><instance_geometry url="#g"/></node>'),
+            BadSyntax,
+        ),
     ],
 )
 def test_each_fault_is_one_line_with_the_file(data, fault):

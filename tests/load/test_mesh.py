@@ -1,4 +1,6 @@
-"""Mesh files to solids: nothing lost, nothing moved, nothing turned inside out, and each fault in one line."""
+"""Mesh files to solids: nothing lost, nothing moved, nothing turned inside out, and each fault in
+one line.
+"""
 
 import struct
 import time
@@ -57,7 +59,8 @@ def test_text_stl_of_several_solids_keeps_all():
 def test_single_precision_values_are_kept_and_nearly_equal_points_stay_apart():
     near = np.nextafter(np.float32(0.1), np.float32(1))
     corners = np.array(
-        [[[0, 0, 0], [0.1, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, -1, 0], [near, 0, 0]]], dtype=np.float32
+        [[[0, 0, 0], [0.1, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, -1, 0], [near, 0, 0]]],
+        dtype=np.float32,
     )
     mesh = mesh_from_bytes(binary_stl(corners), "near.stl")
     assert as_triangle_set(corners) == as_triangle_set([mesh.shape.face(i) for i in range(2)])
@@ -93,7 +96,9 @@ def test_obj_of_several_materials_groups_and_objects_keeps_every_face():
         "f 1/1/1 5/2/1 6/3/1 2/4/1", "o second", "usemtl red", "f 3//1 4//1 8//1 7//1", "s off",
         "usemtl", lines[12], "l 1 2", "f 2/9 6/9 8/9 4/9",
     ]  # fmt: skip
-    text = "\n".join(["# two materials", "mtllib missing.mtl", *lines[:8], "vn 0 0 1", "vt 0 0", *faces])
+    text = "\n".join(
+        ["# two materials", "mtllib missing.mtl", *lines[:8], "vn 0 0 1", "vt 0 0", *faces]
+    )
     mesh = mesh_from_bytes(text.encode(), "cube.obj")
     expected = as_triangle_set(CUBE_CORNERS)
     whole = mesh_from_bytes(CUBE_OBJ.encode(), "cube.obj")
@@ -131,7 +136,7 @@ def test_scale_keeps_faces_outward_even_when_it_mirrors(name, data, scale):
 
 
 def test_scale_of_each_axis_and_mirroring_move_points_where_they_belong():
-    corners = CUBE_CORNERS + [1, 2, 3]
+    corners = CUBE_CORNERS + np.array([1, 2, 3])
     shape = mesh_from_bytes(binary_stl(corners), "m.stl", (-2, 3, 0.5)).shape
     assert shape.bounds.tolist() == [[-3, 4.5, 1.25], [-1, 7.5, 1.75]]
     assert signed_volume(shape) == pytest.approx(3)
@@ -161,7 +166,9 @@ def test_formats_that_trimesh_writes_come_back_whole(suffix):
 def test_nearly_equal_points_of_a_ply_stay_apart():
     rows = ["0 0 0", "1 0 0", "0 1 0", "0 0 1e-9", "1 0 1e-9", "0 1 1e-9"]
     head = "ply\nformat ascii 1.0\nelement vertex 6\nproperty double x\nproperty double y\n"
-    head += "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    head += (
+        "property double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+    )
     data = (head + "\n".join([*rows, "3 0 1 2", "3 3 4 5", ""])).encode()
     assert len(mesh_from_bytes(data, "m.ply").shape.vertices) == 6
 
@@ -179,7 +186,12 @@ NAN_STL = binary_stl(np.concatenate([CUBE_CORNERS, [[[0, 0, 0], [1, np.nan, 0], 
         ("m.stl", cube_stl() + b"more", BadSyntax, "not an STL file"),
         ("m.stl", b"\x89PNG" * 50, BadSyntax, "not an STL file"),
         ("m.stl", text_stl(CUBE_CORNERS)[:600], BadSyntax, "cut off"),
-        ("m.stl", text_stl(CUBE_CORNERS).replace(b"endloop", b"", 1), BadSyntax, "closed outer loop"),
+        (
+            "m.stl",
+            text_stl(CUBE_CORNERS).replace(b"endloop", b"", 1),
+            BadSyntax,
+            "closed outer loop",
+        ),
         ("m.stl", text_stl(CUBE_CORNERS).replace(b"-0.5", b"x", 1), BadSyntax, "three vertices"),
         ("m.stl", text_stl(CUBE_CORNERS).replace(b"-0.5", b"", 1), BadSyntax, "three vertices"),
         ("m.stl", NAN_STL, NotFinite, "face 12"),
@@ -242,3 +254,16 @@ def test_fifty_thousand_triangles_load_in_less_than_a_second():
     assert mesh.n_triangles == mesh.shape.n_faces == 49928
     assert len(mesh.shape.vertices) == n * n
     assert elapsed < 1.0
+
+
+def test_a_closed_mesh_that_is_inside_out_is_turned_and_noted():
+    mesh = mesh_from_bytes(binary_stl(CUBE_CORNERS[:, ::-1]), "m.stl")
+    assert signed_volume(mesh.shape) == 1
+    assert mesh.notes == ("closed surfaces that were inside out are turned round",)
+
+
+def test_a_cavity_stays_a_cavity():
+    hollow = np.concatenate([CUBE_CORNERS * 4, CUBE_CORNERS[:, ::-1]])
+    mesh = mesh_from_bytes(binary_stl(hollow), "m.stl")
+    assert signed_volume(mesh.shape) == pytest.approx(63)
+    assert mesh.notes == ()

@@ -17,9 +17,11 @@ from clearance.load.mesh import mesh_from_bytes, triangles_from_bytes
 
 CASES = Path(__file__).resolve().parents[2].parent / "shared" / "cases"
 
-pytestmark = pytest.mark.skipif(not CASES.is_dir(), reason="shared/cases is not beside the checkout")
+pytestmark = pytest.mark.skipif(
+    not CASES.is_dir(), reason="shared/cases is not beside the checkout"
+)
 
-# links measured, triangles of their meshes, obstacles, triangles of flat obstacles (as the table beside them says)
+# links measured, triangles of their meshes, obstacles, triangles of flat obstacles, steps
 EXPECTED = {
     "panda_bookshelf_thin_planned": (11, 3472, 21, 132, 300),
     "kuka_iiwa_valve_wall": (7, 11720, 9, 49303, 300),
@@ -31,7 +33,9 @@ MESHES = sorted(p for p in CASES.rglob("*") if p.suffix.lower() in (".stl", ".ob
 
 
 def rows_of(path: Path) -> np.ndarray:
-    """(m, 3, 3) corners of the triangles in a mesh file, by a reader of ten lines that only these files need."""
+    """(m, 3, 3) corners of the triangles in a mesh file, by a reader of ten lines that only these
+    files need.
+    """
     if path.suffix.lower() == ".stl":
         facets = np.frombuffer(path.read_bytes()[84:], np.uint8).reshape(-1, 50)
         return np.ascontiguousarray(facets[:, 12:48]).view("<f4").reshape(-1, 3, 3).astype(float)

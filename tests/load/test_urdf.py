@@ -1,4 +1,6 @@
-"""URDF to a robot: shapes in their link's frame, joints as written, and the element of every fault."""
+"""URDF to a robot: shapes in their link's frame, joints as written, and the element of every
+fault.
+"""
 
 import importlib.util
 
@@ -108,7 +110,10 @@ def test_primitive_shapes_hold_the_true_solid_and_little_more(tmp_path, shape, s
 
 
 def test_visual_geometry_when_asked(tmp_path):
-    elements = collision('<box size="1 1 1"/>') + "<visual><geometry><box size='2 2 2'/></geometry></visual>"
+    elements = (
+        collision('<box size="1 1 1"/>')
+        + "<visual><geometry><box size='2 2 2'/></geometry></visual>"
+    )
     assert signed_volume(load(tmp_path, robot(link(elements))).bodies[0].shape) == 1
     shape = load(tmp_path, robot(link(elements)), geometry="visual").bodies[0].shape
     assert signed_volume(shape) == 8
@@ -134,7 +139,13 @@ def test_origins_turn_by_roll_pitch_yaw_about_fixed_axes(tmp_path):
 def test_links_come_parents_first_whatever_the_file_says(tmp_path):
     arm = load(
         tmp_path,
-        robot(link("", "c"), link("", "b"), link("", "a"), joint("bc", "b", "c"), joint("ab", "a", "b")),
+        robot(
+            link("", "c"),
+            link("", "b"),
+            link("", "a"),
+            joint("bc", "b", "c"),
+            joint("ab", "a", "b"),
+        ),
     )
     assert arm.link_names == ("a", "b", "c")
     assert [j.name for j in arm.joints] == ["ab", "bc"]
@@ -148,9 +159,17 @@ def test_mimic_chains_follow_their_master(tmp_path):
         tmp_path,
         robot(
             *(link("", name) for name in "abcd"),
-            joint("third", "c", "d", "prismatic", SLIDE + '<mimic joint="second" multiplier="-3"/>'),
+            joint(
+                "third", "c", "d", "prismatic", SLIDE + '<mimic joint="second" multiplier="-3"/>'
+            ),
             joint("first", "a", "b", "prismatic", SLIDE),
-            joint("second", "b", "c", "prismatic", SLIDE + '<mimic joint="first" multiplier="2" offset="1"/>'),
+            joint(
+                "second",
+                "b",
+                "c",
+                "prismatic",
+                SLIDE + '<mimic joint="first" multiplier="2" offset="1"/>',
+            ),
         ),
     )
     assert [j.name for j in arm.moving_joints] == ["first"]
@@ -165,7 +184,13 @@ def test_a_mimic_of_a_fixed_joint_stays_where_it_is(tmp_path):
             *(link("", name) for name in "abcd"),
             joint("still", "a", "b", "fixed", ""),
             joint("slide", "a", "c", "prismatic", SLIDE + '<mimic joint="still" offset="0.25"/>'),
-            joint("turn", "a", "d", "continuous", '<axis xyz="0 0 1"/><mimic joint="still" offset="0.5"/>'),
+            joint(
+                "turn",
+                "a",
+                "d",
+                "continuous",
+                '<axis xyz="0 0 1"/><mimic joint="still" offset="0.5"/>',
+            ),
         ),
     )
     assert arm.moving_joints == ()
@@ -203,7 +228,9 @@ def test_limits(tmp_path, kind, inner, limits):
 @pytest.mark.parametrize("axis", ["0 0 1e-200", "0 0 1e200", "0 0 7"])
 def test_axes_get_length_one(tmp_path, axis):
     inner = f'<axis xyz="{axis}"/><limit lower="0" upper="1"/>'
-    arm = load(tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "revolute", inner)))
+    arm = load(
+        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "revolute", inner))
+    )
     assert arm.joints[0].axis.tolist() == [0, 0, 1]
 
 
@@ -234,7 +261,9 @@ def test_meshes_are_found(tmp_path, given, place):
 def test_the_longest_match_of_a_package_path_wins(tmp_path):
     for place, scale in (("one", 1), ("two/pkg", 2)):
         (tmp_path / place).mkdir(parents=True)
-        (tmp_path / place / "part.obj").write_text(f"v 0 0 0\nv {scale} 0 0\nv 0 {scale} 0\nf 1 2 3\n")
+        (tmp_path / place / "part.obj").write_text(
+            f"v 0 0 0\nv {scale} 0 0\nv 0 {scale} 0\nf 1 2 3\n"
+        )
     mesh = collision('<mesh filename="package://pkg/part.obj"/>')
     arm = load(tmp_path, robot(link(mesh)), [tmp_path / "one", tmp_path / "two"])
     assert arm.bodies[0].origin == "two/pkg/part.obj"
@@ -245,7 +274,9 @@ def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
         "<inertial><mass value='heavy'/></inertial><!-- note --><material/><contact/>"
         + collision("<!-- the shape --><box size='1 1 1'/>")
     )
-    urdf = robot(link(extra), "<gazebo><x/></gazebo><transmission/><material name='m'/><!-- end -->")
+    urdf = robot(
+        link(extra), "<gazebo><x/></gazebo><transmission/><material name='m'/><!-- end -->"
+    )
     assert load(tmp_path, urdf).bodies[0].shape.n_faces == 6
 
 
@@ -282,42 +313,98 @@ BOX = collision('<box size="1 1 1"/>')
         (robot(link("", "a"), link("", "a")), DuplicateName, "two links have the name 'a'"),
         (robot(A_B), BadInput, "links 'a', 'b' have no parent"),
         (robot(A_B, joint("j", "a", "b"), joint("j", "a", "b")), DuplicateName, "two joints"),
-        (robot(A_B, joint("j", "a", "b"), joint("k", "a", "b")), BadInput, "child of joints 'j' and 'k'"),
+        (
+            robot(A_B, joint("j", "a", "b"), joint("k", "a", "b")),
+            BadInput,
+            "child of joints 'j' and 'k'",
+        ),
         (robot(A_B, joint("j", "a", "b"), joint("k", "b", "a")), BadInput, "circle"),
         (robot(A_B, link("", "c"), joint("j", "a", "b"), joint("k", "b", "a")), BadInput, "circle"),
         (robot(A_B, joint("j", "a", "a")), BadInput, "circle"),
         (robot(A_B, joint("j", "base", "b")), UnknownLink, "joint 'j': unknown parent link 'base'"),
         (robot(A_B, joint("j", "a", "bb")), UnknownLink, "joint 'j': unknown child link 'bb'"),
-        (robot(A_B, '<joint name="j" type="fixed"><parent link="a"/></joint>'), MissingKey, "0 <child>"),
-        (robot(A_B, '<joint name="j"><parent link="a"/></joint>'), MissingKey, "<joint> has no type"),
+        (
+            robot(A_B, '<joint name="j" type="fixed"><parent link="a"/></joint>'),
+            MissingKey,
+            "0 <child>",
+        ),
+        (
+            robot(A_B, '<joint name="j"><parent link="a"/></joint>'),
+            MissingKey,
+            "<joint> has no type",
+        ),
         (robot(A_B, joint("j", "a", "b", "floating")), BadInput, "joint 'j': type 'floating'"),
         (robot(A_B, joint("j", "a", "b", "planar")), BadInput, "type 'planar' is not supported"),
         (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 0 0"/>')), BadInput, "axis is 0 0 0"),
-        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1"/>')), BadShape, "joint 'j' axis: xyz='0 1'"),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1"/>')),
+            BadShape,
+            "joint 'j' axis: xyz='0 1'",
+        ),
         (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1 nan"/>')), NotFinite, "xyz="),
-        (robot(A_B, joint("j", "a", "b", inner='<origin xyz="0 1 x"/>')), BadShape, "joint 'j' origin"),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<origin xyz="0 1 x"/>')),
+            BadShape,
+            "joint 'j' origin",
+        ),
         (robot(A_B, joint("j", "a", "b", inner='<origin rpy="0 ${pi} 0"/>')), BadShape, "${pi}"),
-        (robot(A_B, joint("j", "a", "b", inner='<limit lower="2" upper="1"/>')), BadInput, "lower limit 2"),
-        (robot(A_B, joint("j", "a", "b", inner='<mimic joint="k"/>')), UnknownJoint, "unknown joint 'k'"),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<limit lower="2" upper="1"/>')),
+            BadInput,
+            "lower limit 2",
+        ),
+        (
+            robot(A_B, joint("j", "a", "b", inner='<mimic joint="k"/>')),
+            UnknownJoint,
+            "unknown joint 'k'",
+        ),
         (robot(A_B, joint("j", "a", "b", inner='<mimic joint="j"/>')), BadInput, "circle"),
         (robot(link(collision(""))), BadInput, "link 'a' collision[0] geometry: nothing is given"),
         (robot(link("<collision/>")), MissingKey, "<collision> has no <geometry>"),
         (robot(link(BOX + collision("<cone/>"))), BadInput, "collision[1] geometry: <cone>"),
-        (robot(link(collision("<box size='1 1 1'/><sphere radius='1'/>"))), BadInput, "<box>, <sphere>"),
+        (
+            robot(link(collision("<box size='1 1 1'/><sphere radius='1'/>"))),
+            BadInput,
+            "<box>, <sphere>",
+        ),
         (robot(link(collision('<box size="1 1"/>'))), BadShape, "size='1 1' is given; 3 numbers"),
         (robot(link(collision("<box/>"))), MissingKey, "<box> has no size"),
         (robot(link(collision('<box size="1 -1 1"/>'))), BadDimension, "-1"),
         (robot(link(collision('<sphere radius="0"/>'))), BadDimension, "link 'a' collision[0]"),
         (robot(link(collision('<cylinder radius="1" length="nan"/>'))), NotFinite, "length='nan'"),
         (robot(link(collision("<mesh/>"))), MissingKey, "<mesh> has no filename"),
-        (robot(link(collision('<mesh filename="no.stl"/>'))), MissingFile, "collision[0]: there is no mesh"),
-        (robot(link(collision('<mesh filename="package://p/no.stl"/>'))), MissingFile, "package_dirs"),
-        (robot(link(collision('<mesh filename="http://x/no.stl"/>'))), BadSyntax, "http://x/no.stl"),
-        (robot(link(collision('<mesh filename="upper.stl" scale="0 1 1"/>'))), BadDimension, "upper.stl: scale"),
-        (robot(link(collision('<mesh filename="upper.stl" scale="1 1"/>'))), BadShape, "1 or 3 numbers"),
-        (robot(link(collision('<mesh filename="arm.urdf"/>'))), BadSyntax, "unknown mesh format '.urdf'"),
+        (
+            robot(link(collision('<mesh filename="no.stl"/>'))),
+            MissingFile,
+            "collision[0]: there is no mesh",
+        ),
+        (
+            robot(link(collision('<mesh filename="package://p/no.stl"/>'))),
+            MissingFile,
+            "package_dirs",
+        ),
+        (
+            robot(link(collision('<mesh filename="http://x/no.stl"/>'))),
+            BadSyntax,
+            "http://x/no.stl",
+        ),
+        (
+            robot(link(collision('<mesh filename="upper.stl" scale="0 1 1"/>'))),
+            BadDimension,
+            "upper.stl: scale",
+        ),
+        (
+            robot(link(collision('<mesh filename="upper.stl" scale="1 1"/>'))),
+            BadShape,
+            "1 or 3 numbers",
+        ),
+        (
+            robot(link(collision('<mesh filename="arm.urdf"/>'))),
+            BadSyntax,
+            "unknown mesh format '.urdf'",
+        ),
     ],
-)  # fmt: skip
+)
 def test_each_fault_is_one_line_with_file_and_element(tmp_path, urdf, fault, says):
     with pytest.raises(fault) as caught:
         load(tmp_path, urdf)
