@@ -162,6 +162,8 @@ def _body_row(body: dict[str, Any]) -> Html:
 
 
 def _rounded(value: float) -> str:
+    if abs(value) < 1e-6:  # a double wall: its sides cancel but for rounding
+        return "0"
     return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.4g}"
 
 
