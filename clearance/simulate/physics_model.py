@@ -36,9 +36,32 @@ def write_physics_urdf(placed: PlacedRobot, folder: Path, with_shapes: bool) -> 
         shape = bodies.get(link.get("name", ""))
         if shape is not None:
             link.append(_collision(write_obj(shape, folder / f"link_{i_link}.obj")))
+    _set_unit_axes(robot, placed)
     path = folder / "robot.urdf"
     ET.ElementTree(robot).write(path, encoding="utf-8", xml_declaration=True)
     return path
+
+
+def _set_unit_axes(robot: ET.Element, placed: PlacedRobot) -> None:
+    """Writes unit axes: to the engine an axis of length 3 means three times the way."""
+    axes = {joint.name: joint.axis for joint in placed.robot.joints}
+    for joint in robot.findall("joint"):
+        axis = joint.find("axis")
+        if axis is not None and joint.get("name") in axes:
+            axis.set("xyz", " ".join(repr(float(part)) for part in axes[joint.get("name")]))
+
+
+def notes_on_masses(placed: PlacedRobot) -> list[str]:
+    """What is assumed about links that have a shape and no mass."""
+    with_shape = {body.name for body in placed.robot.bodies}
+    bare = [
+        name
+        for link in _parsed(placed.urdf_path).findall("link")
+        if link.find("inertial") is None and (name := link.get("name", "")) in with_shape
+    ]
+    if not bare:
+        return []
+    return [f"simulated motion: the URDF gives no mass to {', '.join(bare)}; taken as weightless"]
 
 
 def write_obj(shape: Polyhedron, path: Path) -> Path:
