@@ -10,7 +10,7 @@ from clearance.errors import BadInput
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import Progress, measure
 from clearance.simulate.record import CrossCheck, Record
-from clearance.simulate.steps import minimum_list, step_table
+from clearance.simulate.steps import PairMinima, step_table
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
@@ -97,7 +97,7 @@ def check(
         case=case,
         motions=motions,
         steps=step_table(case, motions, pairs, found, with_error=motion == "simulated"),
-        pair_minima=minimum_list(case, motions, pairs, found),
+        pair_minima=PairMinima(case, motions, pairs, found),
         unmeasured=tuple(unmeasured),
         tally=found.tally,
         method=method,

@@ -12,11 +12,16 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.body_pair import NO_FACE, measure_pair, new_scratch
 from clearance.kernels.descent import Scratch
-from clearance.kernels.sweep import add_travel, pair_motion, pose_of
+from clearance.kernels.sweep import add_travel, pair_motion, pose_of, root_bound
 from clearance.kernels.vec3 import move, rigid
 
 DEPTH = 128
 """Intervals that can wait: halving 2**63 steps leaves one a level."""
+
+
+MARGIN = 0.25
+"""How far beyond the best a pair is measured, as a share of what moves in the interval: a greater share
+makes queries dearer and intervals fewer; 0.1 to 0.5 differ by less than a third on the shared cases."""
 
 
 class Probe(NamedTuple):
@@ -69,6 +74,19 @@ def _ask(surface, world, pair, step, margin, probe, tally):
 
 
 @inlined
+def _likely_step(surface, world, pair):
+    """The step at which the boxes of a pair are nearest."""
+    least = np.inf
+    likely = 0
+    for step in range(len(world.poses)):
+        bound = root_bound(surface, world, pair, step)
+        if bound < least:
+            least = bound
+            likely = step
+    return likely
+
+
+@inlined
 def _search(surface, world, pair, travel, probe, tally):
     """Leaves in `probe` the least clearance of one pair over all steps, the first step that has it."""
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
@@ -77,8 +95,9 @@ def _search(surface, world, pair, travel, probe, tally):
     ends = np.empty((DEPTH, 2))
     way = (travel[last, body_a] + travel[last, body_b]) - (travel[0, body_a] + travel[0, body_b])
     steps[0, 0], steps[0, 1] = 0, last
-    ends[0, 0] = _ask(surface, world, pair, 0, 0.0, probe, tally)
-    ends[0, 1] = _ask(surface, world, pair, last, 0.5 * way, probe, tally) if last > 0 else ends[0, 0]
+    _ask(surface, world, pair, _likely_step(surface, world, pair), 0.0, probe, tally)
+    ends[0, 0] = _ask(surface, world, pair, 0, MARGIN * way, probe, tally)
+    ends[0, 1] = _ask(surface, world, pair, last, MARGIN * way, probe, tally) if last > 0 else ends[0, 0]
     n_waiting = 1
     while n_waiting > 0:
         n_waiting -= 1
@@ -93,7 +112,7 @@ def _search(surface, world, pair, travel, probe, tally):
             tally[0] += right - left - 1
             continue
         middle = (left + right) // 2
-        at_middle = _ask(surface, world, pair, middle, 0.5 * way, probe, tally)
+        at_middle = _ask(surface, world, pair, middle, MARGIN * way, probe, tally)
         near_first = low < high  # the half with the nearer end is searched first: it sets the best
         for half in range(2):
             is_left = (half == 1) == near_first

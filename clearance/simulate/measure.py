@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,6 +29,14 @@ CHUNK = 256
 COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
 
 
+class Minima(NamedTuple):
+    """One row a pair: least clearance [m], the first step that has it, witness points in the world [m]."""
+
+    clearance: np.ndarray
+    step: np.ndarray
+    points: np.ndarray  # (p, 2, 3)
+
+
 @dataclass(frozen=True, eq=False)
 class Measurement:
     """The least clearances of a motion.
@@ -36,18 +45,15 @@ class Measurement:
         clearance: (n,) [m].
         pair: (n,) index of the pair that attains it.
         points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
-        pair_clearance, pair_step: (p,) [m], (p,) least clearance of each pair and the first such step.
-        pair_points: (p, 2, 3) [m].
         tally: counters by name.
+        find_minima: measures the least clearance of each pair; not done until it is called.
     """
 
     clearance: np.ndarray
     pair: np.ndarray
     points: np.ndarray
-    pair_clearance: np.ndarray
-    pair_step: np.ndarray
-    pair_points: np.ndarray
     tally: dict[str, int]
+    find_minima: Callable[[], Minima]
 
 
 def measure(
@@ -68,21 +74,20 @@ def measure(
         sweep(surface, world, first, last, rows, tally)
         if progress:
             progress(last, n_steps)
-    gaps, steps, points = _pair_minima(surface, world, tally)
+    counts = dict(zip(COUNTERS, tally.tolist(), strict=True))
     return Measurement(
-        rows.clearance, rows.pair, rows.points, gaps, steps, points,
-        dict(zip(COUNTERS, tally.tolist(), strict=True)),
-    )  # fmt: skip
+        rows.clearance, rows.pair, rows.points, counts, lambda: _pair_minima(surface, world)
+    )
 
 
-def _pair_minima(
-    surface: Surface, world: World, tally: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _pair_minima(surface: Surface, world: World) -> Minima:
     n_pairs = len(world.pairs)
-    gaps, points = np.empty(n_pairs), np.empty((n_pairs, 2, 3))
-    steps, faces = np.empty(n_pairs, dtype=np.int64), np.empty((n_pairs, 2), dtype=np.int64)
-    pair_minima(surface, world, travelled(surface, world), gaps, steps, faces, points, tally)
-    return gaps, steps, points
+    found = Minima(np.empty(n_pairs), np.empty(n_pairs, dtype=np.int64), np.empty((n_pairs, 2, 3)))
+    faces = np.empty((n_pairs, 2), dtype=np.int64)
+    tally = np.zeros(len(COUNTERS), dtype=np.int64)
+    travel = travelled(surface, world)
+    pair_minima(surface, world, travel, found.clearance, found.step, faces, found.points, tally)
+    return found
 
 
 def _lay_out(

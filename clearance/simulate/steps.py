@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 import pyarrow as pa
@@ -54,24 +55,41 @@ def step_table(
     return pa.table(columns)
 
 
-def minimum_list(
-    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement
-) -> tuple[PairMinimum, ...]:
-    """The least clearance of every pair over the run, least first; ties in the order of the pairs."""
-    links, obstacles = pair_names(case, pairs)
-    order = np.argsort(found.pair_clearance, kind="stable")
-    return tuple(
-        PairMinimum(
-            link=links[i],
-            obstacle=obstacles[i],
-            clearance=float(found.pair_clearance[i]),
-            step=int(found.pair_step[i]),
-            time=float(motions[0].times[found.pair_step[i]]),
-            point_link=tuple(found.pair_points[i, 0].tolist()),
-            point_obstacle=tuple(found.pair_points[i, 1].tolist()),
+class PairMinima(Sequence[PairMinimum]):
+    """The least clearance of every pair over the run, least first, found when first looked at.
+
+    Ties are in the order of the pairs.
+    """
+
+    def __init__(
+        self, case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement
+    ) -> None:
+        self._names = pair_names(case, pairs)
+        self._times = motions[0].times
+        self._find = found.find_minima
+
+    def __len__(self) -> int:
+        return len(self._names[0])
+
+    def __getitem__(self, index: int | slice) -> PairMinimum | tuple[PairMinimum, ...]:
+        return self._rows[index]
+
+    @cached_property
+    def _rows(self) -> tuple[PairMinimum, ...]:
+        links, obstacles = self._names
+        found = self._find()
+        return tuple(
+            PairMinimum(
+                link=links[i],
+                obstacle=obstacles[i],
+                clearance=float(found.clearance[i]),
+                step=int(found.step[i]),
+                time=float(self._times[found.step[i]]),
+                point_link=tuple(found.points[i, 0].tolist()),
+                point_obstacle=tuple(found.points[i, 1].tolist()),
+            )
+            for i in np.argsort(found.clearance, kind="stable")
         )
-        for i in order
-    )
 
 
 def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]:
