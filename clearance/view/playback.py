@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import signal
 import threading
 import webbrowser
 from pathlib import Path
@@ -45,7 +46,9 @@ class Playback:
         return self._stage.url
 
     def wait(self) -> None:
-        """Returns when the user interrupts."""
+        """Returns when the user interrupts, or when this process is asked to end: meshcat's server
+        is a process of its own and would outlive it. To be called in the main thread."""
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
         try:
             threading.Event().wait()
         except KeyboardInterrupt:

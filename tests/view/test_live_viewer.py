@@ -3,6 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
+import signal
+import subprocess
+import sys
+import time
+from urllib.error import URLError
+from urllib.request import ProxyHandler, build_opener
 
 import numpy as np
 import pytest
@@ -137,3 +144,20 @@ def test_the_rod_reaches_from_point_to_point_in_every_direction():
     middles, turns, scales = map(np.array, line_tracks(lines))
     half = Rotation.from_quat(turns).apply(np.column_stack([0 * scales[:, :2], 0.5 * scales[:, 2]]))
     assert np.abs(np.column_stack([middles - half, middles + half]) - lines).max() < 3e-9
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+def test_the_server_ends_with_the_program(tmp_path, how):
+    replay_of(RUN).save(tmp_path / "replay.npz")
+    script = "import sys; from clearance.view import show; show(sys.argv[1], open_browser=False)"
+    program = subprocess.Popen(
+        [sys.executable, "-c", script, str(tmp_path)], stdout=subprocess.PIPE, text=True
+    )
+    url = re.search(r"http://\S+", program.stdout.readline())[0]
+    ask = build_opener(ProxyHandler({})).open
+    assert ask(url, timeout=20).status == 200
+    time.sleep(0.3)  # from the printed address to the wait
+    program.send_signal(how)
+    assert program.wait(timeout=20) == 0
+    with pytest.raises(URLError):
+        ask(url, timeout=20)
