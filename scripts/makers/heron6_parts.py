@@ -15,7 +15,9 @@ SILVER = (0.80, 0.82, 0.85)
 STEEL = (0.56, 0.60, 0.64)
 
 
-def drum(radius: float, half: float, at: tuple[float, float, float] = (0, 0, 0), n: int = 32) -> Solid:
+def drum(
+    radius: float, half: float, at: tuple[float, float, float] = (0, 0, 0), n: int = 32
+) -> Solid:
     """A turned drum along y with chamfered rims."""
     c = min(0.12 * radius, 0.3 * half)
     profile = [(radius - c, -half), (radius, c - half), (radius, half - c), (radius - c, half)]
@@ -28,15 +30,33 @@ def fork(bridge: tuple[float, float], tip: float, gap: float, outer: float, half
     c = 0.35 * (outer - gap) * (1 if tip > far else -1)
     if tip > far:
         outline = [
-            (near, -outer + c), (near + c, -outer), (tip - c, -outer), (tip, -outer + c), (tip, -gap),
-            (far, -gap), (far, gap), (tip, gap), (tip, outer - c), (tip - c, outer), (near + c, outer),
+            (near, -outer + c),
+            (near + c, -outer),
+            (tip - c, -outer),
+            (tip, -outer + c),
+            (tip, -gap),
+            (far, -gap),
+            (far, gap),
+            (tip, gap),
+            (tip, outer - c),
+            (tip - c, outer),
+            (near + c, outer),
             (near, outer - c),
         ]
     else:
         outline = [
-            (far, outer + c), (far + c, outer), (tip - c, outer), (tip, outer + c), (tip, gap),
-            (near, gap), (near, -gap), (tip, -gap), (tip, -outer - c), (tip - c, -outer),
-            (far + c, -outer), (far, -outer - c),
+            (far, outer + c),
+            (far + c, outer),
+            (tip - c, outer),
+            (tip, outer + c),
+            (tip, gap),
+            (near, gap),
+            (near, -gap),
+            (tip, -gap),
+            (tip, -outer - c),
+            (tip - c, -outer),
+            (far + c, -outer),
+            (far, -outer - c),
         ]
     return extruded(outline, -half, half)
 
@@ -51,7 +71,13 @@ def base_plate() -> Solid:
 
 def cheek(y: float) -> Solid:
     """One side plate of the shoulder yoke: a broad foot and a round head about axis 2."""
-    outline = [(-0.115, 0.04), (0.115, 0.04), (0.105, 0.11), *arc((0, 0.2), 0.09, (-15, 195), 19), (-0.105, 0.11)]
+    outline = [
+        (-0.115, 0.04),
+        (0.115, 0.04),
+        (0.105, 0.11),
+        *arc((0, 0.2), 0.09, (-15, 195), 19),
+        (-0.105, 0.11),
+    ]
     return extruded(outline, y - 0.017, y + 0.017, "y")
 
 
@@ -71,8 +97,18 @@ def lifting_eye() -> Solid:
 def finger() -> Solid:
     """The left finger: a relieved shank and a pad at y = 1 mm with a notch for bars and pipes."""
     outline = [
-        (-0.008, 0.004), (0.02, 0.004), (0.026, 0.014), (0.042, 0.014), (0.05, 0.001), (0.066, 0.001),
-        (0.075, 0.009), (0.084, 0.001), (0.1, 0.001), (0.1, 0.01), (0.06, 0.026), (0.02, 0.034),
+        (-0.008, 0.004),
+        (0.02, 0.004),
+        (0.026, 0.014),
+        (0.042, 0.014),
+        (0.05, 0.001),
+        (0.066, 0.001),
+        (0.075, 0.009),
+        (0.084, 0.001),
+        (0.1, 0.001),
+        (0.1, 0.01),
+        (0.06, 0.026),
+        (0.02, 0.034),
         (-0.008, 0.034),
     ]
     return extruded(outline, -0.012, 0.012)
@@ -81,13 +117,19 @@ def finger() -> Solid:
 PARTS = (
     Part("base_link", "base_plate", base_plate(), STEEL, 4000),
     Part(
-        "base_link", "base_column",
-        turned([(0.14, 0.015), (0.14, 0.05), (0.115, 0.09), (0.115, 0.2), (0.127, 0.21), (0.127, 0.24)]),
+        "base_link",
+        "base_column",
+        turned(
+            [(0.14, 0.015), (0.14, 0.05), (0.115, 0.09), (0.115, 0.2), (0.127, 0.21), (0.127, 0.24)]
+        ),
         GRAPHITE,
     ),
     Part("base_link", "connector_box", box((-0.185, -0.05, 0.05), (-0.09, 0.05, 0.155)), STEEL),
     Part(
-        "shoulder", "turntable", turned([(0.122, 0), (0.13, 0.008), (0.13, 0.048), (0.118, 0.06)]), AMBER
+        "shoulder",
+        "turntable",
+        turned([(0.122, 0), (0.13, 0.008), (0.13, 0.048), (0.118, 0.06)]),
+        AMBER,
     ),
     Part("shoulder", "cheek_left", cheek(0.095), AMBER),
     Part("shoulder", "cheek_right", cheek(-0.095), AMBER),
@@ -98,13 +140,25 @@ PARTS = (
     Part("forearm", "elbow_fork", fork((0.085, 0.13), -0.05, 0.057, 0.088, 0.05), AMBER),
     Part("forearm", "elbow_motor", drum(0.042, 0.112), GRAPHITE),
     Part(
-        "forearm", "forearm_tube",
-        turned([(0.064, 0.12), (0.07, 0.126), (0.07, 0.15), (0.053, 0.175), (0.05, 0.28), (0.046, 0.298)], "x"),
+        "forearm",
+        "forearm_tube",
+        turned(
+            [
+                (0.064, 0.12),
+                (0.07, 0.126),
+                (0.07, 0.15),
+                (0.053, 0.175),
+                (0.05, 0.28),
+                (0.046, 0.298),
+            ],
+            "x",
+        ),
         AMBER,
     ),
     Part("forearm", "lifting_eye", lifting_eye(), STEEL, 4000),
     Part(
-        "wrist_roll", "roll_tube",
+        "wrist_roll",
+        "roll_tube",
         turned([(0.046, 0.002), (0.053, 0.01), (0.053, 0.045), (0.042, 0.06), (0.042, 0.14)], "x"),
         GRAPHITE,
     ),
@@ -112,17 +166,23 @@ PARTS = (
     Part("wrist_roll", "wrist_motor", drum(0.026, 0.075, (0.22, 0, 0), 24), GRAPHITE),
     Part("wrist_pitch", "wrist_hub", drum(0.038, 0.039, n=24), SILVER),
     Part(
-        "wrist_pitch", "wrist_nose",
-        turned([(0.03, 0.015), (0.03, 0.068), (0.037, 0.074), (0.037, 0.087)], "x", n=24), SILVER,
+        "wrist_pitch",
+        "wrist_nose",
+        turned([(0.03, 0.015), (0.03, 0.068), (0.037, 0.074), (0.037, 0.087)], "x", n=24),
+        SILVER,
     ),
     Part(
-        "gripper", "tool_flange",
-        turned([(0.036, 0.001), (0.041, 0.005), (0.041, 0.02), (0.032, 0.026)], "x", n=24), GRAPHITE,
+        "gripper",
+        "tool_flange",
+        turned([(0.036, 0.001), (0.041, 0.005), (0.041, 0.02), (0.032, 0.026)], "x", n=24),
+        GRAPHITE,
     ),
     Part("gripper", "palm", box((0.022, -0.078, -0.026), (0.06, 0.078, 0.026)), SILVER),
     Part(
-        "gripper", "light_ring",
-        ring([(0.05, 0.026), (0.06, 0.026), (0.06, 0.044), (0.05, 0.044)], "x"), STEEL,
+        "gripper",
+        "light_ring",
+        ring([(0.05, 0.026), (0.06, 0.026), (0.06, 0.044), (0.05, 0.044)], "x"),
+        STEEL,
     ),
     Part("finger_left", "finger_left", finger(), GRAPHITE, 3000),
     Part("finger_right", "finger_right", finger().mirrored_y(), GRAPHITE, 3000),

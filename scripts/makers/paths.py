@@ -64,7 +64,9 @@ class Arm:
             step = jacobian.T @ np.linalg.solve(jacobian @ jacobian.T + damping * np.eye(6), error)
             found = np.clip(found + step * min(1.0, 0.2 / np.abs(step).max()), *self._bounds)
         if np.abs(error).max() > 1e-7:
-            raise ValueError(f"{target} is out of reach of {self.tip}: off by {np.abs(error).max():.4g}")
+            raise ValueError(
+                f"{target} is out of reach of {self.tip}: off by {np.abs(error).max():.4g}"
+            )
         return np.round(found, 4)
 
     def _error(self, target: ToolPose, pose: np.ndarray) -> np.ndarray:
@@ -83,7 +85,9 @@ class Arm:
         return np.array(columns).T
 
 
-def solved(arm: Arm, start: Sequence[float], targets: Sequence[ToolPose | Sequence[float]]) -> np.ndarray:
+def solved(
+    arm: Arm, start: Sequence[float], targets: Sequence[ToolPose | Sequence[float]]
+) -> np.ndarray:
     """(n, k) joint waypoints: tool poses are solved one after another, joint positions are kept."""
     rows = [np.asarray(start, dtype=np.float64)]
     for target in targets:
@@ -109,6 +113,10 @@ def write_trajectory(path: Path, joints: Sequence[str], positions: np.ndarray, s
     """Writes `time` [s] and one column a joint, six decimals."""
     lines = [",".join(["time", *joints])]
     for i, row in enumerate(positions):
-        lines.append(",".join([f"{i * step:.3f}", *(f"{value + 0.0:.6f}" for value in np.round(row, 6) + 0.0)]))
+        lines.append(
+            ",".join(
+                [f"{i * step:.3f}", *(f"{value + 0.0:.6f}" for value in np.round(row, 6) + 0.0)]
+            )
+        )
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")

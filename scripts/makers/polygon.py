@@ -6,6 +6,7 @@ whatever versions are installed. For profiles of some hundred corners; it is cub
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -22,7 +23,7 @@ def triangulate(loops: Sequence[np.ndarray]) -> np.ndarray:
     points = np.concatenate(loops)
     starts = np.cumsum([0, *(len(loop) for loop in loops)])
     rest = list(range(starts[1]))
-    holes = [list(range(a, b)) for a, b in zip(starts[1:-1], starts[2:], strict=True)]
+    holes = [list(range(a, b)) for a, b in itertools.pairwise(starts[1:])]
     for hole in sorted(holes, key=lambda h: (-points[h, 0].max(), h[0])):
         rest = _joined(points, rest, hole)
     triangles = []

@@ -9,8 +9,16 @@ from makers.solids import Solid, arc, circle, extruded, ring, turned
 def valve_body() -> Solid:
     """A gate valve's body about z: two flanges, a waist, a belly; solid, the pipe runs through it."""
     profile = [
-        (0.078, -0.10), (0.078, -0.08), (0.052, -0.08), (0.052, -0.065), (0.064, -0.035), (0.064, 0.035),
-        (0.052, 0.065), (0.052, 0.08), (0.078, 0.08), (0.078, 0.10),
+        (0.078, -0.10),
+        (0.078, -0.08),
+        (0.052, -0.08),
+        (0.052, -0.065),
+        (0.064, -0.035),
+        (0.064, 0.035),
+        (0.052, 0.065),
+        (0.052, 0.08),
+        (0.078, 0.08),
+        (0.078, 0.10),
     ]
     return turned(profile)
 
@@ -38,15 +46,28 @@ def port_wall() -> Solid:
 
 def port_collar() -> Solid:
     """The steel ring about a port, along x, with an inner chamfer."""
-    profile = [(0.165, -0.055), (0.2, -0.055), (0.2, 0.055), (0.165, 0.055), (0.155, 0.045), (0.155, -0.045)]
+    profile = [
+        (0.165, -0.055),
+        (0.2, -0.055),
+        (0.2, 0.055),
+        (0.165, 0.055),
+        (0.155, 0.045),
+        (0.155, -0.045),
+    ]
     return ring(profile, "x", n=40)
 
 
 def trough() -> Solid:
     """A sample trough open at the top and at both ends, along y."""
     outline = [
-        (-0.11, 0.0), (0.11, 0.0), (0.13, 0.07), (0.122, 0.07), (0.103, 0.008), (-0.103, 0.008),
-        (-0.122, 0.07), (-0.13, 0.07),
+        (-0.11, 0.0),
+        (0.11, 0.0),
+        (0.13, 0.07),
+        (0.122, 0.07),
+        (0.103, 0.008),
+        (-0.103, 0.008),
+        (-0.122, 0.07),
+        (-0.13, 0.07),
     ]
     return extruded(outline, -0.18, 0.18, "y")
 

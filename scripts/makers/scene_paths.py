@@ -122,6 +122,7 @@ def _stock(path: str) -> Path:
 
 
 PATHS: dict[str, Callable[[], JointPath]] = {
-    function.__name__: function for function in (box_box, box_pipe, iiwa_pipe_rack, panda_shelf, hot_cell)
+    function.__name__: function
+    for function in (box_box, box_pipe, iiwa_pipe_rack, panda_shelf, hot_cell)
 }
 """Scene name to the function that plans its path."""

@@ -64,7 +64,10 @@ def extruded(
     for loop in loops:
         here = start + np.arange(len(loop))
         there = start + (np.arange(len(loop)) + 1) % len(loop)
-        walls += [np.column_stack([here, there, there + n]), np.column_stack([here, there + n, here + n])]
+        walls += [
+            np.column_stack([here, there, there + n]),
+            np.column_stack([here, there + n, here + n]),
+        ]
         start += len(loop)
     return _along(axis, vertices, np.vstack([cap[:, ::-1], cap + n, *walls]))
 
@@ -107,7 +110,9 @@ def write_stl(path: Path, solid: Solid) -> None:
     corners = solid.vertices[solid.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    rows = np.zeros(len(corners), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("pad", "<u2")])
+    rows = np.zeros(
+        len(corners), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("pad", "<u2")]
+    )
     rows["normal"] = np.round(normals, 6) + 0.0
     rows["corners"] = corners + 0.0
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -66,11 +66,20 @@ def _add_link(root: ElementTree.Element, robot: str, link: str, parts: Sequence[
 
 
 def _add_inertial(element: ElementTree.Element, parts: Sequence[Part]) -> None:
-    mass, centre, inertia = _mass_properties(parts) if parts else (1e-3, np.zeros(3), np.eye(3) * 1e-6)
+    mass, centre, inertia = (
+        _mass_properties(parts) if parts else (1e-3, np.zeros(3), np.eye(3) * 1e-6)
+    )
     inertial = ElementTree.SubElement(element, "inertial")
     ElementTree.SubElement(inertial, "origin", xyz=_numbers(centre), rpy="0 0 0")
     ElementTree.SubElement(inertial, "mass", value=f"{mass:.4g}")
-    names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+    names = {
+        "ixx": (0, 0),
+        "ixy": (0, 1),
+        "ixz": (0, 2),
+        "iyy": (1, 1),
+        "iyz": (1, 2),
+        "izz": (2, 2),
+    }
     values = {name: f"{_tidy(inertia[at], mass):.4g}" for name, at in names.items()}
     ElementTree.SubElement(inertial, "inertia", values)
 
@@ -90,7 +99,11 @@ def _add_joint(root: ElementTree.Element, joint: JointSpec) -> None:
     ElementTree.SubElement(element, "axis", xyz=_numbers(joint.axis))
     lower, upper = joint.limits
     ElementTree.SubElement(
-        element, "limit", lower=f"{lower:g}", upper=f"{upper:g}", effort=f"{joint.effort:g}",
+        element,
+        "limit",
+        lower=f"{lower:g}",
+        upper=f"{upper:g}",
+        effort=f"{joint.effort:g}",
         velocity=f"{joint.velocity:g}",
     )
     ElementTree.SubElement(element, "dynamics", damping="0.5", friction="0")
