@@ -131,7 +131,7 @@ def test_an_open_body_has_no_inside():
 def test_a_triangle_without_area_does_not_make_a_contact():
     """Field, fault 4: FCL answers 0 for a mesh that holds a triangle without area."""
     plain = box(0.2, 0.2, 0.2)
-    faces = [*plain.face_vertices.reshape(-1, 4).tolist(), [0, 8, 1], [2, 2, 3]]
+    faces = [*plain.face_vertices.reshape(-1, 4).tolist(), [0, 8, 1]]
     vertices = np.vstack([plain.vertices, plain.vertices[:2].mean(axis=0)])
     rows = [(0.8, "near", (0.1, 0, 0), (0.9, 0, 0))]
     assert cross_check(rail_record(Polyhedron(vertices, faces), NEAR_AND_FAR, [0.0], rows)).agrees
