@@ -6,6 +6,8 @@ The public names; each is imported from its room when it is first used.
 from importlib import import_module
 from typing import Any
 
+from clearance.geometry.file_reader import attach_file_reader
+
 __version__ = "0.1.0"
 
 _ROOM_OF = {
@@ -46,3 +48,10 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return __all__
+
+
+def _read_mesh(path, scale=1.0):
+    return import_module(f"{__name__}.load.mesh").read_mesh(path, scale)
+
+
+attach_file_reader(_read_mesh)
