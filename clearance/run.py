@@ -10,7 +10,7 @@ from clearance.errors import BadInput
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import Progress, measure
 from clearance.simulate.record import CrossCheck, Record
-from clearance.simulate.steps import PairMinima, step_table
+from clearance.simulate.steps import PairMinima, cut_throughout, step_table
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
@@ -98,11 +98,11 @@ def check(
         motions=motions,
         steps=step_table(case, motions, pairs, found, with_error=motion == "simulated"),
         pair_minima=PairMinima(case, motions, pairs, found),
-        unmeasured=tuple(unmeasured),
+        unmeasured=(*unmeasured, *cut_throughout(case, pairs, found)),
         tally=found.tally,
         method=method,
         motion_kind=motion,
-        notes=case.notes,
+        notes=(*case.notes, *(note for made in motions for note in made.notes)),
     )
     if cross_check:
         from clearance.crosscheck import cross_check as ask_peer

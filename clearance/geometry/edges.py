@@ -1,4 +1,7 @@
-"""Vertices matched bit for bit and edges matched by their ends. Not for: what a surface's edges say (`topology`)."""
+"""Vertices matched bit for bit and edges matched by their ends.
+
+Not for: what a surface's edges say (`topology`).
+"""
 
 from __future__ import annotations
 

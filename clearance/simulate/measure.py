@@ -47,6 +47,7 @@ class Measurement:
         points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
         tally: counters by name.
         find_minima: measures the least clearance of each pair; not done until it is called.
+        may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).
     """
 
     clearance: np.ndarray
@@ -54,6 +55,7 @@ class Measurement:
     points: np.ndarray
     tally: dict[str, int]
     find_minima: Callable[[], Minima]
+    may_cut_pairs: bool = False
 
 
 def measure(

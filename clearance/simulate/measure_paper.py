@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from clearance.errors import NothingToMeasure
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.paper import distance_paper
 from clearance.query.result import Nearest
@@ -25,7 +26,11 @@ CHUNK = 64
 def measure_paper(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], progress: Progress | None = None
 ) -> Measurement:
-    """The paper's clearances of `pairs` over `motions`; infinite where its rules cut every face pair."""
+    """The paper's clearances of `pairs` over `motions`; those of pairs that its rules cut are infinite.
+
+    Raises:
+        NothingToMeasure: the rules cut every polygon pair of a step.
+    """
     n_steps = motions[0].n_steps
     clearance, points = np.full(n_steps, np.inf), np.full((n_steps, 2, 3), np.nan)
     winner = np.zeros(n_steps, dtype=np.int64)
@@ -45,9 +50,19 @@ def measure_paper(
             if near.distance < minima.clearance[i_pair]:
                 minima.clearance[i_pair], minima.step[i_pair] = near.distance, step
                 minima.points[i_pair] = witnesses
+        _require_measured(clearance, step)
         if progress:
             progress(step + 1, n_steps)
-    return Measurement(clearance, winner, points, dict(tally), lambda: minima)
+    return Measurement(clearance, winner, points, dict(tally), lambda: minima, may_cut_pairs=True)
+
+
+def _require_measured(clearance: np.ndarray, step: int) -> None:
+    """An infinite answer is no clearance: it says that nothing was measured, which overlap can cause."""
+    if np.isinf(clearance[step]):
+        raise NothingToMeasure(
+            f"method 'paper' says nothing of step {step}: its rules cut every polygon pair",
+            valid="method 'exact' measures every step",
+        )
 
 
 def _measured(case: Case, pair: Pair, world_from_link: np.ndarray) -> Nearest:

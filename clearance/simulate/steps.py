@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from clearance.simulate.measure import Measurement
 from clearance.simulate.record import PairMinimum
-from clearance.world.case import Case, Limits
+from clearance.world.case import Case, Limits, Unmeasured
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -69,7 +69,7 @@ class PairMinima(Sequence[PairMinimum]):
         self._find = found.find_minima
 
     def __len__(self) -> int:
-        return len(self._names[0])
+        return len(self._rows)
 
     def __getitem__(self, index: int | slice) -> PairMinimum | tuple[PairMinimum, ...]:
         return self._rows[index]
@@ -89,7 +89,18 @@ class PairMinima(Sequence[PairMinimum]):
                 point_obstacle=tuple(found.points[i, 1].tolist()),
             )
             for i in np.argsort(found.clearance, kind="stable")
+            if np.isfinite(found.clearance[i])  # the paper's rules can cut a pair at every step
         )
+
+
+def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Unmeasured]:
+    """The pairs of which the paper's method says nothing at any step; none for the exact method."""
+    if not found.may_cut_pairs:
+        return []
+    links, obstacles = pair_names(case, pairs)
+    cut = np.flatnonzero(np.isinf(found.find_minima().clearance))
+    reason = "the paper's rules cut every polygon pair at every step"
+    return [Unmeasured(links[i], obstacles[i], reason) for i in cut]
 
 
 def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]:

@@ -49,7 +49,7 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Unmeasured]]:
 
 def _links_left_out(placed: PlacedRobot) -> list[Unmeasured]:
     with_shape = {body.name for body in placed.robot.bodies}
-    left_out = [Unmeasured(name, "*", "exclude_links") for name in placed.exclude_links]
+    left_out = [Unmeasured(name, "*", "excluded in the case file") for name in placed.exclude_links]
     left_out += [
         Unmeasured(name, "*", "no geometry")
         for name in placed.robot.link_names

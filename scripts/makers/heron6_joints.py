@@ -1,4 +1,7 @@
-"""The kinematics of heron6: frames, axes and limits; at zero the upper arm stands and the forearm points along x."""
+"""The kinematics of heron6: frames, axes and limits.
+
+At zero the upper arm stands and the forearm points along x.
+"""
 
 from __future__ import annotations
 

@@ -35,8 +35,8 @@ def pipe(
 
     Raises:
         BadDimension: a radius or length that is negative, not finite or 0 (but `inner_radius`), inner not
-            below outer, both or neither of `length` and `path`, equal neighbours in the path, a bend radius not above the
-            outer radius, bends that do not fit between the corners.
+            below outer, both or neither of `length` and `path`, equal neighbours in the path, a bend radius
+            not above the outer radius, bends that do not fit between the corners.
 
     Exactness: the pipe lies inside the faceted one, and no facet of it, of the bore neither, is farther than
         `excess` from the true surface. Faces of straight pipes are flat to the last bit.
