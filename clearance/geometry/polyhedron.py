@@ -19,7 +19,12 @@ import numpy as np
 from clearance.errors import BadDimension, EmptyMesh, NotFinite
 from clearance.geometry.coplanar import merge_coplanar
 from clearance.geometry.edges import rings_of
-from clearance.geometry.faces import check_flat_and_convex, check_indices, checked_vertices, flat_faces
+from clearance.geometry.faces import (
+    check_flat_and_convex,
+    check_indices,
+    checked_vertices,
+    flat_faces,
+)
 from clearance.geometry.file_reader import file_reader
 from clearance.geometry.planes import Planes, planes_of
 from clearance.geometry.pose import validated_pose
