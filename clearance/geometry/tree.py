@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.face_planes import face_planes
 from clearance.kernels.surface import Surface
 from clearance.kernels.tree_build import build_tree
 
@@ -33,7 +34,9 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
     n_before = {name: _offsets([len(getattr(part, name)) for part in parts]) for name in Surface._fields}
 
     def stacked(name: str, shift: str | None = None) -> np.ndarray:
-        shifts = n_before[shift] if shift else [0] * len(parts)
+        shifts = n_before[shift] if shift else None
+        if shifts is None:
+            return np.concatenate([getattr(p, name) for p in parts])
         return np.concatenate([getattr(p, name) + s for p, s in zip(parts, shifts, strict=True)])
 
     def starts(name: str, items: str) -> np.ndarray:
@@ -42,9 +45,13 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
 
     return Surface(
         vertices=stacked("vertices"),
+        exact=stacked("exact"),
         face_starts=starts("face_starts", "face_vertices"),
         face_vertices=stacked("face_vertices", "vertices"),
         normals=stacked("normals"),
+        blunt=stacked("blunt"),
+        width=stacked("width"),
+        bent=stacked("bent"),
         corner_normals=stacked("corner_normals"),
         vertex_starts=starts("vertex_starts", "owned_vertices"),
         owned_vertices=stacked("owned_vertices", "vertices"),
@@ -90,7 +97,9 @@ def _build(shape: Polyhedron) -> Surface:
     starts = shape.face_starts.copy()
     face_of_corner = np.repeat(np.arange(shape.n_faces), np.diff(starts))
     following = _following(starts)
-    normals = _normals(vertices, corners, starts, following)
+    normals, blunt, width = np.empty((shape.n_faces, 3)), np.empty(shape.n_faces), np.empty(shape.n_faces)
+    bent = np.empty(shape.n_faces, dtype=np.bool_)
+    face_planes(vertices, starts, corners, normals, blunt, width, bent)
     owned_vertices, vertex_starts = _owned(corners, face_of_corner, shape.n_faces)
     edges = np.stack([corners, corners[following]], axis=1)
     owned_edges, edge_starts = _owned(np.sort(edges, axis=1), face_of_corner, shape.n_faces)
@@ -100,9 +109,13 @@ def _build(shape: Polyhedron) -> Surface:
     solid_faces = np.flatnonzero(shape.component_closed[shape.face_component])
     return Surface(
         vertices=vertices,
+        exact=vertices,
         face_starts=starts,
         face_vertices=corners,
         normals=normals,
+        blunt=blunt,
+        width=width,
+        bent=bent,
         corner_normals=_corner_normals(vertices, edges, normals[face_of_corner]),
         vertex_starts=vertex_starts,
         owned_vertices=owned_vertices,
@@ -125,16 +138,6 @@ def _following(starts: np.ndarray) -> np.ndarray:
     following = np.arange(1, starts[-1] + 1)
     following[starts[1:] - 1] = starts[:-1]
     return following
-
-
-def _normals(
-    vertices: np.ndarray, corners: np.ndarray, starts: np.ndarray, following: np.ndarray
-) -> np.ndarray:
-    """(f, 3) unit normals by the sum of the corner triangles about the first corner; zeros without area."""
-    first = np.repeat(vertices[corners[starts[:-1]]], np.diff(starts), axis=0)
-    spans = vertices[corners] - first
-    areas = np.add.reduceat(np.cross(spans, spans[following]), starts[:-1], axis=0)
-    return _unit(areas)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

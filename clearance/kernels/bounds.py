@@ -130,10 +130,11 @@ def _reach(surface, root):
 
 
 @inlined
-def rounding_slack(a, root_a, b, root_b, m):
-    """[m] how much rounding can raise a box bound of this body pair."""
-    apart = abs(m.t.x) + abs(m.t.y) + abs(m.t.z)
-    return SLACK * (apart + _reach(a, root_a) + _reach(b, root_b))
+def rounding_slack(a, root_a, b, root_b, frames):
+    """[m] how much rounding, and rotations that are not quite orthonormal, can raise a box bound."""
+    t = frames.m.t
+    apart = abs(t.x) + abs(t.y) + abs(t.z)
+    return (SLACK + 8.0 * frames.defect) * (apart + _reach(a, root_a) + _reach(b, root_b))
 
 
 @inlined

@@ -7,7 +7,7 @@ Oosterom & Strackee 1983 for the solid angle of a triangle.
 
 import math
 
-from clearance.jit import inlined
+from clearance.jit import inlined, kernel
 from clearance.kernels.vec3 import cross, dot, move, move_back, row, sub
 
 
@@ -49,7 +49,7 @@ def is_inside(surface, body, x):
     return abs(angle) > 2.0 * math.pi
 
 
-@inlined
+@kernel
 def contained(a, body_a, b, body_b, m):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet."""
     for i in range(a.probe_starts[body_a], a.probe_starts[body_a + 1]):

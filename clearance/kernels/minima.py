@@ -10,10 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.body_pair import NO_FACE, measure_pair, new_scratch
-from clearance.kernels.descent import Scratch
-from clearance.kernels.sweep import add_travel, pair_motion, pose_of, root_bound
-from clearance.kernels.vec3 import move, rigid
+from clearance.kernels.body_pair import NO_FACE, measure_pair
+from clearance.kernels.descent import Scratch, new_scratch
+from clearance.kernels.sweep import add_travel, pair_frames, root_bound
 
 DEPTH = 128
 """Intervals that can wait: halving 2**63 steps leaves one a level."""
@@ -50,7 +49,7 @@ def _ask(surface, world, pair, step, margin, probe, tally):
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     limit = probe.gap[0] + margin
     measured = measure_pair(
-        surface, body_a, surface, body_b, pair_motion(world, pair, step), limit * limit,
+        surface, body_a, surface, body_b, pair_frames(world, pair, step), limit * limit,
         probe.faces[0], probe.faces[1], False, probe.scratch,
     )  # fmt: skip
     tally[1] += 1
@@ -64,12 +63,9 @@ def _ask(surface, world, pair, step, margin, probe, tally):
         probe.gap[0] = gap
         probe.step[0] = step
         probe.faces[0], probe.faces[1] = hit.face_a, hit.face_b
-        a = rigid(pose_of(world, body_a, step))
-        p = move(a, hit.p)
-        q = move(a, hit.q)
         for axis in range(3):
-            probe.points[0, axis] = p[axis]
-            probe.points[1, axis] = q[axis]
+            probe.points[0, axis] = hit.p[axis]
+            probe.points[1, axis] = hit.q[axis]
     return measured.lower_bound
 
 

@@ -14,9 +14,13 @@ class Surface(NamedTuple):
     """Bodies as flat arrays; all indices are into these arrays.
 
     Attributes:
-        vertices: (v, 3) [m], each in the frame of its body.
+        vertices: (v, 3) [m], each in the frame of its body, ordered by coordinates.
+        exact: (v, 3) [m] the vertices as given, where `vertices` are rounded differences; else the same.
         face_starts, face_vertices: (f + 1,), (c,) corners of the faces in order.
-        normals: (f, 3) unit outward, zeros where a face has no area.
+        normals: (f, 3) unit outward, zeros where a face is so slender that rounding decides them.
+        blunt: (f,) the reciprocal of a lower bound on the sharpest corner's angle; 1 without a normal.
+        width: (f,) [m] how far the fan of the face may be from its plane, or from its edges without one.
+        bent: (f,) True where the corners are not exactly in one plane.
         corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
         vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
         edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns.
@@ -29,9 +33,13 @@ class Surface(NamedTuple):
     """
 
     vertices: np.ndarray
+    exact: np.ndarray
     face_starts: np.ndarray
     face_vertices: np.ndarray
     normals: np.ndarray
+    blunt: np.ndarray
+    width: np.ndarray
+    bent: np.ndarray
     corner_normals: np.ndarray
     vertex_starts: np.ndarray
     owned_vertices: np.ndarray

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.body_pair import NO_FACE, measure_pair, new_scratch
+from clearance.kernels.body_pair import NO_FACE, measure_pair
 from clearance.kernels.bounds import displacement, lower_bound_boxes_sq, rounding_slack
-from clearance.kernels.descent import nothing_yet
-from clearance.kernels.vec3 import move, relative, rigid
+from clearance.kernels.descent import new_scratch, nothing_yet
+from clearance.kernels.double_double import frames_of
+from clearance.kernels.vec3 import rigid
 
 GROWTH = 1.0 + 1e-9
 """Covers the rounding of a sum of up to four million displacements."""
@@ -57,21 +58,22 @@ def pose_of(world, body, step):
 
 
 @inlined
-def pair_motion(world, pair, step):
-    """`a_from_b` of a pair at a step."""
+def pair_frames(world, pair, step):
+    """Where both bodies of a pair are at a step."""
     a = rigid(pose_of(world, world.pairs[pair, 0], step))
     b = rigid(pose_of(world, world.pairs[pair, 1], step))
-    return relative(a, b)
+    return frames_of(a, b)
 
 
 @inlined
 def root_bound(surface, world, pair, step):
     """[m] a lower bound on the distance of the boxes of a pair."""
-    m = pair_motion(world, pair, step)
+    frames = pair_frames(world, pair, step)
     root_a = surface.roots[world.pairs[pair, 0]]
     root_b = surface.roots[world.pairs[pair, 1]]
-    slack = rounding_slack(surface, root_a, surface, root_b, m)
-    return max(0.0, np.sqrt(lower_bound_boxes_sq(surface, root_a, surface, root_b, m, slack)) - slack)
+    slack = rounding_slack(surface, root_a, surface, root_b, frames)
+    bound_sq = lower_bound_boxes_sq(surface, root_a, surface, root_b, frames.m, slack)
+    return max(0.0, np.sqrt(bound_sq) - slack)
 
 
 @inlined
@@ -86,17 +88,14 @@ def add_travel(surface, world, step, travel):
 
 
 @inlined
-def _write(surface, world, step, pair, hit, rows):
+def _write(step, pair, hit, rows):
     rows.clearance[step] = np.sqrt(hit.gap_sq)
     rows.pair[step] = pair
     rows.faces[step, 0] = hit.face_a
     rows.faces[step, 1] = hit.face_b
-    a = rigid(pose_of(world, world.pairs[pair, 0], step))
-    p = move(a, hit.p)
-    q = move(a, hit.q)
     for axis in range(3):
-        rows.points[step, 0, axis] = p[axis]
-        rows.points[step, 1, axis] = q[axis]
+        rows.points[step, 0, axis] = hit.p[axis]
+        rows.points[step, 1, axis] = hit.q[axis]
 
 
 @kernel
@@ -131,7 +130,7 @@ def sweep(surface, world, first, last, rows, tally):
                 continue
             limit = best_gap + LOOK_AHEAD * (travel[body_a] + travel[body_b]) / max(1, step - first)
             measured = measure_pair(
-                surface, body_a, surface, body_b, pair_motion(world, pair, step), limit * limit,
+                surface, body_a, surface, body_b, pair_frames(world, pair, step), limit * limit,
                 seeds[pair, 0], seeds[pair, 1], floor > 0.0, scratch,
             )  # fmt: skip
             floors[pair] = measured.lower_bound + moved
@@ -146,4 +145,4 @@ def sweep(surface, world, first, last, rows, tally):
                     best = hit
                     best_pair = pair
         winner = best_pair
-        _write(surface, world, step, best_pair, best, rows)
+        _write(step, best_pair, best, rows)

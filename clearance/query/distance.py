@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, NotFinite
-from clearance.geometry.pose import validated_pose
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
 from clearance.kernels.body_pair import nearest_bodies
-from clearance.kernels.polygon_pair import nearest_polygons
+from clearance.kernels.polygon_pair import Answers, nearest_polygons
 from clearance.query.paper import distance_paper, polygon_distance_paper
 from clearance.query.result import Nearest
 
@@ -43,16 +43,19 @@ def distance(
         return distance_paper(a, b, world_from_a, world_from_b)
     found = nearest_bodies(surface_of(a), surface_of(b), world_from_a, world_from_b)
     hit = found.hit
-    rotation, origin = world_from_a[:3, :3], world_from_a[:3, 3]
     return Nearest(
         distance=float(np.sqrt(hit.gap_sq)),
-        point_a=rotation @ np.array(hit.p) + origin,
-        point_b=rotation @ np.array(hit.q) + origin,
+        point_a=np.array(hit.p),
+        point_b=np.array(hit.q),
         face_a=int(hit.face_a),
         face_b=int(hit.face_b),
-        contact=hit.gap_sq == 0.0,
-        error_bound=float("nan"),
-        tally={"nodes": int(found.tally.nodes), "polygons": int(found.tally.faces)},
+        contact=bool(hit.gap_sq == 0.0),
+        error_bound=float(found.error),
+        tally={
+            "nodes": int(found.tally.nodes),
+            "polygons": int(found.tally.faces),
+            "exact_decisions": int(found.tally.exact_decisions),
+        },
     )
 
 
@@ -68,16 +71,16 @@ def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> 
     p, q = _polygons(p, 2), _polygons(q, 2)
     if _checked(method) == "paper":
         return polygon_distance_paper(p, q)
-    gaps_sq, points_p, points_q = _measured(p[None], q[None])
+    found = _measured(p[None], q[None])
     return Nearest(
-        distance=float(np.sqrt(gaps_sq[0])),
-        point_a=points_p[0],
-        point_b=points_q[0],
+        distance=float(found.distance[0]),
+        point_a=found.points[0, 0],
+        point_b=found.points[0, 1],
         face_a=0,
         face_b=0,
-        contact=bool(gaps_sq[0] == 0.0),
-        error_bound=float("nan"),
-        tally={"polygons": 1},
+        contact=bool(found.contact[0]),
+        error_bound=float(found.error[0]),
+        tally={"polygons": 1, "exact_decisions": int(found.exact[0])},
     )
 
 
@@ -89,14 +92,15 @@ def polygon_distances(ps: np.ndarray, qs: np.ndarray, *, method: str = "exact") 
     if _checked(method) == "paper":
         pairs = zip(ps, qs, strict=True)
         return np.array([polygon_distance_paper(p, q).distance for p, q in pairs])
-    return np.sqrt(_measured(ps, qs)[0])
+    return _measured(ps, qs).distance
 
 
-def _measured(ps: np.ndarray, qs: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _measured(ps: np.ndarray, qs: np.ndarray) -> Answers:
     k = len(ps)
-    gaps_sq, points_p, points_q = np.empty(k), np.empty((k, 3)), np.empty((k, 3))
-    nearest_polygons(ps, qs, gaps_sq, points_p, points_q)
-    return gaps_sq, points_p, points_q
+    flags = np.empty(k, dtype=np.bool_), np.empty(k, dtype=np.bool_)
+    answers = Answers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
+    nearest_polygons(ps, qs, answers)
+    return answers
 
 
 def _polygons(points: np.ndarray, n_dimensions: int) -> np.ndarray:
