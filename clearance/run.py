@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput
+from clearance.simulate.certify import certify_motion
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import Progress, measure
 from clearance.simulate.record import CrossCheck, Record
-from clearance.simulate.steps import PairMinima, cut_throughout, step_table
+from clearance.simulate.steps import STATUSES, PairMinima, cut_throughout, step_table
+from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
@@ -40,8 +42,14 @@ class Run:
 
     @property
     def passed(self) -> bool:
-        """True if no step is in contact or below the fail limit."""
-        return self.worst["status"] not in ("violated", "contact")
+        """True if no step is in contact or below the fail limit; when certified, nothing in between either."""
+        return self.status not in ("violated", "contact")
+
+    @property
+    def status(self) -> str:
+        """The worst status of any step: "clear", "near", "violated" or "contact"."""
+        occurring = set(self.steps["status"].unique().to_pylist())
+        return str([status for status in STATUSES if status in occurring][-1])
 
     @property
     def cross_check(self) -> CrossCheck | None:
@@ -65,6 +73,8 @@ def check(
     method: str = "exact",
     motion: str = "kinematic",
     limits: Limits | None = None,
+    certify: bool = False,
+    certify_gap: float = CERTIFY_GAP,
     cross_check: bool = False,
     progress: Progress | None = None,
 ) -> Run:
@@ -75,6 +85,9 @@ def check(
         motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
             controlled robot makes of it.
         limits: instead of the case's.
+        certify: also prove a lower bound for the motion between the steps, joints moving linearly; the
+            verdict then rests on it.
+        certify_gap: [m] how far that bound may be below a distance that occurs.
         cross_check: also ask FCL at every step.
         progress: called with steps done and all steps.
 
@@ -83,6 +96,8 @@ def check(
     """
     _require(method, METHODS, "method")
     _require(motion, MOTIONS, "motion")
+    if certify and method != "exact":
+        raise BadInput(f"method {method!r} proves nothing to certify with", valid="method 'exact'")
     if limits is not None:
         case = replace(case, limits=limits)
     pairs, unmeasured = measured_pairs(case)
@@ -93,15 +108,21 @@ def check(
         found = measure_paper(case, motions, pairs, progress)
     else:
         found = measure(case, motions, pairs, progress)
+    certificate = None
+    if certify:
+        certificate = certify_motion(case, motions, pairs, found, certify_gap, progress)
     record = Record(
         case=case,
         motions=motions,
-        steps=step_table(case, motions, pairs, found, with_error=motion == "simulated"),
+        steps=step_table(
+            case, motions, pairs, found, certificate=certificate, with_error=motion == "simulated"
+        ),
         pair_minima=PairMinima(case, motions, pairs, found),
         unmeasured=(*unmeasured, *cut_throughout(case, pairs, found)),
         tally=found.tally,
         method=method,
         motion_kind=motion,
+        certificate=certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes)),
     )
     if cross_check:

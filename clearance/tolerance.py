@@ -23,3 +23,6 @@ FLATNESS = 1e-9
 inward (sine of the angle), beside the rounding of its coordinates: a thousand times what a rigid motion in
 float64 does to it near the origin, and a hundred times less than the rounding of coordinates in a float32 or
 six-digit file, whose polygons are cut into triangles instead."""
+
+CERTIFY_GAP = 1e-4
+"""[m] How far a certified bound may stay below a distance that occurs, by default: as fine as the facets."""

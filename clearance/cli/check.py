@@ -40,6 +40,8 @@ class Millimetres(click.ParamType):
 )
 @click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the case's.")
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the case's.")
+@click.option("--certify", is_flag=True, help="Prove a bound for the motion between the steps too.")
+@click.option("--certify-mm", type=Millimetres(), help="How tight that bound is.  [default: 0.1]")
 @click.option("--cross-check", is_flag=True, help="Hold every step against FCL.")
 @click.option(
     "--method",
@@ -63,6 +65,8 @@ def check(
     out: Path | None,
     fail_mm: float | None,
     warn_mm: float | None,
+    certify: bool,
+    certify_mm: float | None,
     cross_check: bool,
     method: str,
     motion: str,
@@ -84,6 +88,7 @@ def check(
     case = load_case(case_file)
     limits = _limits(case.limits, fail_mm, warn_mm)
     from clearance.run import check as answer
+    from clearance.tolerance import CERTIFY_GAP
 
     with shown_progress(quiet or as_json, cross_check) as progress:
         run = answer(
@@ -91,6 +96,8 @@ def check(
             method=method,
             motion=motion,
             limits=limits,
+            certify=certify or certify_mm is not None,
+            certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
             cross_check=cross_check,
             progress=progress,
         )

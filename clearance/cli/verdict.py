@@ -15,7 +15,7 @@ from rich.text import Text
 
 from clearance.report import summary_of
 from clearance.report.intervals import Interval, intervals
-from clearance.report.wording import count, limit_mm, mm, seconds
+from clearance.report.wording import certified_text, count, limit_mm, mm, seconds
 from clearance.run import Run
 from clearance.simulate.record import CrossCheck, Disagreement, Record
 
@@ -45,6 +45,8 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
     lines: list[Text | Table] = [_headline(run), *_worst(run)]
     lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines.append(_pair_table(record))
+    if record.certificate is not None:
+        lines.append(_row("certified", certified_text(summary_of(record)["certified"])))
     if run.cross_check is not None:
         lines += _cross_check(run.cross_check)
     lines += _notes(record)
@@ -55,7 +57,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
 
 def _headline(run: Run) -> Text:
     worst, limits = run.worst, run.record.case.limits
-    text = Text(worst["status"].upper(), style=_STYLES.get(worst["status"], "bold red"))
+    text = Text(run.status.upper(), style=_STYLES.get(run.status, "bold red"))
     told = f"  {run.record.case.name}: least clearance {mm(worst['clearance'])} mm"
     told += f" (fail below {limit_mm(limits.fail)} mm, warn below {limit_mm(limits.warn)} mm)"
     return text.append(told, style="default not bold")

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from clearance.report.markup import Html, element, section, step_link, table
-from clearance.report.wording import count, scientific_mm
+from clearance.report.wording import certified_text, count, scientific_mm
 
 MAX_DISAGREEMENTS = 200
 """Most steps of a failed cross-check printed on the page; all are in `summary.json`."""
@@ -51,8 +51,11 @@ def _tessellation(bound: float) -> str:
 
 
 def _sampling(summary: dict[str, Any]) -> list[object]:
-    steps = f"Clearance is measured at {count(summary['n_steps'], 'step')}; nothing is said about "
-    parts: list[object] = [steps, "the motion between two steps."]
+    steps = f"Clearance is measured at {count(summary['n_steps'], 'step')}; "
+    if summary["certified"] is None:
+        parts: list[object] = [steps, "nothing is said about the motion between two steps."]
+    else:
+        parts = [steps, f"proven is {certified_text(summary['certified'])}."]
     error = summary["tracking_error"]
     if error is not None:
         greatest = f"{error['greatest']:.4g} rad or m"

@@ -44,6 +44,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "events": [asdict(event) for event in events(record)],
         "pairs": [asdict(minimum) for minimum in record.pair_minima],
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
+        "certified": _certified(record),
         "cross_check": _cross_check(record.cross_check),
         "tracking_error": _tracking_error(record),
         "robots": [_robot(record, motion) for motion in record.motions],
@@ -115,6 +116,25 @@ def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
         "closed": shape.closed,
         "oriented": shape.oriented,
         "volume": shape.volume,
+    }
+
+
+def _certified(record: Record) -> dict[str, Any] | None:
+    """The least proven bound [m], the interval it holds for, and the least distance seen there."""
+    certificate = record.certificate
+    if certificate is None:
+        return None
+    step = certificate.worst_interval
+    times = record.steps["time"].to_numpy()
+    return {
+        "lower_bound": float(certificate.lower_bound[step]),
+        "upper_bound": float(certificate.upper_bound[step]),
+        "step": step,
+        "start": float(times[step]),
+        "end": float(times[min(step + 1, len(times) - 1)]),
+        "allowed_gap": certificate.gap,
+        "greatest_gap": float((certificate.upper_bound - certificate.lower_bound).max()),
+        "tally": dict(certificate.tally),
     }
 
 

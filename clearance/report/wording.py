@@ -47,3 +47,12 @@ def seconds(value: float) -> str:
 def count(number: int, noun: str) -> str:
     """`1 step`, `2 steps`, `12,000 steps`."""
     return f"{number:,} {noun}{'' if number == 1 else 's'}"
+
+
+def certified_text(certified: dict) -> str:
+    """What is proven of the continuous motion, as one sentence."""
+    return (
+        f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving linearly between steps; "
+        f"least from {seconds(certified['start'])} to {seconds(certified['end'])}, "
+        f"where {mm(certified['upper_bound'])} mm occurs"
+    )

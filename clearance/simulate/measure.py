@@ -62,7 +62,7 @@ def measure(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], progress: Progress | None = None
 ) -> Measurement:
     """The exact clearances of `pairs` over `motions` (one for each robot, with the same steps)."""
-    surface, world = _lay_out(case, motions, pairs)
+    surface, world = lay_out(case, motions, pairs)
     n_steps = len(world.poses)
     tally = np.zeros(4, dtype=np.int64)
     rows = StepRows(
@@ -92,7 +92,7 @@ def _pair_minima(surface: Surface, world: World) -> Minima:
     return found
 
 
-def _lay_out(
+def lay_out(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]
 ) -> tuple[Surface, World]:
     """One surface of all measured bodies, and where they are: links move, obstacles stand."""

@@ -65,13 +65,36 @@ class CrossCheck:
 
 
 @dataclass(frozen=True, eq=False)
+class Certificate:
+    """Proven bounds on the clearance of the continuous motion, joints moving linearly between steps.
+
+    Attributes:
+        lower_bound: (n,) [m] row i holds from step i to step i + 1; the last row for its step alone.
+        upper_bound: (n,) [m] the least distance seen there, at the steps or between them.
+        gap: [m] how far apart the two were allowed to stay.
+        tally: counters by name.
+    """
+
+    lower_bound: np.ndarray
+    upper_bound: np.ndarray
+    gap: float
+    tally: dict[str, int]
+
+    @property
+    def worst_interval(self) -> int:
+        """The first interval of the least lower bound."""
+        return int(np.argmin(self.lower_bound))
+
+
+@dataclass(frozen=True, eq=False)
 class Record:
     """The measured run of one case.
 
     Attributes:
         motions: one for each of `case.robots`.
         steps: one row a step: step, time, clearance, link, obstacle, link_x … obstacle_z, status
-            ("clear" | "near" | "violated" | "contact"), tracking_error when simulated.
+            ("clear" | "near" | "violated" | "contact"), tracking_error when simulated, lower_bound when
+            certified (then the status is that of the motion from the step to the next).
         pair_minima: one entry a measured pair, least clearance first.
         tally: counters by name (pairs, queries, nodes, polygons, …).
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
@@ -86,6 +109,7 @@ class Record:
     method: str = "exact"
     motion_kind: str = "kinematic"
     cross_check: CrossCheck | None = None
+    certificate: Certificate | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
 
     @property

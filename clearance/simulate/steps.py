@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.measure import Measurement
-from clearance.simulate.record import PairMinimum
+from clearance.simulate.record import Certificate, PairMinimum
 from clearance.world.case import Case, Limits, Unmeasured
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -28,14 +28,28 @@ class Status(StrEnum):
 STATUSES = tuple(Status)
 
 
-def status_codes(clearance: np.ndarray, limits: Limits) -> np.ndarray:
-    """(n,) indices into `STATUSES`: contact at 0, violated below `fail`, near below `warn`."""
-    below = [clearance <= 0.0, clearance < limits.fail, clearance < limits.warn]
+def status_codes(
+    clearance: np.ndarray, limits: Limits, certificate: Certificate | None = None
+) -> np.ndarray:
+    """(n,) indices into `STATUSES`: contact at 0, violated below `fail`, near below `warn`.
+
+    With a certificate, row i judges the motion from step i to i + 1 by its lower bound; contact is what was
+    really seen.
+    """
+    seen = clearance if certificate is None else certificate.upper_bound
+    proven = clearance if certificate is None else certificate.lower_bound
+    below = [seen <= 0.0, proven < limits.fail, proven < limits.warn]
     return np.select(below, [3, 2, 1], default=0)
 
 
 def step_table(
-    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement, with_error: bool
+    case: Case,
+    motions: Sequence[Motion],
+    pairs: Sequence[Pair],
+    found: Measurement,
+    *,
+    certificate: Certificate | None = None,
+    with_error: bool = False,
 ) -> pa.Table:
     """One row a step; columns as in `Record.steps`."""
     links, obstacles = pair_names(case, pairs)
@@ -49,7 +63,10 @@ def step_table(
     for i_side, side in enumerate(("link", "obstacle")):
         for i_axis, axis in enumerate("xyz"):
             columns[f"{side}_{axis}"] = pa.array(found.points[:, i_side, i_axis])
-    columns["status"] = _names([str(s) for s in STATUSES], status_codes(found.clearance, case.limits))
+    codes = status_codes(found.clearance, case.limits, certificate)
+    columns["status"] = _names([str(status) for status in STATUSES], codes)
+    if certificate is not None:
+        columns["lower_bound"] = pa.array(certificate.lower_bound)
     if with_error:
         columns["tracking_error"] = pa.array(np.max([m.tracking_error for m in motions], axis=0))
     return pa.table(columns)

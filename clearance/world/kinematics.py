@@ -27,6 +27,18 @@ def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
         (n, n_links, 4, 4) `world_from_link` [m], links as in `Robot.link_names`.
     """
     robot = placed.robot
+    poses = np.empty((len(positions), len(robot.link_names), 4, 4))
+    forward(
+        np.ascontiguousarray(placed.world_from_base, dtype=np.float64),
+        *chain_arrays(robot),
+        positions_by_link(robot, positions),
+        poses,
+    )
+    return poses
+
+
+def chain_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Parents, kinds, parent_from_joint and axes of all links, as `kernels.kinematics.forward` takes them."""
     n_links = len(robot.link_names)
     index = {name: i for i, name in enumerate(robot.link_names)}
     parents = np.zeros(n_links, dtype=np.int64)
@@ -37,12 +49,7 @@ def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
         i = index[joint.child]
         parents[i], kinds[i] = index[joint.parent], _KERNEL_KIND[joint.kind]
         fixed_parts[i], axes[i] = joint.parent_from_joint, joint.axis
-    poses = np.empty((len(positions), n_links, 4, 4))
-    forward(
-        np.ascontiguousarray(placed.world_from_base, dtype=np.float64),
-        parents, kinds, fixed_parts, axes, _positions_by_link(robot, index, positions), poses,
-    )
-    return poses
+    return parents, kinds, fixed_parts, axes
 
 
 def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray) -> np.ndarray:
@@ -68,7 +75,9 @@ def _column(columns: dict[str, int], name: str) -> int:
     return columns[name]
 
 
-def _positions_by_link(robot: Robot, index: dict[str, int], moving: np.ndarray) -> np.ndarray:
+def positions_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
+    """(n, n_links) the position of the joint above each link; 0 for the root and for fixed joints."""
+    index = {name: i for i, name in enumerate(robot.link_names)}
     columns = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
     by_name = {joint.name: joint for joint in robot.joints}
     positions = np.zeros((len(moving), len(robot.link_names)))

@@ -1,0 +1,280 @@
+"""A proven lower bound on the clearance of the continuous motion between two steps.
+
+In the middle of an interval the trees are descended as for a distance, but each bound is lowered by how far
+the link can move in the interval: along the direction of the nearest points where two faces or boxes are
+seen apart, so that sliding past costs nothing in the first order. What does not stay above the target is
+halved. Not for: the steps themselves (`sweep`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.jit import inlined, kernel
+from clearance.kernels.bounds import (
+    lower_bound_boxes_in_sight,
+    lower_bound_boxes_sq,
+    lower_bound_faces_in_sight,
+    rounding_slack,
+    sight_along,
+)
+from clearance.kernels.descent import Scratch, margin_of, new_scratch, nothing_yet
+from clearance.kernels.double_double import frames_of
+from clearance.kernels.drift import (
+    drift_of,
+    drift_of_box,
+    drift_of_box_along,
+    drift_of_face_along,
+)
+from clearance.kernels.face_pair import may_meet, nearest_of_faces
+from clearance.kernels.kinematics import forward
+from clearance.kernels.predicates import faces_meet
+from clearance.kernels.vec3 import rigid
+
+DEPTH = 64
+"""Parts of an interval that can wait, one a halving; after 52 the ends cannot be told apart."""
+
+ROUNDED_DOWN = 1.0 - 2.0**-50
+"""Covers the rounding of the steps' clearances, which are right to the last place."""
+
+FINEST = 1e-3
+"""The share of the asked gap beyond which a limit that is touched is left undecided."""
+
+STILL = 0.25
+"""Where a body moves less than this share of the gap and the target is missed, rounding is to blame: halving
+cannot help, and the bound stands as it is."""
+
+CHAIN_SLACK = 8.0
+"""Rounding slacks of a body pair that cover poses computed along a chain of links as well."""
+
+
+class Asked(NamedTuple):
+    """Which pairs are certified: their bodies in the surface, the links of the first, poses of the second.
+
+    Attributes:
+        bodies: (p, 2) moving body, standing body.
+        links: (p,) link of the moving body.
+        standing: (bodies, 4, 4) poses of the standing bodies [m].
+    """
+
+    bodies: np.ndarray
+    links: np.ndarray
+    standing: np.ndarray
+
+
+class Middle(NamedTuple):
+    """Room for the state in the middle of an interval, and for the search."""
+
+    positions: np.ndarray  # (1, n_links)
+    swing: np.ndarray  # (n_links,)
+    poses: np.ndarray  # (1, n_links, 4, 4)
+    scratch: Scratch
+
+
+class Held(NamedTuple):
+    """What is known of a pair over an interval.
+
+    Attributes:
+        floor: [m] proven lower bound over the interval, if the search was completed.
+        least: [m] the least distance that was asked about, or one that was found in the middle.
+        completed: False if the search was given up, because the target cannot be proven.
+        face_a, face_b: the faces of those points, or -1.
+    """
+
+    floor: float
+    least: float
+    completed: bool
+    face_a: int
+    face_b: int
+
+
+@inlined
+def _node_floor(a, node_a, b, node_b, m, sight, slack, drift, target):
+    """[m] a lower bound on the distance of two boxes over the interval."""
+    in_sight = lower_bound_boxes_in_sight(a, node_a, b, node_b, sight) - slack
+    in_sight -= drift_of_box_along(a, node_a, sight.u, drift)
+    if in_sight >= target:
+        return in_sight
+    apart = math.sqrt(lower_bound_boxes_sq(a, node_a, b, node_b, m, slack)) - slack
+    return max(in_sight, apart - drift_of_box(a, node_a, drift))
+
+
+@inlined
+def _breadth(surface, node):
+    x, y, z = surface.halves[node, 0], surface.halves[node, 1], surface.halves[node, 2]
+    return x + y + z - max(x, max(y, z))
+
+
+@inlined
+def allowed_gap(least, gap, fail):
+    """[m] how far below the least distance seen the bound may stay: less where that leaves `fail` undecided."""
+    if least < fail:
+        return gap
+    return max(min(gap, 0.5 * (least - fail)), gap * FINEST)
+
+
+@inlined
+def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, scratch, tally):
+    """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
+
+    The search is given up where that cannot be proven, unless the body stands still.
+
+    `a` and `b` are surfaces in which every face owns all its features, so that a face pair is seen whole.
+    """
+    m = frames.m
+    root_a, root_b = a.roots[body_a], b.roots[body_b]
+    slack = CHAIN_SLACK * rounding_slack(a, root_a, b, root_b, frames)
+    margin = margin_of(slack)
+    moved = drift_of_box(a, root_a, drift)
+    near_a, near_b = seed_a, seed_b
+    best = nothing_yet(math.inf)
+    if seed_a >= 0:
+        best = nearest_of_faces(a, seed_a, b, seed_b, m, margin, best).best
+        least = min(least, math.sqrt(best.gap_sq) + margin)
+    nearest = math.sqrt(best.gap_sq)
+    allowed = allowed_gap(least, gap, fail)
+    target = least - allowed
+    sight = sight_along(best.p, best.q, m)
+    floor = math.inf
+    scratch.nodes[0, 0], scratch.nodes[0, 1] = root_a, root_b
+    scratch.bounds_sq[0] = _node_floor(a, root_a, b, root_b, m, sight, slack, drift, target)
+    n_waiting = 1
+    while n_waiting > 0:
+        n_waiting -= 1
+        node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
+        bound = scratch.bounds_sq[n_waiting]
+        if bound >= target:
+            floor = min(floor, bound)
+            continue
+        leaf_a, leaf_b = a.children[node_a, 1] < 0, b.children[node_b, 1] < 0
+        if leaf_a and leaf_b:
+            face_a, face_b = a.children[node_a, 0], b.children[node_b, 0]
+            bound = max(bound, _face_floor(a, face_a, b, face_b, sight, slack, drift))
+            if bound < target:
+                tally[3] += 1
+                if may_meet(a, face_a, b, face_b, m, margin) and faces_meet(
+                    a, face_a, b, face_b, frames, scratch.exact
+                ):
+                    return Held(0.0, 0.0, True, face_a, face_b)
+                near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
+                seen = math.sqrt(near.gap_sq)
+                own = sight_along(near.p, near.q, m)
+                bound = max(bound, _face_floor(a, face_a, b, face_b, own, slack, drift))
+                if seen < nearest:
+                    nearest, near_a, near_b, sight = seen, face_a, face_b, own
+                if seen + margin < least:
+                    least = seen + margin
+                    allowed = allowed_gap(least, gap, fail)
+                    target = least - allowed
+            floor = min(floor, bound)
+            if bound < target and moved >= STILL * allowed:
+                return Held(0.0, least, False, near_a, near_b)
+            continue
+        if leaf_b or (not leaf_a and _breadth(a, node_a) >= _breadth(b, node_b)):
+            a0, a1, b0, b1 = a.children[node_a, 0], a.children[node_a, 1], node_b, node_b
+        else:
+            a0, a1, b0, b1 = node_a, node_a, b.children[node_b, 0], b.children[node_b, 1]
+        first = _node_floor(a, a0, b, b0, m, sight, slack, drift, target)
+        second = _node_floor(a, a1, b, b1, m, sight, slack, drift, target)
+        tally[2] += 2
+        if first < second:
+            a0, a1, b0, b1, first, second = a1, a0, b1, b0, second, first
+        scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = a0, b0
+        scratch.nodes[n_waiting + 1, 0], scratch.nodes[n_waiting + 1, 1] = a1, b1
+        scratch.bounds_sq[n_waiting], scratch.bounds_sq[n_waiting + 1] = first, second
+        n_waiting += 2
+    return Held(floor, least, True, near_a, near_b)
+
+
+@inlined
+def _face_floor(a, face_a, b, face_b, sight, slack, drift):
+    """[m] a lower bound on the distance of two faces over the interval, seen along one direction."""
+    apart = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
+    return apart - drift_of_face_along(a, face_a, sight.u, drift)
+
+
+@inlined
+def _go_to(chain, before, after, low, high, middle):
+    """Puts `middle` in the middle of the part `low` to `high` of an interval (0 to 1)."""
+    at = 0.5 * (low + high)
+    for link in range(len(before)):
+        step = after[link] - before[link]
+        middle.positions[0, link] = before[link] + at * step
+        middle.swing[link] = 0.5 * (high - low) * step * (1.0 + 1e-12)
+    forward(
+        chain.world_from_base, chain.parents, chain.kinds, chain.parent_from_joint, chain.axes,
+        middle.positions, middle.poses,
+    )  # fmt: skip
+
+
+@inlined
+def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tally):
+    """`hold` of a pair at the state in `middle`."""
+    body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
+    link = asked.links[pair]
+    pose = rigid(middle.poses[0, link])
+    root = surface.roots[body_a]
+    drift = drift_of(surface, root, chain, link, middle.poses[0], middle.swing, pose)
+    frames = frames_of(pose, rigid(asked.standing[body_b]))
+    tally[1] += 1
+    held = hold(
+        surface, body_a, surface, body_b, frames, drift, least, gap, fail,
+        seeds[pair, 0], seeds[pair, 1], middle.scratch, tally,
+    )  # fmt: skip
+    seeds[pair, 0], seeds[pair, 1] = held.face_a, held.face_b
+    return held
+
+
+@kernel
+def certify(
+    surface, chain, asked, positions, order, first, last, known, gap, fail, lower, upper, tally
+):
+    """Fills `lower` [m] for the motion between the steps `first` to `last`, and lowers `upper`.
+
+    Args:
+        surface: every face owns all its features.
+        positions: (n, n_links) of the joint of each link; linear between steps.
+        order: (n,) the pair to look at first in each interval.
+        known: (n,) [m] clearance of the steps over these pairs, proven to within rounding.
+        gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
+        fail: [m] the limit that is to be decided, if need be with a smaller gap.
+    """
+    n_pairs = len(asked.bodies)
+    n_links = positions.shape[1]
+    middle = Middle(
+        np.empty((1, n_links)), np.empty(n_links), np.empty((1, n_links, 4, 4)), new_scratch()
+    )
+    seeds = np.full((n_pairs, 2), -1)
+    waiting = np.empty((DEPTH, 2))
+    for step in range(first, last):
+        least = min(known[step], known[step + 1])
+        floor = least  # 0 for a contact: then nothing is left to prove
+        for turn in range(-1, n_pairs):
+            pair = order[step] if turn < 0 else turn
+            if turn == order[step] or least <= 0.0:
+                continue
+            waiting[0, 0], waiting[0, 1] = 0.0, 1.0
+            n_waiting = 1
+            while n_waiting > 0:
+                n_waiting -= 1
+                low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
+                _go_to(chain, positions[step], positions[step + 1], low, high, middle)
+                held = _hold_pair(
+                    surface, chain, asked, pair, middle, least, gap, fail, seeds, tally
+                )
+                least = held.least
+                if least <= 0.0:
+                    floor = 0.0
+                    break
+                if held.completed:
+                    floor = min(floor, held.floor)
+                elif n_waiting + 2 > DEPTH:
+                    floor = 0.0
+                else:
+                    at = 0.5 * (low + high)
+                    waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
+                    waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
+                    n_waiting += 2
+        lower[step] = max(0.0, min(floor, least) * ROUNDED_DOWN)
+        upper[step] = least

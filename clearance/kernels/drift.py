@@ -1,0 +1,147 @@
+"""How far the points of a link can move while its joints move linearly: first order exactly, the rest bounded.
+
+About the middle of an interval, a point x moves by s v(x) + r with |s| <= 1: v is the link's twist there, an
+affine map of x, and |r| is at most half the greatest acceleration. Source: the product of exponentials
+differentiated twice; joints nearer to the link come first, since only they move the link about an axis.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.jit import inlined
+from clearance.kernels.kinematics import SLIDING, TURNING
+from clearance.kernels.vec3 import Vec3, add, along, cross, dot, row, sub, turn_back
+
+
+class Chain(NamedTuple):
+    """A robot's tree of links as `kinematics.forward` takes it."""
+
+    world_from_base: np.ndarray
+    parents: np.ndarray
+    kinds: np.ndarray
+    parent_from_joint: np.ndarray
+    axes: np.ndarray
+
+
+class Drift(NamedTuple):
+    """The motion of a body over half an interval, to either side, in the body's frame in the middle.
+
+    Attributes:
+        velocity, spin: a point x moves by s (velocity + spin x x) + r, |s| <= 1 [m], [rad].
+        rest: [m] a bound on |r| over the body.
+    """
+
+    velocity: Vec3
+    spin: Vec3
+    rest: float
+
+
+@inlined
+def _farthest_from_axis(surface, root, pose, origin, axis):
+    """[m] an upper bound on the distance of the body's points from a line, by the corners of its box."""
+    far_sq = 0.0
+    half = surface.halves[root]
+    for corner in range(8):
+        x = row(surface.centres, root)
+        for i in range(3):
+            sign = 1.0 if corner & (1 << i) else -1.0
+            x = along(x, sign * half[i], row(surface.axes[root], i))
+        world = Vec3(
+            pose[0, 0] * x.x + pose[0, 1] * x.y + pose[0, 2] * x.z + pose[0, 3],
+            pose[1, 0] * x.x + pose[1, 1] * x.y + pose[1, 2] * x.z + pose[1, 3],
+            pose[2, 0] * x.x + pose[2, 1] * x.y + pose[2, 2] * x.z + pose[2, 3],
+        )
+        away = cross(sub(world, origin), axis)
+        far_sq = max(far_sq, dot(away, away))
+    return math.sqrt(far_sq)
+
+
+@inlined
+def _world_axis(chain, poses, link):
+    pose = poses[link]
+    x, y, z = chain.axes[link, 0], chain.axes[link, 1], chain.axes[link, 2]
+    return Vec3(
+        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z,
+        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z,
+        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z,
+    )
+
+
+@inlined
+def drift_of(surface, root, chain, link, poses, swing, world_from_body):
+    """The drift of a body that is fixed to `link`.
+
+    Args:
+        poses: (n_links, 4, 4) in the middle of the interval.
+        swing: (n_links,) [rad or m] half of what the joint of each link moves in the interval.
+        world_from_body: the pose of the link as `Rigid`.
+    """
+    shallower = 0.0  # sum of the swings of the turning joints between here and the base
+    i = link
+    while i != 0:
+        if chain.kinds[i] == TURNING:
+            shallower += abs(swing[i])
+        i = chain.parents[i]
+    spin, velocity = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
+    rest = 0.0
+    moved = 0.0  # how far the joints up to here move any point of the body
+    i = link
+    while i != 0:
+        size = abs(swing[i])
+        if size > 0.0 and chain.kinds[i] == TURNING:
+            shallower = max(0.0, shallower - size)
+            axis = _world_axis(chain, poses, i)
+            origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
+            arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
+            rest += 0.5 * size * arm * (size + 2.0 * shallower)
+            moved += size * arm
+            spin = along(spin, swing[i], axis)
+            velocity = along(velocity, swing[i], cross(origin, axis))
+        elif size > 0.0 and chain.kinds[i] == SLIDING:
+            rest += size * shallower
+            moved += size
+            velocity = along(velocity, swing[i], _world_axis(chain, poses, i))
+        i = chain.parents[i]
+    at_origin = add(velocity, cross(spin, world_from_body.t))
+    return Drift(
+        turn_back(world_from_body, at_origin),
+        turn_back(world_from_body, spin),
+        rest * (1.0 + 1e-12),
+    )
+
+
+@inlined
+def velocity_at(drift, x):
+    """How a point of the body moves in the first order over half the interval [m]."""
+    return add(drift.velocity, cross(drift.spin, x))
+
+
+@inlined
+def drift_of_box(surface, node, drift):
+    """[m] an upper bound on how far any point of a node's box moves from the middle."""
+    half = row(surface.halves, node)
+    v = velocity_at(drift, row(surface.centres, node))
+    turning = math.sqrt(dot(drift.spin, drift.spin) * dot(half, half))
+    return math.sqrt(dot(v, v)) + turning + drift.rest
+
+
+@inlined
+def drift_of_box_along(surface, node, direction, drift):
+    """[m] an upper bound on how far any point of a node's box moves along a unit direction, either way."""
+    first = abs(dot(direction, velocity_at(drift, row(surface.centres, node))))
+    lever = cross(direction, drift.spin)
+    for i in range(3):
+        first += surface.halves[node, i] * abs(dot(row(surface.axes[node], i), lever))
+    return first + drift.rest
+
+
+@inlined
+def drift_of_face_along(surface, face, direction, drift):
+    """[m] an upper bound on how far any point of a face moves along a unit direction, either way."""
+    first = 0.0
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        x = row(surface.vertices, surface.face_vertices[c])
+        first = max(first, abs(dot(direction, velocity_at(drift, x))))
+    return first + drift.rest

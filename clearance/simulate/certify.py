@@ -1,0 +1,86 @@
+"""Proves how close the continuous motion comes between the steps; joints move linearly in between.
+
+Not for: the clearance at the steps (`measure`), which it starts from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.errors import BadDimension
+from clearance.kernels.certify import Asked, certify
+from clearance.kernels.drift import Chain
+from clearance.kernels.surface import Surface
+from clearance.simulate.measure import CHUNK, COUNTERS, Measurement, Progress, lay_out
+from clearance.simulate.record import Certificate
+from clearance.world.case import Case
+from clearance.world.kinematics import chain_arrays, positions_by_link
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+
+def certify_motion(
+    case: Case,
+    motions: Sequence[Motion],
+    pairs: Sequence[Pair],
+    found: Measurement,
+    gap: float,
+    progress: Progress | None = None,
+) -> Certificate:
+    """Lower bounds that are within `gap` [m] of a distance that really occurs.
+
+    Raises:
+        BadDimension: `gap` is not a positive length.
+    """
+    if not 0.0 < gap < np.inf:
+        raise BadDimension(f"a gap of {gap} m", where="certify", valid="a length above 0")
+    n_steps = motions[0].n_steps
+    lower = found.clearance.copy()
+    upper = found.clearance.copy()
+    tally = np.zeros(len(COUNTERS), dtype=np.int64)
+    for i_robot, motion in enumerate(motions):
+        chosen = [i for i, pair in enumerate(pairs) if pair.i_robot == i_robot]
+        surface, chain, asked = _lay_out(case, motions, [pairs[i] for i in chosen])
+        order = np.maximum(np.searchsorted(chosen, found.pair), 0) % len(chosen)
+        positions = positions_by_link(motion.placed.robot, motion.positions)
+        robot_lower, robot_upper = lower.copy(), upper.copy()
+        for first in range(0, n_steps - 1, CHUNK):
+            last = min(first + CHUNK, n_steps - 1)
+            certify(
+                surface, chain, asked, positions, order, first, last, found.clearance, gap,
+                case.limits.fail, robot_lower, robot_upper, tally,
+            )  # fmt: skip
+            if progress:
+                progress(last + 1, n_steps)
+        lower, upper = np.minimum(lower, robot_lower), np.minimum(upper, robot_upper)
+    return Certificate(lower, upper, gap, dict(zip(COUNTERS, tally.tolist(), strict=True)))
+
+
+def _lay_out(
+    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]
+) -> tuple[Surface, Chain, Asked]:
+    """The surface with whole faces, the robot's chain, and the pairs; all of one robot."""
+    surface, world = lay_out(case, motions, pairs)
+    placed = case.robots[pairs[0].i_robot]
+    robot = placed.robot
+    links = [robot.link_names.index(robot.bodies[pair.i_body].name) for pair in pairs]
+    return (
+        _with_whole_faces(surface),
+        Chain(np.ascontiguousarray(placed.world_from_base, dtype=np.float64), *chain_arrays(robot)),
+        Asked(world.pairs, np.array(links, dtype=np.int64), world.standing),
+    )
+
+
+def _with_whole_faces(surface: Surface) -> Surface:
+    """The surface in which every face owns all its corners and edges, not only those it answers for."""
+    starts, corners = surface.face_starts, surface.face_vertices
+    following = np.arange(1, len(corners) + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    return surface._replace(
+        vertex_starts=starts,
+        owned_vertices=corners,
+        edge_starts=starts,
+        owned_edges=np.stack([corners, corners[following]], axis=1),
+    )

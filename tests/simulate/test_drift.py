@@ -1,0 +1,78 @@
+"""The bound on how far a link moves in an interval, against the motion itself."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance.geometry.shapes import box
+from clearance.geometry.tree import surface_of
+from clearance.jit import kernel
+from clearance.kernels.drift import Chain, drift_of, drift_of_box, drift_of_box_along
+from clearance.kernels.vec3 import Vec3, rigid
+from clearance.world.case import PlacedRobot
+from clearance.world.kinematics import chain_arrays, link_poses, positions_by_link
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+
+SHAPE = box((0.3, 0.1, 0.2))
+
+
+@kernel
+def drifts(surface, chain, link, poses, swing, direction):
+    pose = rigid(poses[link])
+    drift = drift_of(surface, surface.roots[0], chain, link, poses, swing, pose)
+    along = drift_of_box_along(surface, 0, Vec3(direction[0], direction[1], direction[2]), drift)
+    return drift_of_box(surface, 0, drift), along
+
+
+def random_robot(rng, n_joints):
+    joints = []
+    for i in range(n_joints):
+        offset = np.eye(4)
+        offset[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        offset[:3, :3] *= np.sign(np.linalg.det(offset[:3, :3]))
+        offset[:3, 3] = rng.uniform(-0.5, 0.5, 3)
+        kind = rng.choice(
+            [JointKind.REVOLUTE, JointKind.PRISMATIC, JointKind.FIXED], p=[0.6, 0.25, 0.15]
+        )
+        axis = rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        joints.append(Joint(f"j{i}", JointKind(kind), f"l{i}", f"l{i + 1}", offset, axis))
+    names = tuple(f"l{i}" for i in range(n_joints + 1))
+    return Robot("robot", names, tuple(joints), ())
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([1e-4, 1e-2, 0.3, 2.0]))
+def test_no_point_leaves_its_bound(seed, n_joints, size):
+    rng = np.random.default_rng(seed)
+    robot = random_robot(rng, n_joints)
+    n_moving = len(robot.moving_joints)
+    placed = PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
+    middle, half = rng.uniform(-2, 2, n_moving), size * rng.uniform(-1, 1, n_moving)
+    shares = np.concatenate([[0.0], np.linspace(-1.0, 1.0, 41)])
+    poses = link_poses(placed, middle + shares[:, None] * half)
+    chain = Chain(np.eye(4), *chain_arrays(robot))
+    swing = positions_by_link(robot, half[None])[0]
+    direction = rng.normal(size=3)
+    direction /= np.linalg.norm(direction)  # in the frame of the link
+    bound, bound_along = drifts(surface_of(SHAPE), chain, n_joints, poses[0], swing, direction)
+    corners = np.c_[SHAPE.vertices, np.ones(len(SHAPE.vertices))]
+    moved = (poses[:, n_joints] @ corners.T)[:, :3] - (poses[0, n_joints] @ corners.T)[:3]
+    lengths = np.linalg.norm(moved, axis=1)
+    along = np.abs(np.einsum("i,sij->sj", poses[0, n_joints, :3, :3] @ direction, moved))
+    slack = 1e-13
+    assert lengths.max() <= bound + slack
+    assert along.max() <= bound_along + slack
+
+
+def test_the_bound_of_a_slide_is_exact():
+    robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
+    chain = Chain(np.eye(4), *chain_arrays(robot))
+    poses = np.tile(np.eye(4), (2, 1, 1))
+    bound, along = drifts(
+        surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), np.array([0.0, 1.0, 0.0])
+    )
+    assert bound == pytest.approx(0.25, rel=1e-11)
+    assert along == 0.0
