@@ -47,12 +47,14 @@ class Solid:
 
     Attributes:
         round_shape: what it is before it is faceted, so that a peer may use its own; None for all others.
+        stands: an obstacle, the second body of a pair.
     """
 
     name: str
     shape: Polyhedron
     soup: TriangleSoup
     round_shape: Round | None = None
+    stands: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,9 +92,9 @@ class Scene:
         return sum(len(solid.soup.triangles) for solid in [*self.links, *self.obstacles])
 
 
-def solid(body: Body) -> Solid:
+def solid(body: Body, stands: bool = False) -> Solid:
     """A body with its triangles."""
-    return Solid(body.name, body.shape, triangle_soup(body.shape), round_shape(body))
+    return Solid(body.name, body.shape, triangle_soup(body.shape), round_shape(body), stands)
 
 
 def round_shape(body: Body) -> Round | None:
@@ -140,7 +142,7 @@ def scene_of(path: Path) -> Scene:
     fixed = sorted({pair.i_obstacle for pair in pairs})
     standing = [case.obstacles[k] for k in fixed]
     links = [solid(case.robots[i].robot.bodies[j]) for i, j in movers]
-    obstacles = [solid(o.body) for o in standing]
+    obstacles = [solid(o.body, stands=True) for o in standing]
     return Scene(
         name=path.parent.name,
         case=case,

@@ -188,20 +188,18 @@ class BulletHull:
     """PyBullet's `getClosestPoints` on the convex hulls of both meshes: what it makes of a mesh."""
 
     name = "PyBullet hulls"
-    concave_second = False
+    concave_obstacles = False
 
     def __init__(self) -> None:
         import pybullet
 
         self.bullet = pybullet
         self._client = pybullet.connect(pybullet.DIRECT)
-        self._n_bodies = 0
 
     def body(self, given: Solid) -> Any:
-        """A standing multibody; every second one is the triangles themselves where that is asked for."""
+        """A multibody without mass: the hull, or the triangles where a concave obstacle is asked for."""
         soup = given.soup
-        self._n_bodies += 1
-        concave = self.concave_second and self._n_bodies % 2 == 0
+        concave = self.concave_obstacles and given.stands
         given = {"indices": soup.triangles.ravel().tolist()} if concave else {}
         flags = self.bullet.GEOM_FORCE_CONCAVE_TRIMESH if concave else 0
         shape = self.bullet.createCollisionShape(
@@ -230,10 +228,10 @@ class BulletHull:
 
 
 class BulletConcave(BulletHull):
-    """PyBullet with `GEOM_FORCE_CONCAVE_TRIMESH` on the second body; on both it answers nothing."""
+    """PyBullet with `GEOM_FORCE_CONCAVE_TRIMESH` on what stands; on both bodies it answers nothing."""
 
     name = "PyBullet hull against concave"
-    concave_second = True
+    concave_obstacles = True
 
 
 PEERS: dict[str, tuple[type, str]] = {

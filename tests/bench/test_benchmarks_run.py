@@ -1,0 +1,56 @@
+"""The benchmarks run on a tiny setting, and what they say agrees with itself; absent peers are left out."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def ran(script: str, *arguments: object) -> str:
+    command = [sys.executable, ROOT / "scripts" / "bench" / script, *map(str, arguments)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def rows_of(path: Path) -> list[dict]:
+    with path.open(encoding="utf-8") as lines:
+        return list(csv.DictReader(lines))
+
+
+def test_trajectory_agrees_with_every_peer(tmp_path):
+    out = tmp_path / "rows.csv"
+    said = ran("trajectory.py", "--scenes", "box_box", "--seconds", 0.02, "--passes", 1, "--csv", out)
+    rows = rows_of(out)
+    assert rows[0]["method"] == "clearance: steps" and float(rows[0]["ratio_to_ours"]) == 1.0
+    assert all(float(row["ms_per_step"]) > 0.0 for row in rows)
+    assert {row["library"] for row in rows} >= {"clearance", "FCL"}
+    assert max(float(row["greatest_difference_m"]) for row in rows) < 1e-12
+    assert not any(row["false_contact_steps"] + row["missed_contact_steps"] for row in rows)
+    assert "python-fcl" in said
+
+
+def test_error_time_finds_ours_exact_and_balls_wrong(tmp_path):
+    said = ran("error_time.py", "--polygons", 2, "--poses", 1, "--steps", 0, "--seconds", 0.02, "--out", tmp_path)
+    rows = rows_of(tmp_path / "error_time.csv")
+    ours = [row for row in rows if row["method"] == "clearance exact"]
+    assert {row["group"] for row in ours} == {"polygons", "bodies"}
+    assert len({row["family"] for row in ours if row["group"] == "polygons"}) >= 15
+    assert all(float(row["error_worst"]) < 1e-9 for row in ours)
+    assert all(row["no_answer"] == "0" for row in ours)
+    balls = [row for row in rows if row["method"] == "bounding spheres"]
+    assert max(float(row["error_worst"]) for row in balls) > 1e-2
+    assert "run time against error" in said
+
+
+@pytest.mark.parametrize("name", ["error_time.svg", "polygon_families.svg"])
+def test_pictures_are_drawn(tmp_path, name):
+    pytest.importorskip("matplotlib")
+    ran("error_time.py", "--polygons", 1, "--poses", 0, "--steps", 0, "--seconds", 0.01, "--out", tmp_path)
+    assert (tmp_path / name).read_text(encoding="utf-8").startswith("<?xml")
