@@ -65,6 +65,10 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
             body, link_notes = _body(by_name[name], request, meshes)
             notes += [f"{shown}: {note}" for note in link_notes]
             bodies += [body] if body is not None else []
+        bare = [name for name in link_names if not _elements(by_name[name], request)]
+        if bare:
+            what = f"no {request.geometry} geometry and not measured: {', '.join(bare)}"
+            notes.append(f"{shown}: {len(bare)} links with {what}")
     return Robot(model.name, link_names, ordered, tuple(bodies), tuple(notes))
 
 
@@ -89,12 +93,18 @@ def _model(data: bytes) -> yourdfpy.Robot:
         raise BadSyntax(f"not a URDF that can be read: {type(error).__name__}: {error}") from None
 
 
+def _elements(
+    link: yourdfpy.Link, request: UrdfRequest
+) -> list[yourdfpy.Collision] | list[yourdfpy.Visual]:
+    return link.collisions if request.geometry == "collision" else link.visuals
+
+
 def _body(
     link: yourdfpy.Link, request: UrdfRequest, meshes: MeshStore
 ) -> tuple[Body | None, list[str]]:
-    elements = link.collisions if request.geometry == "collision" else link.visuals
+    elements = _elements(link, request)
     if not elements:
-        return None, [f"link {link.name!r} has no {request.geometry} geometry and is not measured"]
+        return None, []
     shapes, origins, notes = [], [], []
     for i, element in enumerate(elements):
         with at(f"link {link.name!r} {request.geometry}[{i}]"):
