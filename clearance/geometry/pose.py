@@ -30,7 +30,7 @@ def pose_from_quaternion(xyz: Sequence[float], quat_xyzw: Sequence[float]) -> np
     length = float(np.linalg.norm((x, y, z, w)))
     if not abs(length - 1.0) <= ROTATION:
         raise BadPose(
-            f"the quaternion {[x, y, z, w]} has length {length:.9g}",
+            f"the quaternion {[float(part) for part in (x, y, z, w)]} has length {length:.9g}",
             where="quat_xyzw",
             valid=f"length 1 within {ROTATION:g}, the scalar last",
         )

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from fnmatch import fnmatchcase
 
 from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
+from clearance.world.pairs import matches
 
 _WILDCARDS = frozenset("*?[")
 
@@ -50,7 +50,7 @@ def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]
 
 
 def _matches(pattern: str, names: Iterable[str]) -> bool:
-    return any(fnmatchcase(name, pattern) for name in names)
+    return any(matches(name, pattern) for name in names)
 
 
 def _refuse_unmatched(

@@ -8,10 +8,11 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 
 from __future__ import annotations
 
+import unicodedata
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
@@ -19,7 +20,16 @@ from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
 Positive = Annotated[float, Field(gt=0)]
-Name = Annotated[str, Field(min_length=1)]
+
+
+def _printable(name: str) -> str:
+    """The name, if reports in XML and lines on a terminal can show it."""
+    if any(unicodedata.category(letter) == "Cc" for letter in name):
+        raise BadInput(f"{name!r:.60} holds a control character", valid="text on one line is needed")
+    return name
+
+
+Name = Annotated[str, Field(min_length=1), AfterValidator(_printable)]
 
 
 class Strict(BaseModel):

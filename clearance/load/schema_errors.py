@@ -70,5 +70,7 @@ def _remedy(detail: dict) -> str:
     if detail["type"] in ("too_short", "too_long"):
         least, most = context.get("min_length"), context.get("max_length")
         return f"{least or most} values are needed"
-    text = detail["msg"].replace("Input should be ", "").replace("a valid", "a")
+    if detail["type"] == "string_too_short":
+        return "a text that is not empty is needed"
+    text = detail["msg"].replace("Input should be ", "").replace("a valid i", "an i").replace("a valid", "a")
     return f"{text} is needed"

@@ -27,7 +27,7 @@ def parse_yaml(data: bytes, shown: str) -> object:
         return YAML(typ="safe", pure=True).load(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         raise BadSyntax(
-            f"byte {error.start} is not UTF-8 text", where=shown, valid="YAML"
+            f"byte {error.start} is not UTF-8 text", where=shown, valid="a YAML file is needed"
         ) from None
     except DuplicateKeyError as error:
         problem = (error.problem or "a key twice").split(" with value")[0]

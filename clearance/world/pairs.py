@@ -60,6 +60,11 @@ def _links_left_out(placed: PlacedRobot) -> list[Unmeasured]:
 
 def _allowing_rule(case: Case, link: Body, obstacle: str) -> tuple[str, str] | None:
     for rule in case.allow:
-        if fnmatchcase(link.name, rule[0]) and fnmatchcase(obstacle, rule[1]):
+        if matches(link.name, rule[0]) and matches(obstacle, rule[1]):
             return rule
     return None
+
+
+def matches(name: str, pattern: str) -> bool:
+    """True if `pattern` is the name itself (which may hold `[`, `*` or `?`) or a wildcard for it."""
+    return name == pattern or fnmatchcase(name, pattern)
