@@ -155,8 +155,17 @@ def _product_sum(a, x, b, y, c, z):
 
 
 @inlined
+def is_still(m):
+    """True for the identity rotation."""
+    off = abs(m.xy) + abs(m.xz) + abs(m.yx) + abs(m.yz) + abs(m.zx) + abs(m.zy)
+    return off == 0.0 and m.xx == 1.0 and m.yy == 1.0 and m.zz == 1.0
+
+
+@inlined
 def turned(m, v):
     """R v of a plain vector."""
+    if is_still(m):
+        return Wide3(wide(v.x), wide(v.y), wide(v.z))
     return Wide3(
         _product_sum(m.xx, v.x, m.xy, v.y, m.xz, v.z),
         _product_sum(m.yx, v.x, m.yy, v.y, m.yz, v.z),
@@ -183,13 +192,6 @@ def rounded(a):
 def size(v):
     """The sum of the coordinates' magnitudes."""
     return abs(v.x) + abs(v.y) + abs(v.z)
-
-
-@inlined
-def is_still(m):
-    """True for the identity rotation."""
-    off = abs(m.xy) + abs(m.xz) + abs(m.yx) + abs(m.yz) + abs(m.zx) + abs(m.zy)
-    return off == 0.0 and m.xx == 1.0 and m.yy == 1.0 and m.zz == 1.0
 
 
 @inlined

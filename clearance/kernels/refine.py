@@ -19,6 +19,7 @@ from clearance.kernels.double_double import (
     minus,
     minus3,
     over,
+    plus,
     point_of_a,
     point_of_b,
     root,
@@ -28,7 +29,7 @@ from clearance.kernels.double_double import (
 )
 from clearance.kernels.face_pair import has_plane, height, limit_of, may_be_over
 from clearance.kernels.segments import may_be_inside, may_be_inside_both, nearest_on_segment
-from clearance.kernels.vec3 import gap_sq, move, move_back, row, sub
+from clearance.kernels.vec3 import dot, gap_sq, move, move_back, row, sub, turn
 from clearance.kernels.wide_features import (
     across,
     across_both,
@@ -40,6 +41,9 @@ from clearance.kernels.wide_features import (
     wide_on_triangle,
     wide_over_triangle,
 )
+
+CLOSE = 64.0 * 2.0**-53
+"""Rounding of a plain share, relative to the sizes of direction and corner: 12 operations, with room."""
 
 
 class Refined(NamedTuple):
@@ -230,28 +234,49 @@ def _segment_pairs(a, face_a, b, face_b, frames, ask, best):
 
 
 @inlined
+def _plain_share(surface, corner, pose, w):
+    """How far a corner reaches along `w`, rounded, without the shift of its body."""
+    return dot(w, turn(pose, row(surface.exact, surface.face_vertices[corner])))
+
+
+@inlined
+def _greatest_share(surface, face, frames, is_a, sign, found):
+    """(share, reach): the greatest sign * w . (x - p) over the corners, and the greatest coordinate sum.
+
+    Only corners that are greatest within rounding are measured in wide numbers.
+    """
+    start, end = surface.face_starts[face], surface.face_starts[face + 1]
+    pose = frames.a if is_a else frames.b
+    w = rounded(found.w)
+    most = -math.inf
+    reach = 0.0
+    for c in range(start, end):
+        most = max(most, sign * _plain_share(surface, c, pose, w))
+        reach = max(reach, size(row(surface.exact, surface.face_vertices[c])))
+    room = CLOSE * size(w) * reach
+    share = wide(-math.inf)
+    for c in range(start, end):
+        if sign * _plain_share(surface, c, pose, w) < most - room:
+            continue
+        x = _placed(frames, row(surface.exact, surface.face_vertices[c]), is_a)
+        here = dot3(found.w, minus3(x, found.p))
+        here = Wide(sign * here.hi, sign * here.lo)
+        if less(share, here):
+            share = here
+    return share, reach
+
+
+@inlined
 def _floor_along(a, face_a, b, face_b, frames, found):
-    """[m] a lower bound on the distance of two faces: their gap along the line of the points found."""
-    w = found.w
-    length = root(dot3(w, w))
+    """[m] a lower bound on the distance of two faces: their gap along the direction found."""
+    length = root(dot3(found.w, found.w))
     if not length.hi > 0.0:
         return wide(0.0)
-    far_of_a = wide(-math.inf)
-    most = 0.0
-    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
-        x = point_of_a(frames, row(a.exact, a.face_vertices[c]))
-        most = max(most, size(rounded(x)))
-        share = dot3(w, minus3(x, found.p))
-        if less(far_of_a, share):
-            far_of_a = share
-    near_of_b = wide(math.inf)
-    for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
-        y = point_of_b(frames, row(b.exact, b.face_vertices[c]))
-        most = max(most, size(rounded(y)))
-        share = dot3(w, minus3(y, found.p))
-        if less(share, near_of_b):
-            near_of_b = share
-    return minus(over(minus(near_of_b, far_of_a), length), wide(NOISE * most))
+    far_of_a, reach_a = _greatest_share(a, face_a, frames, True, 1.0, found)
+    near_of_b, reach_b = _greatest_share(b, face_b, frames, False, -1.0, found)
+    apart = plus(far_of_a, near_of_b)
+    noise = NOISE * (2.0 * (reach_a + reach_b) + size(rounded(frames.shift)))
+    return minus(over(Wide(-apart.hi, -apart.lo), length), wide(noise))
 
 
 @kernel
