@@ -153,14 +153,13 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             bound = max(bound, _face_floor(a, face_a, b, face_b, sight, slack, drift))
             if bound < target:
                 tally[3] += 1
-                if may_meet(a, face_a, b, face_b, m, margin) and faces_meet(
-                    a, face_a, b, face_b, frames, scratch.exact
-                ):
-                    return Held(0.0, 0.0, True, face_a, face_b)
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
-                seen = math.sqrt(near.gap_sq)
                 own = sight_along(near.p, near.q, m)
-                bound = max(bound, _face_floor(a, face_a, b, face_b, own, slack, drift))
+                apart = lower_bound_faces_in_sight(a, face_a, b, face_b, own) - slack
+                if apart <= 0.0 and _meet(a, face_a, b, face_b, frames, margin, scratch):
+                    return Held(0.0, 0.0, True, face_a, face_b)
+                bound = max(bound, apart - drift_of_face_along(a, face_a, own.u, drift))
+                seen = math.sqrt(near.gap_sq)
                 if seen < nearest:
                     nearest, near_a, near_b, sight = seen, face_a, face_b, own
                 if seen + margin < least:
@@ -185,6 +184,14 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
         scratch.bounds_sq[n_waiting], scratch.bounds_sq[n_waiting + 1] = first, second
         n_waiting += 2
     return Held(floor, least, True, near_a, near_b)
+
+
+@inlined
+def _meet(a, face_a, b, face_b, frames, margin, scratch):
+    """True if two faces have a point in common, by exact signs."""
+    return may_meet(a, face_a, b, face_b, frames.m, margin) and faces_meet(
+        a, face_a, b, face_b, frames, scratch.exact
+    )
 
 
 @inlined
