@@ -101,9 +101,9 @@ def draw_error_time(rows: Sequence[dict], path: Path) -> None:
             axes.set_title(f"{titles[group]} (down and left is better)", loc="left")
             figure.draw_without_rendering()
             _label(figure, axes, chosen)
-        axes.plot([], [], "x", color="black", label="false contacts: number of them")
-        axes.plot([], [], "o", mfc="none", color="black", ms=10, label="missed contacts: number of them")
-        axes.legend(loc="lower right", frameon=False, fontsize=8)
+        axes.plot([], [], "x", color="black", label="false contacts, number in brackets")
+        axes.plot([], [], "o", mfc="none", color="black", ms=10, label="missed contacts, number in brackets")
+        axes.legend(loc="upper left", frameon=False, fontsize=8)
         _save(figure, path)
 
 
@@ -135,6 +135,7 @@ def _label(figure, axes, rows: Sequence[dict]) -> None:
                 ha="left" if dx >= 0 else "right", color=COLOURS[row["library"]],
                 arrowprops={"arrowstyle": "-", "color": "#bbbbbb", "lw": 0.6} if abs(dy) > 9 else None,
             )  # fmt: skip
+            note.update_positions(renderer)
             box = matplotlib.text.Text.get_window_extent(note, renderer)
             spot = (box.x0, box.y0 - 1, box.x1, box.y1 + 1)
             frame = axes.bbox
