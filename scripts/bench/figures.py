@@ -125,7 +125,8 @@ def _label(figure, axes, rows: Sequence[dict]) -> None:
     taken = []
     for row in rows:
         x, y = axes.transData.transform((max(row["error_worst"], FLOOR), row["us_median"]))
-        taken.append((x - 6, y - 6, x + 6, y + 6))
+        start = axes.transData.transform((max(row["error_median"], FLOOR), row["us_median"]))[0]
+        taken += [(x - 6, y - 6, x + 6, y + 6), (start, y - 1, x, y + 1)]
     for row in sorted(rows, key=lambda r: r["us_median"]):
         at = (max(row["error_worst"], FLOOR), row["us_median"])
         best = None
