@@ -16,6 +16,7 @@ from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
+from clearance.world.reach import require_within_reach
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -102,6 +103,7 @@ def check(
         case = replace(case, limits=limits)
     pairs, unmeasured = measured_pairs(case)
     motions = _motions(case, motion)
+    require_within_reach(case, motions)
     if method == "paper":
         from clearance.simulate.measure_paper import measure_paper
 

@@ -26,3 +26,10 @@ six-digit file, whose polygons are cut into triangles instead."""
 
 CERTIFY_GAP = 1e-4
 """[m] How far a certified bound may stay below a distance that occurs, by default: as fine as the facets."""
+
+LARGEST = 1e150
+"""[m] No coordinate may be larger in magnitude: its square must not overflow."""
+
+REACH = 1e6
+"""[m] No body of a case may get farther from the origin: nothing that a robot works on does, and a value in the
+wrong unit, or a typing error in an exponent, does at once."""

@@ -11,17 +11,17 @@ from itertools import chain
 
 import numpy as np
 
-from clearance.errors import BadPolygon, BadShape, EmptyMesh, NotFinite
+from clearance.errors import BadDimension, BadPolygon, BadShape, EmptyMesh, NotFinite
 from clearance.geometry.edges import rings_of
 from clearance.geometry.planes import Planes, planes_of
-from clearance.tolerance import FLATNESS, UNIT_ROUNDOFF
+from clearance.tolerance import FLATNESS, LARGEST, UNIT_ROUNDOFF
 
 
 def checked_vertices(given: np.ndarray) -> np.ndarray:
     """The (n, 3) vertices [m] as a C-ordered float64 copy.
 
     Raises:
-        BadShape, NotFinite: not (n, 3) finite numbers.
+        BadShape, NotFinite: not (n, 3) finite numbers. BadDimension: one that no arithmetic can square.
     """
     try:
         vertices = np.array(given, dtype=np.float64, order="C")
@@ -33,6 +33,9 @@ def checked_vertices(given: np.ndarray) -> np.ndarray:
     if not finite.all():
         i_bad = int(np.argmin(finite))
         raise NotFinite(f"vertex {i_bad} is {vertices[i_bad].tolist()}", valid="finite coordinates")
+    if len(vertices) and np.abs(vertices).max() > LARGEST:
+        reach = float(np.abs(vertices).max())
+        raise BadDimension(f"a vertex reaches {reach:g} m", valid=f"{LARGEST:g} m or less")
     return vertices
 
 

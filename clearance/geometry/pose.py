@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadPose, BadShape, NotFinite
-from clearance.tolerance import ROTATION
+from clearance.tolerance import LARGEST, ROTATION
 
 
 def pose_from_quaternion(xyz: Sequence[float], quat_xyzw: Sequence[float]) -> np.ndarray:
@@ -92,6 +92,9 @@ def validated_pose(pose: np.ndarray) -> np.ndarray:
         raise BadShape(f"the pose has shape {matrix.shape}", valid="(4, 4) is needed")
     if not np.isfinite(matrix).all():
         raise NotFinite("the pose holds NaN or infinity", valid="finite numbers")
+    if np.abs(matrix[:3, 3]).max() > LARGEST:
+        reach = float(np.abs(matrix[:3, 3]).max())
+        raise BadPose(f"the pose's origin is {reach:g} m away", valid=f"{LARGEST:g} m or less")
     if not np.array_equal(matrix[3], (0.0, 0.0, 0.0, 1.0)):
         raise BadPose(f"the pose's last row is {matrix[3].tolist()}", valid="0 0 0 1 is needed")
     rotation = matrix[:3, :3]

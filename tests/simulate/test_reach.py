@@ -1,0 +1,47 @@
+"""Bodies that no robot can come near are refused before any arithmetic overflows."""
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadDimension, BadPose
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+
+
+def case(obstacle_at=1.0, size=0.1, slide=0.0):
+    joint = Joint("slide", JointKind.PRISMATIC, "base", "tool", np.eye(4))
+    robot = Robot("robot", ("base", "tool"), (joint,), (Body("tool", cl.box((0.1, 0.1, 0.1))),))
+    asked = Trajectory(np.array([0.0, 1.0]), ("slide",), np.array([[0.0], [slide]]))
+    pose = np.eye(4)
+    pose[0, 3] = obstacle_at
+    obstacle = Obstacle(Body("post", cl.box((size, size, size))), pose)
+    return Case("far", (PlacedRobot(robot, asked),), (obstacle,))
+
+
+def test_a_usual_case_is_measured():
+    assert cl.check(case()).worst["clearance"] == pytest.approx(0.9)
+
+
+@pytest.mark.parametrize(
+    ("far", "named"),
+    [
+        (case(obstacle_at=1e90), "obstacle 'post'"),
+        (case(size=1e90), "obstacle 'post'"),
+        (case(slide=-1e200), "link 'tool'"),
+    ],
+)
+def test_a_body_beyond_reach_is_named(far, named):
+    with pytest.raises(BadDimension, match=named):
+        cl.check(far)
+
+
+def test_coordinates_that_cannot_be_squared_are_refused_everywhere():
+    with pytest.raises(BadDimension, match="1e\\+200"):
+        cl.Polyhedron(1e200 * np.eye(3), [[0, 1, 2]])
+    pose = np.eye(4)
+    pose[0, 3] = 1e300
+    with pytest.raises(BadPose, match="1e\\+300"):
+        cl.distance(cl.box((1, 1, 1)), cl.box((1, 1, 1)), pose_b=pose)
