@@ -120,6 +120,18 @@ def test_it_agrees_with_scipy_and_satisfies_every_half_space(m, n):
     assert found.volume == pytest.approx(peer.volume, rel=1e-12)
 
 
+def test_no_plane_is_missed_where_rounding_makes_a_false_top():
+    rng = np.random.default_rng(1)
+    rng.normal(size=(100, 3))
+    v = rng.normal(size=(2, 1000, 3))
+    pair = v / np.linalg.norm(v, axis=2)[:, :, None]
+    centre = np.array([0.5, 0.3, 0.1])
+    bodies = [Polytope(pair[0]), Polytope(pair[1] + centre)]
+    rows = np.vstack([body.half_spaces for body in bodies])
+    corners = intersect(bodies).vertices
+    assert (corners @ rows[:, :3].T + rows[:, 3]).max() < 1e-14
+
+
 def test_it_agrees_with_manifold():
     manifold3d = pytest.importorskip("manifold3d")
     a, b = cluster(2, 100)
