@@ -1,0 +1,199 @@
+"""A convex body by its corners, merged faces and half-spaces: what intersections are made of.
+
+A `Polytope` that exists is solid: at least four corners, closed outward faces, a volume above 0. Graphs that
+the kernels walk on are made when first asked for and then kept. Not for: concave bodies (`Polyhedron`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Self
+
+import numpy as np
+
+from clearance.errors import BadPolygon
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polytope_graph import (
+    Trivalent,
+    scattered_order,
+    trivalent_form,
+    twins,
+    vertex_graph,
+)
+from clearance.geometry.polytope_hull import (
+    NotSolid,
+    checked_rows,
+    corners_of_half_spaces,
+    hull_faces,
+)
+from clearance.kernels.polytope_clip import ring_moments
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class Polytope:
+    """The convex hull of points.
+
+    Args:
+        points: (n, 3) [m], four or more, not in one plane; inner points are left out.
+
+    Raises:
+        EmptyMesh, BadShape, NotFinite: the points are none, not (n, 3), not finite.
+        NotSolid: they lie in one plane.
+
+    Exactness: the corners are the given numbers; faces that Qhull finds coplanar to rounding are merged.
+    """
+
+    vertices: np.ndarray
+    face_starts: np.ndarray
+    face_vertices: np.ndarray
+
+    def __init__(self, points: np.ndarray) -> None:
+        vertices, starts, flat = hull_faces(checked_rows(points, 3, "points"))
+        for name, value in (
+            ("vertices", vertices),
+            ("face_starts", starts),
+            ("face_vertices", flat),
+        ):
+            array = np.ascontiguousarray(value)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+        if not self.volume > 0.0:
+            raise NotSolid(f"the points hold a volume of {self.volume}", valid="a solid body")
+
+    @classmethod
+    def from_half_spaces(cls, rows: np.ndarray) -> Self:
+        """The points x with rows[:, :3] x + rows[:, 3] <= 0; rows (n, 4).
+
+        Raises:
+            Unbounded: a direction is left open. NotSolid: nothing strictly inside. Else as the constructor.
+        """
+        return cls(corners_of_half_spaces(checked_rows(rows, 4, "half-spaces")))
+
+    @classmethod
+    def from_polyhedron(cls, body: Polyhedron) -> Self:
+        """The convex body that a closed convex surface bounds.
+
+        Raises:
+            BadPolygon: the surface is not closed or not convex.
+        """
+        if body.volume is None:
+            raise BadPolygon(
+                "the surface is not closed and oriented", valid="a closed convex surface"
+            )
+        made = cls(body.vertices[np.unique(body.face_vertices)])
+        if abs(abs(body.volume) - made.volume) > 1e-9 * made.volume:
+            raise BadPolygon(
+                f"the surface holds {abs(body.volume)} m^3, its hull {made.volume}",
+                valid="a convex one",
+            )
+        return made
+
+    @property
+    def n_faces(self) -> int:
+        """Number of merged faces."""
+        return len(self.face_starts) - 1
+
+    def face(self, i_face: int) -> np.ndarray:
+        """The (k, 3) corners [m] of one face, counter-clockwise from outside."""
+        return self.vertices[
+            self.face_vertices[self.face_starts[i_face] : self.face_starts[i_face + 1]]
+        ]
+
+    def polyhedron(self) -> Polyhedron:
+        """The same surface as a `Polyhedron`."""
+        triangles = [
+            (ring[0], ring[i], ring[i + 1])
+            for ring in np.split(self.face_vertices, self.face_starts[1:-1])
+            for i in range(1, len(ring) - 1)
+        ]
+        return Polyhedron.from_triangles(self.vertices, np.array(triangles))
+
+    @cached_property
+    def size(self) -> float:
+        """[m] the diagonal of the box around it."""
+        return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """(f, 3) outward unit normals: Newell's sums about a corner of each face."""
+        firsts = self.face_starts[:-1]
+        counts = np.diff(self.face_starts)
+        off = self.vertices[self.face_vertices] - np.repeat(
+            self.vertices[self.face_vertices[firsts]], counts, axis=0
+        )
+        ahead = np.arange(1, len(off) + 1)
+        ahead[self.face_starts[1:] - 1] = firsts
+        sums = np.add.reduceat(np.cross(off, off[ahead]), firsts, axis=0)
+        return np.ascontiguousarray(sums / np.linalg.norm(sums, axis=1)[:, None])
+
+    @cached_property
+    def anchors(self) -> np.ndarray:
+        """(f, 3) [m] of each face the corner that stands farthest out along its normal."""
+        entries = np.repeat(np.arange(self.n_faces), np.diff(self.face_starts))
+        corners = self.vertices[self.face_vertices]
+        out = np.einsum("ij,ij->i", corners - self._middle, self.normals[entries])
+        order = np.lexsort((-out, entries))
+        return corners[order[self.face_starts[:-1]]]
+
+    def offsets_about(self, origin: np.ndarray) -> np.ndarray:
+        """(f,) [m] d in n.(x - origin) <= d for each face."""
+        return np.einsum("ij,ij->i", self.normals, self.anchors - origin)
+
+    @cached_property
+    def half_spaces(self) -> np.ndarray:
+        """(f, 4) rows (n, -d): the body is where rows[:, :3] x + rows[:, 3] <= 0."""
+        return np.column_stack([self.normals, -self.offsets_about(np.zeros(3))])
+
+    @cached_property
+    def _middle(self) -> np.ndarray:
+        return self.vertices.mean(axis=0)
+
+    @cached_property
+    def _moments(self) -> np.ndarray:
+        return ring_moments(self.vertices, self.face_starts, self.face_vertices, self._middle)
+
+    @property
+    def volume(self) -> float:
+        """[m^3]."""
+        return float(self._moments[0])
+
+    @cached_property
+    def centroid(self) -> np.ndarray:
+        """(3,) [m]."""
+        return self._middle + self._moments[1:] / self._moments[0]
+
+    @cached_property
+    def face_widths(self) -> np.ndarray:
+        """(f,) [m] the distance of each face's plane from the centroid."""
+        return self.offsets_about(self.centroid)
+
+    @cached_property
+    def _twin(self) -> np.ndarray:
+        return twins(self.face_starts, self.face_vertices, len(self.vertices))
+
+    @cached_property
+    def vertex_graph(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n + 1,) starts and (e,) neighbours of the vertices."""
+        return vertex_graph(self.face_starts, self.face_vertices, len(self.vertices))
+
+    @cached_property
+    def face_graph(self) -> tuple[np.ndarray, np.ndarray]:
+        """(f + 1,) starts and (e,) neighbours of the faces, over their edges in order."""
+        entry_face = np.repeat(np.arange(self.n_faces), np.diff(self.face_starts))
+        return self.face_starts, entry_face[self._twin]
+
+    @cached_property
+    def trivalent(self) -> Trivalent:
+        """The body with each corner split into vertices of three faces."""
+        return trivalent_form(self.face_starts, self.face_vertices, self._twin, len(self.vertices))
+
+    @cached_property
+    def cutting_order(self) -> np.ndarray:
+        """(f,) the order in which its faces best cut another body."""
+        return scattered_order(*self.face_graph)
+
+    def prepared(self) -> Self:
+        """Itself, with all that intersections need made ahead."""
+        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.cutting_order)
+        return self

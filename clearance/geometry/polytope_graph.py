@@ -1,0 +1,89 @@
+"""The graphs of a polytope's surface: twins, vertex neighbours, face neighbours and the trivalent form.
+
+Made once a polytope, with whole arrays; the kernels walk on them. Not for: deciding which points are
+vertices (`polytope_hull`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.geometry.edges import rings_of
+
+
+class Trivalent(NamedTuple):
+    """A polytope in which each vertex lies on three planes; see `kernels.polytope_clip`."""
+
+    corner: np.ndarray
+    planes: np.ndarray
+    across: np.ndarray
+
+
+def twins(face_starts: np.ndarray, face_vertices: np.ndarray, n_vertices: int) -> np.ndarray | None:
+    """(e,) for each directed edge the entry of its reverse; None if some edge has not exactly one."""
+    tail, head = face_vertices, face_vertices[rings_of(face_starts).ahead]
+    keys, reverse = tail * n_vertices + head, head * n_vertices + tail
+    order = np.argsort(keys, kind="stable")
+    found = order[np.minimum(np.searchsorted(keys[order], reverse), len(keys) - 1)]
+    whole = (keys[found] == reverse).all() and len(np.unique(keys)) == len(keys)
+    return found if whole else None
+
+
+def vertex_graph(
+    face_starts: np.ndarray, face_vertices: np.ndarray, n_vertices: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """(n + 1,) starts and (e,) neighbours of each vertex over the edges."""
+    order = np.argsort(face_vertices, kind="stable")
+    starts = np.searchsorted(face_vertices[order], np.arange(n_vertices + 1))
+    return starts, face_vertices[rings_of(face_starts).ahead][order]
+
+
+def trivalent_form(
+    face_starts: np.ndarray, face_vertices: np.ndarray, twin: np.ndarray, n_vertices: int
+) -> Trivalent:
+    """Each vertex of d faces as d - 2 vertices of three faces, a fan of its dual polygon."""
+    ring = rings_of(face_starts)
+    before = np.empty_like(ring.ahead)
+    before[ring.ahead] = np.arange(len(before))
+    turn = twin[before]
+    first = np.full(n_vertices, -1)
+    first[face_vertices[::-1]] = np.arange(len(face_vertices))[::-1]
+    i, j = turn[first], turn[turn[first]]
+    vertex, corners, fans = np.arange(n_vertices), [], []
+    while len(vertex):
+        corners.append(vertex)
+        fans.append(np.stack([ring.face[first[vertex]], ring.face[i], ring.face[j]], axis=1))
+        i, j = j, turn[j]
+        more = j != first[vertex]
+        vertex, i, j = vertex[more], i[more], j[more]
+    planes = np.concatenate(fans)
+    return Trivalent(np.concatenate(corners), planes, _across(planes, len(face_starts) - 1))
+
+
+def _across(planes: np.ndarray, n_faces: int) -> np.ndarray:
+    """(t, 3) the other vertex that shares the two planes besides plane k."""
+    a, b = np.roll(planes, -1, axis=1).ravel(), np.roll(planes, -2, axis=1).ravel()
+    order = np.argsort(np.minimum(a, b) * n_faces + np.maximum(a, b), kind="stable").reshape(-1, 2)
+    across = np.empty(planes.size, dtype=np.int64)
+    across[order[:, 0]] = order[:, 1] // 3
+    across[order[:, 1]] = order[:, 0] // 3
+    return across.reshape(-1, 3)
+
+
+def scattered_order(starts: np.ndarray, neighbours: np.ndarray, n_rounds: int = 8) -> np.ndarray:
+    """(f,) the faces in rounds of doubling size, each a walk over the surface.
+
+    Random rounds keep the cuts small, walks keep the climbs short (Amenta, Choi, Rote 2003, "biased
+    randomized insertion order"); the seed is fixed.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import depth_first_order
+
+    n = len(starts) - 1
+    graph = csr_array((np.ones(len(neighbours), np.int8), neighbours, starts), shape=(n, n))
+    walk = depth_first_order(graph, 0, directed=False, return_predecessors=False)
+    draw = np.random.default_rng(20130201).random(n)
+    rounds = np.clip(np.ceil(np.log2(np.maximum(draw, 1e-12))) + n_rounds, 0, n_rounds)
+    return walk[np.argsort(rounds[walk], kind="stable")].astype(np.int64)

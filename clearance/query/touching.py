@@ -1,0 +1,64 @@
+"""The polygon, segment or point in which bodies touch that share no inner point.
+
+All of it lies in one face's plane (a face with a positive weight in the certificate); there the half-spaces
+of all bodies cut a large square down to it. Not for: bodies with a region in common.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.geometry.polytope import Polytope
+from clearance.query.common_point import ROUNDING, CommonPoint
+
+
+def touching_set(bodies: list[Polytope], met: CommonPoint) -> np.ndarray:
+    """(k, 3) [m] corners in order: three or more of a polygon, two of a segment, one point."""
+    proof = met.certificate
+    heaviest = int(proof.weights.argmax())
+    normal = bodies[proof.parts[heaviest]].normals[proof.faces[heaviest]]
+    aside = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    aside /= np.linalg.norm(aside)
+    axes = np.stack([aside, np.cross(normal, aside)])
+    size = min(body.size for body in bodies)
+    slack = ROUNDING * max(body.size for body in bodies)
+    ring = 2.0 * size * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+    for body in bodies:
+        flat, offsets = body.normals @ axes.T, body.offsets_about(met.point)
+        for i in np.flatnonzero(np.abs(flat).sum(axis=1) * 3.0 * size > offsets - slack):
+            ring = _cut(ring, flat[i], offsets[i], slack)
+    ring = _distinct(ring, 8.0 * slack)
+    return met.point + ring @ axes if len(ring) else met.point[None, :]
+
+
+def _cut(ring: np.ndarray, normal: np.ndarray, offset: float, slack: float) -> np.ndarray:
+    """The corners of the ring on or below the line, with those where it crosses."""
+    heights = ring @ normal - offset
+    if not len(ring) or heights.max() <= slack:
+        return ring
+    kept = []
+    for i, high in enumerate(heights):
+        j = (i + 1) % len(ring)
+        if high <= slack:
+            kept.append(ring[i])
+        if (high < -slack and heights[j] > slack) or (high > slack and heights[j] < -slack):
+            kept.append(ring[i] + (ring[j] - ring[i]) * (high / (high - heights[j])))
+    return np.array(kept).reshape(-1, 2)
+
+
+def _distinct(ring: np.ndarray, slack: float) -> np.ndarray:
+    """The corners without repeats; the two ends where they lie on a line; one where all agree."""
+    if not len(ring):
+        return ring
+    kept = [ring[0]]
+    for corner in ring[1:]:
+        if min(np.linalg.norm(corner - other) for other in kept) > slack:
+            kept.append(corner)
+    kept = np.array(kept)
+    if len(kept) < 2:
+        return kept
+    far = kept[np.linalg.norm(kept - kept[0], axis=1).argmax()]
+    end = kept[np.linalg.norm(kept - far, axis=1).argmax()]
+    along = (far - end) / np.linalg.norm(far - end)
+    off = (kept - end) @ np.array([-along[1], along[0]])
+    return kept if np.abs(off).max() > slack else np.stack([end, far])

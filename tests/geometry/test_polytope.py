@@ -1,0 +1,90 @@
+"""Polytopes from points, half-spaces and polyhedra; refusals in one line."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadPolygon, BadShape, ClearanceError, EmptyMesh, NotFinite
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polytope import Polytope
+from clearance.geometry.polytope_hull import NotSolid, Unbounded
+from tests.oracle.polytope_volumes import half_spaces, shared_volume
+
+CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
+WALLS = np.vstack(
+    [np.column_stack([np.eye(3), -np.ones(3)]), np.column_stack([-np.eye(3), np.zeros(3)])]
+)
+
+
+def test_a_cube_has_six_merged_faces():
+    cube = Polytope(np.vstack([CUBE, [[0.5, 0.5, 0.5], [0.5, 0.5, 1.0], [0.5, 1.0, 1.0]]]))
+    assert (cube.n_faces, len(cube.vertices), cube.volume) == (6, 8, 1.0)
+    assert np.array_equal(cube.centroid, [0.5, 0.5, 0.5])
+    assert {tuple(row) for row in cube.half_spaces + 0.0} == {tuple(row) for row in WALLS + 0.0}
+
+
+def test_half_spaces_and_polyhedra_give_the_same_cube():
+    again = Polytope.from_half_spaces(np.vstack([WALLS * 3.0, [[1.0, 1.0, 1.0, -9.0]]]))
+    assert np.abs(again.vertices - Polytope(CUBE).vertices).max() < 1e-14
+    assert Polytope.from_polyhedron(Polytope(CUBE).polyhedron()).volume == 1.0
+
+
+@pytest.mark.parametrize("n", [4, 5, 9, 14])
+def test_volume_and_face_count_are_those_of_the_oracle(n):
+    for seed in range(4):
+        points = np.random.default_rng([n, seed]).normal(size=(n, 3))
+        body = Polytope(points)
+        exact = shared_volume(points)
+        assert abs(body.volume / float(exact) - 1.0) < 1e-14
+        assert body.n_faces == len(half_spaces(points))
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1e-9), (1e-6, 1e-6, 1), (1e6, 1e6, 1e6), (1e6, 1, 1e-6)])
+def test_flat_needle_like_and_huge_boxes(scale):
+    body = Polytope(CUBE * scale)
+    assert body.n_faces == 6
+    assert abs(body.volume / np.prod(scale) - 1.0) < 1e-15
+
+
+def test_the_trivalent_form_is_a_closed_surface():
+    body = Polytope(np.random.default_rng(3).normal(size=(60, 3)))
+    form = body.trivalent
+    assert len(form.corner) == 2 * body.n_faces - 4
+    for v, row in enumerate(form.across):
+        for k, w in enumerate(row):
+            assert v in form.across[w]
+            shared = {form.planes[v, (k + 1) % 3], form.planes[v, (k + 2) % 3]}
+            assert shared <= set(form.planes[w])
+    assert np.array_equal(np.sort(body.cutting_order), np.arange(body.n_faces))
+
+
+@pytest.mark.parametrize(
+    ("make", "error"),
+    [
+        (lambda: Polytope(np.zeros((0, 3))), EmptyMesh),
+        (lambda: Polytope(np.zeros((4, 2))), BadShape),
+        (lambda: Polytope(np.vstack([CUBE, [[np.nan, 0, 0]]])), NotFinite),
+        (lambda: Polytope(CUBE * [1, 1, 0]), NotSolid),
+        (lambda: Polytope(CUBE @ np.diag([1, 1, 0]) + np.outer(CUBE[:, 0], [0, 0, 1])), NotSolid),
+        (lambda: Polytope.from_half_spaces(WALLS[:5]), Unbounded),
+        (lambda: Polytope.from_half_spaces(WALLS + [0, 0, 0, 0.6]), NotSolid),
+        (lambda: Polytope.from_half_spaces(np.zeros((4, 4))), ClearanceError),
+    ],
+)
+def test_refusals_are_one_line(make, error):
+    with pytest.raises(error) as caught:
+        make()
+    assert "\n" not in str(caught.value) and len(str(caught.value)) > 10
+
+
+def test_a_concave_or_open_polyhedron_is_refused():
+    cube = Polytope(CUBE).polyhedron()
+    faces = [cube.face_vertices[a:b] for a, b in itertools.pairwise(cube.face_starts)]
+    with pytest.raises(BadPolygon):
+        Polytope.from_polyhedron(Polyhedron(cube.vertices, faces[:5]))
+    two = Polyhedron.merged([cube, Polytope(CUBE + 3.0).polyhedron()])
+    with pytest.raises(BadPolygon):
+        Polytope.from_polyhedron(two)

@@ -1,0 +1,103 @@
+"""The deepest common point, the paper's GJK, certificates and hill climbing."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadShape, EmptyMesh
+from clearance.geometry.polytope import Polytope
+from clearance.kernels.polytope_gjk import LIMIT, gjk, support
+from clearance.query.common_point import common_point, common_point_paper
+
+CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
+
+
+def ball(n: int, seed: int, centre=(0.0, 0.0, 0.0)) -> Polytope:
+    v = np.random.default_rng([n, seed]).normal(size=(n, 3))
+    return Polytope(v / np.linalg.norm(v, axis=1)[:, None] + centre)
+
+
+def certificate_holds(bodies, proof) -> bool:
+    """Weights times normals vanish, and weights times offsets do not exceed 0: nothing inside all."""
+    rows = [bodies[k].half_spaces[f] for k, f in zip(proof.parts, proof.faces, strict=True)]
+    total = proof.weights @ np.array(rows)
+    return len(rows) <= 4 and np.abs(total[:3]).max() < 1e-12 and total[3] > -1e-12
+
+
+@pytest.mark.parametrize("n", [4, 30, 800])
+def test_hill_climbing_finds_what_looking_at_all_finds(n):
+    body = ball(n, 1)
+    for direction in np.random.default_rng(2).normal(size=(50, 3)):
+        best = (body.vertices @ direction).max()
+        for start in (0, n // 2):
+            found = support(body.vertices, *body.vertex_graph, start, direction)
+            assert body.vertices[found] @ direction == pytest.approx(best, abs=1e-15)
+
+
+@pytest.mark.parametrize("m", [2, 3, 8, 64])
+def test_the_deepest_point_is_strictly_inside_all(m):
+    for seed in range(6):
+        rng = np.random.default_rng([m, seed])
+        bodies = [ball(20, 100 * seed + i, rng.normal(size=3) * 0.2) for i in range(m)]
+        met = common_point(bodies)
+        if met.relation == "overlap":
+            levels = [(b.offsets_about(met.point) / b.face_widths).min() for b in bodies]
+            assert min(levels) == pytest.approx(met.depth, rel=1e-9)
+        else:
+            assert certificate_holds(bodies, met.certificate)
+
+
+def test_apart_bodies_have_a_certificate_and_two_a_separating_plane():
+    for seed in range(30):
+        rng = np.random.default_rng(seed)
+        centre = rng.normal(size=3)
+        a, b = (
+            ball(25, seed),
+            ball(25, seed + 50, centre / np.linalg.norm(centre) * rng.uniform(1.2, 2.5)),
+        )
+        met, paper = common_point([a, b]), common_point_paper(a, b)
+        assert met.relation == paper.relation
+        if met.relation == "apart":
+            assert certificate_holds([a, b], met.certificate)
+            for normal in (met.certificate.normal, paper.certificate.normal):
+                assert (a.vertices @ normal).max() < (b.vertices @ normal).min()
+        else:
+            for point in (met.point, paper.point):
+                assert min(a.offsets_about(point).min(), b.offsets_about(point).min()) > 0.0
+
+
+def test_three_bodies_that_meet_in_pairs_only():
+    bars = [Polytope((CUBE - 0.5) * s + c) for s, c in (
+        ((4, 1, 1), (0, 0, 0)), ((1, 4, 1), (0, 0, 0.9)), ((1, 1, 4), (0.9, 0.0, 0)))]  # fmt: skip
+    assert common_point(bars).relation == "overlap"
+    bars[2] = Polytope((CUBE - 0.5) * (1, 1, 4) + (1.2, 0.0, 0.0))
+    met = common_point(bars)
+    assert met.relation == "apart" and certificate_holds(bars, met.certificate)
+
+
+@pytest.mark.parametrize("shift", [(1, 0, 0), (1, 1, 0), (1, 1, 1), (1, 0.5, 0.25)])
+def test_touching_is_neither_overlap_nor_apart(shift):
+    a, b = Polytope(CUBE), Polytope(CUBE + shift)
+    assert common_point([a, b]).relation == "touch"
+    assert common_point_paper(a, b).relation == "touch"
+
+
+def test_gjk_never_runs_on():
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        flat = Polytope(CUBE * 10.0 ** rng.integers(-6, 1, 3))
+        other = Polytope(CUBE * 10.0 ** rng.integers(-6, 1, 3) + rng.integers(-1, 2, 3))
+        for start in (0, 7):
+            _, n, *_ = gjk(flat.vertices, *flat.vertex_graph, other.vertices, *other.vertex_graph,
+                           start, start, 0.0)  # fmt: skip
+            assert n < LIMIT // 4
+
+
+def test_refusals():
+    with pytest.raises(EmptyMesh):
+        common_point([])
+    with pytest.raises(BadShape, match="item 1 is a ndarray"):
+        common_point([Polytope(CUBE), CUBE])
