@@ -32,11 +32,10 @@ class Foot(NamedTuple):
 
 @inlined
 def rising_slope(points, n, rational, work):
-    """Least derivative, by Bernstein coefficients, of half the squared distance's slope; and its end values.
+    """Half the squared distance's slope, by Bernstein coefficients, as to the parameter of `points`.
 
     `points` are homogeneous about the query point. For rational pieces the slope is taken times w^3, which
-    has the same sign and root. Returns (slope at 0, slope at 1, least increase), as for the parameter of
-    `points`.
+    has the same sign and root. Returns (slope at 0, slope at 1, least slope, greatest slope, least rise).
     """
     q, d, g = work[0], work[1], work[2]
     for k in range(n + 1):
@@ -53,11 +52,14 @@ def rising_slope(points, n, rational, work):
         g[k, 0] = value
     if rational:
         m = _rational_slope(q, d, g, n)
-    least = np.inf
-    for k in range(m):
-        rise = g[k + 1, 0] / CHOOSE[m, k + 1] - g[k, 0] / CHOOSE[m, k]
-        least = min(least, rise)
-    return g[0, 0], g[m, 0], m * least
+    rise, least, most = np.inf, g[0, 0], g[0, 0]
+    before = g[0, 0]
+    for k in range(1, m + 1):
+        value = g[k, 0] / CHOOSE[m, k]
+        rise = min(rise, value - before)
+        least, most = min(least, value), max(most, value)
+        before = value
+    return g[0, 0], g[m, 0], least, most, m * rise
 
 
 @inlined
@@ -145,10 +147,18 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
             points[k, 0] -= x * points[k, 2]
             points[k, 1] -= y * points[k, 2]
         least, reach = least_square(points, n, rational)
-        slack = 32.0 * (n + 1) * ROUNDOFF * reach
+        slack = (n + 8.0) * ROUNDOFF * reach  # of 2 n + 1 sums of products, each term below `reach`
         if least - slack > found * found:
             continue
-        at_a, at_b, rise = rising_slope(points, n, rational, work[2:5])
+        at_a, at_b, falling, climbing, rise = rising_slope(points, n, rational, work[2:5])
+        if falling >= 0.0 or climbing <= 0.0:
+            t = a if falling >= 0.0 else b
+            here = jet(pieces, i, t)
+            distance = hypotenuse(here.x - x, here.y - y)
+            lower = min(lower, distance)
+            if distance < found:
+                found, where = distance, t
+            continue
         if rise > 0.0:
             t = a if at_a >= 0.0 else b
             if at_a < 0.0 < at_b:

@@ -140,7 +140,7 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         s1, _ = slide_from(pa, pb, i, t1, j, foot.local, shift_x, shift_y)
         bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
         state[CUTS] += 1.0
-        if bound <= state[LOWER] + gap:
+        if bound <= state[DISTANCE] + gap:
             state[UPPER] = max(state[UPPER], bound)
             continue
         t, s = t0, s0
@@ -155,8 +155,8 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         else:
             state[ENDS] += 1.0
         seen = consider(pa, pb, lb, i, t, shift_x, shift_y, foot.leaf, state, work)
-        if bound <= state[LOWER] + gap or state[CUTS] > budget or top + 2 > STACK or t1 - t0 < 4e-16:
-            state[GIVEN_UP] += bound > state[LOWER] + gap
+        if bound <= state[DISTANCE] + gap or state[CUTS] > budget or top + 2 > STACK or t1 - t0 < 4e-16:
+            state[GIVEN_UP] += bound > state[DISTANCE] + gap
             state[UPPER] = max(state[UPPER], bound)
             continue
         chosen = middle

@@ -105,13 +105,13 @@ class Curve:
         """
         degree = _checked_degree(degree)
         control = checked_points(control, "control", least=degree + 1)
-        weighted = _homogeneous(control, checked_weights(weights, len(control)))
+        weights = checked_weights(weights, len(control))
         knots = checked_knots(knots, len(control), degree)
-        shift = weighted[:, :2].mean(axis=0) / weighted[:, 2].mean()
-        weighted[:, :2] -= weighted[:, 2:] * shift  # de Boor's scheme near the origin rounds least
+        base = _origin_of(control)
+        weighted = np.column_stack([(control - base) * weights[:, None], weights])
         rows, limits = pieces_of_spline(weighted, knots, degree)
-        rows[:, :2] = rows[:, :2] / rows[:, 2:] + shift
-        return _assembled(rows, np.arange(len(limits) + 1) * (degree + 1), limits)
+        rows[:, :2] /= rows[:, 2:]
+        return _assembled(rows, np.arange(len(limits) + 1) * (degree + 1), limits, base=base)
 
     @classmethod
     def bezier(cls, control: np.ndarray, weights: np.ndarray | None = None) -> Curve:
@@ -140,10 +140,11 @@ class Curve:
             turn[-1] = turn[0]
         rows = np.empty((3 * n, 3))
         for k in range(3):
-            rows[k::3, :2] = center + radius * turn[k : 2 * n - 1 + k : 2]
+            rows[k::3, :2] = radius * turn[k : 2 * n - 1 + k : 2]
             rows[k::3, 2] = math.cos(half) if k == 1 else 1.0
         low = np.arange(n) / n
-        return _assembled(rows, np.arange(n + 1) * 3, np.stack([low, low + 1.0 / n], axis=1))
+        limits = np.stack([low, low + 1.0 / n], axis=1)
+        return _assembled(rows, np.arange(n + 1) * 3, limits, base=center)
 
     @classmethod
     def circle(cls, center: Sequence[float], radius: float) -> Curve:
@@ -284,8 +285,9 @@ class Curve:
         matrix = checked_transform(matrix)
         rows = self.pieces.control.copy()
         rows[:, :2] = rows[:, :2] / rows[:, 2:]
-        rows[:, :2] = rows[:, :2] @ matrix[:, :2].T + (matrix[:, :2] @ self.origin + matrix[:, 2])
-        return _assembled(rows, self.pieces.first, self.limits, self.contour)
+        rows[:, :2] = rows[:, :2] @ matrix[:, :2].T
+        base = matrix[:, :2] @ self.origin + matrix[:, 2]
+        return _assembled(rows, self.pieces.first, self.limits, self.contour, base)
 
     def _jets(self, which: np.ndarray, local: np.ndarray) -> np.ndarray:
         out = np.empty((len(which), 6))
@@ -299,12 +301,19 @@ def _checked_degree(degree: int) -> int:
     return int(degree)
 
 
-def _homogeneous(control: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    return np.column_stack([control * weights[:, None], weights])
+def _origin_of(points: np.ndarray) -> np.ndarray:
+    """About the middle of `points`, with so few digits that taking it off a coordinate is exact.
+
+    A coordinate far larger than the extent is a multiple of its own last bit, and so is the difference;
+    any other difference is rounded relative to the extent.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    unit = 2.0 ** (math.frexp(float((high - low).max()) or 1.0)[1] - 5)
+    return np.round((0.5 * low + 0.5 * high) / unit) * unit
 
 
-def _assembled(rows, first, limits, contour=None) -> Curve:
-    """The curve of Cartesian control points with weights `rows` (m, 3), without its pieces of no extent."""
+def _assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> Curve:
+    """The curve of Cartesian control points about `base` with weights, `rows` (m, 3); pieces of no extent go."""
     first = np.ascontiguousarray(first, np.int64)
     contour = np.zeros(len(limits), np.int64) if contour is None else np.asarray(contour, np.int64)
     low = np.minimum.reduceat(rows, first[:-1], axis=0)
@@ -321,13 +330,14 @@ def _assembled(rows, first, limits, contour=None) -> Curve:
         low, high, degree = low[extent], high[extent], degree[extent]
         first = np.concatenate([[0], np.cumsum(degree)])
     rational = high[:, 2] > low[:, 2]
-    unit = 2.0 ** (math.frexp(size)[1] - 5)
-    origin = np.round(0.5 * (low.min(axis=0) + high.max(axis=0))[:2] / unit) * unit
+    origin = _origin_of(np.stack([low.min(axis=0)[:2], high.max(axis=0)[:2]]))
+    if np.any(base) and np.abs(origin).max() <= 2.0 * size:
+        origin[:] = 0.0  # near enough, and `base` stays as exact as it was given
     weight = np.where(np.repeat(rational, degree), rows[:, 2], 1.0)
     control = np.empty((len(rows), 3))
     control[:, :2], control[:, 2] = (rows[:, :2] - origin) * weight[:, None], weight
     pieces = Pieces(control, first, np.ascontiguousarray(rational))
-    return Curve(pieces, origin, np.ascontiguousarray(limits), contour)
+    return Curve(pieces, origin + base, np.ascontiguousarray(limits), contour)
 
 
 def _joined(parts: Sequence[Curve], *, together: bool) -> Curve:
@@ -337,7 +347,7 @@ def _joined(parts: Sequence[Curve], *, together: bool) -> Curve:
     rows, limits, contour, at, n_contours = [], [], [], 0.0, 0
     for k, part in enumerate(parts):
         cartesian = part.pieces.control.copy()
-        cartesian[:, :2] = cartesian[:, :2] / cartesian[:, 2:] + part.origin
+        cartesian[:, :2] = cartesian[:, :2] / cartesian[:, 2:] + (part.origin - parts[0].origin)
         if together and k and not _meets(rows[-1][-1], cartesian[0], part.size):
             gap = float(np.hypot(*(rows[-1][-1] - cartesian[0])[:2]))
             raise BadCurve(
@@ -352,7 +362,8 @@ def _joined(parts: Sequence[Curve], *, together: bool) -> Curve:
         n_contours += int(part.contour[-1]) + 1
     sizes = np.concatenate([np.diff(part.pieces.first) for part in parts])
     first = np.concatenate([[0], np.cumsum(sizes)])
-    return _assembled(np.concatenate(rows), first, np.concatenate(limits), np.concatenate(contour))
+    contour = np.concatenate(contour)
+    return _assembled(np.concatenate(rows), first, np.concatenate(limits), contour, parts[0].origin)
 
 
 def _meets(end: np.ndarray, start: np.ndarray, size: float) -> bool:
