@@ -194,3 +194,44 @@ def control_box(control):
 def hypotenuse(x, y):
     """The length of (x, y), without the cost of guarding against overflow: sizes are checked before."""
     return math.sqrt(x * x + y * y)
+
+
+@kernel
+def piece_spans(rows, first):
+    """Least and greatest of each column of `rows` within each piece: two arrays (n, 3)."""
+    n = first.shape[0] - 1
+    low, high = np.empty((n, 3)), np.empty((n, 3))
+    for i in range(n):
+        for c in range(3):
+            low[i, c] = high[i, c] = rows[first[i], c]
+            for k in range(first[i] + 1, first[i + 1]):
+                low[i, c], high[i, c] = min(low[i, c], rows[k, c]), max(high[i, c], rows[k, c])
+    return low, high
+
+
+@kernel
+def rough_joints(pieces, contour, tangent, apart):
+    """(n, 2) flags of the pieces' starts and ends that are ends of contours or corners.
+
+    A joint is smooth where the points are within `apart` and the sine between the tangents within `tangent`.
+    The last piece of a contour joins its first.
+    """
+    n = contour.shape[0]
+    flags = np.ones((n, 2), np.bool_)
+    head = 0
+    for i in range(n):
+        if i > 0 and contour[i] != contour[i - 1]:
+            head = i
+        before = i - 1
+        if i == head:
+            before = i
+            while before + 1 < n and contour[before + 1] == contour[i]:
+                before += 1
+        a, b = jet(pieces, before, 1.0), jet(pieces, i, 0.0)
+        speeds = hypotenuse(a.dx, a.dy) * hypotenuse(b.dx, b.dy)
+        meets = hypotenuse(a.x - b.x, a.y - b.y) <= apart
+        smooth = abs(a.dx * b.dy - a.dy * b.dx) <= tangent * speeds
+        if meets and smooth and a.dx * b.dx + a.dy * b.dy > 0.0:
+            flags[i, 0] = False
+            flags[before, 1] = False
+    return flags

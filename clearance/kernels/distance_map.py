@@ -33,14 +33,17 @@ class DistanceMap(NamedTuple):
 
 
 @kernel
-def nearest_arc(leaves, x, y, hint, stack):
-    """The distance from (x, y) to the nearest arc, and its index: the lowest cone at one pixel."""
+def nearest_arc(leaves, x, y, hint, enough, stack):
+    """The distance from (x, y) to the nearest arc, and its index: the lowest cone at one pixel.
+
+    Any arc no farther than `enough` ends the search.
+    """
     arcs, boxes = leaves.arcs, leaves.boxes
     n_arcs, size = arcs.shape[0], boxes.shape[0] // 2
     best, which = arc_distance(arcs[hint], x, y), hint
     stack[0, 0], stack[0, 1] = 1.0, 0.0
     top = 1
-    while top > 0:
+    while top > 0 and best > enough:
         top -= 1
         node = int(stack[top, 0])
         if stack[top, 1] >= best * best:
@@ -91,7 +94,7 @@ def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
             if across != column or up != line:
                 column, line = across, up
                 depth[used], hint = nearest_arc(
-                    other, (across + 0.5) * pixel, (up + 0.5) * pixel, hint, stack
+                    other, (across + 0.5) * pixel, (up + 0.5) * pixel, hint, -1.0, stack
                 )
                 arc[used] = hint
                 if used == 0 or depth[used] > depth[deepest]:

@@ -26,9 +26,10 @@ from clearance.kernels.hausdorff_exact import (
     UPPER,
     search_leaf,
 )
-from clearance.kernels.hausdorff_trim import trim
+from clearance.kernels.hausdorff_trim import trim, trim_nodes
 
 PIXELS_AT_LEAST, PIXELS_AT_MOST = 32.0, 4096.0
+MANY = 512  # arcs from which on whole runs are tried first
 
 
 @inlined
@@ -69,13 +70,18 @@ def directed(pa, la, pb, lb, shift_x, shift_y, trimming, gap, limit, budget, sta
     state[KEPT] = n_arcs
     if trimming:
         bound = max(state[LOWER], state[MAP_BOUND])
+        if n_arcs >= MANY:
+            trim_nodes(la, lb, drawn, shift_x, shift_y, bound, kept, work[0])
         state[KEPT] = trim(la, lb, drawn, shift_x, shift_y, bound, kept)
+    hint = -1
     for k in range(n_arcs):
         if kept[k] and k != best and state[LOWER] <= limit:
-            hint = drawn.arc[drawn.first[k]]
-            search_leaf(
+            hint = drawn.arc[drawn.first[k]] if hint < 0 else hint
+            hint = search_leaf(
                 pa, la, pb, lb, k, hint, shift_x, shift_y, gap, limit, budget, state, work
             )
+        else:
+            hint = -1
     state[UPPER] = max(state[UPPER], state[LOWER])
 
 
@@ -95,7 +101,8 @@ def witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, out):
     a, b = jet(pa, i, state[AT_A]), jet(pb, j, state[AT_B])
     out[0], out[1], out[2], out[3] = a.x, a.y, b.x, b.y
     ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
-    steep = abs(ex * a.dx + ey * a.dy) > 1e-6 * hypotenuse(ex, ey) * hypotenuse(a.dx, a.dy)
+    apart = hypotenuse(ex, ey) > 1e-14 * (hypotenuse(a.x, a.y) + hypotenuse(b.x, b.y))
+    steep = apart and abs(ex * a.dx + ey * a.dy) > 1e-6 * hypotenuse(ex, ey) * hypotenuse(a.dx, a.dy)
     if _is_end(ends_a, i, state[AT_A]):
         out[4] = 0.0
     elif steep:
@@ -114,7 +121,7 @@ def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, trimming, 
     out = np.empty((2, STATE))
     points = np.empty((2, 5))
     rows = max(96, 4 * max(widest(pa), widest(pb)) + 4)
-    work = np.empty((10, rows, 3))
+    work = np.empty((11, rows, 4))
     directed(pa, la, pb, lb, shift_x, shift_y, trimming, gap, limit, budget, out[0], work)
     if out[0, LOWER] > limit:
         out[1, :] = math.nan

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.arc import S0, S1
+from clearance.kernels.arc import EPS, S0, S1, arc_distance
 from clearance.kernels.curve_bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_nearest import nearest, slide_to_foot
@@ -20,7 +20,7 @@ from clearance.kernels.curve_nearest import nearest, slide_to_foot
 LOWER, DISTANCE, PIECE_A, AT_A, PIECE_B, AT_B, UPPER = 0, 1, 2, 3, 4, 5, 6
 ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP, RUNNER_UP = range(7, 17)
 STATE = 17
-STACK = 400
+STACK = 90
 
 
 @inlined
@@ -119,22 +119,36 @@ def upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
     return math.sqrt(most), which / degree
 
 
+@inlined
+def _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
+    """Whether a straight part of A lies within `lower` of the arc that was nearest before: no search needed."""
+    here, there = jet(pa, i, t0), jet(pa, i, t1)
+    x, y = 0.5 * (here.x + there.x) + shift_x, 0.5 * (here.y + there.y) + shift_y
+    half = 0.5 * hypotenuse(there.x - here.x, there.y - here.y)
+    row = lb.arcs[hint]
+    return half < lower and (arc_distance(row, x, y) + row[EPS] + half) * (1.0 + 1e-14) <= lower
+
+
 @kernel
 def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, budget, state, work):
     """Raises the lower bound in `state` to the greatest distance of A on one interval to B, proven.
 
-    Stops early once the lower bound passes `limit`. `work` is (10, k, 3); `state` the STATE numbers.
+    Stops early once the lower bound passes `limit`; returns a leaf of B near the interval. `work` is (11, k, 4); `state` the STATE numbers.
     """
-    stack = np.empty((STACK, 5))
+    straight = pa.first[i + 1] - pa.first[i] == 2 and not pa.rational[i]
+    stack = work[10]
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = t_first, t_last, hint, 0.0
     top = 1
     while top > 0:
         top -= 1
         t0, t1, hint, was_cut = stack[top, 0], stack[top, 1], int(stack[top, 2]), stack[top, 3]
         middle = 0.5 * (t0 + t1)
+        if straight and _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, state[LOWER]):
+            state[CUTS] += 1.0
+            continue
         foot = consider(pa, pb, lb, i, middle, shift_x, shift_y, hint, state, work)
         if state[LOWER] > limit:
-            return
+            return hint
         j = foot.piece
         s0, _ = slide_from(pa, pb, i, t0, j, foot.local, shift_x, shift_y)
         s1, _ = slide_from(pa, pb, i, t1, j, foot.local, shift_x, shift_y)
@@ -179,13 +193,15 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         stack[top + 1, 0], stack[top + 1, 1] = t0, chosen
         stack[top + 1, 2], stack[top + 1, 3] = foot.leaf, special
         top += 2
+        hint = foot.leaf
+    return hint
 
 
 @kernel
 def search_leaf(pa, la, pb, lb, leaf, hint, shift_x, shift_y, gap, limit, budget, state, work):
     """`search` on the interval of one leaf of A."""
     row = la.arcs[leaf]
-    search(
+    return search(
         pa, pb, lb, la.piece[leaf], row[S0], row[S1], hint, shift_x, shift_y, gap, limit, budget, state,
         work,
     )

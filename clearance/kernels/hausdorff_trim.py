@@ -23,7 +23,9 @@ from clearance.kernels.arc import (
     arc_middle,
     segment_distance,
 )
+from clearance.kernels.arc_fit import BUCKET
 from clearance.kernels.curve_bezier import hypotenuse
+from clearance.kernels.distance_map import draw, nearest_arc
 
 
 @inlined
@@ -79,15 +81,64 @@ def arc_covers(points, row, reach):
     return True
 
 
+@inlined
+def _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack):
+    """Whether all curve in a node's box lies within `reach` of one arc of the other curve; and that arc.
+
+    The distance to an arc grows by at most what a point moves, so that the box's centre decides.
+    """
+    x0, y0, x1, y1 = boxes[node, 0], boxes[node, 1], boxes[node, 2], boxes[node, 3]
+    enough = reach - 0.5 * hypotenuse(x1 - x0, y1 - y0) * (1.0 + 1e-15)
+    if not enough > 0.0:
+        return False, hint
+    x, y = 0.5 * (x0 + x1) + shift_x, 0.5 * (y0 + y1) + shift_y
+    distance, hint = nearest_arc(other, x, y, hint, enough, stack)
+    return distance <= enough, hint
+
+
+@kernel
+def trim_nodes(leaves, other, drawn, shift_x, shift_y, lower_bound, kept, stack):
+    """Clears `kept` for whole nodes of the tree that lie within the lower bound of one arc of the other.
+
+    What trimming arc by arc does, for runs of arcs that are short beside the lower bound.
+    """
+    boxes = leaves.boxes
+    size, n_arcs = boxes.shape[0] // 2, leaves.arcs.shape[0]
+    epsilon = 0.0
+    for k in range(other.arcs.shape[0]):
+        epsilon = max(epsilon, other.arcs[k, EPS])
+    reach = lower_bound * (1.0 - 1e-14) - epsilon
+    nodes = np.empty(128, np.int64)
+    nodes[0], top, hint = 1, 1, drawn.arc[0]
+    while top > 0:
+        top -= 1
+        node = nodes[top]
+        if boxes[node, 0] > boxes[node, 2]:
+            continue
+        covered, hint = _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack)
+        if not covered and node < size:
+            nodes[top], nodes[top + 1] = 2 * node + 1, 2 * node
+            top += 2
+        elif covered:
+            depth = 0
+            while node < size:
+                node, depth = 2 * node, depth + 1
+            first = (node - size) * BUCKET
+            for k in range(first, min(n_arcs, first + (BUCKET << depth))):
+                kept[k] = False
+
+
 @kernel
 def trim(leaves, other, drawn, shift_x, shift_y, lower_bound, kept):
-    """Marks in `kept` (n_leaves,) the arcs that may hold the Hausdorff distance; returns how many do.
+    """Clears in `kept` (n_leaves,) the arcs that cannot hold the Hausdorff distance; returns how many stay.
 
     The candidates for an arc are the other curve's arcs that the map shows at its start, middle and end.
     """
     points = np.empty((3, 2))
     n_kept = 0
     for k in range(leaves.arcs.shape[0]):
+        if not kept[k]:
+            continue
         row = leaves.arcs[k]
         mx, my = arc_middle(row)
         points[0, 0], points[0, 1] = row[X0] + shift_x, row[Y0] + shift_y
@@ -106,3 +157,24 @@ def trim(leaves, other, drawn, shift_x, shift_y, lower_bound, kept):
         kept[k] = not covered
         n_kept += kept[k]
     return n_kept
+
+
+@kernel
+def kept_arcs(pa, la, lb, shift_x, shift_y, lower_bound, pixel):
+    """Which arcs of A trimming leaves at a given lower bound (n,), for pictures and for tests."""
+    stack = np.empty((96, 2))
+    drawn = draw(pa, la, lb, shift_x, shift_y, pixel, stack)
+    kept = np.ones(la.arcs.shape[0], np.bool_)
+    trim(la, lb, drawn, shift_x, shift_y, lower_bound, kept)
+    return kept
+
+
+@kernel
+def field(leaves, xs, ys, depth, which):
+    """Fills `depth` and `which` (len(ys), len(xs)) with the distance map of a curve over a whole page."""
+    stack = np.empty((96, 2))
+    hint = 0
+    for r in range(ys.shape[0]):
+        for c in range(xs.shape[0]):
+            depth[r, c], hint = nearest_arc(leaves, xs[c], ys[r], hint, -1.0, stack)
+            which[r, c] = hint

@@ -19,8 +19,10 @@ from clearance.kernels.curve_bezier import (
     HIGHEST_DEGREE,
     Pieces,
     control_box,
+    piece_spans,
     pieces_of_spline,
     points_on,
+    rough_joints,
 )
 from clearance.planar.entries import (
     BadCurve,
@@ -226,7 +228,7 @@ class Curve:
     @cached_property
     def is_end(self) -> np.ndarray:
         """(n, 2) whether each piece's start and end is an end of a contour or a corner."""
-        return _ends(self)
+        return rough_joints(self.pieces, self.contour, TANGENT, 1e-9 * self.size)
 
     @property
     def is_closed(self) -> bool:
@@ -289,6 +291,16 @@ class Curve:
         base = matrix[:, :2] @ self.origin + matrix[:, 2]
         return _assembled(rows, self.pieces.first, self.limits, self.contour, base)
 
+    def reversed(self) -> Curve:
+        """The same set of points run through backwards, over the same range of parameters."""
+        first, last = self.limits[0, 0], self.limits[-1, 1]
+        rows = self.pieces.control[::-1].copy()
+        rows[:, :2] /= rows[:, 2:]
+        sizes = np.concatenate([[0], np.cumsum(np.diff(self.pieces.first)[::-1])])
+        limits = (first + last) - self.limits[::-1, ::-1]
+        contour = self.contour[-1] - self.contour[::-1]
+        return _assembled(rows, sizes, limits, contour, self.origin)
+
     def _jets(self, which: np.ndarray, local: np.ndarray) -> np.ndarray:
         out = np.empty((len(which), 6))
         points_on(self.pieces, which, local, out)
@@ -316,8 +328,7 @@ def _assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> Curve:
     """The curve of Cartesian control points about `base` with weights, `rows` (m, 3); pieces of no extent go."""
     first = np.ascontiguousarray(first, np.int64)
     contour = np.zeros(len(limits), np.int64) if contour is None else np.asarray(contour, np.int64)
-    low = np.minimum.reduceat(rows, first[:-1], axis=0)
-    high = np.maximum.reduceat(rows, first[:-1], axis=0)
+    low, high = piece_spans(rows, first)
     extent = (high[:, :2] > low[:, :2]).any(axis=1)
     size = float(np.hypot(*(high.max(axis=0) - low.min(axis=0))[:2]))
     if not extent.any():
@@ -368,23 +379,3 @@ def _joined(parts: Sequence[Curve], *, together: bool) -> Curve:
 
 def _meets(end: np.ndarray, start: np.ndarray, size: float) -> bool:
     return bool(np.hypot(*(end - start)[:2]) <= 1e-9 * size)
-
-
-def _ends(curve: Curve) -> np.ndarray:
-    """(n, 2) flags of the pieces' starts and ends that are not smooth joints."""
-    n = curve.n_pieces
-    every = np.arange(n)
-    start, end = curve._jets(every, np.zeros(n)), curve._jets(every, np.ones(n))
-    smooth = np.zeros(n, bool)  # joint between piece k - 1 and k, wrapping within each contour
-    before = np.arange(n) - 1
-    heads = np.flatnonzero(np.diff(curve.contour, prepend=-1))
-    before[heads] = np.append(heads[1:], n) - 1
-    speeds = np.hypot(*end[before, 2:4].T) * np.hypot(*start[:, 2:4].T)
-    bend = end[before, 2] * start[:, 3] - end[before, 3] * start[:, 2]
-    along = (end[before, 2:4] * start[:, 2:4]).sum(axis=1)
-    apart = np.abs(end[before, :2] - start[:, :2]).max(axis=1)
-    smooth = (np.abs(bend) <= TANGENT * speeds) & (along > 0.0) & (apart <= 1e-9 * curve.size)
-    flags = np.ones((n, 2), bool)
-    flags[:, 0] = ~smooth
-    flags[before, 1] = ~smooth
-    return flags

@@ -160,7 +160,7 @@ def within(a: Curve, b: Curve, distance: float) -> bool:
         count as within.
     """
     distance = checked_number(distance, "distance", least=0.0)
-    shift, size = _placed(a, b)
+    shift, size = placed(a, b)
     slack = a.rounding + b.rounding + 2.0**-50 * size
     gap = max(2.0**-50 * size, 0.0)
     found, _ = _solve(a, b, shift, gap, distance + slack)
@@ -199,7 +199,7 @@ def _sum_of(one: Tally, two: Tally) -> Tally:
     )
 
 
-def _placed(a: Curve, b: Curve) -> tuple[np.ndarray, float]:
+def placed(a: Curve, b: Curve) -> tuple[np.ndarray, float]:
     """The step from b's origin to a's, and the size of both curves together."""
     for name, curve in (("a", a), ("b", b)):
         if not isinstance(curve, Curve):
@@ -218,15 +218,15 @@ def _solve(a, b, shift, gap, limit):
 
 
 def _trimmed(a: Curve, b: Curve, tolerance: float, limit: float) -> tuple[Directed, Directed]:
-    shift, size = _placed(a, b)
+    shift, size = placed(a, b)
     gap = max(tolerance * SHARPER, 2.0**-50) * size
     found, points = _solve(a, b, shift, gap, limit)
     margin = a.rounding + b.rounding + 2.0**-50 * size
-    forth = _directed(a, b, found[0].tolist(), points[0], margin, True)
-    return forth, _directed(b, a, found[1].tolist(), points[1], margin, False)
+    forth = directed_of(a, b, found[0].tolist(), points[0], margin, True)
+    return forth, directed_of(b, a, found[1].tolist(), points[1], margin, False)
 
 
-def _directed(one: Curve, two: Curve, state: list, points: np.ndarray, margin: float, forward: bool):
+def directed_of(one: Curve, two: Curve, state: list, points: np.ndarray, margin: float, forward: bool):
     """The `Directed` of a searched curve `one`; `forward` says that it is the caller's a."""
     here, there = points[:2] + one.origin, points[2:4] + two.origin
     at_here = one.parameter_of(int(state[PIECE_A]), state[AT_A])
