@@ -31,7 +31,7 @@ from clearance.kernels.hausdorff_exact import (
 )
 
 DEEPEST = 34
-MOST_CELLS = 6000
+MOST_CELLS = 4000
 
 
 @inlined
@@ -80,7 +80,7 @@ def _normal_is_single(gap, a, b, is_point):
         square0 = 0.0
     # d/dt = <A', A'> + <A - B, A''> - <A', B'>^2 / -(g): g < 0 is the foot equation's derivative
     r0, r1 = square0 / -g0, square1 / -g1
-    return (low - r1 > 0.0) or (high < 0.0 and high - r0 < 0.0)
+    return low - r1 > 0.0 or high - r0 < 0.0
 
 
 @inlined
@@ -231,33 +231,33 @@ def _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work):
 
 @kernel
 def _try_normal(pa, pb, lb, i, t0, t1, cell, shift_x, shift_y, state, work):
-    """System (12), or (11) against an end of B: the one root in T, if the slope's sign changes."""
+    """System (12), or (11) against an end of B: the one root in T, by Newton's method from its middle.
+
+    The system's determinant has one sign over T and the cell, so that there is one root at most.
+    """
     state[NORMALS if cell[1] != cell[2] else ENDS] += 1.0
-    slopes = np.empty(2)
-    for side in range(2):
-        t = t0 if side == 0 else t1
-        _, s = _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work)
-        a, b = jet(pa, i, t), jet(pb, int(cell[0]), s)
-        slopes[side] = (a.x + shift_x - b.x) * a.dx + (a.y + shift_y - b.y) * a.dy
-    if slopes[0] * slopes[1] > 0.0:
-        return
-    low, high = t0, t1
-    t = 0.5 * (t0 + t1)
-    for _ in range(60):  # bisection to a neighbourhood, then Newton's method
-        t = 0.5 * (low + high)
-        _, s = _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work)
-        a, b = jet(pa, i, t), jet(pb, int(cell[0]), s)
-        slope = (a.x + shift_x - b.x) * a.dx + (a.y + shift_y - b.y) * a.dy
-        if slope * slopes[0] > 0.0:
-            low = t
-        else:
-            high = t
-        if high - low < 1e-4 and cell[1] != cell[2]:
-            t, _ = common_normal(pa, pb, i, t, low, high, int(cell[0]), s, shift_x, shift_y)
-            break
-        if high - low < 1e-15:
-            break
+    t, j = 0.5 * (t0 + t1), int(cell[0])
+    if cell[1] != cell[2]:
+        s = 0.5 * (cell[1] + cell[2])
+        t, _ = common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y)
+    else:
+        end = jet(pb, j, cell[1])
+        low, high = t0, t1
+        for _ in range(60):
+            t = 0.5 * (low + high)
+            if high - low < 2e-16:
+                break
+            if _slope_to(pa, i, t0, end, shift_x, shift_y) * _slope_to(pa, i, t, end, shift_x, shift_y) > 0.0:
+                low = t
+            else:
+                high = t
     consider(pa, pb, lb, i, t, shift_x, shift_y, 0, state, work)
+
+
+@inlined
+def _slope_to(pa, i, t, end, shift_x, shift_y):
+    here = jet(pa, i, t)
+    return (here.x + shift_x - end.x) * here.dx + (here.y + shift_y - end.y) * here.dy
 
 
 @kernel
@@ -305,7 +305,7 @@ def solve_directed(pa, ends_a, pb, lb, ends_b, shift_x, shift_y, budget, state, 
     first = derived(pb)
     second = derived(first)
     db = (first, second, derived(second))
-    most = min(MOST_CELLS, 64 + 16 * (pb.first.shape[0] - 1))
+    most = MOST_CELLS
     cells, boxes = np.empty((DEEPEST + 2, most, 3)), np.empty((most, 4, 4))
     resolved = True
     for i in range(pa.first.shape[0] - 1):

@@ -1,0 +1,270 @@
+"""The Hausdorff distance against the oracle, against known values, and against the axioms of a metric."""
+
+import math
+import os
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance.errors import ClearanceError
+from clearance.planar.curve import Curve
+from clearance.planar.hausdorff import hausdorff, within
+from clearance.planar.systems import Unresolved
+from clearance.planar.trimming import kept_intervals
+from tests.oracle import planar_hausdorff as oracle
+
+N_RANDOM = int(os.environ.get("CLEARANCE_PLANAR_PAIRS", "60"))
+"""Random pairs held against the oracle; 600 in the long run (about two minutes)."""
+
+pytestmark = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
+
+
+def random_pair(seed):
+    """Two splines, as (control, degree, weights): walks, near copies, rational, far off, tiny and huge."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(4, 12))
+    degree, other = min(int(rng.integers(1, 5)), n - 1), int(rng.integers(1, 4))
+    c, d = (np.cumsum(rng.normal(size=(n, 2)), axis=0) for _ in range(2))
+    style = seed % 5
+    if style == 1:
+        d, other = c + rng.normal(size=(n, 2)) * 10.0 ** -int(rng.integers(1, 5)), degree
+    weights = rng.uniform(0.3, 3.0, n) if style == 2 else None
+    if style == 3:
+        c, d = c + 1e6, d + 1e6
+    if style == 4:
+        scale = 10.0 ** int(rng.integers(-6, 7))
+        c, d = c * scale, d * scale
+    return (c, degree, weights), (d, other, rng.uniform(0.3, 3.0, n) if seed % 3 == 2 else None)
+
+
+def truth(one, two):
+    parts = [oracle.spline_parts(c, degree, weights=w) for c, degree, w in (one, two)]
+    return oracle.hausdorff(*parts)
+
+
+def spline(c, degree, weights):
+    return Curve.bspline(c, degree, weights=weights)
+
+
+@pytest.mark.parametrize("seed", range(N_RANDOM))
+def test_random_pairs_agree_with_the_oracle(seed):
+    one, two = random_pair(seed)
+    a, b = spline(*one), spline(*two)
+    found = hausdorff(a, b)
+    low, high = truth(one, two)
+    size = max(a.size, b.size)
+    assert high - low <= 1e-9 * size
+    assert low - found.error_bound - 1e-16 * size <= found.distance <= high + found.error_bound + 1e-16 * size
+    assert found.error_bound <= 1e-12 * size
+    for directed in found.directed.values():
+        assert directed.lower <= directed.distance <= directed.upper
+        apart = math.hypot(*(directed.point_a - directed.point_b))
+        assert apart == pytest.approx(directed.distance, abs=1e-14 * size + 3e-16 * np.abs(one[0]).max())
+
+
+HOSTILE = {
+    "cusp": ([[0, 0], [2, 2], [-1, 2], [1, 0]], [[0, 0.1], [1, 1.5], [0, 1.5], [1, 0.1]]),
+    "loop": ([[0, 0], [3, 2], [-2, 2], [1, 0]], [[0, 0], [1, 1], [0, 1], [1, 0]]),
+    "exact cusp": ([[0, 0], [1, 1], [0, 1], [1, 0]], [[0, 0.5], [0.3, 0.5], [0.6, 0.5], [1, 0.5]]),
+    "doubled back": ([[0, 0], [2, 0], [-1, 0], [1, 0]], [[0, 1], [0.3, 0.2], [0.6, 0.3], [1, 1]]),
+    "common ends": ([[0, 0], [1, 2], [2, -2], [3, 0]], [[0, 0], [1, -2], [2, 2], [3, 0]]),
+    "near tangent": ([[0, 0], [1, 1], [2, 1], [3, 0]], [[0, 1.5], [1, 0.5 + 1e-9], [2, 0.5], [3, 1.5]]),
+    "mirror images": ([[0, 0], [1, 2], [2, 2], [3, 0]], [[0, 0], [1, -2], [2, -2], [3, 0]]),
+    "symmetric over an arch": ([[-1, 0.3], [-0.5, 0.3], [0.5, 0.3], [1, 0.3]], [[-1, 0], [-1, 3], [1, 3], [1, 0]]),
+    "double control points": ([[0, 0], [0, 0], [2, 1], [2, 1]], [[0, 1], [1, 0], [1, 0], [2, 0]]),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e8])
+def test_hostile_pairs_agree_with_the_oracle(name, scale):
+    c, d = (np.array(points, float) * scale for points in HOSTILE[name])
+    found = hausdorff(Curve.bspline(c), Curve.bspline(d))
+    low, high = truth((c, 3, None), (d, 3, None))
+    assert low - found.error_bound <= found.distance <= high + found.error_bound
+    assert found.error_bound <= 1e-12 * scale * 4
+
+
+def test_arcs_circles_and_polylines_agree_with_the_oracle():
+    polyline = [[-2, 0], [0, 1.3], [1, -1], [2, 2]]
+    pairs = [
+        (Curve.arc([0.2, 0], 1.5, 0.3, 5.0), oracle.arc_parts([0.2, 0], 1.5, 0.3, 5.0)),
+        (Curve.polyline(polyline), oracle.line_parts(polyline)),
+        (Curve.circle([1, 1], 0.5), oracle.arc_parts([1, 1], 0.5, 0.0, 2 * oracle.REAL(math.pi))),
+    ]
+    for a, one in pairs:
+        for b, two in pairs:
+            if a is not b:
+                low, high = oracle.hausdorff(one, two)
+                assert low - 1e-13 <= hausdorff(a, b).distance <= high + 1e-13
+
+
+WAVE = np.cumsum(np.random.default_rng(1).normal(size=(30, 2)), axis=0)
+TURN = 2.0 * math.pi
+OVERLAPS = {
+    "identical": (Curve.bspline(WAVE), Curve.bspline(WAVE), 0.0),
+    "reversed": (Curve.bspline(WAVE), Curve.bspline(WAVE[::-1]), 0.0),
+    "raised degree": (
+        Curve.bezier([[0, 0], [1, 2], [2, -1], [3, 0]]),
+        Curve.bezier([[0, 0], [0.75, 1.5], [1.5, 0.5], [2.25, -0.75], [3, 0]]),
+        0.0,
+    ),
+    "part of a line": (Curve.line([0, 0], [4, 3]), Curve.polyline([[0, 0], [2, 1.5]]), 2.5),
+    "concentric": (Curve.circle([0, 0], 1), Curve.circle([0, 0], 1.25), 0.25),
+    "concentric, other start": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1.25, 0.3, 0.3 + TURN), 0.25),
+    "1e-9 apart": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1 + 1e-9, 0.3, 0.3 + TURN), (1 + 1e-9) - 1),
+    "offset lines": (Curve.line([0, 0], [1, 0]), Curve.line([0, 0.5], [1, 0.5]), 0.5),
+    "eccentric": (Curve.circle([0, 0], 1), Curve.circle([0.125, 0], 1), 0.125),
+    "a dot in a circle": (Curve.circle([0, 0], 1), Curve.line([-1e-15, 0], [1e-15, 0]), 1.0),
+    "closed against open": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1, 0, math.pi), math.sqrt(2.0)),
+}
+
+
+@pytest.mark.parametrize("name", OVERLAPS)
+def test_overlap_does_not_hurt(name):
+    a, b, known = OVERLAPS[name]
+    found = hausdorff(a, b)
+    size = max(a.size, b.size)
+    assert abs(found.distance - known) <= 1e-14 * size
+    assert found.error_bound <= 2e-14 * size
+    assert found.tally.intervals < 2000 and found.tally.given_up == 0
+
+
+def test_1e9_apart_splines():
+    near = Curve.bspline(WAVE + 1e-9 * np.random.default_rng(2).normal(size=WAVE.shape))
+    found = hausdorff(Curve.bspline(WAVE), near)
+    assert 1e-10 < found.distance < 5e-9 and found.error_bound <= 1e-14 * near.size
+    samples = Curve.bspline(WAVE).point(np.linspace(0, 1, 4001))
+    worst = max(hausdorff_point(near, p) for p in samples[::50])
+    assert worst <= found.distance + found.error_bound
+
+
+def hausdorff_point(curve, point):
+    from clearance.kernels.curve_gap import feet
+
+    out = np.empty((1, 4))
+    feet(curve.pieces, curve.leaves, (point - curve.origin)[None], out)
+    return out[0, 0]
+
+
+def test_published_values_of_shapely_2458_and_jts():
+    # GEOS's own manual: vertices alone miss the middle of a segment
+    a, b = Curve.polyline([[0, 0], [100, 0], [10, 100], [10, 100]]), Curve.polyline([[0, 100], [0, 10], [80, 10]])
+    assert hausdorff(a, b).directed["b_to_a"].distance == pytest.approx(47.8, abs=0.1)
+    # JTS's test: discrete 22.360679774997898, densified towards 47.8
+    assert hausdorff(a, b).distance > 47.8
+    long, bent = Curve.line([0, 0], [2, 0]), Curve.polyline([[0, 1], [1, 2], [2, 1]])
+    assert hausdorff(long, bent).distance == 2.0
+    line = Curve.polyline([[130, 0], [0, 0], [0, 150]])
+    other = Curve.polyline([[10, 10], [10, 150], [130, 10]])
+    assert hausdorff(line, other).distance == pytest.approx(70.0, abs=1e-12)  # vertices alone: 14.14...
+
+
+def kinds():
+    """Small versions of the four situations of Fig. 18, each with the kind that it must be."""
+    flat = Curve.bezier([[-1, 0], [-0.3, 0], [0.3, 0], [1, 0]])
+    return [
+        (flat, Curve.bezier([[-1, 0.2], [-0.3, 0.2], [0.3, 0.2], [1.5, 1.5]]), "end"),
+        (Curve.line([0.0, -3.0], [0.3, 4.0]), Curve.bezier([[-2, -3], [-2, 7], [2, 7], [2, -3]]), "any"),
+        (flat, Curve.bezier([[-1, 0], [-0.3, 0.8], [0.3, 0.8], [1, 0]]), "common_normal"),
+        (flat, Curve.bezier([[-1, 0], [-0.3, -0.8], [0.5, -0.9], [1, 0]]), "common_normal"),
+    ]
+
+
+def test_kinds_of_fig_18():
+    for a, b, kind in kinds():
+        found = hausdorff(a, b)
+        assert kind in (found.kind, "any")
+    arch = Curve.bezier([[-1, 0], [-1, 4], [1, 4], [1, 0]])
+    across = Curve.bezier([[-1.2, 0.5], [-0.4, 0.6], [0.4, 0.4], [1.2, 0.5]])
+    found = hausdorff(across, arch).directed["a_to_b"]
+    assert found.kind == "self_bisector"
+    feet_apart = [hausdorff_point(arch, found.point_a), found.distance]
+    assert feet_apart[0] == pytest.approx(feet_apart[1], abs=1e-14)
+
+
+@pytest.mark.parametrize("n", range(2, 40))
+def test_polyline_vertex_count_sweep(n):
+    """A zigzag against its base line: the answer does not depend on how many vertices there are."""
+    x = np.arange(n, dtype=float)
+    zigzag = Curve.polyline(np.stack([x, (x % 2) * 0.75 + 0.25], axis=1))
+    base = Curve.line([0, 0], [n - 1.0, 0])
+    found = hausdorff(zigzag, base)
+    assert found.directed["a_to_b"].distance == 1.0
+    assert found.distance == 1.0
+
+
+points = st.lists(st.tuples(st.integers(-8, 8), st.integers(-8, 8)), min_size=4, max_size=7)
+
+
+def curve_of(control):
+    try:
+        return Curve.bspline(np.array(control, float), min(3, len(control) - 1))
+    except ClearanceError:
+        return Curve.polyline([[0, 0], [1, 0]])
+
+
+@settings(max_examples=60, deadline=None)
+@given(points, points, points)
+def test_axioms_of_a_metric(one, two, three):
+    a, b, c = curve_of(one), curve_of(two), curve_of(three)
+    ab, ba, ac, cb = hausdorff(a, b), hausdorff(b, a), hausdorff(a, c), hausdorff(c, b)
+    assert abs(ab.distance - ba.distance) <= ab.error_bound + ba.error_bound
+    assert ab.distance <= ac.distance + cb.distance + ab.error_bound + ac.error_bound + cb.error_bound
+    assert hausdorff(a, a).distance <= 1e-14 * a.size
+    assert within(a, b, ab.distance) and not within(a, b, ab.distance * (1 - 1e-9) - 1e-12)
+
+
+@settings(max_examples=40, deadline=None)
+@given(points, points, st.floats(0.0, 6.3), st.sampled_from([1e-7, 0.3, 1.0, 1e5]))
+def test_rigid_motion_and_scaling(one, two, angle, scale):
+    a, b = curve_of(one), curve_of(two)
+    c, s = scale * math.cos(angle), scale * math.sin(angle)
+    motion = np.array([[c, -s, 3.0 * scale], [s, c, -7.0 * scale]])
+    before, after = hausdorff(a, b), hausdorff(a.transformed(motion), b.transformed(motion))
+    assert after.distance == pytest.approx(scale * before.distance, abs=2e-14 * scale * 40)
+
+
+@settings(max_examples=60, deadline=None)
+@given(points, points)
+def test_trimming_is_safe(one, two):
+    a, b = curve_of(one), curve_of(two)
+    directed = hausdorff(a, b).directed["a_to_b"]
+    bound = 0.9 * directed.distance
+    kept = kept_intervals(a, b, bound)
+    u = np.linspace(a.limits[0, 0], a.limits[-1, 1], 301)
+    trimmed = ~((kept[:, :1] <= u) & (u <= kept[:, 1:])).any(axis=0) if len(kept) else np.ones(len(u), bool)
+    for p in a.point(u[trimmed]):
+        assert hausdorff_point(b, p) < bound
+
+
+@pytest.mark.parametrize("seed", range(0, 12))
+def test_trimmed_agrees_with_untrimmed(seed):
+    rng = np.random.default_rng(seed)
+    c, d = (np.cumsum(rng.normal(size=(5, 2)), axis=0) for _ in range(2))
+    a, b = Curve.bspline(c), Curve.bspline(d)
+    one = hausdorff(a, b)
+    try:
+        two = hausdorff(a, b, method="untrimmed")
+    except Unresolved:
+        pytest.skip("systems too close to call")
+    for direction in ("a_to_b", "b_to_a"):
+        p, q = one.directed[direction], two.directed[direction]
+        assert abs(p.distance - q.distance) <= 1e-13 * a.size
+    assert one.kind == two.kind and one.direction == two.direction
+
+
+def test_refusals():
+    a = Curve.line([0, 0], [1, 0])
+    for call, said in [
+        (lambda: hausdorff(a, a, method="best"), "method: 'best'; 'trimmed' or 'untrimmed'"),
+        (lambda: hausdorff(a, [[0, 0]]), "b: a list; a clearance Curve"),
+        (lambda: hausdorff(a, a, tolerance=math.nan), "tolerance: nan"),
+        (lambda: within(a, a, -1.0), "distance: -1"),
+        (lambda: hausdorff(a, a, method="untrimmed"), "more solutions than can be told apart"),
+    ]:
+        with pytest.raises(ClearanceError) as caught:
+            call()
+        assert said in str(caught.value) and "\n" not in str(caught.value)
