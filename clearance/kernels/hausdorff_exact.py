@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.arc import EPS, S0, S1, arc_distance
+from clearance.kernels.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance, arc_middle
 from clearance.kernels.curve_bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_nearest import nearest, slide_to_foot
@@ -21,6 +21,8 @@ LOWER, DISTANCE, PIECE_A, AT_A, PIECE_B, AT_B, UPPER = 0, 1, 2, 3, 4, 5, 6
 ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP, RUNNER_UP = range(7, 17)
 STATE = 17
 STACK = 90
+MANY = 512  # arcs of B from which on a straight part of A is first held against runs of them
+LONGEST_RUN = 2000
 
 
 @inlined
@@ -129,6 +131,51 @@ def _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
     return half < lower and (arc_distance(row, x, y) + row[EPS] + half) * (1.0 + 1e-14) <= lower
 
 
+@inlined
+def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_x, shift_y, enough):
+    """An upper bound of the distance of a straight part of A to the run of B's arcs `first` to `last`.
+
+    The run is connected, and so is its projection onto the line: it covers all between the feet of the
+    part's two ends, which are `off_first` and `off_last` away. Every point between has a point of the run
+    square above it, no farther than the run's farthest control point is from the line (convexity).
+    """
+    here, there = jet(pa, i, t0), jet(pa, i, t1)
+    dx, dy = there.x - here.x, there.y - here.y
+    length = hypotenuse(dx, dy)
+    most = max(off_first, off_last)
+    if length == 0.0 or most > enough:
+        return np.inf if length == 0.0 else most
+    dx, dy = dx / length, dy / length
+    low, high = min(first, last), max(first, last)
+    for k in range(low, high + 1):
+        row = leaves.arcs[k]
+        if k > low and (row[X0] != leaves.arcs[k - 1, X1] or row[Y0] != leaves.arcs[k - 1, Y1]):
+            return np.inf
+        x, y = row[X0] - here.x - shift_x, row[Y0] - here.y - shift_y
+        off = max(abs(dx * y - dy * x), abs(dx * (y + row[Y1] - row[Y0]) - dy * (x + row[X1] - row[X0])))
+        mx, my = arc_middle(row)
+        off = max(off, abs(dx * (my - here.y - shift_y) - dy * (mx - here.x - shift_x)))
+        most = max(most, off + row[EPS])
+        if most > enough:
+            break
+    return most
+
+
+@inlined
+def _covered_by_run(pa, pb, lb, i, t0, t1, hint, shift_x, shift_y, state, work):
+    """The `_chain_bound` of a straight part of A between the feet of its ends; inf where it proves nothing."""
+    if state[DISTANCE] == 0.0:
+        return np.inf
+    one = consider(pa, pb, lb, i, t0, shift_x, shift_y, hint, state, work)
+    two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
+    if abs(one.leaf - two.leaf) > LONGEST_RUN:
+        return np.inf
+    return _chain_bound(
+        pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
+        state[DISTANCE],
+    )  # fmt: skip
+
+
 @kernel
 def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, budget, state, work):
     """Raises the lower bound in `state` to the greatest distance of A on one interval to B, proven.
@@ -136,6 +183,7 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
     Stops early once the lower bound passes `limit`; returns a leaf of B near the interval. `work` is (11, k, 4); `state` the STATE numbers.
     """
     straight = pa.first[i + 1] - pa.first[i] == 2 and not pa.rational[i]
+    many = lb.arcs.shape[0] >= MANY
     stack = work[10]
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = t_first, t_last, hint, 0.0
     top = 1
@@ -154,6 +202,11 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         s1, _ = slide_from(pa, pb, i, t1, j, foot.local, shift_x, shift_y)
         bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
         state[CUTS] += 1.0
+        if straight and many and bound > 1.5 * state[DISTANCE]:
+            run = _covered_by_run(
+                pa, pb, lb, i, t0, t1, foot.leaf, shift_x, shift_y, state, work
+            )
+            bound = min(bound, max(run, foot.distance))
         if bound <= state[DISTANCE] + gap:
             state[UPPER] = max(state[UPPER], bound)
             continue
@@ -174,7 +227,7 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
             state[UPPER] = max(state[UPPER], bound)
             continue
         chosen = middle
-        if was_cut == 0.0:
+        if was_cut == 0.0 and bound < 2.0 * state[DISTANCE]:
             s, reached = slide_from(pa, pb, i, t, j, s, shift_x, shift_y)
             if seen.distance < reached * (1.0 - 1e-12):
                 crossing = self_bisector(

@@ -132,7 +132,8 @@ def trim_nodes(leaves, other, drawn, shift_x, shift_y, lower_bound, kept, stack)
 def trim(leaves, other, drawn, shift_x, shift_y, lower_bound, kept):
     """Clears in `kept` (n_leaves,) the arcs that cannot hold the Hausdorff distance; returns how many stay.
 
-    The candidates for an arc are the other curve's arcs that the map shows at its start, middle and end.
+    The candidates for an arc are the other curve's arcs that the map shows at its start, middle and end,
+    and the two beside that in the middle.
     """
     points = np.empty((3, 2))
     n_kept = 0
@@ -146,10 +147,12 @@ def trim(leaves, other, drawn, shift_x, shift_y, lower_bound, kept):
         points[2, 0], points[2, 1] = row[X1] + shift_x, row[Y1] + shift_y
         start, end = drawn.first[k], drawn.first[k + 1]
         covered = False
-        for j in range(3):
-            facing = other.arcs[drawn.arc[start + (end - start) * j // 2]]
-            if j > 0 and start == end:
-                break
+        for j in range(5):
+            if start == end and 0 < j < 3:
+                continue
+            seen = drawn.arc[start + (end - start) * (j if j < 3 else 1) // 2]
+            seen = min(other.arcs.shape[0] - 1, max(0, seen + (0, 0, 0, 1, -1)[j]))
+            facing = other.arcs[seen]
             reach = lower_bound * (1.0 - 1e-14) - row[EPS] - facing[EPS]
             if reach > 0.0 and arc_covers(points, facing, reach):
                 covered = True

@@ -40,7 +40,9 @@ def random_pair(seed):
 
 
 def truth(one, two):
-    parts = [oracle.spline_parts(c, degree, weights=w) for c, degree, w in (one, two)]
+    middle = np.round(one[0].mean(axis=0)).astype(oracle.REAL)
+    moved = [(np.array(c, oracle.REAL) - middle, degree, w) for c, degree, w in (one, two)]
+    parts = [oracle.spline_parts(c, degree, weights=w) for c, degree, w in moved]
     return oracle.hausdorff(*parts)
 
 
@@ -61,7 +63,7 @@ def test_random_pairs_agree_with_the_oracle(seed):
     for directed in found.directed.values():
         assert directed.lower <= directed.distance <= directed.upper
         apart = math.hypot(*(directed.point_a - directed.point_b))
-        assert apart == pytest.approx(directed.distance, abs=1e-14 * size + 3e-16 * np.abs(one[0]).max())
+        assert apart == pytest.approx(directed.distance, abs=1e-14 * size + 1e-15 * np.abs(one[0]).max())
 
 
 HOSTILE = {
@@ -149,17 +151,23 @@ def hausdorff_point(curve, point):
     return out[0, 0]
 
 
-def test_published_values_of_shapely_2458_and_jts():
-    # GEOS's own manual: vertices alone miss the middle of a segment
-    a, b = Curve.polyline([[0, 0], [100, 0], [10, 100], [10, 100]]), Curve.polyline([[0, 100], [0, 10], [80, 10]])
-    assert hausdorff(a, b).directed["b_to_a"].distance == pytest.approx(47.8, abs=0.1)
-    # JTS's test: discrete 22.360679774997898, densified towards 47.8
-    assert hausdorff(a, b).distance > 47.8
-    long, bent = Curve.line([0, 0], [2, 0]), Curve.polyline([[0, 1], [1, 2], [2, 1]])
-    assert hausdorff(long, bent).distance == 2.0
+def test_published_values():
+    # shapely#2458: 4.949747468306 from the vertices, 9.849997461929 densified by 0.01
+    a = Curve.polyline([(26, 8), (13, -2), (13, 19), (10, 19), (10, 23), (1, 17)])
+    b = Curve.polyline([(15, 1), (28, 11), (13, 26), (1, 18)])
+    assert 9.849997461929 <= hausdorff(a, b).distance <= 9.849997461929 + 0.1  # half of its sample spacing
+    parts = [oracle.line_parts(p) for p in ([(26, 8), (13, -2), (13, 19), (10, 19), (10, 23), (1, 17)],
+                                            [(15, 1), (28, 11), (13, 26), (1, 18)])]  # fmt: skip
+    low, high = oracle.hausdorff(*parts)
+    assert low - 1e-13 <= hausdorff(a, b).distance <= high + 1e-13
+    # PostGIS's manual: 14.14213562373095 from the vertices, 70 densified
     line = Curve.polyline([[130, 0], [0, 0], [0, 150]])
     other = Curve.polyline([[10, 10], [10, 150], [130, 10]])
-    assert hausdorff(line, other).distance == pytest.approx(70.0, abs=1e-12)  # vertices alone: 14.14...
+    assert hausdorff(line, other).distance == pytest.approx(70.0, abs=1e-12)
+    # JTS's tests: 22.360679774997898 from the vertices, 47.8 densified by 0.001
+    one = Curve.polyline([[0, 0], [100, 0], [10, 100], [10, 100]])
+    two = Curve.polyline([[0, 100], [0, 10], [80, 10]])
+    assert hausdorff(one, two).distance == pytest.approx(47.8, abs=0.1)
 
 
 def kinds():
@@ -240,7 +248,7 @@ def test_trimming_is_safe(one, two):
         assert hausdorff_point(b, p) < bound
 
 
-@pytest.mark.parametrize("seed", range(0, 12))
+@pytest.mark.parametrize("seed", range(0, 8))
 def test_trimmed_agrees_with_untrimmed(seed):
     rng = np.random.default_rng(seed)
     c, d = (np.cumsum(rng.normal(size=(5, 2)), axis=0) for _ in range(2))
