@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.arc import X0, X1, Y0, Y1
+from clearance.kernels.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve_bezier import hypotenuse, jet
 from clearance.kernels.distance_map import draw, lower_bound_of_map
 from clearance.kernels.hausdorff_exact import (
@@ -24,12 +24,14 @@ from clearance.kernels.hausdorff_exact import (
     PIXELS,
     STATE,
     UPPER,
+    consider,
     search_leaf,
 )
 from clearance.kernels.hausdorff_trim import trim, trim_nodes
 
 PIXELS_AT_LEAST, PIXELS_AT_MOST = 32.0, 4096.0
 MANY = 512  # arcs from which on whole runs are tried first
+SAMPLES = 1000
 
 
 @inlined
@@ -48,6 +50,21 @@ def length_of_arcs(arcs):
     for k in range(arcs.shape[0]):
         total += hypotenuse(arcs[k, X1] - arcs[k, X0], arcs[k, Y1] - arcs[k, Y0])
     return total
+
+
+@inlined
+def _sample_kept(pa, la, pb, lb, kept, drawn, shift_x, shift_y, state, work):
+    """Raises the lower bound by the true distances at the middles of some arcs that trimming left."""
+    step = max(1, int(state[KEPT]) // SAMPLES)
+    seen, hint = 0, 0
+    for k in range(la.arcs.shape[0]):
+        if not kept[k]:
+            continue
+        seen += 1
+        if seen % step == 0:
+            middle = 0.5 * (la.arcs[k, S0] + la.arcs[k, S1])
+            hint = drawn.arc[drawn.first[k]]
+            consider(pa, pb, lb, la.piece[k], middle, shift_x, shift_y, hint, state, work)
 
 
 @kernel
@@ -73,6 +90,9 @@ def directed(pa, la, pb, lb, shift_x, shift_y, trimming, gap, limit, budget, sta
         if n_arcs >= MANY:
             trim_nodes(la, lb, drawn, shift_x, shift_y, bound, kept, work[0])
         state[KEPT] = trim(la, lb, drawn, shift_x, shift_y, bound, kept)
+        if state[KEPT] > MANY:  # the map was too coarse for these curves: a better bound, and once more
+            _sample_kept(pa, la, pb, lb, kept, drawn, shift_x, shift_y, state, work)
+            state[KEPT] = trim(la, lb, drawn, shift_x, shift_y, state[LOWER], kept)
     hint = -1
     for k in range(n_arcs):
         if kept[k] and k != best and state[LOWER] <= limit:

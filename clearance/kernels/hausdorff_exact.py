@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance, arc_middle
+from clearance.kernels.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance, arc_middle, segment_distance
 from clearance.kernels.curve_bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_nearest import nearest, slide_to_foot
@@ -122,6 +122,26 @@ def upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
 
 
 @inlined
+def chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
+    """Another upper bound, which no speed along the curves disturbs: by way of the chord of B's part.
+
+    Each point of the chord is square under a point of B's part, no farther than the part's control points
+    are from the chord; A's control points bound its distance to the chord (convexity). Exact on lines.
+    """
+    p, q = work[6], work[7]
+    n = cut(pa, i, t0, t1, p)
+    m = cut(pb, j, min(s0, s1), max(s0, s1), q)
+    x0, y0, x1, y1 = q[0, 0] / q[0, 2], q[0, 1] / q[0, 2], q[m, 0] / q[m, 2], q[m, 1] / q[m, 2]
+    off, most = 0.0, 0.0
+    for k in range(1, m):
+        off = max(off, segment_distance(q[k, 0] / q[k, 2], q[k, 1] / q[k, 2], x0, y0, x1, y1))
+    for k in range(n + 1):
+        x, y = p[k, 0] / p[k, 2] + shift_x, p[k, 1] / p[k, 2] + shift_y
+        most = max(most, segment_distance(x, y, x0, y0, x1, y1))
+    return most + off
+
+
+@inlined
 def _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
     """Whether a straight part of A lies within `lower` of the arc that was nearest before: no search needed."""
     here, there = jet(pa, i, t0), jet(pa, i, t1)
@@ -207,6 +227,9 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
                 pa, pb, lb, i, t0, t1, foot.leaf, shift_x, shift_y, state, work
             )
             bound = min(bound, max(run, foot.distance))
+        if bound > state[DISTANCE] + gap:
+            other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
+            bound = min(bound, max(other, foot.distance))
         if bound <= state[DISTANCE] + gap:
             state[UPPER] = max(state[UPPER], bound)
             continue

@@ -37,7 +37,7 @@ KINDS = ("end", "common_normal", "self_bisector")
 SHARPER = 2.0**-10
 """The search aims this much below the tolerance asked for, so that coincident curves come out to rounding."""
 
-BUDGET = 4_000_000.0
+BUDGET = 200_000.0
 """Intervals after which a search gives the rest up with their bounds; only the error bound suffers."""
 
 

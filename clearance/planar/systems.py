@@ -14,7 +14,7 @@ from clearance.kernels.hausdorff_systems import solve_directed
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import Directed, directed_of, placed
 
-BUDGET = 400_000.0
+BUDGET = 150_000.0
 """Intervals of one direction after which the systems count as having no end of solutions."""
 
 

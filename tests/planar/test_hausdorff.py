@@ -160,10 +160,10 @@ def test_published_values():
                                             [(15, 1), (28, 11), (13, 26), (1, 18)])]  # fmt: skip
     low, high = oracle.hausdorff(*parts)
     assert low - 1e-13 <= hausdorff(a, b).distance <= high + 1e-13
-    # PostGIS's manual: 14.14213562373095 from the vertices, 70 densified
+    # PostGIS's manual: 14.14213562373095 from the vertices, 70 densified by half; the true value by hand
     line = Curve.polyline([[130, 0], [0, 0], [0, 150]])
     other = Curve.polyline([[10, 10], [10, 150], [130, 10]])
-    assert hausdorff(line, other).distance == pytest.approx(70.0, abs=1e-12)
+    assert hausdorff(line, other).distance == pytest.approx(970.0 / 13.0, abs=1e-12)
     # JTS's tests: 22.360679774997898 from the vertices, 47.8 densified by 0.001
     one = Curve.polyline([[0, 0], [100, 0], [10, 100], [10, 100]])
     two = Curve.polyline([[0, 100], [0, 10], [80, 10]])
@@ -222,7 +222,8 @@ def test_axioms_of_a_metric(one, two, three):
     assert abs(ab.distance - ba.distance) <= ab.error_bound + ba.error_bound
     assert ab.distance <= ac.distance + cb.distance + ab.error_bound + ac.error_bound + cb.error_bound
     assert hausdorff(a, a).distance <= 1e-14 * a.size
-    assert within(a, b, ab.distance) and not within(a, b, ab.distance * (1 - 1e-9) - 1e-12)
+    assert within(a, b, ab.distance)
+    assert ab.distance < 1e-6 or not within(a, b, ab.distance * (1 - 1e-9))
 
 
 @settings(max_examples=40, deadline=None)
@@ -245,7 +246,7 @@ def test_trimming_is_safe(one, two):
     u = np.linspace(a.limits[0, 0], a.limits[-1, 1], 301)
     trimmed = ~((kept[:, :1] <= u) & (u <= kept[:, 1:])).any(axis=0) if len(kept) else np.ones(len(u), bool)
     for p in a.point(u[trimmed]):
-        assert hausdorff_point(b, p) < bound
+        assert hausdorff_point(b, p) <= bound + 1e-15 * a.size
 
 
 @pytest.mark.parametrize("seed", range(0, 8))
