@@ -13,6 +13,7 @@ from clearance.kernels.curve_nearest import nearest
 from clearance.kernels.hausdorff_exact import common_normal
 
 STACK = 4000
+BUDGET = 20000.0  # cells after which the rest is given up with its bound
 
 
 @kernel
@@ -55,6 +56,7 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
     top = 1
     while top > 0:
         top -= 1
+        best[6] += 1.0
         t0, t1, s0, s1 = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
         t, s = 0.5 * (t0 + t1), 0.5 * (s0 + s1)
         for trial in range(2):
@@ -72,8 +74,9 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
         n, m = cut(pa, i, t0, t1, p), cut(pb, j, s0, s1, q)
         bound = 0.0
         if distance > 0.0:
-            bound = _apart(p, n, q, m, ex / distance, ey / distance, (shift_x * ex + shift_y * ey) / distance)
-        if bound >= best[0] - gap or top + 4 > stack.shape[0] or (t1 - t0 < 1e-15 and s1 - s0 < 1e-15):
+            along = (shift_x * ex + shift_y * ey) / distance
+            bound = max(0.0, _apart(p, n, q, m, ex / distance, ey / distance, along))
+        if bound >= best[0] - gap or best[6] > BUDGET or top + 4 > stack.shape[0] or (t1 - t0 < 1e-15 and s1 - s0 < 1e-15):
             best[1] = min(best[1], max(bound, 0.0))
             continue
         t, s = 0.5 * (t0 + t1), 0.5 * (s0 + s1)
@@ -86,7 +89,7 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
 @kernel
 def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
     """The least distance of two curves: distance, proven lower bound, piece and parameter on A and on B."""
-    best = np.array([np.inf, np.inf, 0.0, 0.0, 0.0, 0.0])
+    best = np.array([np.inf, np.inf, 0.0, 0.0, 0.0, 0.0, 0.0])
     widest = 0
     for i in range(pa.first.shape[0] - 1):
         widest = max(widest, pa.first[i + 1] - pa.first[i])
