@@ -37,7 +37,7 @@ def minimum_distance(a: Curve, b: Curve) -> Minimum:
     Ties: the first found.
     """
     shift, size = placed(a, b)
-    gap = 2.0**-50 * size
+    gap = 2.0**-44 * size  # above the rounding of the projections, or cells would never end
     best = least_distance(a.pieces, a.leaves, b.pieces, b.leaves, shift[0], shift[1], gap).tolist()
     margin = a.rounding + b.rounding + gap
     at_a = a.parameter_of(int(best[2]), best[3])
