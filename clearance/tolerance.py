@@ -17,3 +17,9 @@ digits; anything worse is a typing error, not a rounding."""
 CROSS_CHECK = 1e-9
 """[-] Greatest difference between our clearance and FCL's, relative to the scene's size, that counts as
 agreement: FCL's triangle kernel loses up to 1e-10 in millimetres on slender triangles."""
+
+FLATNESS = 1e-9
+"""[-] How far a polygon's vertices may be off its plane, relative to its radius, and how far it may bend
+inward (sine of the angle), beside the rounding of its coordinates: a thousand times what a rigid motion in
+float64 does to it near the origin, and a hundred times less than the rounding of coordinates in a float32 or
+six-digit file, whose polygons are cut into triangles instead."""

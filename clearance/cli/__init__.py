@@ -1,0 +1,81 @@
+"""The command line: one file a command, and here what they share: exit codes and one-line errors.
+
+Exit codes: 0 clear; 1 a limit is violated; 2 bad input; 3 the cross-check disagrees (the verdict
+itself is in doubt, so this goes before 1); 70 a fault of this program, with its traceback; 130
+interrupted.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from enum import IntEnum
+
+
+class ExitCode(IntEnum):
+    """What the shell is told."""
+
+    CLEAR = 0
+    VIOLATED = 1
+    BAD_INPUT = 2
+    DISAGREES = 3
+    FAULT = 70  # EX_SOFTWARE: Python's own 1 would read as a violated limit
+    INTERRUPTED = 130
+    PIPE_CLOSED = 141
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Runs the command line and leaves with its exit code."""
+    sys.exit(int(run(sys.argv[1:] if arguments is None else arguments)))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """The exit code of the command line `arguments`, after doing what they say."""
+    try:
+        return _dispatch(list(arguments))
+    except KeyboardInterrupt:
+        _say("interrupted; nothing was written")
+        return ExitCode.INTERRUPTED
+    except BrokenPipeError:  # the reader of our output left, as in `clearance check … | head -1`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return ExitCode.PIPE_CLOSED
+    except Exception:
+        import traceback
+
+        traceback.print_exc()
+        _say("error: a fault of this program, not of the input; please report the lines above")
+        return ExitCode.FAULT
+
+
+def _dispatch(arguments: list[str]) -> int:
+    import click
+
+    from clearance.cli.commands import clearance
+    from clearance.errors import ClearanceError
+
+    try:
+        with clearance.make_context("clearance", arguments) as context:
+            code = clearance.invoke(context)
+        sys.stdout.flush()
+        return code or ExitCode.CLEAR
+    except click.exceptions.Exit as leave:
+        return leave.exit_code
+    except click.exceptions.NoArgsIsHelpError as error:
+        error.show()
+        return ExitCode.BAD_INPUT
+    except click.ClickException as error:
+        _say(f"error: {' '.join(error.format_message().split())}{_hint(error)}")
+        return ExitCode.BAD_INPUT
+    except ClearanceError as error:
+        _say(f"error: {error}")
+        return ExitCode.BAD_INPUT
+
+
+def _hint(error: Exception) -> str:
+    context = getattr(error, "ctx", None)
+    return f" (see {context.command_path} --help)" if context is not None else ""
+
+
+def _say(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)

@@ -1,8 +1,9 @@
 """A solid as flat convex polygons: the one type in which all geometry is measured.
 
 Faces are stored flat (`face_starts`, `face_vertices`), counter-clockwise as seen from outside where the
-surface is consistently oriented. A `Polyhedron` that exists is valid: finite, with at least one face, and
-every index in range. Not for: reading files (room `load`) and making shapes (`shapes`).
+surface is consistently oriented. A `Polyhedron` that exists is valid: finite, with at least one face, every
+index in range, every face flat and convex. Everything else is found out when asked for, and then kept. Not
+for: reading files (room `load`) and making shapes (`shapes`).
 """
 
 from __future__ import annotations
@@ -10,10 +11,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from os import PathLike
+from typing import Any, Self
 
 import numpy as np
 
-from clearance.errors import BadPolygon, BadShape, EmptyMesh, NotFinite
+from clearance.errors import BadDimension, EmptyMesh, NotFinite
+from clearance.geometry.coplanar import merge_coplanar
+from clearance.geometry.edges import rings_of
+from clearance.geometry.faces import (
+    check_flat_and_convex,
+    check_indices,
+    checked_vertices,
+    flat_faces,
+)
+from clearance.geometry.file_reader import file_reader
+from clearance.geometry.planes import Planes, planes_of
+from clearance.geometry.pose import validated_pose
+from clearance.geometry.topology import (
+    Topology,
+    component_volumes,
+    inside_out_components,
+    topology_of,
+)
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -27,7 +47,9 @@ class Polyhedron:
         excess: [m] how far the surface may stand outside the shape it stands for (0: it is the shape).
 
     Raises:
-        EmptyMesh: no faces. NotFinite: NaN or infinity. BadShape, BadPolygon: not as above.
+        EmptyMesh: no faces. NotFinite: NaN or infinity. BadShape: not (n, 3). BadDimension: `excess` below 0.
+        BadPolygon: fewer than three vertices, an index out of range or twice in a row, a face that is
+            clearly warped or not convex (`tolerance.FLATNESS`).
     """
 
     vertices: np.ndarray
@@ -41,13 +63,78 @@ class Polyhedron:
         faces: Sequence[Sequence[int]] | np.ndarray,
         excess: float = 0.0,
     ) -> None:
-        starts, flat = _flat_faces(faces)
-        points = np.array(vertices, dtype=np.float64, order="C")
-        _validate(points, starts, flat)
-        for name, value in (("vertices", points), ("face_starts", starts), ("face_vertices", flat)):
-            value.setflags(write=False)
-            object.__setattr__(self, name, value)
+        points = checked_vertices(vertices)
+        starts, flat = flat_faces(faces)
+        check_indices(len(points), starts, flat)
+        check_flat_and_convex(points, starts, flat)
+        self._fill(points, starts, flat, excess)
+
+    def _fill(
+        self, vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, excess: float
+    ) -> None:
+        if not 0.0 <= excess < np.inf:
+            raise BadDimension(f"excess is {excess}", valid="0 or more [m]")
+        for name, value, kind in (
+            ("vertices", vertices, np.float64),
+            ("face_starts", starts, np.int64),
+            ("face_vertices", flat, np.int64),
+        ):
+            array = np.ascontiguousarray(value, dtype=kind)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
         object.__setattr__(self, "excess", float(excess))
+
+    @classmethod
+    def _of_valid(
+        cls, vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, excess: float = 0.0
+    ) -> Self:
+        """The polyhedron of flat faces that are known to be valid."""
+        made = cls.__new__(cls)
+        made._fill(vertices, starts, flat, excess)
+        return made
+
+    @classmethod
+    def from_triangles(
+        cls, vertices: np.ndarray, triangles: np.ndarray, excess: float = 0.0
+    ) -> Self:
+        """The surface of triangles, with coplanar neighbours merged exactly into convex polygons.
+
+        Equal vertices become one; zero-area triangles that a proper face covers are left out, others kept
+        (`coplanar.merge_coplanar` also counts them).
+
+        Args:
+            vertices: (n, 3) [m]. triangles: (m, 3) indices.
+
+        Raises:
+            EmptyMesh, NotFinite, BadShape, BadPolygon: as for the constructor; repeated indices are allowed.
+        """
+        points = checked_vertices(vertices)
+        starts, flat = flat_faces(triangles)
+        check_indices(len(points), starts, flat, allow_repeated=True)
+        merged = merge_coplanar(points, flat.reshape(-1, 3))
+        return cls._of_valid(merged.vertices, merged.face_starts, merged.face_vertices, excess)
+
+    @classmethod
+    def from_trimesh(cls, mesh: Any) -> Self:
+        """The surface of a `trimesh.Trimesh`, or of anything with `vertices` (n, 3) [m] and `faces` (m, 3).
+
+        Raises:
+            EmptyMesh: no such attributes or no faces; otherwise as `from_triangles`.
+        """
+        if not hasattr(mesh, "vertices") or not hasattr(mesh, "faces"):
+            raise EmptyMesh(
+                f"a {type(mesh).__name__} has no vertices and faces", valid="a trimesh.Trimesh"
+            )
+        return cls.from_triangles(np.asarray(mesh.vertices), np.asarray(mesh.faces))
+
+    @staticmethod
+    def from_file(path: str | PathLike[str], scale: float = 1.0) -> Polyhedron:
+        """The surface in a mesh file (STL, OBJ, PLY, DAE, …), its coordinates times `scale` in metres.
+
+        Raises:
+            MissingFile, BadSyntax, EmptyMesh, NotFinite: as the attached reader, `clearance.load.mesh.read_mesh`.
+        """
+        return file_reader()(path, scale)
 
     @property
     def n_faces(self) -> int:
@@ -63,33 +150,152 @@ class Polyhedron:
         """The (k, 3) corners [m] of one face, in order."""
         return self.vertices[self.face_vertices[self.face_starts[i_face] : self.face_starts[i_face + 1]]]
 
+    def triangles(self) -> np.ndarray:
+        """(n_triangles, 3) vertex indices: each face cut from its first vertex, faces in order."""
+        return self.face_vertices[self._fans[0]]
+
+    @property
+    def triangle_faces(self) -> np.ndarray:
+        """(n_triangles,) the face that each of `triangles()` is cut from."""
+        return self._fans[1]
+
+    @cached_property
+    def _fans(self) -> tuple[np.ndarray, np.ndarray]:
+        ring = rings_of(self.face_starts)
+        firsts = self.face_starts[ring.face]
+        entries = np.arange(len(ring.face))
+        middle = (entries > firsts) & (ring.ahead > entries)
+        return np.stack([firsts, entries, ring.ahead], axis=1)[middle], ring.face[middle]
+
     @cached_property
     def bounds(self) -> np.ndarray:
-        """(2, 3) [m] the least and greatest coordinates in the body frame."""
-        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+        """(2, 3) [m] the least and greatest coordinates of the faces in the body frame."""
+        used = self.vertices[self.face_vertices]
+        return np.array([used.min(axis=0), used.max(axis=0)])
 
+    @cached_property
+    def _planes(self) -> Planes:
+        return planes_of(self.vertices, self.face_starts, self.face_vertices)
 
-def _flat_faces(faces: Sequence[Sequence[int]] | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    rows = [np.asarray(face, dtype=np.int64) for face in faces]
-    if not rows:
-        raise EmptyMesh("the mesh has no faces", valid="at least one polygon is needed")
-    starts = np.zeros(len(rows) + 1, dtype=np.int64)
-    np.cumsum([len(row) for row in rows], out=starts[1:])
-    return starts, np.concatenate(rows)
+    @property
+    def normals(self) -> np.ndarray:
+        """(m, 3) unit normals, outward where the surface is closed and outward oriented; zero without area."""
+        return self._planes.normals
 
+    @property
+    def centres(self) -> np.ndarray:
+        """(m, 3) [m] the mean of each face's corners."""
+        return self._planes.centres
 
-def _validate(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> None:
-    if vertices.ndim != 2 or vertices.shape[1] != 3:
-        raise BadShape(f"vertices have shape {vertices.shape}", valid="(n, 3) is needed")
-    if not np.isfinite(vertices).all():
-        i_bad = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
-        raise NotFinite(f"vertex {i_bad} is {vertices[i_bad].tolist()}", valid="finite coordinates")
-    sizes = np.diff(starts)
-    if sizes.min() < 3:
-        i_bad = int(np.argmin(sizes))
-        raise BadPolygon(f"face {i_bad} has {sizes[i_bad]} vertices", valid="three or more")
-    if flat.min() < 0 or flat.max() >= len(vertices):
-        raise BadPolygon(
-            f"a face refers to vertex {int(flat.max() if flat.max() >= len(vertices) else flat.min())}",
-            valid=f"0 to {len(vertices) - 1}",
+    @property
+    def radii(self) -> np.ndarray:
+        """(m,) [m] from each face's centre to its farthest corner."""
+        return self._planes.radii
+
+    @cached_property
+    def _topology(self) -> Topology:
+        return topology_of(self.vertices, self.face_starts, self.face_vertices)
+
+    @property
+    def closed(self) -> bool:
+        """True if every edge is shared by two faces, or by an even number of them."""
+        return self._topology.closed
+
+    @property
+    def oriented(self) -> bool:
+        """True if faces that share an edge run along it in opposite directions."""
+        return self._topology.oriented
+
+    @property
+    def manifold(self) -> bool:
+        """True if no edge belongs to more than two faces."""
+        return self._topology.manifold
+
+    @property
+    def face_component(self) -> np.ndarray:
+        """(m,) the connected component that each face is in; components share no edge."""
+        return self._topology.face_component
+
+    @property
+    def component_closed(self) -> np.ndarray:
+        """(k,) True for the components that are closed and consistently oriented: they have an inside."""
+        return self._topology.component_closed
+
+    @cached_property
+    def volume(self) -> float | None:
+        """[m^3] what the surface holds, cavities taken off; None unless it is closed and oriented."""
+        if not self.closed or not self.oriented:
+            return None
+        component = self.face_component[self.triangle_faces]
+        volumes = component_volumes(
+            self.vertices, self.triangles(), component, len(self.component_closed)
+        )
+        return float(volumes.sum())
+
+    def outward(self) -> Polyhedron:
+        """The surface with closed components that are inside out turned round; cavities stay as they are."""
+        component = self.face_component[self.triangle_faces]
+        wrong = inside_out_components(
+            self.vertices, self.triangles(), component, self.component_closed
+        )
+        return self._with_reversed(wrong[self.face_component]) if wrong.any() else self
+
+    def flipped(self) -> Polyhedron:
+        """The surface with inside and outside exchanged."""
+        return self._with_reversed(np.ones(self.n_faces, dtype=bool))
+
+    def _with_reversed(self, faces: np.ndarray) -> Polyhedron:
+        """The surface with the faces where (m,) `faces` is True running the other way round."""
+        ring = rings_of(self.face_starts)
+        entries = np.arange(len(self.face_vertices))
+        mirrored = self.face_starts[ring.face] + self.face_starts[ring.face + 1] - 1 - entries
+        flat = self.face_vertices[np.where(faces[ring.face], mirrored, entries)]
+        return self._of_valid(self.vertices, self.face_starts, flat, self.excess)
+
+    def transformed(self, pose: np.ndarray) -> Polyhedron:
+        """The surface moved by a (4, 4) rigid motion [m], each coordinate to a few roundings.
+
+        Raises:
+            BadPose: not a rigid motion.
+        """
+        pose = validated_pose(pose)
+        vertices = self.vertices @ pose[:3, :3].T + pose[:3, 3]
+        return self._of_valid(vertices, self.face_starts, self.face_vertices, self.excess)
+
+    def scaled(self, factor: float | Sequence[float]) -> Polyhedron:
+        """The surface with its coordinates times one factor, or times three; a mirrored one stays outward.
+
+        Raises:
+            BadDimension: a factor that is zero or not finite, or is not one or three numbers.
+        """
+        factors = np.asarray(factor, dtype=np.float64)
+        if factors.shape not in ((), (1,), (3,)) or not np.isfinite(factors).all() or not factors.all():
+            raise BadDimension(f"scale is {factor!r:.60}", valid="one or three numbers other than 0")
+        factors = np.broadcast_to(factors, 3)
+        vertices = self.vertices * factors
+        if not np.isfinite(vertices).all():
+            raise NotFinite(f"scale {factors.tolist()} is too large", valid="finite coordinates")
+        excess = np.nextafter(self.excess * np.abs(factors).max(), np.inf) if self.excess else 0.0
+        made = self._of_valid(vertices, self.face_starts, self.face_vertices, excess)
+        return made.flipped() if np.prod(np.sign(factors)) < 0.0 else made
+
+    @staticmethod
+    def merged(parts: Sequence[Polyhedron]) -> Polyhedron:
+        """All faces of several surfaces as one; the greatest excess of them is its excess.
+
+        Raises:
+            EmptyMesh: no parts.
+        """
+        if not parts:
+            raise EmptyMesh("there are no surfaces to join", valid="at least one")
+        shifts = np.cumsum([0] + [len(part.vertices) for part in parts])
+        corners = np.cumsum([0] + [len(part.face_vertices) for part in parts])
+        starts = [part.face_starts[:-1] + shift for part, shift in zip(parts, corners, strict=False)]
+        return Polyhedron._of_valid(
+            np.concatenate([part.vertices for part in parts]),
+            np.concatenate([*starts, corners[-1:]]),
+            np.concatenate(
+                [part.face_vertices + shift for part, shift in zip(parts, shifts, strict=False)]
+            ),
+            max(part.excess for part in parts),
         )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -79,7 +80,7 @@ class Record:
     case: Case
     motions: tuple[Motion, ...]
     steps: pa.Table
-    pair_minima: tuple[PairMinimum, ...]
+    pair_minima: Sequence[PairMinimum]
     unmeasured: tuple[Unmeasured, ...]
     tally: dict[str, int]
     method: str = "exact"

@@ -18,12 +18,14 @@ class Motion:
         times: (n,) [s].
         positions: (n, k) [rad] or [m] the positions that occur, columns as `placed.robot.moving_joints`.
         tracking_error: (n,) greatest |actual - asked| over the joints [rad or m]; zeros when kinematic.
+        notes: what had to be assumed to make the motion, one line each, for the report.
     """
 
     placed: PlacedRobot
     times: np.ndarray
     positions: np.ndarray
     tracking_error: np.ndarray
+    notes: tuple[str, ...] = ()
 
     @property
     def n_steps(self) -> int:

@@ -1,0 +1,57 @@
+"""How close a robot's path comes to anything, where, when, and how sure that is.
+
+The public names; each is imported from its room when it is first used.
+"""
+
+from importlib import import_module
+from typing import Any
+
+from clearance.geometry.file_reader import attach_file_reader
+
+__version__ = "0.1.0"
+
+_ROOM_OF = {
+    "BadInput": "errors",
+    "Case": "world.case",
+    "ClearanceError": "errors",
+    "CrossCheck": "simulate.record",
+    "Limits": "world.case",
+    "Nearest": "query.result",
+    "Polyhedron": "geometry.polyhedron",
+    "Record": "simulate.record",
+    "Robot": "world.robot",
+    "Run": "run",
+    "Trajectory": "world.trajectory",
+    "box": "geometry.shapes",
+    "capsule": "geometry.shapes",
+    "check": "run",
+    "cylinder": "geometry.shapes",
+    "distance": "query.distance",
+    "load_case": "load.case_file",
+    "pipe": "geometry.shapes",
+    "polygon_distance": "query.distance",
+    "polygon_distances": "query.distance",
+    "read_mesh": "load.mesh",
+    "sphere": "geometry.shapes",
+}
+
+__all__ = sorted(["__version__", *_ROOM_OF])
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _ROOM_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(f"{__name__}.{_ROOM_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+def _read_mesh(path, scale=1.0):
+    return import_module(f"{__name__}.load.mesh").read_mesh(path, scale)
+
+
+attach_file_reader(_read_mesh)

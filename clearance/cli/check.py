@@ -1,0 +1,142 @@
+"""`clearance check`: a case in, a verdict out, a report where one is wanted."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from clearance.cli import ExitCode
+
+if TYPE_CHECKING:
+    from clearance.run import Run
+    from clearance.world.case import Limits
+
+
+class Millimetres(click.ParamType):
+    """A length in millimetres, finite and not negative; handed on in metres."""
+
+    name = "mm"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """The length [m]."""
+        try:
+            length = float(value)
+        except ValueError:
+            length = math.nan
+        if not (math.isfinite(length) and length >= 0.0):
+            self.fail(f"{value!r} is not a length; a number of millimetres, 0 or more", param, ctx)
+        return length / 1000.0
+
+
+@click.command()
+@click.argument("case_file", metavar="CASE.yaml", type=click.Path(path_type=Path))
+@click.option(
+    "--out", metavar="DIR", type=click.Path(path_type=Path), help="Write the report here."
+)
+@click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the case's.")
+@click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the case's.")
+@click.option("--cross-check", is_flag=True, help="Hold every step against FCL.")
+@click.option(
+    "--method",
+    type=click.Choice(["exact", "paper"]),
+    default="exact",
+    show_default=True,
+    help="exact: the true minimum. paper: the first paper's algorithm, without guarantee.",
+)
+@click.option(
+    "--motion",
+    type=click.Choice(["kinematic", "simulated"]),
+    default="kinematic",
+    show_default=True,
+    help="kinematic: the trajectory itself. simulated: what a controlled robot makes of it.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
+@click.option("--junit", metavar="FILE", type=click.Path(path_type=Path), help="Write JUnit XML.")
+@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+def check(
+    case_file: Path,
+    out: Path | None,
+    fail_mm: float | None,
+    warn_mm: float | None,
+    cross_check: bool,
+    method: str,
+    motion: str,
+    as_json: bool,
+    junit: Path | None,
+    quiet: bool,
+) -> int:
+    """Measures the least clearance of every step of CASE.yaml.
+
+    Without --out nothing is written. Exit code: 0 clear (or near), 1 a limit is violated, 2 bad
+    input, 3 the cross-check disagrees.
+    """
+    from clearance.cli.places import require_file_place, require_folder_place
+    from clearance.cli.progress import shown_progress
+    from clearance.load.case_file import load_case
+
+    require_folder_place(out)
+    require_file_place(junit)
+    case = load_case(case_file)
+    limits = _limits(case.limits, fail_mm, warn_mm)
+    from clearance.run import check as answer
+
+    with shown_progress(quiet or as_json, cross_check) as progress:
+        run = answer(
+            case,
+            method=method,
+            motion=motion,
+            limits=limits,
+            cross_check=cross_check,
+            progress=progress,
+        )
+    _write(run, out, junit)
+    _print(run, out, as_json, quiet)
+    return _exit_code(run)
+
+
+def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits | None:
+    """The limits with what the command line changes; raising `fail` alone takes `warn` along."""
+    from clearance.world.case import Limits
+
+    if fail is None and warn is None:
+        return None
+    if fail is None:
+        fail = given.fail
+    if warn is None:
+        warn = max(given.warn, fail)
+    if warn < fail:
+        raise click.UsageError(
+            f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
+        )
+    return Limits(fail=fail, warn=warn)
+
+
+def _write(run: Run, out: Path | None, junit: Path | None) -> None:
+    if out is not None:
+        run.save(out)
+    if junit is not None:
+        from clearance.report import write_junit
+
+        write_junit(run.record, junit)
+
+
+def _print(run: Run, out: Path | None, as_json: bool, quiet: bool) -> None:
+    if as_json:
+        from clearance.report import json_text, summary_of
+
+        click.echo(json_text(summary_of(run.record)), nl=False)
+    elif not quiet:
+        from clearance.cli.verdict import print_verdict
+
+        print_verdict(run, out)
+
+
+def _exit_code(run: Run) -> ExitCode:
+    if run.cross_check is not None and not run.cross_check.agrees:
+        return ExitCode.DISAGREES
+    return ExitCode.CLEAR if run.passed else ExitCode.VIOLATED

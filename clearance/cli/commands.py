@@ -1,0 +1,19 @@
+"""The group that holds every command. Not for: what a command does (a file each)."""
+
+from __future__ import annotations
+
+import click
+
+from clearance import __version__
+from clearance.cli.check import check
+from clearance.cli.view import view
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="clearance", message="%(prog)s %(version)s")
+def clearance() -> None:
+    """How close a robot's path comes to anything, where, when, and how sure that is."""
+
+
+clearance.add_command(check)
+clearance.add_command(view)

@@ -1,0 +1,10 @@
+"""Our answers held against FCL's: the same bodies, in millimetres, at every step and for every
+pair.
+
+Nothing here calls our own distance code: the peer measures, numpy bounds what the peer may skip,
+and a winding number tells what lies inside a closed body. Not for: measuring (room `simulate`).
+"""
+
+from clearance.crosscheck.compare import cross_check
+
+__all__ = ["cross_check"]

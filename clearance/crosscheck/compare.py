@@ -1,0 +1,116 @@
+"""Our record held against the peer's answers, step by step, and our witness points against the
+bodies.
+
+The size of the scene, to which the tolerance is relative, is the diagonal of the box that holds
+every measured body at every step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from clearance.crosscheck.fcl_door import peer_name
+from clearance.crosscheck.peer_run import PeerAnswers, PeerRun
+from clearance.simulate.record import CrossCheck, Disagreement, Record
+from clearance.tolerance import CROSS_CHECK
+
+
+def cross_check(record: Record, progress: Callable[[int, int], None] | None = None) -> CrossCheck:
+    """The comparison of every step of a record with FCL on the same bodies.
+
+    Args:
+        record: what we measured.
+        progress: is told (steps done, all steps) now and then.
+
+    Raises:
+        Unavailable: python-fcl cannot be imported.
+    """
+    run = PeerRun(record)
+    answers = run.measure(progress)
+    tolerance = CROSS_CHECK * answers.diagonal
+    differences = np.abs(record.clearances - answers.clearances)
+    errors = _Witnesses(run).errors()
+    bad = np.flatnonzero(~(differences <= tolerance) | ~(errors <= tolerance))
+    return CrossCheck(
+        peer=peer_name(),
+        n_steps=len(differences),
+        greatest_difference=float(differences.max()),
+        worst_step=int(np.argmax(differences)),
+        tolerance=tolerance,
+        worst_witness_error=float(errors.max()),
+        disagreements=tuple(
+            _disagreement(run, answers, int(step), differences[step] <= tolerance, errors[step])
+            for step in bad
+        ),
+    )
+
+
+def _disagreement(
+    run: PeerRun, answers: PeerAnswers, step: int, same_distance: bool, witness_error: float
+) -> Disagreement:
+    record = run.record
+    row = {name: record.steps[name][step].as_py() for name in ("clearance", "link", "obstacle")}
+    peer_clearance, i_pair = float(answers.clearances[step]), int(answers.i_pairs[step])
+    pair = run.pairs[i_pair]
+    if same_distance:
+        reason = f"the witness points miss their bodies or the distance by {witness_error:.3g} m"
+    else:
+        reason = _reason(row["clearance"], peer_clearance, run.collides(step, i_pair))
+    return Disagreement(
+        step=step, peer_clearance=peer_clearance, peer_link=pair.link.name,
+        peer_obstacle=pair.obstacle.name, reason=reason, **row,
+    )  # fmt: skip
+
+
+def _reason(ours: float, peers: float, peer_collides: bool) -> str:
+    if peers == 0.0:
+        doubt = "" if peer_collides else ", though FCL's own collision test finds none"
+        return f"the peer says contact{doubt}"
+    if ours == 0.0:
+        return "we say contact, the peer does not"
+    return f"the clearances differ by {abs(ours - peers):.3g} m"
+
+
+class _Witnesses:
+    """How well our witness points realise our clearance and lie on their bodies."""
+
+    def __init__(self, run: PeerRun) -> None:
+        self._run = run
+        steps = run.record.steps
+        self._points = {
+            side: np.column_stack([steps[f"{side}_{axis}"].to_numpy() for axis in "xyz"])
+            for side in ("link", "obstacle")
+        }
+        self._names = list(
+            zip(steps["link"].to_pylist(), steps["obstacle"].to_pylist(), strict=True)
+        )
+        self._pairs = {(pair.link.name, pair.obstacle.name): pair for pair in run.pairs}
+
+    def errors(self) -> np.ndarray:
+        """(n,) [m] for each step the greatest of: error of the realised distance, distance of each
+        point from its body. Inside a closed body counts as on it where the clearance is 0."""
+        run = self._run
+        clearances = run.record.clearances
+        realised = np.linalg.norm(self._points["link"] - self._points["obstacle"], axis=1)
+        errors = np.abs(realised - clearances)
+        for start in range(0, len(errors), 512):
+            poses = run.poses(start, min(start + 512, len(errors)))
+            for k in range(poses.shape[1]):
+                off = self._off_bodies(start + k, poses[:, k], clearances[start + k] == 0.0)
+                errors[start + k] = max(errors[start + k], off)
+        return errors
+
+    def _off_bodies(self, step: int, poses: np.ndarray, contact: bool) -> float:
+        pair = self._pairs.get(self._names[step])
+        if pair is None:
+            return np.inf
+        sides = (
+            (pair.link, poses[pair.i_mover], self._points["link"][step]),
+            (pair.obstacle, pair.world_from_obstacle, self._points["obstacle"][step]),
+        )
+        return max(
+            side.distance(pose[:3, :3].T @ (point - pose[:3, 3]), solid=contact)
+            for side, pose, point in sides
+        )

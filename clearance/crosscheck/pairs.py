@@ -1,0 +1,84 @@
+"""The measured pairs of a record, each body ready for both questions: how far (FCL), inside or not
+(winding).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.crosscheck.containment import is_inside
+from clearance.crosscheck.fcl_door import PeerBody
+from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
+from clearance.crosscheck.witness import PointLocator
+from clearance.simulate.record import Record
+from clearance.world.body import Body
+
+
+@dataclass(frozen=True, eq=False)
+class PeerSide:
+    """One body of the run."""
+
+    name: str
+    soup: TriangleSoup
+    peer: PeerBody
+    locator: PointLocator
+
+    def distance(self, point: np.ndarray, solid: bool) -> float:
+        """The distance [m] of a point (3,) in the body frame from the surface, or from the
+        solid.
+        """
+        if solid and is_inside(self.soup, point[None])[0]:
+            return 0.0
+        return self.locator.distance(point)
+
+
+@dataclass(frozen=True, eq=False)
+class PeerPair:
+    """A measured pair.
+
+    Attributes:
+        i_mover: index into the movers of the run.
+        world_from_obstacle: (4, 4) pose [m].
+    """
+
+    i_mover: int
+    link: PeerSide
+    obstacle: PeerSide
+    world_from_obstacle: np.ndarray
+
+
+@dataclass(frozen=True)
+class Mover:
+    """A link that is measured against something: its robot, its column in `Motion.poses`, its
+    name.
+    """
+
+    i_robot: int
+    i_link: int
+    name: str
+
+
+def peer_pairs(record: Record) -> tuple[list[Mover], list[PeerPair]]:
+    """The links that take part and every pair that the record does not list as unmeasured."""
+    left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
+    obstacles = [(o, peer_side(o.body)) for o in record.case.obstacles]
+    movers: list[Mover] = []
+    pairs: list[PeerPair] = []
+    for i_robot, motion in enumerate(record.motions):
+        robot = motion.placed.robot
+        for body in robot.bodies:
+            facing = [(o, side) for o, side in obstacles if (body.name, o.name) not in left_out]
+            if (body.name, "*") in left_out or not facing:
+                continue
+            link = peer_side(body)
+            pairs += [PeerPair(len(movers), link, side, o.world_from_body) for o, side in facing]
+            movers.append(Mover(i_robot, robot.link_names.index(body.name), body.name))
+    return movers, pairs
+
+
+def peer_side(body: Body) -> PeerSide:
+    """A body cut into triangles, as FCL tree and as numpy arrays."""
+    soup = triangle_soup(body.shape)
+    return PeerSide(body.name, soup, PeerBody(soup), PointLocator(soup))

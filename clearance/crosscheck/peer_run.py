@@ -1,0 +1,152 @@
+"""The peer's own answer to a case: the least clearance of every step, by FCL and a winding number.
+
+Every measured pair takes part in every step; a pair is skipped only where a lower bound made of
+numpy boxes, or of FCL's own last answer less the motion since then, shows that it cannot be the
+nearest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.crosscheck.bounds import greatest_displacements, lower_bound_boxes, world_boxes
+from clearance.crosscheck.containment import is_inside
+from clearance.crosscheck.pairs import PeerPair, peer_pairs
+from clearance.simulate.record import Record
+
+_STEPS_AT_ONCE = 512
+_ROUNDING = 1e-12  # [m] taken off every lower bound: far above float64, far below the tolerance
+
+
+@dataclass(frozen=True, eq=False)
+class PeerAnswers:
+    """What the peer found.
+
+    Attributes:
+        clearances: (n,) [m].
+        i_pairs: (n,) index of the pair that attains it.
+        diagonal: [m] of the box along the world axes that holds every measured body at every step.
+        n_queries: distances that FCL was asked for.
+    """
+
+    clearances: np.ndarray
+    i_pairs: np.ndarray
+    diagonal: float
+    n_queries: int
+
+
+class PeerRun:
+    """The bodies of a record in FCL, and the measuring of all its steps."""
+
+    def __init__(self, record: Record) -> None:
+        self.record = record
+        self.movers, self.pairs = peer_pairs(record)
+        for pair in self.pairs:
+            pair.obstacle.peer.place(pair.world_from_obstacle)
+        self._i_movers = np.array([pair.i_mover for pair in self.pairs])
+        self._fixed_boxes = np.array([_fixed_box(pair) for pair in self.pairs])
+        self._links = {pair.i_mover: pair.link for pair in self.pairs}
+        self._low = self._fixed_boxes[:, 0].min(axis=0)
+        self._high = self._fixed_boxes[:, 1].max(axis=0)
+        self._carried = np.zeros(len(self.pairs))  # [m] lower bounds from the step before
+        self._n_queries = 0
+
+    def measure(self, progress: Callable[[int, int], None] | None = None) -> PeerAnswers:
+        """The peer's answers to all steps; `progress(done, total)` is told after each chunk of
+        steps.
+        """
+        n_steps = self.record.motions[0].n_steps
+        clearances, i_pairs = np.empty(n_steps), np.empty(n_steps, dtype=np.int64)
+        for start in range(0, n_steps, _STEPS_AT_ONCE):
+            stop = min(start + _STEPS_AT_ONCE, n_steps)
+            poses = self.poses(max(0, start - 1), stop)  # one more, for the motion into the first
+            clearances[start:stop], i_pairs[start:stop] = self._measure_chunk(poses, stop - start)
+            if progress is not None:
+                progress(stop, n_steps)
+        diagonal = float(np.linalg.norm(self._high - self._low))
+        return PeerAnswers(clearances, i_pairs, diagonal, self._n_queries)
+
+    def poses(self, start: int, stop: int) -> np.ndarray:
+        """(movers, steps, 4, 4) `world_from_link` [m] of the steps `start` to `stop`."""
+        by_robot = [motion.poses(start, stop) for motion in self.record.motions]
+        return np.array([by_robot[mover.i_robot][:, mover.i_link] for mover in self.movers])
+
+    def collides(self, step: int, i_pair: int) -> bool:
+        """True if FCL's collision test or the winding number finds contact of one pair at one
+        step.
+        """
+        pair = self.pairs[i_pair]
+        pose = self.poses(step, step + 1)[pair.i_mover]
+        pair.link.peer.place(pose[0])
+        return pair.link.peer.collides(pair.obstacle.peer) or bool(nested_steps(pair, pose)[0])
+
+    def _measure_chunk(self, poses: np.ndarray, n_new: int) -> tuple[np.ndarray, np.ndarray]:
+        moved = self._displacements(poses)[-n_new:]
+        poses = poses[:, -n_new:]
+        boxes = np.array([world_boxes(self._links[m].soup.bounds, p) for m, p in enumerate(poses)])
+        self._low = np.minimum(self._low, boxes[:, :, 0].min(axis=(0, 1)))
+        self._high = np.maximum(self._high, boxes[:, :, 1].max(axis=(0, 1)))
+        apart = np.array(
+            [
+                lower_bound_boxes(boxes[m], box)
+                for m, box in zip(self._i_movers, self._fixed_boxes, strict=True)
+            ]
+        ).T
+        within = np.array([nested_steps(pair, poses[pair.i_mover]) for pair in self.pairs]).T
+        found = [
+            self._measure_step(poses[:, k], moved[k], apart[k], within[k]) for k in range(n_new)
+        ]
+        return np.array([d for d, _ in found]), np.array([i for _, i in found])
+
+    def _displacements(self, poses: np.ndarray) -> np.ndarray:
+        """(steps, movers) [m] how far each body can have moved since the step before; infinite at
+        the first.
+        """
+        moved = np.array(
+            [greatest_displacements(self._links[m].soup.bounds, p) for m, p in enumerate(poses)]
+        ).reshape(len(self.movers), -1)
+        return np.vstack([np.full(len(self.movers), np.inf), moved.T])
+
+    def _measure_step(
+        self, poses: np.ndarray, moved: np.ndarray, apart: np.ndarray, within: np.ndarray
+    ) -> tuple[float, int]:
+        """The least clearance [m] and its pair, nearest lower bound first."""
+        bounds = np.maximum(self._carried - moved[self._i_movers], apart) - _ROUNDING
+        self._carried = np.maximum(bounds, 0.0)
+        if within.any():
+            return 0.0, int(np.argmax(within))
+        for link, pose in zip(self._links.values(), poses, strict=True):
+            link.peer.place(pose)
+        best, i_best = np.inf, -1
+        for i_pair in np.argsort(bounds, kind="stable"):
+            if bounds[i_pair] >= best or best == 0.0:
+                break
+            pair = self.pairs[i_pair]
+            self._carried[i_pair] = distance = pair.link.peer.distance(pair.obstacle.peer)
+            self._n_queries += 1
+            if distance < best:
+                best, i_best = distance, int(i_pair)
+        return best, i_best
+
+
+def nested_steps(pair: PeerPair, world_from_link: np.ndarray) -> np.ndarray:
+    """(n,) True at the poses (n, 4, 4) where a part of one body of the pair is inside the other."""
+    obstacle_from_link = np.linalg.inv(pair.world_from_obstacle) @ world_from_link
+    nested = np.zeros(len(world_from_link), dtype=bool)
+    for outer, inner, relative in (
+        (pair.obstacle.soup, pair.link.soup, obstacle_from_link),
+        (pair.link.soup, pair.obstacle.soup, np.linalg.inv(obstacle_from_link)),
+    ):
+        turned = inner.part_points @ relative[:, :3, :3].transpose(0, 2, 1)
+        points = turned + relative[:, None, :3, 3]
+        nested |= is_inside(outer, points.reshape(-1, 3)).reshape(points.shape[:2]).any(axis=1)
+    return nested
+
+
+def _fixed_box(pair: PeerPair) -> np.ndarray:
+    pose = pair.world_from_obstacle
+    corners = pair.obstacle.soup.vertices @ pose[:3, :3].T + pose[:3, 3]
+    return np.array([corners.min(axis=0), corners.max(axis=0)])

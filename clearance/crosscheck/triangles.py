@@ -1,0 +1,73 @@
+"""The triangles of a body as the peer gets them, and what follows from them alone: closedness,
+parts.
+
+Not for: the faces that we measure; those stay polygons (`geometry.polyhedron`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+
+
+@dataclass(frozen=True, eq=False)
+class TriangleSoup:
+    """A body as triangles.
+
+    Attributes:
+        vertices: (n, 3) [m] in the body frame, no two equal.
+        triangles: (m, 3) indices, counter-clockwise as in the faces they come from.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+
+    @property
+    def corners(self) -> np.ndarray:
+        """(m, 3, 3) [m] the corners of every triangle."""
+        return self.vertices[self.triangles]
+
+    @cached_property
+    def bounds(self) -> np.ndarray:
+        """(2, 3) [m] least and greatest coordinates."""
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @cached_property
+    def encloses(self) -> bool:
+        """True if every edge is walked as often one way as the other: the surface has no rim.
+
+        Just then the winding number of every point off the surface is an integer.
+        """
+        tails, heads = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
+        there = np.sort(tails * len(self.vertices) + heads)
+        back = np.sort(heads * len(self.vertices) + tails)
+        return bool(np.array_equal(there, back))
+
+    @cached_property
+    def part_points(self) -> np.ndarray:
+        """(k, 3) [m] one vertex of each connected part of the surface."""
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        tails, heads = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
+        n = len(self.vertices)
+        graph = coo_array((np.ones(len(tails), dtype=np.int8), (tails, heads)), shape=(n, n))
+        _, labels = connected_components(graph, directed=False)
+        used = np.unique(self.triangles)
+        _, first = np.unique(labels[used], return_index=True)
+        return self.vertices[used[first]]
+
+
+def triangle_soup(shape: Polyhedron) -> TriangleSoup:
+    """The faces cut into fans, equal vertices made one."""
+    vertices, index = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)
+    sizes = np.diff(shape.face_starts)
+    firsts = np.repeat(shape.face_starts[:-1], sizes - 2)
+    fan_starts = np.cumsum(sizes - 2) - (sizes - 2)
+    nth = np.arange(len(firsts)) - np.repeat(fan_starts, sizes - 2)
+    corners = np.stack([firsts, firsts + nth + 1, firsts + nth + 2], axis=1)
+    return TriangleSoup(vertices, index.ravel()[shape.face_vertices[corners]])

@@ -1,0 +1,176 @@
+"""Polyhedra in the form that kernels search: owned features, plane data and the bounding tree.
+
+Built once a polyhedron and kept with it; `join` lays several behind one another so that one compiled call
+can serve a whole robot and scene. Not for: the search itself (`kernels.descent`).
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.face_planes import face_planes
+from clearance.kernels.surface import Surface
+from clearance.kernels.tree_build import build_tree
+
+_built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
+
+
+def surface_of(shape: Polyhedron) -> Surface:
+    """The searchable form of one polyhedron, built at the first call."""
+    if shape not in _built:
+        _built[shape] = _build(shape)
+    return _built[shape]
+
+
+def join(shapes: Sequence[Polyhedron]) -> Surface:
+    """The searchable form of several polyhedra; `roots[i]` is the tree of `shapes[i]`."""
+    parts = [surface_of(shape) for shape in shapes]
+    if len(parts) == 1:
+        return parts[0]
+    n_before = {name: _offsets([len(getattr(part, name)) for part in parts]) for name in Surface._fields}
+
+    def stacked(name: str, shift: str | None = None) -> np.ndarray:
+        shifts = n_before[shift] if shift else None
+        if shifts is None:
+            return np.concatenate([getattr(p, name) for p in parts])
+        return np.concatenate([getattr(p, name) + s for p, s in zip(parts, shifts, strict=True)])
+
+    def starts(name: str, items: str) -> np.ndarray:
+        rows = [getattr(p, name)[:-1] + s for p, s in zip(parts, n_before[items], strict=True)]
+        return np.append(np.concatenate(rows), n_before[items][-1] + len(getattr(parts[-1], items)))
+
+    return Surface(
+        vertices=stacked("vertices"),
+        exact=stacked("exact"),
+        face_starts=starts("face_starts", "face_vertices"),
+        face_vertices=stacked("face_vertices", "vertices"),
+        normals=stacked("normals"),
+        blunt=stacked("blunt"),
+        width=stacked("width"),
+        bent=stacked("bent"),
+        corner_normals=stacked("corner_normals"),
+        vertex_starts=starts("vertex_starts", "owned_vertices"),
+        owned_vertices=stacked("owned_vertices", "vertices"),
+        edge_starts=starts("edge_starts", "owned_edges"),
+        owned_edges=stacked("owned_edges", "vertices"),
+        axes=stacked("axes"),
+        centres=stacked("centres"),
+        halves=stacked("halves"),
+        children=_joined_children(parts, n_before["centres"], n_before["normals"]),
+        roots=stacked("roots", "centres"),
+        probe_starts=starts("probe_starts", "probes"),
+        probes=stacked("probes", "vertices"),
+        solid_starts=starts("solid_starts", "solid_faces"),
+        solid_faces=stacked("solid_faces", "normals"),
+    )
+
+
+def face_offsets(shapes: Sequence[Polyhedron]) -> np.ndarray:
+    """(k,) the index in the joined surface of the first face of each shape."""
+    return _offsets([shape.n_faces for shape in shapes])
+
+
+def _offsets(lengths: Sequence[int]) -> np.ndarray:
+    return np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
+
+
+def _joined_children(
+    parts: Sequence[Surface], node_shifts: np.ndarray, face_shifts: np.ndarray
+) -> np.ndarray:
+    rows = []
+    for part, node_shift, face_shift in zip(parts, node_shifts, face_shifts, strict=True):
+        leaf = part.children[:, 1] < 0
+        children = part.children + node_shift
+        children[leaf, 0] = part.children[leaf, 0] + face_shift
+        children[leaf, 1] = -1
+        rows.append(children)
+    return np.concatenate(rows)
+
+
+def _build(shape: Polyhedron) -> Surface:
+    vertices, weld = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
+    corners = weld.reshape(-1)[shape.face_vertices].astype(np.int64)
+    starts = shape.face_starts.copy()
+    face_of_corner = np.repeat(np.arange(shape.n_faces), np.diff(starts))
+    following = _following(starts)
+    normals, blunt, width = np.empty((shape.n_faces, 3)), np.empty(shape.n_faces), np.empty(shape.n_faces)
+    bent = np.empty(shape.n_faces, dtype=np.bool_)
+    face_planes(vertices, starts, corners, normals, blunt, width, bent)
+    owned_vertices, vertex_starts = _owned(corners, face_of_corner, shape.n_faces)
+    edges = np.stack([corners, corners[following]], axis=1)
+    owned_edges, edge_starts = _owned(np.sort(edges, axis=1), face_of_corner, shape.n_faces)
+    axes, centres, halves, children = _tree(vertices[corners], starts)
+    _, first_faces = np.unique(shape.face_component, return_index=True)
+    probes = corners[starts[first_faces]]
+    solid_faces = np.flatnonzero(shape.component_closed[shape.face_component])
+    return Surface(
+        vertices=vertices,
+        exact=vertices,
+        face_starts=starts,
+        face_vertices=corners,
+        normals=normals,
+        blunt=blunt,
+        width=width,
+        bent=bent,
+        corner_normals=_corner_normals(vertices, edges, normals[face_of_corner]),
+        vertex_starts=vertex_starts,
+        owned_vertices=owned_vertices,
+        edge_starts=edge_starts,
+        owned_edges=owned_edges,
+        axes=axes,
+        centres=centres,
+        halves=halves,
+        children=children,
+        roots=np.zeros(1, dtype=np.int64),
+        probe_starts=np.array([0, len(probes)]),
+        probes=probes,
+        solid_starts=np.array([0, len(solid_faces)]),
+        solid_faces=solid_faces,
+    )
+
+
+def _following(starts: np.ndarray) -> np.ndarray:
+    """(c,) for each corner the next corner of the same face."""
+    following = np.arange(1, starts[-1] + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    return following
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """The vectors at length 1; zero vectors stay zero. Scaled first, so that nothing under- or overflows."""
+    largest = np.abs(vectors).max(axis=1, keepdims=True)
+    scaled = np.divide(vectors, largest, out=np.zeros_like(vectors), where=largest > 0.0)
+    length = np.sqrt((scaled**2).sum(axis=1, keepdims=True))
+    return np.divide(scaled, length, out=np.zeros_like(vectors), where=length > 0.0)
+
+
+def _corner_normals(vertices: np.ndarray, edges: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(c, 3) unit vectors in the faces' planes, outward across the edge that starts at each corner."""
+    return _unit(np.cross(vertices[edges[:, 1]] - vertices[edges[:, 0]], normals))
+
+
+def _owned(
+    features: np.ndarray, face_of_corner: np.ndarray, n_faces: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The distinct features (vertices or edges), each under the first face that holds it, and their starts."""
+    _, first = np.unique(features, axis=0, return_index=True)
+    first.sort()
+    counts = np.bincount(face_of_corner[first], minlength=n_faces)
+    return np.ascontiguousarray(features[first]), np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+
+
+def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Axes, centres, half sizes and children of the tree's nodes."""
+    n_nodes = 2 * len(starts) - 3
+    nodes = (
+        np.empty((n_nodes, 3, 3)),
+        np.empty((n_nodes, 3)),
+        np.empty((n_nodes, 3)),
+        np.empty((n_nodes, 2), dtype=np.int64),
+    )
+    build_tree(corner_points, starts, *nodes)
+    return nodes

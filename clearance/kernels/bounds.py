@@ -1,0 +1,167 @@
+"""Lower bounds: each pruning rule is a function that never exceeds the distance it bounds."""
+
+import math
+from typing import NamedTuple
+
+from clearance.jit import inlined
+from clearance.kernels.vec3 import Rigid, Vec3, dot, row, sub, turn, turn_back
+
+SLACK = 128.0 * 2.0**-53
+"""Rounding of a box bound, relative to the sum of the coordinates' magnitudes: 40 operations, doubled."""
+
+
+@inlined
+def _axis_gap(centre, half_a, half_b, slack):
+    gap = abs(centre) - half_a - half_b - slack
+    return gap if gap > 0.0 else 0.0
+
+
+@inlined
+def _between_boxes(a, node_a, b, node_b, m):
+    """The rotation from the axes of box b to those of box a; its `t` is b's centre in the frame of box a."""
+    p = a.axes[node_a]
+    q = b.axes[node_b]
+    u = turn(m, Vec3(q[0, 0], q[0, 1], q[0, 2]))
+    v = turn(m, Vec3(q[1, 0], q[1, 1], q[1, 2]))
+    w = turn(m, Vec3(q[2, 0], q[2, 1], q[2, 2]))
+    x = Vec3(p[0, 0], p[0, 1], p[0, 2])
+    y = Vec3(p[1, 0], p[1, 1], p[1, 2])
+    z = Vec3(p[2, 0], p[2, 1], p[2, 2])
+    d = sub(turn(m, row(b.centres, node_b)), sub(row(a.centres, node_a), m.t))
+    return Rigid(
+        dot(x, u), dot(x, v), dot(x, w),
+        dot(y, u), dot(y, v), dot(y, w),
+        dot(z, u), dot(z, v), dot(z, w),
+        Vec3(dot(x, d), dot(y, d), dot(z, d)),
+    )  # fmt: skip
+
+
+@inlined
+def lower_bound_boxes_sq(a, node_a, b, node_b, m, slack):
+    """A lower bound on the squared distance of two node boxes.
+
+    The greatest of three: in the frame of either box the other one fits in an axis-parallel box of half
+    sizes |R| h, and the distance of two axis-parallel boxes is known; along the line of the centres both
+    boxes reach no farther than the sum of their half sizes' shares.
+    """
+    n = _between_boxes(a, node_a, b, node_b, m)
+    h = row(a.halves, node_a)
+    k = row(b.halves, node_b)
+    d = n.t
+    x = _axis_gap(d.x, h.x, abs(n.xx) * k.x + abs(n.xy) * k.y + abs(n.xz) * k.z, slack)
+    y = _axis_gap(d.y, h.y, abs(n.yx) * k.x + abs(n.yy) * k.y + abs(n.yz) * k.z, slack)
+    z = _axis_gap(d.z, h.z, abs(n.zx) * k.x + abs(n.zy) * k.y + abs(n.zz) * k.z, slack)
+    in_a = x * x + y * y + z * z
+    e = turn_back(n, d)
+    x = _axis_gap(e.x, k.x, abs(n.xx) * h.x + abs(n.yx) * h.y + abs(n.zx) * h.z, slack)
+    y = _axis_gap(e.y, k.y, abs(n.xy) * h.x + abs(n.yy) * h.y + abs(n.zy) * h.z, slack)
+    z = _axis_gap(e.z, k.z, abs(n.xz) * h.x + abs(n.yz) * h.y + abs(n.zz) * h.z, slack)
+    in_b = x * x + y * y + z * z
+    gap_sq = dot(d, d)
+    reach = abs(d.x) * h.x + abs(d.y) * h.y + abs(d.z) * h.z
+    reach += abs(e.x) * k.x + abs(e.y) * k.y + abs(e.z) * k.z
+    between_centres_sq = 0.0
+    if gap_sq > reach:
+        between = (gap_sq - reach) / math.sqrt(gap_sq) - slack
+        between_centres_sq = between * between if between > 0.0 else 0.0
+    return max(in_a, max(in_b, between_centres_sq))
+
+
+class Sight(NamedTuple):
+    """A direction in which two bodies are seen apart: along `u` in the frame of a, `v` in that of b.
+
+    Any unit vector gives a valid bound; that of the best witness points gives a tight one.
+    """
+
+    u: Vec3
+    v: Vec3
+    offset: float  # [m] u . t of `a_from_b`
+
+
+@inlined
+def sight_along(p, q, m):
+    """The sight from `p` to `q` (frame of a); one of zero length bounds nothing."""
+    d = sub(q, p)
+    length = math.sqrt(dot(d, d))
+    if length > 0.0:
+        d = Vec3(d.x / length, d.y / length, d.z / length)
+    return Sight(d, turn_back(m, d), dot(d, m.t))
+
+
+@inlined
+def _box_reach(surface, node, direction):
+    """[m] how far a node's box reaches from its centre along a direction."""
+    axes = surface.axes[node]
+    half = surface.halves[node]
+    reach = 0.0
+    for i in range(3):
+        share = axes[i, 0] * direction.x + axes[i, 1] * direction.y + axes[i, 2] * direction.z
+        reach += half[i] * abs(share)
+    return reach
+
+
+@inlined
+def lower_bound_boxes_in_sight(a, node_a, b, node_b, sight):
+    """[m] a lower bound on the distance of two node boxes, without their rounding slack; may be negative."""
+    far_of_a = dot(sight.u, row(a.centres, node_a)) + _box_reach(a, node_a, sight.u)
+    near_of_b = dot(sight.v, row(b.centres, node_b)) - _box_reach(b, node_b, sight.v)
+    return near_of_b + sight.offset - far_of_a
+
+
+@inlined
+def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
+    """[m] a lower bound on the distance of two faces, without rounding slack; may be negative."""
+    far_of_a = -math.inf
+    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
+        far_of_a = max(far_of_a, dot(sight.u, row(a.vertices, a.face_vertices[c])))
+    near_of_b = math.inf
+    for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
+        near_of_b = min(near_of_b, dot(sight.v, row(b.vertices, b.face_vertices[c])))
+    return near_of_b + sight.offset - far_of_a
+
+
+@inlined
+def _reach(surface, root):
+    """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
+    reach = 0.0
+    for axis in range(3):
+        reach += abs(surface.centres[root, axis]) + 2.0 * surface.halves[root, axis]
+    return reach
+
+
+@inlined
+def rounding_slack(a, root_a, b, root_b, frames):
+    """[m] how much rounding, and rotations that are not quite orthonormal, can raise a box bound."""
+    t = frames.m.t
+    apart = abs(t.x) + abs(t.y) + abs(t.z)
+    return (SLACK + 8.0 * frames.defect) * (apart + _reach(a, root_a) + _reach(b, root_b))
+
+
+@inlined
+def displacement(surface, root, before, after):
+    """[m] an upper bound on how far a motion of the body from one pose to another moves any of its points.
+
+    The displacement is the norm of an affine map, hence convex: its maximum over the body's box is
+    attained at a corner. `before` and `after` are (4, 4) poses.
+    """
+    most_sq = 0.0
+    axes = surface.axes[root]
+    half = surface.halves[root]
+    for corner in range(8):
+        sx = half[0] if corner & 1 else -half[0]
+        sy = half[1] if corner & 2 else -half[1]
+        sz = half[2] if corner & 4 else -half[2]
+        x = surface.centres[root, 0] + sx * axes[0, 0] + sy * axes[1, 0] + sz * axes[2, 0]
+        y = surface.centres[root, 1] + sx * axes[0, 1] + sy * axes[1, 1] + sz * axes[2, 1]
+        z = surface.centres[root, 2] + sx * axes[0, 2] + sy * axes[1, 2] + sz * axes[2, 2]
+        moved_sq = 0.0
+        for i in range(3):
+            moved = (
+                (after[i, 0] - before[i, 0]) * x
+                + (after[i, 1] - before[i, 1]) * y
+                + (after[i, 2] - before[i, 2]) * z
+                + (after[i, 3] - before[i, 3])
+            )
+            moved_sq += moved * moved
+        most_sq = max(most_sq, moved_sq)
+    return math.sqrt(most_sq) * (1.0 + SLACK)

@@ -1,0 +1,224 @@
+"""The nearest features of two faces in doubles: a filter that leaves out nothing that could be the minimum.
+
+The minimum of two polygons is attained by a vertex and a face, a vertex and an edge, or two edges inside
+both; each is a candidate here, over the features that the two faces own. Not for: the answer itself
+(`refine`), contact (`predicates`), and which face pairs to ask (`descent`).
+"""
+
+import math
+from typing import NamedTuple
+
+from clearance.jit import inlined
+from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
+from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
+
+ROUGH = 2.0**-44
+"""Relative error of a height over a face whose corners are all blunt; it grows as 1 / angle^2: the normal is
+off by 16 u / angle, and a foot next to a corner by that over the angle."""
+
+
+class Hit(NamedTuple):
+    """A pair of points, both in the frame of body a until it is the answer, which is in the world.
+
+    Attributes:
+        gap_sq: [m^2] an upper bound on the squared distance but for the margin of rounding; in an answer
+            the square of the distance.
+    """
+
+    gap_sq: float
+    face_a: int
+    face_b: int
+    p: Vec3
+    q: Vec3
+
+
+class Near(NamedTuple):
+    """The best pair so far, and the least squared distance seen in a face pair that could be the minimum."""
+
+    best: Hit
+    near_sq: float
+
+
+@inlined
+def limit_of(a, face_a, b, face_b, best_gap, margin):
+    """[m] the greatest distance in doubles that a feature pair of two faces may have and still win."""
+    blunt_a, blunt_b = a.blunt[face_a], b.blunt[face_b]
+    rough = ROUGH * (blunt_a * blunt_a + blunt_b * blunt_b)
+    return (
+        best_gap * (1.0 + rough)
+        + margin * (2.0 + blunt_a + blunt_b)
+        + 2.0 * (a.width[face_a] + b.width[face_b])
+    )
+
+
+@inlined
+def take(near, found_sq, upper_sq, face_a, face_b, p, q):
+    """`near` with one more candidate, which is within the limit."""
+    best = near.best
+    if upper_sq < best.gap_sq:
+        best = Hit(upper_sq, face_a, face_b, p, q)
+    return Near(best, min(near.near_sq, found_sq))
+
+
+@inlined
+def is_over(surface, face, x):
+    """True if the foot of `x` on the plane of `face` lies in the face (body frame)."""
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        outward = row(surface.corner_normals, c)
+        if dot(outward, sub(x, row(surface.vertices, surface.face_vertices[c]))) > 0.0:
+            return False
+    return True
+
+
+@inlined
+def may_be_over(surface, face, x, margin):
+    """True unless the foot of `x` is outside the face by more than rounding."""
+    room = margin * surface.blunt[face] + surface.width[face]
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        outward = row(surface.corner_normals, c)
+        d = sub(x, row(surface.vertices, surface.face_vertices[c]))
+        if dot(outward, d) > LOOSE * (abs(d.x) + abs(d.y) + abs(d.z)) + room:
+            return False
+    return True
+
+
+@inlined
+def height(surface, face, x):
+    """The signed height of `x` over the plane of `face` (body frame)."""
+    first = row(surface.vertices, surface.face_vertices[surface.face_starts[face]])
+    return dot(row(surface.normals, face), sub(x, first))
+
+
+@inlined
+def has_plane(surface, face):
+    """True if the face has a normal that is more than rounding."""
+    n = row(surface.normals, face)
+    return n.x != 0.0 or n.y != 0.0 or n.z != 0.0
+
+
+@inlined
+def _upper_sq(surface, face, h, margin):
+    """An upper bound on the squared distance of a point at height `h` over the face."""
+    blunt = surface.blunt[face]
+    upper = abs(h) * (1.0 + ROUGH * blunt * blunt) + margin * blunt + surface.width[face]
+    return upper * upper
+
+
+@inlined
+def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
+    """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
+    if has_plane(b, face_b):
+        for i in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            p = row(a.vertices, a.owned_vertices[i])
+            x = move_back(m, p)
+            h = height(b, face_b, x)
+            if h * h <= limit_sq and is_over(b, face_b, x):
+                q = move(m, along(x, -h, row(b.normals, face_b)))
+                upper_sq = _upper_sq(b, face_b, h, margin)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q)
+    return near
+
+
+@inlined
+def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
+    """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
+    flat = has_plane(a, face_a)
+    for i in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        q = move(m, row(b.vertices, b.owned_vertices[i]))
+        if flat:
+            h = height(a, face_a, q)
+            if h * h <= limit_sq and is_over(a, face_a, q):
+                p = along(q, -h, row(a.normals, face_a))
+                upper_sq = _upper_sq(a, face_a, h, margin)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q)
+        for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
+            p0 = row(a.vertices, a.owned_edges[e, 0])
+            p1 = row(a.vertices, a.owned_edges[e, 1])
+            inside, p = foot_inside(q, p0, p1)
+            if inside:
+                found_sq = gap_sq(p, q)
+                if found_sq <= limit_sq:
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+    return near
+
+
+@inlined
+def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
+    """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`."""
+    for k in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
+        q0 = move(m, row(b.vertices, b.owned_edges[k, 0]))
+        q1 = move(m, row(b.vertices, b.owned_edges[k, 1]))
+        for i in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            p = row(a.vertices, a.owned_vertices[i])
+            inside, q = foot_inside(p, q0, q1)
+            if inside:
+                found_sq = gap_sq(p, q)
+                if found_sq <= limit_sq:
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+        for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
+            p0 = row(a.vertices, a.owned_edges[e, 0])
+            p1 = row(a.vertices, a.owned_edges[e, 1])
+            inside, p, q = common_perpendicular(p0, p1, q0, q1)
+            if inside:
+                found_sq = gap_sq(p, q)
+                if found_sq <= limit_sq:
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+    return near
+
+
+@inlined
+def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
+    """`near` with owned vertices against owned vertices."""
+    for i in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        q = move(m, row(b.vertices, b.owned_vertices[i]))
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            p = row(a.vertices, a.owned_vertices[k])
+            found_sq = gap_sq(p, q)
+            if found_sq <= limit_sq:
+                near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+    return near
+
+
+@inlined
+def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
+    """The best pair of points, and the nearest that two faces come if it could be the minimum, else infinity.
+
+    Args:
+        m: `a_from_b`.
+        margin: [m] rounding of a distance between two points of the bodies.
+    """
+    limit = limit_of(a, face_a, b, face_b, math.sqrt(best.gap_sq), margin)
+    limit_sq = limit * limit
+    near = Near(best, math.inf)
+    near = vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near)
+    near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
+    near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)
+    return edges_to_edges(a, face_a, b, face_b, m, limit_sq, near)
+
+
+@inlined
+def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
+    """True if all corners of the other face are clearly on one side of the plane of `face`."""
+    least, most = math.inf, -math.inf
+    for c in range(other.face_starts[face_other], other.face_starts[face_other + 1]):
+        x = row(other.vertices, other.face_vertices[c])
+        h = height(surface, face, move(m, x) if is_a else move_back(m, x))
+        least, most = min(least, h), max(most, h)
+    return least > tolerance or most < -tolerance
+
+
+@inlined
+def may_meet(a, face_a, b, face_b, m, margin):
+    """False only if one face is clearly on one side of the other's plane."""
+    far = margin / (512.0 * 2.0**-53)
+    if has_plane(a, face_a):
+        blunt = a.blunt[face_a]
+        tolerance = 2.0 * a.width[face_a] + margin + ROUGH * blunt * blunt * far
+        if _on_one_side(a, face_a, b, face_b, m, True, tolerance):
+            return False
+    if has_plane(b, face_b):
+        blunt = b.blunt[face_b]
+        tolerance = 2.0 * b.width[face_b] + margin + ROUGH * blunt * blunt * far
+        if _on_one_side(b, face_b, a, face_a, m, False, tolerance):
+            return False
+    return True

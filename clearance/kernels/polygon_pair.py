@@ -1,0 +1,203 @@
+"""Distances of single pairs of polygons, in batches, without trees."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.jit import inlined, kernel
+from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
+from clearance.kernels.descent import nothing_yet
+from clearance.kernels.double_double import Frames, Wide, Wide3, minus3, root, rounded
+from clearance.kernels.face_pair import limit_of, may_meet, nearest_of_faces
+from clearance.kernels.face_planes import plane_of, unit
+from clearance.kernels.predicates import faces_meet, room_for_exact
+from clearance.kernels.refine import Ask, common_points, error_of, nothing_refined, refine_faces
+from clearance.kernels.surface import Surface
+from clearance.kernels.vec3 import Rigid, Vec3, cross, dot, row, sub
+
+UNDERFLOWN = 2.0**-400
+"""Distance at our scale below which squares underflow: 10^-180 of the polygons' size."""
+
+LEAST = 2.0**-1074
+"""[m] The least double: half of it is lost when a tiny answer is scaled back."""
+
+
+class Answers(NamedTuple):
+    """One row a polygon pair.
+
+    Attributes:
+        distance, error: (k,) [m]. points: (k, 2, 3) witness points [m].
+        contact: (k,) bool. exact: (k,) True where the decision took exact arithmetic.
+    """
+
+    distance: np.ndarray
+    error: np.ndarray
+    points: np.ndarray
+    contact: np.ndarray
+    exact: np.ndarray
+
+
+@inlined
+def _empty_surface(n):
+    """Room for one polygon of n vertices that owns all its features."""
+    nodes = np.empty((0, 3))
+    none = np.empty(0, dtype=np.int64)
+    ends = np.array([0, n])
+    around = np.arange(n)
+    edges = np.empty((n, 2), dtype=np.int64)
+    for i in range(n):
+        edges[i, 0] = i
+        edges[i, 1] = (i + 1) % n
+    return Surface(
+        np.empty((n, 3)), np.empty((n, 3)), ends, around, np.empty((1, 3)), np.empty(1), np.empty(1),
+        np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, ends, edges,
+        np.empty((0, 3, 3)), nodes, nodes, np.empty((0, 2), dtype=np.int64),
+        none, none, none, none, none,
+    )  # fmt: skip
+
+
+@inlined
+def _order(p, i, q, j):
+    """-1, 0 or 1: the order of two points by their coordinates."""
+    for axis in range(3):
+        if p[i, axis] != q[j, axis]:
+            return -1 if p[i, axis] < q[j, axis] else 1
+    return 0
+
+
+@inlined
+def _first_corner(points):
+    """The corner from which the polygon, read round, is least: the same one however it is rotated."""
+    n = points.shape[0]
+    best = 0
+    for i in range(1, n):
+        for k in range(n):
+            order = _order(points, (i + k) % n, points, (best + k) % n)
+            if order < 0:
+                best = i
+            if order != 0:
+                break
+    return best
+
+
+@inlined
+def _comes_first(p, first_p, q, first_q):
+    """True if p is the first of the two, whichever way they are given."""
+    n, m = p.shape[0], q.shape[0]
+    if n != m:
+        return n < m
+    for k in range(n):
+        order = _order(p, (first_p + k) % n, q, (first_q + k) % m)
+        if order != 0:
+            return order < 0
+    return True
+
+
+@inlined
+def _scale_of(ps, qs, origin):
+    """The power of two that makes the greatest coordinate difference about 2^200.
+
+    Then products of four lengths stay finite, and products with the least doubles keep their digits.
+    """
+    most = 0.0
+    for axis in range(3):
+        for i in range(ps.shape[0]):
+            most = max(most, abs(ps[i, axis] - origin[axis]))
+        for i in range(qs.shape[0]):
+            most = max(most, abs(qs[i, axis] - origin[axis]))
+    if not most > 0.0:
+        return 1.0, 1.0
+    k = max(-500, min(1000, 200 - math.frexp(most)[1]))
+    return math.ldexp(1.0, k), math.ldexp(1.0, -k)
+
+
+@inlined
+def _fill(surface, points, first, origin, scale):
+    """Puts one polygon, read from its first corner, and its plane data into `surface`; its greatest reach."""
+    n = points.shape[0]
+    reach = 0.0
+    for i in range(n):
+        total = 0.0
+        for axis in range(3):
+            x = points[(first + i) % n, axis]
+            surface.exact[i, axis] = x * scale
+            surface.vertices[i, axis] = (x - origin[axis]) * scale
+            total += abs(surface.vertices[i, axis])
+        reach = max(reach, total)
+    normal, blunt, width = plane_of(surface.vertices, surface.face_vertices, 0, n)
+    surface.blunt[0], surface.width[0] = blunt, width
+    surface.bent[0] = n > 3
+    for i in range(n):
+        along_edge = sub(row(surface.vertices, (i + 1) % n), row(surface.vertices, i))
+        outward = unit(cross(along_edge, normal))
+        for axis in range(3):
+            surface.corner_normals[i, axis] = outward[axis]
+    for axis in range(3):
+        surface.normals[0, axis] = normal[axis]
+    return reach
+
+
+@inlined
+def _frames():
+    still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
+    zero = Wide(0.0, 0.0)
+    return Frames(still, still, still, Wide3(zero, zero, zero), 0.0)
+
+
+@inlined
+def _measure(a, b, frames, margin, exact):
+    """(distance, error, p, q, contact) of the two polygons that are filled in."""
+    near = nearest_of_faces(a, 0, b, 0, frames.m, margin, nothing_yet(np.inf))
+    sight = sight_along(near.best.p, near.best.q, frames.m)
+    if (
+        lower_bound_faces_in_sight(a, 0, b, 0, sight) <= margin
+        and may_meet(a, 0, b, 0, frames.m, margin)
+        and faces_meet(a, 0, b, 0, frames, exact)
+    ):
+        common = common_points(a, 0, b, 0, frames)
+        return 0.0, 0.0, rounded(common.p), rounded(common.q), True
+    limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
+    refined = refine_faces(a, 0, b, 0, frames, Ask(limit, margin), nothing_refined())
+    distance = root(refined.gap_sq).hi
+    error = error_of(refined, distance)
+    if distance < UNDERFLOWN:  # its square is not a number any more
+        d = rounded(minus3(refined.q, refined.p))
+        most = max(abs(d.x), max(abs(d.y), abs(d.z)))
+        distance = 0.0
+        if most > 0.0:
+            d = Vec3(d.x / most, d.y / most, d.z / most)
+            distance = most * np.sqrt(dot(d, d))
+        error = 2.0 * distance
+    return distance, error, rounded(refined.p), rounded(refined.q), False
+
+
+@kernel
+def nearest_polygons(ps, qs, answers):
+    """Fills `answers` for each pair `ps[k]`, `qs[k]`."""
+    a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
+    frames = _frames()
+    exact = room_for_exact()
+    for k in range(ps.shape[0]):
+        first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
+        in_order = _comes_first(ps[k], first_p, qs[k], first_q)
+        origin = ps[k, first_p] if in_order else qs[k, first_q]
+        scale, unscale = _scale_of(ps[k], qs[k], origin)
+        reach = _fill(a_p, ps[k], first_p, origin, scale)
+        reach += _fill(b_q, qs[k], first_q, origin, scale)
+        margin = 4.0 * SLACK * reach
+        before = exact.count[0]
+        a, b = a_p, b_q
+        if not in_order:
+            a, b = b_q, a_p
+        distance, error, p, q, contact = _measure(a, b, frames, margin, exact)
+        if not in_order:
+            p, q = q, p
+        answers.distance[k] = distance * unscale
+        error *= unscale
+        answers.error[k] = error if error > 0.0 or contact else LEAST
+        answers.contact[k] = contact
+        answers.exact[k] = exact.count[0] > before
+        for axis in range(3):
+            answers.points[k, 0, axis] = p[axis] * unscale
+            answers.points[k, 1, axis] = q[axis] * unscale

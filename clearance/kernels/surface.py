@@ -1,0 +1,56 @@
+"""The flat form in which kernels see polyhedra: faces, the features each face answers for, and the tree.
+
+Every vertex and edge is owned by the face of least index that holds it, so that a search over face pairs
+meets each pair of features once (Curtis, Tamstorf & Manocha 2008, representative triangles) and ties fall
+to the least index by themselves. Several bodies lie behind one another in one `Surface`, with `roots`.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Surface(NamedTuple):
+    """Bodies as flat arrays; all indices are into these arrays.
+
+    Attributes:
+        vertices: (v, 3) [m], each in the frame of its body, ordered by coordinates.
+        exact: (v, 3) [m] the vertices as given, where `vertices` are rounded differences; else the same.
+        face_starts, face_vertices: (f + 1,), (c,) corners of the faces in order.
+        normals: (f, 3) unit outward, zeros where a face is so slender that rounding decides them.
+        blunt: (f,) the reciprocal of a lower bound on the sharpest corner's angle; 1 without a normal.
+        width: (f,) [m] how far the fan of the face may be from its plane, or from its edges without one.
+        bent: (f,) True where the corners are not exactly in one plane.
+        corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
+        vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
+        edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns.
+        axes, centres, halves: (n, 3, 3) unit axes as rows, (n, 3) [m], (n, 3) [m]: boxes of the tree's
+            nodes in the body frame.
+        children: (n, 2) node indices; for a leaf (face, -1).
+        roots: (bodies,) root nodes.
+        probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
+        solid_starts, solid_faces: (bodies + 1,), the faces of closed, consistently oriented components.
+    """
+
+    vertices: np.ndarray
+    exact: np.ndarray
+    face_starts: np.ndarray
+    face_vertices: np.ndarray
+    normals: np.ndarray
+    blunt: np.ndarray
+    width: np.ndarray
+    bent: np.ndarray
+    corner_normals: np.ndarray
+    vertex_starts: np.ndarray
+    owned_vertices: np.ndarray
+    edge_starts: np.ndarray
+    owned_edges: np.ndarray
+    axes: np.ndarray
+    centres: np.ndarray
+    halves: np.ndarray
+    children: np.ndarray
+    roots: np.ndarray
+    probe_starts: np.ndarray
+    probes: np.ndarray
+    solid_starts: np.ndarray
+    solid_faces: np.ndarray

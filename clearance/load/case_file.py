@@ -1,0 +1,139 @@
+"""A case file, and all files that it names, to a `Case`: the one entry to this room.
+
+Everything is checked here or on the way, so that a `Case` that exists can be run: names refer to
+something, numbers are finite, shapes are solids, times increase.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from clearance.errors import MissingFile, at
+from clearance.load import schema
+from clearance.load.allow import checked_links, checked_pairs
+from clearance.load.input_files import InputFiles, resolved
+from clearance.load.mesh_store import MeshStore
+from clearance.load.motion_names import (
+    check_joint_names,
+    check_not_given_twice,
+    note_on_joints_at_zero,
+)
+from clearance.load.plausibility import limit_notes, motion_notes, obstacle_notes
+from clearance.load.scene_file import make_obstacles
+from clearance.load.schema_errors import validated
+from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.urdf import UrdfRequest, read_robot
+from clearance.load.yaml_file import parse_yaml
+from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.pairs import measured_pairs
+from clearance.world.robot import Robot
+from clearance.world.trajectory import Trajectory
+
+
+def load_case(path: str | Path) -> Case:
+    """The case in a YAML file, with robot, scene and trajectory read and checked.
+
+    Args:
+        path: the case file; the paths in it are relative to its folder.
+
+    Raises:
+        BadInput: what was wrong, in which file and field, and what would be valid.
+    """
+    path = Path(path)
+    files = InputFiles(path.parent)
+    meshes = MeshStore(files)
+    given, scene_at = _read_schema(path, files)
+    with at(path.name):
+        placed = _placed_robot(given, path.parent, meshes)
+    with at(scene_at.place):
+        obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
+    with at(path.name):
+        robot = placed.robot
+        allow = checked_pairs(given.allow, robot.link_names, [o.name for o in obstacles])
+    limits = _limits(given.limits)
+    notes = [
+        *limit_notes(limits),
+        *obstacle_notes(given.scene.obstacles),
+        *motion_notes(placed),
+        *note_on_joints_at_zero(robot, [*placed.trajectory.joint_names, *placed.fixed_positions]),
+        *scene_notes,
+    ]
+    case = Case(
+        name=given.name,
+        robots=(placed,),
+        obstacles=obstacles,
+        limits=limits,
+        allow=allow,
+        contact_response=given.contact_response,
+        sources=files.sources,
+        notes=tuple(notes),
+    )
+    with at(path.name):
+        measured_pairs(case)  # refuses a case that leaves nothing to measure
+    return case
+
+
+@dataclass(frozen=True)
+class _ScenePlace:
+    """Where the obstacles are written: file and field for errors, folder for mesh files."""
+
+    place: str
+    folder: Path
+
+
+def _read_schema(path: Path, files: InputFiles) -> tuple[schema.Case, _ScenePlace]:
+    raw = parse_yaml(files.read(path), path.name)
+    scene_at = _ScenePlace(f"{path.name}: scene", path.parent)
+    if isinstance(raw, dict) and isinstance(raw.get("scene"), str):
+        with at(f"{path.name}: scene"):
+            scene_path = resolved(raw["scene"], path.parent)
+            shown = files.shown(scene_path)
+            scene = parse_yaml(files.read(scene_path), shown)
+            validated(schema.Scene, scene, shown)
+        raw = {**raw, "scene": scene}
+        scene_at = _ScenePlace(f"{path.name}: scene: {shown}", scene_path.parent)
+    return validated(schema.Case, raw, path.name), scene_at
+
+
+def _placed_robot(given: schema.Case, folder: Path, meshes: MeshStore) -> PlacedRobot:
+    urdf_path = resolved(given.robot.urdf, folder)
+    package_dirs = tuple(resolved(text, folder) for text in given.robot.package_dirs)
+    with at("robot.package_dirs"):
+        _refuse_missing_folders(given.robot.package_dirs, package_dirs)
+    with at("robot.urdf"):
+        robot = read_robot(UrdfRequest(urdf_path, package_dirs, given.robot.geometry), meshes)
+    trajectory = _trajectory(resolved(given.trajectory.file, folder), robot, meshes)
+    with at("robot.joints"):
+        check_joint_names(given.robot.joints, robot)
+        check_not_given_twice(given.robot.joints, trajectory.joint_names)
+    with at("robot.exclude_links"):
+        exclude_links = checked_links(given.robot.exclude_links, robot.link_names)
+    return PlacedRobot(
+        robot=robot,
+        trajectory=trajectory,
+        world_from_base=given.robot.base.matrix(),
+        fixed_positions=dict(given.robot.joints),
+        exclude_links=exclude_links,
+        urdf_path=str(urdf_path),
+        package_dirs=tuple(str(path) for path in package_dirs),
+    )
+
+
+def _refuse_missing_folders(given: list[str], package_dirs: tuple[Path, ...]) -> None:
+    for i, (text, path) in enumerate(zip(given, package_dirs, strict=True)):
+        if not path.is_dir():
+            raise MissingFile(f"there is no folder {text!r}", where=f"[{i}]")
+
+
+def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
+    with at("trajectory.file"):
+        shown = meshes.files.shown(path)
+        trajectory = parse_trajectory(meshes.files.read(path), shown)
+        with at(shown):
+            check_joint_names(trajectory.joint_names, robot)
+    return trajectory
+
+
+def _limits(given: schema.Limits) -> Limits:
+    return Limits(given.fail, given.fail if given.warn is None else given.warn)

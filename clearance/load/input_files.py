@@ -1,0 +1,111 @@
+"""The files of one case: each is read once, through here, and remembered with its sha256 for the
+summary.
+
+Paths are shown relative to the case's folder, so that messages and summaries do not depend on the
+machine. Not for: what is in the files.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+from pathlib import Path
+
+from clearance.errors import MissingFile, Unavailable
+from clearance.world.case import Source
+
+_PYBULLET_DATA = "pybullet_data:"
+
+
+class InputFiles:
+    """Reads files and keeps their checksums.
+
+    Args:
+        folder: the case's folder, against which paths are shown.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._contents: dict[Path, bytes] = {}
+        self._sources: dict[Path, Source] = {}
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """Every file read so far, sorted by its shown path."""
+        return tuple(sorted(self._sources.values(), key=lambda source: source.path))
+
+    def read(self, path: Path) -> bytes:
+        """The content of a file; a second call gives the same bytes without reading again.
+
+        Raises:
+            MissingFile: it is not there, is a folder, or cannot be read.
+        """
+        path = Path(os.path.abspath(path))
+        if path not in self._contents:
+            data = read_bytes(path, self.shown(path))
+            self._contents[path] = data
+            digest = hashlib.sha256(data).hexdigest()
+            self._sources[path] = Source(self.shown(path), digest, len(data))
+        return self._contents[path]
+
+    def shown(self, path: Path) -> str:
+        """How a path is written in messages and summaries: the same on every machine."""
+        path = Path(os.path.abspath(path))
+        brought = _pybullet_data_folder()
+        if brought is not None and path.is_relative_to(brought):
+            return _PYBULLET_DATA + path.relative_to(brought).as_posix()
+        return relative_path(path, self.folder)
+
+
+def read_bytes(path: Path, shown: str) -> bytes:
+    """The content of the file at `path`, called `shown` in the error.
+
+    Raises:
+        MissingFile: it is not there, is a folder, or cannot be read.
+    """
+    try:
+        return path.read_bytes()
+    except FileNotFoundError:
+        raise MissingFile(
+            f"there is no file {shown!r}", valid="a path to a file is needed"
+        ) from None
+    except IsADirectoryError:
+        raise MissingFile(f"{shown!r} is a folder", valid="a path to a file is needed") from None
+    except OSError as error:
+        reason = (error.strerror or "unknown error").lower()
+        raise MissingFile(f"{shown!r} cannot be read: {reason}") from None
+
+
+def relative_path(path: Path, folder: Path) -> str:
+    """`path` as seen from `folder`, with `/`; the bare name where they share only the root."""
+    folder = Path(os.path.abspath(folder))
+    try:
+        shared = Path(os.path.commonpath([path, folder]))
+    except ValueError:  # two drives
+        return path.name
+    if shared == Path(shared.anchor) and folder != shared:
+        return path.name
+    return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def resolved(given: str, folder: Path) -> Path:
+    """The path that a text in a case file means: `pybullet_data:…`, or relative to `folder`.
+
+    Raises:
+        Unavailable: `pybullet_data:` without that package.
+    """
+    if not given.startswith(_PYBULLET_DATA):
+        return folder / given
+    brought = _pybullet_data_folder()
+    if brought is None:
+        raise Unavailable(f"{given!r} needs the package pybullet", valid="pip install pybullet")
+    return brought / given.removeprefix(_PYBULLET_DATA).lstrip("/")
+
+
+def _pybullet_data_folder() -> Path | None:
+    """Where pybullet keeps its models, found without importing pybullet (which takes 0.1 s)."""
+    found = importlib.util.find_spec("pybullet_data")
+    if found is None or found.origin is None:
+        return None
+    return Path(found.origin).parent

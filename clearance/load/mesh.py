@@ -1,0 +1,112 @@
+"""Mesh files to solids, and the one door to trimesh.
+
+STL, OBJ and COLLADA have readers of our own beside this file, because trimesh loses or bends
+something in each (NOTES.md); PLY, OFF and GLB are read by trimesh, which is imported only then (0.5
+s). trimesh's `process`, which merges points by a tolerance, is never used. Not for: primitive
+shapes (`geometry.shapes`).
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadSyntax, EmptyMesh, at
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.load.collada_file import Z_FROM_Y_UP, read_collada
+from clearance.load.input_files import read_bytes
+from clearance.load.obj_file import read_obj
+from clearance.load.stl_file import read_stl
+from clearance.load.triangles import Triangles, checked, n_without_area, scaled
+
+_OWN = {".stl": read_stl, ".obj": read_obj, ".dae": read_collada}
+_TRIMESH = (".ply", ".off", ".glb")
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMesh:
+    """A solid from a file.
+
+    Attributes:
+        shape: in metres, in the file's frame, scaled.
+        n_triangles: as many as the file has, polygons counted as the triangles they are cut into.
+        notes: what had to be mended or decided, one line each, without the file's name.
+    """
+
+    shape: Polyhedron
+    n_triangles: int
+    notes: tuple[str, ...]
+
+
+def read_mesh(path: str | PathLike[str], scale: float | Sequence[float] = 1.0) -> Polyhedron:
+    """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`).
+
+    Args:
+        scale: factor of all axes or of each; negative mirrors, and the faces stay counter-clockwise
+            from outside.
+
+    Raises:
+        MissingFile, BadSyntax, EmptyMesh, NotFinite, BadPolygon, BadDimension: with the file's
+        name.
+    """
+    path = Path(path)
+    return mesh_from_bytes(read_bytes(path, path.name), path.name, scale).shape
+
+
+def mesh_from_bytes(data: bytes, name: str, scale: float | Sequence[float] = 1.0) -> LoadedMesh:
+    """The solid in the content of a mesh file; `name` gives the format and stands in errors."""
+    with at(name):
+        return _solid(scaled(triangles_from_bytes(data, name), scale))
+
+
+def triangles_from_bytes(data: bytes, name: str) -> Triangles:
+    """The triangles of a mesh file as they are in it, before anything is mended."""
+    suffix = Path(name).suffix.lower()
+    if suffix in _OWN:
+        return checked(_OWN[suffix](data))
+    if suffix in _TRIMESH:
+        return checked(_by_trimesh(data, suffix))
+    raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join([*_OWN, *_TRIMESH]))
+
+
+def _by_trimesh(data: bytes, suffix: str) -> Triangles:
+    import trimesh
+
+    try:
+        scene = trimesh.load_scene(io.BytesIO(data), file_type=suffix[1:], process=False)
+        pieces = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh)]
+    except Exception as error:  # trimesh raises whatever its parsing hits
+        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+        raise BadSyntax(
+            f"not a {suffix[1:].upper()} file that can be read: {reason:.200}"
+        ) from None
+    if not pieces:
+        raise EmptyMesh("the mesh has no faces", valid="at least one triangle is needed")
+    starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+    vertices = np.concatenate([piece.vertices for piece in pieces])
+    corners = np.concatenate([p.faces + s for p, s in zip(pieces, starts, strict=False)])
+    if suffix != ".glb":
+        return Triangles(vertices, corners)
+    return Triangles(vertices @ Z_FROM_Y_UP.T, corners, ("turned from y up to z up, as glTF says",))
+
+
+def _solid(triangles: Triangles) -> LoadedMesh:
+    given = Polyhedron.from_triangles(triangles.vertices, triangles.corners)
+    shape = given.outward()
+    notes = [*triangles.notes, *_notes_on_flat(n_without_area(triangles), shape)]
+    if shape is not given:
+        notes.append("closed surfaces that were inside out are turned round")
+    return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+
+
+def _notes_on_flat(n_flat: int, shape: Polyhedron) -> list[str]:
+    if not n_flat:
+        return []
+    n_kept = int(np.count_nonzero(~shape.normals.any(axis=1)))
+    kept = f"; {n_kept} are kept as faces, because nothing else covers them" if n_kept else ""
+    return [f"{n_flat} triangles have no area{kept or ' and are covered by their neighbours'}"]

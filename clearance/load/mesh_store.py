@@ -1,0 +1,35 @@
+"""The solids of one case's mesh files: each file is made once for each scale."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from clearance.load.input_files import InputFiles
+from clearance.load.mesh import LoadedMesh, mesh_from_bytes
+
+Scale = tuple[float, float, float]
+
+
+class MeshStore:
+    """Loads meshes through `files` and keeps them.
+
+    Args:
+        files: reads the files and remembers their checksums.
+    """
+
+    def __init__(self, files: InputFiles) -> None:
+        self.files = files
+        self._loaded: dict[tuple[str, Scale], LoadedMesh] = {}
+
+    def load(self, path: Path, scale: Scale) -> LoadedMesh:
+        """The solid in a mesh file; the same object for the same file and scale.
+
+        Raises:
+            BadInput: as `mesh.read_mesh`, with the path as it is shown.
+        """
+        key = (os.path.abspath(path), scale)
+        if key not in self._loaded:
+            data = self.files.read(path)
+            self._loaded[key] = mesh_from_bytes(data, self.files.shown(path), scale)
+        return self._loaded[key]

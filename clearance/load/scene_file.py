@@ -1,0 +1,66 @@
+"""Obstacles of a case or scene file to solids in the world. Not for: their schema."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from clearance.errors import DuplicateName, at
+from clearance.geometry import shapes
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.load import schema
+from clearance.load.input_files import resolved
+from clearance.load.mesh_store import MeshStore
+from clearance.world.body import Body, Obstacle
+
+
+def make_obstacles(
+    given: list[schema.Obstacle], folder: Path, meshes: MeshStore
+) -> tuple[tuple[Obstacle, ...], list[str]]:
+    """The obstacles in the file's order, and notes on meshes that had to be mended.
+
+    Args:
+        folder: against which mesh files are looked up.
+
+    Raises:
+        DuplicateName: two obstacles with one name. BadInput: a shape that no solid can have, a bad
+        mesh.
+    """
+    obstacles: dict[str, Obstacle] = {}
+    notes: list[str] = []
+    for i, item in enumerate(given):
+        with at(f"obstacles[{i}]"):
+            if item.name in obstacles:
+                raise DuplicateName(
+                    f"two obstacles have the name {item.name!r}", valid="each name once"
+                )
+            body, body_notes = _body(item, folder, meshes)
+        obstacles[item.name] = Obstacle(body, item.pose.matrix())
+        notes += [f"obstacle {item.name!r}: {note}" for note in body_notes]
+    return tuple(obstacles.values()), notes
+
+
+def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body, list[str]]:
+    if item.mesh is not None:
+        with at("mesh"):
+            path = resolved(item.mesh.file, folder)
+            mesh = meshes.load(path, item.mesh.factors)
+        shown = meshes.files.shown(path)
+        return Body(item.name, mesh.shape, shown), [f"{shown}: {note}" for note in mesh.notes]
+    key = next(key for key in schema.SHAPES if getattr(item, key) is not None)
+    with at(key):
+        return Body(item.name, _primitive(item), key), []
+
+
+def _primitive(item: schema.Obstacle) -> Polyhedron:
+    if item.box is not None:
+        return shapes.box(item.box.size)
+    if item.cylinder is not None:
+        return shapes.cylinder(radius=item.cylinder.radius, length=item.cylinder.length)
+    if item.sphere is not None:
+        return shapes.sphere(radius=item.sphere.radius)
+    return _pipe(item.pipe)
+
+
+def _pipe(pipe: schema.Pipe) -> Polyhedron:
+    given = pipe.model_dump(exclude_none=True)
+    return shapes.pipe(**given)

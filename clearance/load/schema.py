@@ -1,0 +1,209 @@
+"""The case file's schema: which keys there are, and what each may hold. Lengths in metres, angles
+in radians.
+
+Every model refuses keys it does not have and names the nearest valid one; numbers are numbers (no
+text, no `true`, no NaN). Not for: reading files, or names that must exist in the robot
+(`case_file`).
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
+from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+
+Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
+Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
+Positive = Annotated[float, Field(gt=0)]
+Name = Annotated[str, Field(min_length=1)]
+
+
+class Strict(BaseModel):
+    """A mapping whose keys are all known."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_keys(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            given = "nothing is given" if data is None else f"{data!r:.60} is given"
+            raise BadInput(
+                given, valid=f"a mapping is needed, with keys {', '.join(cls.model_fields)}"
+            )
+        for key in data:
+            if key not in cls.model_fields:
+                raise UnknownKey(
+                    f"unknown key {key!r}", valid=nearest_name(str(key), cls.model_fields)
+                )
+        return data
+
+
+class Pose(Strict):
+    """Where something stands: a point and a rotation (quaternion xyzw, or roll, pitch, yaw about
+    fixed axes).
+    """
+
+    xyz: Triple = [0.0, 0.0, 0.0]
+    quat_xyzw: Quadruple | None = None
+    rpy: Triple | None = None
+
+    @model_validator(mode="after")
+    def _is_rotation(self) -> Pose:
+        if self.quat_xyzw is not None and self.rpy is not None:
+            raise BadInput("both quat_xyzw and rpy are given", valid="give one of them")
+        self.matrix()
+        return self
+
+    def matrix(self) -> np.ndarray:
+        """The (4, 4) pose [m].
+
+        Raises:
+            BadPose: the quaternion is not of length one.
+        """
+        if self.quat_xyzw is not None:
+            return pose_from_quaternion(self.xyz, self.quat_xyzw)
+        return pose_from_rpy(self.xyz, self.rpy or [0.0, 0.0, 0.0])
+
+
+class Box(Strict):
+    """A box about its centre."""
+
+    size: Annotated[list[Positive], Field(min_length=3, max_length=3)]
+
+
+class Cylinder(Strict):
+    """A cylinder along z about its centre."""
+
+    radius: Positive
+    length: Positive
+
+
+class Sphere(Strict):
+    """A ball about its centre."""
+
+    radius: Positive
+
+
+class Pipe(Strict):
+    """A pipe: straight along z about its centre (`length`), or bent along a line of points
+    (`path`).
+    """
+
+    outer_radius: Positive
+    inner_radius: Annotated[float, Field(ge=0)]
+    length: Positive | None = None
+    sections: Annotated[int, Field(ge=3)] | None = None
+    path: Annotated[list[Triple], Field(min_length=2)] | None = None
+    bend_radius: Positive | None = None
+
+    @model_validator(mode="after")
+    def _bends_only_with_path(self) -> Pipe:
+        if self.path is None and self.bend_radius is not None:
+            raise BadInput(
+                "bend_radius is given without path", valid="a straight pipe has no bends"
+            )
+        return self
+
+
+class Mesh(Strict):
+    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
+
+    file: Name
+    scale: Triple = [1.0, 1.0, 1.0]
+
+    @field_validator("scale", mode="before")
+    @classmethod
+    def _number_or_three(cls, scale: Any) -> Any:
+        factors = scale if isinstance(scale, list) else [scale]
+        numbers = all(isinstance(f, int | float) and not isinstance(f, bool) for f in factors)
+        if not numbers or len(factors) not in (1, 3) or not np.isfinite(factors).all():
+            raise BadDimension(
+                f"{scale!r:.60} is given", valid="a finite number, or three, is needed"
+            )
+        if 0 in factors:
+            raise BadDimension(f"{scale!r:.60} is given", valid="a scale is not zero")
+        return [float(f) for f in factors] * (3 if len(factors) == 1 else 1)
+
+    @property
+    def factors(self) -> tuple[float, float, float]:
+        """The scale of each axis."""
+        x, y, z = self.scale
+        return x, y, z
+
+
+SHAPES = ("box", "pipe", "cylinder", "sphere", "mesh")
+
+
+class Obstacle(Strict):
+    """A named solid that stands somewhere."""
+
+    name: Name
+    pose: Pose = Pose()
+    box: Box | None = None
+    pipe: Pipe | None = None
+    cylinder: Cylinder | None = None
+    sphere: Sphere | None = None
+    mesh: Mesh | None = None
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Obstacle:
+        given = [key for key in SHAPES if getattr(self, key) is not None]
+        if len(given) != 1:
+            what = f"{' and '.join(given)} are given" if given else "it has no shape"
+            raise BadInput(what, valid=f"give exactly one of {', '.join(SHAPES)}")
+        return self
+
+
+class Scene(Strict):
+    """What stands around the robot."""
+
+    obstacles: list[Obstacle]
+
+
+class Robot(Strict):
+    """The robot, and what of it is measured."""
+
+    urdf: Name
+    package_dirs: list[Name] = []
+    base: Pose = Pose()
+    exclude_links: list[Name] = []
+    joints: dict[str, float] = {}
+    geometry: Literal["collision", "visual"] = "collision"
+
+
+class TrajectoryFile(Strict):
+    """Where the trajectory is."""
+
+    file: Name
+
+
+class Limits(Strict):
+    """Least clearances [m]: below `fail` the case is violated, below `warn` it is a near miss."""
+
+    fail: Annotated[float, Field(ge=0)] = 0.0
+    warn: Annotated[float, Field(ge=0)] | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Limits:
+        if self.warn is not None and self.warn < self.fail:
+            raise BadInput(
+                f"warn {self.warn:g} is below fail {self.fail:g}", valid="warn is at least fail"
+            )
+        return self
+
+
+class Case(Strict):
+    """A whole case file; `scene` may be a path, which is followed before this is checked."""
+
+    name: Name
+    robot: Robot
+    scene: Scene
+    trajectory: TrajectoryFile
+    limits: Limits = Limits()
+    allow: list[Annotated[list[Name], Field(min_length=2, max_length=2)]] = []
+    contact_response: bool = False

@@ -1,0 +1,74 @@
+"""What the schema library objects to, as one line of ours: given, where, what is valid."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from clearance.errors import BadDimension, BadInput, BadShape, ClearanceError, MissingKey, NotFinite
+
+Model = TypeVar("Model", bound=BaseModel)
+
+_FAULT: dict[str, type[BadInput]] = {
+    "finite_number": NotFinite,
+    "greater_than": BadDimension,
+    "too_short": BadShape,
+    "too_long": BadShape,
+}
+
+
+def validated(model: type[Model], data: object, shown: str) -> Model:
+    """The model made from plain data.
+
+    Args:
+        shown: the file's name in errors.
+
+    Raises:
+        BadInput: the first fault found, at `shown: path.to[2].field`.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise _translated(error.errors()[0], shown) from None
+
+
+def place(location: tuple[int | str, ...]) -> str:
+    """`("scene", "obstacles", 2, "pose")` as `scene.obstacles[2].pose`."""
+    text = ""
+    for part in location:
+        text += f"[{part}]" if isinstance(part, int) else f".{part}"
+    return text.lstrip(".")
+
+
+def _translated(detail: dict, shown: str) -> ClearanceError:
+    location = tuple(detail["loc"])
+    own = detail.get("ctx", {}).get("error")
+    if isinstance(own, ClearanceError):
+        inner = ".".join(part for part in (place(location), own.where) if part)
+        own.where = f"{shown}: {inner}" if inner else shown
+        return own
+    if detail["type"] == "missing":
+        return MissingKey(f"{location[-1]!r} is missing", where=_joined(shown, location[:-1]))
+    fault = _FAULT.get(detail["type"], BadInput)
+    return fault(_given(detail["input"]), where=_joined(shown, location), valid=_remedy(detail))
+
+
+def _joined(shown: str, location: tuple[int | str, ...]) -> str:
+    return f"{shown}: {place(location)}" if location else shown
+
+
+def _given(value: object) -> str:
+    if value is None:
+        return "nothing is given"
+    text = repr(value)
+    return f"{text if len(text) <= 60 else text[:57] + '...'} is given"
+
+
+def _remedy(detail: dict) -> str:
+    context = detail.get("ctx", {})
+    if detail["type"] in ("too_short", "too_long"):
+        least, most = context.get("min_length"), context.get("max_length")
+        return f"{least or most} values are needed"
+    text = detail["msg"].replace("Input should be ", "").replace("a valid", "a")
+    return f"{text} is needed"

@@ -1,0 +1,86 @@
+"""Triangles as a mesh file has them, before they become a solid: checked, scaled, mirrored.
+
+No point is moved except by the scale. Not for: file formats; equal points, flat triangles and
+coplanar neighbours (`geometry.coplanar`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadDimension, BadPolygon, EmptyMesh, NotFinite
+
+
+class Triangles(NamedTuple):
+    """A triangulated surface.
+
+    Attributes:
+        vertices: (n, 3) [m] in the file's frame.
+        corners: (m, 3) vertex indices, counter-clockwise from outside.
+        notes: what reading had to mend or decide, one line each.
+    """
+
+    vertices: np.ndarray
+    corners: np.ndarray
+    notes: tuple[str, ...] = ()
+
+
+def checked(triangles: Triangles) -> Triangles:
+    """The triangles as float64 and int64, once they can be a surface; points that no face uses are
+    left out.
+
+    Raises:
+        EmptyMesh: no triangle. BadPolygon: a corner that does not exist. NotFinite: NaN or
+        infinity.
+    """
+    vertices = np.asarray(triangles.vertices, dtype=np.float64).reshape(-1, 3)
+    corners = np.asarray(triangles.corners, dtype=np.int64).reshape(-1, 3)
+    if not len(corners):
+        raise EmptyMesh("the mesh has no faces", valid="at least one triangle is needed")
+    outside = (corners < 0) | (corners >= len(vertices))
+    if outside.any():
+        raise BadPolygon(
+            f"a face refers to vertex {int(corners[outside][0])}", valid=f"0 to {len(vertices) - 1}"
+        )
+    broken = ~np.isfinite(vertices[corners]).all(axis=(1, 2))
+    if broken.any():
+        i_bad = int(np.flatnonzero(broken)[0])
+        raise NotFinite(f"face {i_bad} has a coordinate that is not a finite number")
+    used, new_index = np.unique(corners, return_inverse=True)
+    return Triangles(vertices[used], new_index.reshape(-1, 3), triangles.notes)
+
+
+def scaled(triangles: Triangles, scale: float | Sequence[float]) -> Triangles:
+    """The triangles with each axis multiplied; an odd number of mirrored axes turns the corners
+    round.
+
+    Raises:
+        BadDimension: not one or three factors, one that is zero or not finite, or so large that
+            coordinates overflow.
+    """
+    factors = np.asarray(scale, dtype=np.float64)
+    if factors.shape not in ((), (3,)) or not np.isfinite(factors).all() or not factors.all():
+        raise BadDimension(
+            f"scale {factors.tolist()} is given", valid="one or three factors, none zero"
+        )
+    factors = np.broadcast_to(factors, 3)
+    with np.errstate(over="ignore"):
+        vertices = triangles.vertices * factors
+    if not np.isfinite(vertices).all():
+        raise BadDimension(f"scale {factors.tolist()} makes coordinates overflow")
+    mirrored = np.count_nonzero(factors < 0) % 2 == 1
+    return Triangles(vertices, triangles.corners[:, :: -1 if mirrored else 1], triangles.notes)
+
+
+def n_without_area(triangles: Triangles) -> int:
+    """How many triangles have all corners on one line.
+
+    Exactness: never misses one whose coordinates are single precision, as in STL files; else it
+    may.
+    """
+    a, b, c = (triangles.vertices[triangles.corners[:, i]] for i in range(3))
+    with np.errstate(over="ignore", invalid="ignore"):
+        return int(np.count_nonzero((np.cross(b - a, c - a) == 0).all(axis=1)))

@@ -1,0 +1,166 @@
+"""What a URDF document must look like before anything is made of it: each fault names its element.
+
+The parser behind `urdf` takes the first child of a `<geometry>` and ignores the rest, mends broken
+XML without a word and dies of a missing attribute; so the document is checked here first. Elements
+that say nothing about shape or motion (inertia, colour, transmission, gazebo, …) are taken out.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+
+_KEPT_BELOW = {
+    "robot": ("link", "joint"),
+    "link": ("collision", "visual"),
+    "collision": ("origin", "geometry"),
+    "visual": ("origin", "geometry"),
+    "joint": ("origin", "parent", "child", "axis", "limit", "mimic"),
+}
+
+_NUMBERS: dict[str, dict[str, tuple[int, ...]]] = {
+    "origin": {"xyz": (3,), "rpy": (3,)},
+    "axis": {"xyz": (3,)},
+    "box": {"size": (3,)},
+    "cylinder": {"radius": (1,), "length": (1,)},
+    "capsule": {"radius": (1,), "length": (1,)},
+    "sphere": {"radius": (1,)},
+    "mesh": {"scale": (1, 3)},
+    "limit": {"lower": (1,), "upper": (1,)},
+    "mimic": {"multiplier": (1,), "offset": (1,)},
+}
+"""How many numbers each attribute holds."""
+
+_REQUIRED = {
+    "link": ("name",),
+    "joint": ("name", "type"),
+    "parent": ("link",),
+    "child": ("link",),
+    "box": ("size",),
+    "cylinder": ("radius", "length"),
+    "capsule": ("radius", "length"),
+    "sphere": ("radius",),
+    "mesh": ("filename",),
+    "mimic": ("joint",),
+}
+
+_SHAPES = ("box", "cylinder", "capsule", "sphere", "mesh")
+
+
+def parse_document(data: bytes) -> Element:
+    """The checked root element of a URDF document, reduced to links' shapes and joints.
+
+    Raises:
+        BadSyntax: not XML, not URDF, or a xacro file. MissingKey, BadShape, NotFinite,
+            DuplicateName, BadInput: an element that cannot be used, with its place in the document.
+    """
+    root = _root(data)
+    _reduce(root)
+    for kind in ("link", "joint"):
+        _check_names(root, kind)
+        for element in root.findall(kind):
+            _check(element, f"{kind} {element.get('name')!r}")
+    return root
+
+
+def _root(data: bytes) -> Element:
+    from lxml import etree
+
+    parser = etree.XMLParser(remove_comments=True, remove_pis=True, resolve_entities=False)
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as error:
+        raise BadSyntax(f"not XML: {error.msg}", valid="a URDF file is needed") from None
+    if etree.QName(root).localname != "robot":
+        raise BadSyntax(
+            f"the root element is <{etree.QName(root).localname}>", valid="<robot> is needed"
+        )
+    if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter()):
+        raise BadSyntax(
+            "this is a xacro file", valid="turn it into URDF with the xacro command first"
+        )
+    return root
+
+
+def _reduce(element: Element) -> None:
+    kept = _KEPT_BELOW.get(element.tag)
+    for child in list(element):
+        if kept is not None and child.tag not in kept:
+            element.remove(child)
+        else:
+            _reduce(child)
+
+
+def _check_names(root: Element, kind: str) -> None:
+    seen = set()
+    for i, element in enumerate(root.findall(kind)):
+        name = element.get("name")
+        if not name:
+            raise MissingKey(f"<{kind}> has no name", where=f"{kind}[{i}]")
+        if name in seen:
+            raise DuplicateName(f"two {kind}s have the name {name!r}", valid="each name once")
+        seen.add(name)
+
+
+def _check(element: Element, where: str) -> None:
+    for attribute in _REQUIRED.get(element.tag, ()):
+        if not element.get(attribute):
+            raise MissingKey(f"<{element.tag}> has no {attribute}", where=where)
+    for attribute, counts in _NUMBERS.get(element.tag, {}).items():
+        _check_numbers(element, attribute, counts, where)
+    if element.tag == "geometry":
+        _check_geometry(element, where)
+    if element.tag in ("collision", "visual") and element.find("geometry") is None:
+        raise MissingKey(f"<{element.tag}> has no <geometry>", where=where)
+    if element.tag == "joint":
+        _check_ends(element, where)
+    counted: dict[str, int] = {}
+    for child in element:
+        i = counted.get(child.tag, 0)
+        counted[child.tag] = i + 1
+        listed = child.tag in ("collision", "visual")
+        _check(child, f"{where} {child.tag}[{i}]" if listed else f"{where} {child.tag}")
+
+
+def _check_numbers(element: Element, attribute: str, counts: tuple[int, ...], where: str) -> None:
+    text = element.get(attribute)
+    if text is None:
+        return
+    words = text.replace(",", " ").split()
+    try:
+        values = [float(word) for word in words if "_" not in word]
+    except ValueError:
+        values = []
+    if len(values) != len(words) or len(values) not in counts:
+        wanted = " or ".join(str(n) for n in counts)
+        plural = "" if counts == (1,) else "s"
+        raise BadShape(
+            f"{attribute}={text!r:.60} is given",
+            where=where,
+            valid=f"{wanted} number{plural} are needed",
+        )
+    if not all(math.isfinite(value) for value in values):
+        raise NotFinite(
+            f"{attribute}={text!r:.60} is given", where=where, valid="finite numbers are needed"
+        )
+    element.set(attribute, " ".join(words))
+
+
+def _check_geometry(element: Element, where: str) -> None:
+    shapes = [str(child.tag) for child in element]
+    if len(shapes) != 1 or shapes[0] not in _SHAPES:
+        given = ", ".join(f"<{shape}>" for shape in shapes) or "nothing"
+        raise BadInput(f"{given} is given", where=where, valid=f"one of {', '.join(_SHAPES)}")
+
+
+def _check_ends(element: Element, where: str) -> None:
+    for end in ("parent", "child"):
+        if len(element.findall(end)) != 1:
+            raise MissingKey(
+                f"<joint> has {len(element.findall(end))} <{end}>", where=where, valid="one"
+            )

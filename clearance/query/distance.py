@@ -1,0 +1,119 @@
+"""How close two solids or two polygons come: the entry points for single questions."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.errors import BadInput, BadShape, NotFinite
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.pose import validated_pose
+from clearance.geometry.tree import surface_of
+from clearance.kernels.body_pair import nearest_bodies
+from clearance.kernels.polygon_pair import Answers, nearest_polygons
+from clearance.query.paper import distance_paper, polygon_distance_paper
+from clearance.query.result import Nearest
+
+METHODS = ("exact", "paper")
+
+
+def distance(
+    a: Polyhedron,
+    b: Polyhedron,
+    *,
+    pose_a: np.ndarray | None = None,
+    pose_b: np.ndarray | None = None,
+    method: str = "exact",
+) -> Nearest:
+    """The global minimum distance of two polyhedra and where it is attained.
+
+    Args:
+        pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
+        method: "exact", or "paper" for the first paper's algorithm as published.
+
+    Raises:
+        BadPose: not a rigid motion. BadInput: unknown method.
+
+    Exactness: float64 throughout; all vertex-face, vertex-edge and edge-edge candidates of every face pair
+        that a lower bound does not exclude. Overlap, and a body wholly inside a closed one, is contact.
+    Ties: the least face indices.
+    """
+    world_from_a = validated_pose(np.eye(4) if pose_a is None else pose_a)
+    world_from_b = validated_pose(np.eye(4) if pose_b is None else pose_b)
+    if _checked(method) == "paper":
+        return distance_paper(a, b, world_from_a, world_from_b)
+    found = nearest_bodies(surface_of(a), surface_of(b), world_from_a, world_from_b)
+    hit = found.hit
+    return Nearest(
+        distance=float(np.sqrt(hit.gap_sq)),
+        point_a=np.array(hit.p),
+        point_b=np.array(hit.q),
+        face_a=int(hit.face_a),
+        face_b=int(hit.face_b),
+        contact=bool(hit.gap_sq == 0.0),
+        error_bound=float(found.error),
+        tally={
+            "nodes": int(found.tally.nodes),
+            "polygons": int(found.tally.faces),
+            "exact_decisions": int(found.tally.exact_decisions),
+        },
+    )
+
+
+def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> Nearest:
+    """The distance of two convex planar polygons and where it is attained.
+
+    Args:
+        p, q: (n, 3), (m, 3) corners in order [m], n, m >= 3.
+
+    Raises:
+        BadShape, NotFinite: not as above.
+    """
+    p, q = _polygons(p, 2), _polygons(q, 2)
+    if _checked(method) == "paper":
+        return polygon_distance_paper(p, q)
+    found = _measured(p[None], q[None])
+    return Nearest(
+        distance=float(found.distance[0]),
+        point_a=found.points[0, 0],
+        point_b=found.points[0, 1],
+        face_a=0,
+        face_b=0,
+        contact=bool(found.contact[0]),
+        error_bound=float(found.error[0]),
+        tally={"polygons": 1, "exact_decisions": int(found.exact[0])},
+    )
+
+
+def polygon_distances(ps: np.ndarray, qs: np.ndarray, *, method: str = "exact") -> np.ndarray:
+    """(k,) distances [m] of the polygon pairs `ps[i]`, `qs[i]`; shapes (k, n, 3) and (k, m, 3)."""
+    ps, qs = _polygons(ps, 3), _polygons(qs, 3)
+    if len(ps) != len(qs):
+        raise BadShape(f"{len(ps)} polygons against {len(qs)}", valid="as many of each")
+    if _checked(method) == "paper":
+        pairs = zip(ps, qs, strict=True)
+        return np.array([polygon_distance_paper(p, q).distance for p, q in pairs])
+    return _measured(ps, qs).distance
+
+
+def _measured(ps: np.ndarray, qs: np.ndarray) -> Answers:
+    k = len(ps)
+    flags = np.empty(k, dtype=np.bool_), np.empty(k, dtype=np.bool_)
+    answers = Answers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
+    nearest_polygons(ps, qs, answers)
+    return answers
+
+
+def _polygons(points: np.ndarray, n_dimensions: int) -> np.ndarray:
+    array = np.array(points, dtype=np.float64, order="C")
+    if array.ndim != n_dimensions or array.shape[-1] != 3 or array.shape[-2] < 3:
+        wanted = "(n, 3)" if n_dimensions == 2 else "(k, n, 3)"
+        raise BadShape(f"polygon corners have shape {array.shape}", valid=f"{wanted} with n >= 3")
+    if not np.isfinite(array).all():
+        raise NotFinite("a polygon corner is NaN or infinite", valid="finite coordinates")
+    return array
+
+
+def _checked(method: str) -> str:
+    if method not in METHODS:
+        raise BadInput(f"unknown method {method!r}", valid=f"one of {', '.join(METHODS)}")
+    return method

@@ -1,0 +1,192 @@
+"""How far the figures can be trusted and what they were made from: the lower half of the page.
+
+Each function returns one piece of HTML made from the summary.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from clearance.report.markup import Html, element, section, step_link, table
+from clearance.report.wording import count, scientific_mm
+
+MAX_DISAGREEMENTS = 200
+"""Most steps of a failed cross-check printed on the page; all are in `summary.json`."""
+
+
+def certainty(summary: dict[str, Any]) -> Html:
+    """How exact the figures are, and what the cross-check found."""
+    notes = [element("li", note) for note in summary["notes"]]
+    return section(
+        "How sure",
+        element("p", _exactness(summary["method"])),
+        element("p", _tessellation(summary["tessellation_bound"])),
+        element("p", *_sampling(summary)),
+        *_cross_check(summary["cross_check"]),
+        element("ul", *notes) if notes else Html(""),
+    )
+
+
+def _exactness(method: str) -> str:
+    if method == "paper":
+        return (
+            "Method “paper”: the distance as first published, with its tolerance and its second "
+            "rejection rule, which can overlook the nearest faces. For a safe figure use the "
+            "method “exact”."
+        )
+    return (
+        "Method “exact”: the global minimum over all polygons of the shapes as loaded, never hulls "
+        "or samples; what is left is the rounding of float64."
+    )
+
+
+def _tessellation(bound: float) -> str:
+    if bound == 0.0:
+        return "All shapes are measured as given; none is faceted."
+    return (
+        f"Round shapes are faceted from outside: the facets of a pair stand up to "
+        f"{bound * 1000:.3g} mm outside the true surfaces, so a clearance can be too small by "
+        "that much and never too large."
+    )
+
+
+def _sampling(summary: dict[str, Any]) -> list[object]:
+    steps = f"Clearance is measured at {count(summary['n_steps'], 'step')}; nothing is said about "
+    parts: list[object] = [steps, "the motion between two steps."]
+    error = summary["tracking_error"]
+    if error is not None:
+        greatest = f"{error['greatest']:.4g} rad or m"
+        parts += [" The simulated joints leave the trajectory by at most ", greatest, ", at "]
+        parts += [step_link(error["step"]), "."]
+    return parts
+
+
+def _cross_check(check: dict[str, Any] | None) -> list[Html]:
+    if check is None:
+        return [element("p", "No cross-check was asked for.")]
+    figures = (
+        f"{check['peer']} measured {count(check['n_steps'], 'step')} too: the greatest difference "
+        f"is {scientific_mm(check['greatest_difference'])} mm, at step {check['worst_step']:,}; "
+        f"witness points are off by at most {scientific_mm(check['worst_witness_error'])} mm; "
+        f"{scientific_mm(check['tolerance'])} mm counts as agreement."
+    )
+    if check["agrees"]:
+        return [element("p", figures)]
+    rows = [
+        element(
+            "tr",
+            element("td", f"{item['step']:,}", class_="number"),
+            element("td", f"{item['clearance'] * 1000:.12g}", class_="number"),
+            element("td", f"{item['peer_clearance'] * 1000:.12g}", class_="number"),
+            element("td", f"{item['link']} - {item['obstacle']}"),
+            element("td", f"{item['peer_link']} - {item['peer_obstacle']}"),
+            element("td", item["reason"]),
+            data_step=item["step"],
+            tabindex=0,
+        )
+        for item in check["disagreements"][:MAX_DISAGREEMENTS]
+    ]
+    heads = (">Step", ">Ours, mm", f">{check['peer']}, mm", "Ours", check["peer"], "Why")
+    return [element("p", figures), table(heads, rows, class_="clickable")]
+
+
+def unmeasured(summary: dict[str, Any]) -> Html:
+    """Which links and pairs were left out, and why."""
+    rows = [
+        element(
+            "tr",
+            element("td", pair["link"]),
+            element("td", "every obstacle" if pair["obstacle"] == "*" else pair["obstacle"]),
+            element("td", pair["reason"]),
+        )
+        for pair in summary["unmeasured"]
+    ]
+    if not rows:
+        return section(
+            "Not measured",
+            element(
+                "p",
+                "Nothing was left out: every link with a shape was measured "
+                "against every obstacle.",
+            ),
+        )
+    return section("Not measured", table(("Link", "Obstacle", "Why"), rows))
+
+
+def loaded(summary: dict[str, Any]) -> Html:
+    """Every body with its size and quality."""
+    groups = [(f"Robot {robot['name']}", robot["links"]) for robot in summary["robots"]]
+    groups.append(("Obstacles", summary["obstacles"]))
+    heads = (
+        "Body",
+        "From",
+        ">Triangles",
+        ">Polygons",
+        ">Size, mm",
+        ">Volume, cm³",
+        "Surface",
+        ">Facets, mm",
+    )
+    parts = [
+        table((name, *heads[1:]), [_body_row(body) for body in bodies], class_="bodies")
+        for name, bodies in groups
+    ]
+    return section("What was loaded", element("div", *parts, class_="scroll"))
+
+
+def _body_row(body: dict[str, Any]) -> Html:
+    low, high = body["bounding_box"]
+    size = " \N{MULTIPLICATION SIGN} ".join(
+        f"{(b - a) * 1000:.4g}" for a, b in zip(low, high, strict=True)
+    )
+    volume = "" if body["volume"] is None else _rounded(body["volume"] * 1e6)
+    quality = (
+        "closed"
+        if body["closed"] and body["oriented"]
+        else "closed, not oriented"
+        if body["closed"]
+        else "open"
+    )
+    facets = "exact" if body["excess"] == 0.0 else f"{body['excess'] * 1000:.3g}"
+    return element(
+        "tr",
+        element("td", body["name"]),
+        element("td", body["origin"], class_="faint"),
+        element("td", f"{body['triangles']:,}", class_="number"),
+        element("td", f"{body['polygons']:,}", class_="number"),
+        element("td", size, class_="number"),
+        element("td", volume, class_="number"),
+        element("td", quality),
+        element("td", facets, class_="number"),
+    )
+
+
+def _rounded(value: float) -> str:
+    if abs(value) < 1e-6:  # a double wall: its sides cancel but for rounding
+        return "0"
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.4g}"
+
+
+def provenance(summary: dict[str, Any]) -> Html:
+    """Files with their sha256, versions, counters."""
+    files = [
+        element(
+            "tr",
+            element("td", item["path"]),
+            element("td", f"{item['n_bytes']:,}", class_="number"),
+            element("td", element("code", item["sha256"])),
+        )
+        for item in summary["inputs"]
+    ]
+    versions = ", ".join(f"{name} {version}" for name, version in summary["versions"].items())
+    counters = ", ".join(
+        f"{name.replace('_', ' ')} {number:,}" for name, number in summary["tally"].items()
+    )
+    return section(
+        "Where this comes from",
+        element(
+            "div", table(("File", ">Bytes", "sha256"), files, class_="bodies"), class_="scroll"
+        ),
+        element("p", versions, class_="faint"),
+        element("p", f"Counted: {counters}." if counters else "", class_="faint"),
+    )

@@ -1,0 +1,42 @@
+"""The report of a record as a folder: tables, summary, replay and page, all of them or none."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from clearance.report.folder import LAST, fill_folder
+from clearance.report.page import page_of
+from clearance.report.summary import summary_of
+from clearance.report.tables import write_csv, write_parquet
+from clearance.simulate.record import Record
+from clearance.simulate.replay import FILE_NAME, replay_of
+
+
+def write(record: Record, folder: str | Path) -> None:
+    """Writes `steps.parquet`, `steps.csv`, `replay.npz`, `report.html` and, last, `summary.json`.
+
+    The same record gives the same bytes. Other files in `folder` are left alone; an older report
+    there is replaced as a whole, or, if anything goes wrong, kept as it was.
+
+    Raises:
+        Unwritable: `folder` cannot be written.
+    """
+    summary, replay = summary_of(record), replay_of(record)
+    page = page_of(summary, replay)
+
+    def fill(place: Path) -> None:
+        write_parquet(record.steps, place / "steps.parquet")
+        write_csv(record.steps, place / "steps.csv")
+        replay.save(place / FILE_NAME)
+        (place / "report.html").write_text(page, encoding="utf-8")
+        (place / LAST).write_text(json_text(summary), encoding="utf-8")
+
+    fill_folder(Path(folder), fill)
+
+
+def json_text(summary: dict[str, Any]) -> str:
+    """The summary as `summary.json` holds it: sorted keys, floats that read back the same, no
+    NaN."""
+    return json.dumps(summary, indent=2, sort_keys=True, allow_nan=False, ensure_ascii=False) + "\n"

@@ -1,0 +1,203 @@
+// The page: margin curve, transport and everything that moves the replay. All of it hangs on `showFrame`.
+"use strict";
+
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const times = decode(data.times, Float64Array), clearances = decode(data.clearances, Float64Array);
+  const n = times.length, byId = (id) => document.getElementById(id);
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const colours = data.statuses.map((status) => css(`--${status}`));
+  let frame = 0, playing = null, replay = null;
+
+  // Rounded down, as in the tables: what is shown is never more than what was measured.
+  function mm(metres) {
+    if (metres === 0) return "0";
+    if (metres > 0 && metres < 1e-6) return "< 0.001";
+    const value = metres * 1000;
+    const decimals = Math.max(0, Math.min(3, 3 - Math.floor(Math.log10(Math.abs(value)))));
+    const scaled = Math.floor(Number((value * 10 ** decimals).toPrecision(15)));
+    return (scaled / 10 ** decimals).toFixed(decimals);
+  }
+
+  const between = (i) => data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
+  const word = (i) => ({clear: "clear", near: "near miss", violated: "violated", contact: "contact"})[data.statuses[data.status[i]]];
+
+  function frameOfStep(step) {
+    let low = 0, high = n - 1;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (data.steps[middle] < step) low = middle + 1; else high = middle;
+    }
+    return low > 0 && step - data.steps[low - 1] < data.steps[low] - step ? low - 1 : low;
+  }
+
+  function showFrame(i) {
+    frame = Math.max(0, Math.min(n - 1, i));
+    byId("scrub").value = frame;
+    byId("scrub").setAttribute("aria-valuetext", `${times[frame].toFixed(3)} s, ${mm(clearances[frame])} mm`);
+    byId("readout").textContent = "";
+    const strong = document.createElement("strong");
+    strong.textContent = `${mm(clearances[frame])} mm`;
+    strong.style.color = colours[data.status[frame]];
+    byId("readout").append(strong, ` ${word(frame)}`, document.createElement("br"), between(frame),
+      document.createElement("br"), `${times[frame].toFixed(3)} s, step ${data.steps[frame].toLocaleString("en")}`);
+    if (replay) replay.show(frame);
+    moveCursor();
+  }
+
+  // ---- the curve
+  const toPlot = (metres) => metres * 1000;
+  const curve = byId("curve");
+
+  // One trace a status; each stretch reaches to the next step so that the curve has no gaps.
+  function statusTrace(code) {
+    const y = Array(n).fill(null);
+    for (let i = 0; i < n; i++) if (data.status[i] === code) {
+      y[i] = toPlot(clearances[i]);
+      if (i + 1 < n && data.status[i + 1] < code) y[i + 1] = toPlot(clearances[i + 1]);
+      if (i > 0 && data.status[i - 1] < code) y[i - 1] = toPlot(clearances[i - 1]);
+    }
+    return {x: Array.from(times), y, mode: "lines", line: {color: colours[code], width: 2.2}, hoverinfo: "skip", cliponaxis: false};
+  }
+
+  function hoverTrace() {
+    return {
+      x: Array.from(times), y: Array.from(clearances, toPlot), mode: "lines", line: {width: 0}, opacity: 0, cliponaxis: false,
+      text: Array.from(times, (t, i) =>
+        `<b>${mm(clearances[i])} mm</b> ${word(i)}<br>${between(i).replace(/</g, "&lt;")}<br>${t.toFixed(3)} s, step ${data.steps[i].toLocaleString("en")}`),
+      hovertemplate: "%{text}<extra></extra>", hoverlabel: {bgcolor: "#ffffff", bordercolor: css("--rule"), font: {color: css("--ink")}, align: "left"},
+    };
+  }
+
+  function worstTrace() {
+    const i = data.worst;
+    return {
+      x: [times[i]], y: [toPlot(clearances[i])], mode: "markers", hoverinfo: "skip", cliponaxis: false,
+      marker: {size: 9, color: colours[data.status[i]], line: {color: "#ffffff", width: 1}},
+    };
+  }
+
+  function band([start, end], colour) {
+    const half = n > 1 ? 0.5 * (times[n - 1] - times[0]) / (n - 1) : 0.5;
+    return {type: "rect", xref: "x", yref: "paper", x0: start - half, x1: end + half, y0: 0, y1: 1, fillcolor: colour, opacity: 0.11, line: {width: 0}, layer: "below"};
+  }
+
+  function limitLine(metres, colour) {
+    return {type: "line", xref: "paper", x0: 0, x1: 1, y0: toPlot(metres), y1: toPlot(metres), line: {color: colour, width: 1.2, dash: "4px,3px"}};
+  }
+
+  function limitLabel(name, metres, colour) {
+    return {xref: "paper", x: 1, xanchor: "left", xshift: 4, y: toPlot(metres), yanchor: name === "warn" ? "bottom" : "top", yshift: name === "warn" ? -9 : 9, showarrow: false,
+      text: `${name} ${Number((metres * 1000).toPrecision(6))} mm`, font: {color: colour, size: 11}};
+  }
+
+  function shownLimits() {
+    const {fail, warn} = data.limits;
+    return [["fail", fail, css("--violated")], ["warn", warn, css("--near")]].filter(([name, limit]) => limit > 0 && !(name === "warn" && limit <= fail));
+  }
+
+  const greatest = toPlot(Math.max(...clearances, data.limits.warn)) * 1.06;
+  const near = Math.min(greatest, 2.5 * toPlot(Math.max(data.limits.warn, data.limits.fail, Math.min(...clearances))));
+
+  function drawCurve() {
+    const axis = {gridcolor: css("--grid"), zerolinecolor: css("--rule"), linecolor: css("--rule"), ticks: "outside", tickcolor: css("--rule"), fixedrange: false};
+    const traces = [hoverTrace(), ...data.statuses.map((_, code) => statusTrace(code)), worstTrace()];
+    const layout = {
+      margin: {l: 58, r: 70, t: 8, b: 46}, showlegend: false, hovermode: "x", hoverdistance: -1, dragmode: "zoom",
+      font: {family: getComputedStyle(document.body).fontFamily, size: 12, color: css("--soft")},
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+      xaxis: {...axis, title: {text: "time, s", standoff: 6}, range: [times[0], n > 1 ? times[n - 1] : times[0] + 1]},
+      yaxis: {...axis, title: {text: "clearance, mm", standoff: 8}, range: [0, greatest]},
+      shapes: [...data.intervals.below_warn.map((range) => band(range, css("--near"))),
+        ...data.intervals.below_fail.map((range) => band(range, css("--violated"))),
+        ...shownLimits().map(([, limit, colour]) => limitLine(limit, colour))],
+      annotations: shownLimits().map(([name, limit, colour]) => limitLabel(name, limit, colour)),
+    };
+    Plotly.newPlot(curve, traces, layout, {responsive: true, displaylogo: false, displayModeBar: false, doubleClick: "reset"});
+    const cursor = document.createElement("div");
+    cursor.id = "cursor";
+    curve.append(cursor);
+    curve.on("plotly_click", (event) => { pause(); showFrame(event.points[0].pointIndex); });
+    curve.on("plotly_afterplot", moveCursor);
+    Plotly.toImage({data: traces, layout: {...layout, paper_bgcolor: "#ffffff"}}, {format: "svg", width: 860, height: 330})
+      .then((image) => { byId("curve-still").src = image; });
+  }
+
+  function moveCursor() {
+    const cursor = byId("cursor"), layout = curve._fullLayout;
+    if (!cursor || !layout) return;
+    const {xaxis, _size} = layout, x = xaxis.d2p(times[frame]);
+    cursor.hidden = x < 0 || x > _size.w;
+    cursor.style.cssText = `left:${_size.l + x}px;top:${_size.t}px;height:${_size.h}px`;
+  }
+
+  // ---- playing: frames follow the trajectory's own time
+  function pause() {
+    if (playing === null) return;
+    cancelAnimationFrame(playing);
+    playing = null;
+    byId("play").textContent = "Play";
+  }
+
+  function play() {
+    if (frame === n - 1) showFrame(0);
+    let clock = times[frame], last = performance.now();
+    const tick = (now) => {
+      clock += Number(byId("speed").value) * (now - last) / 1000;
+      last = now;
+      let next = frame;
+      while (next < n - 1 && times[next + 1] <= clock) next++;
+      if (next !== frame) showFrame(next);
+      if (next === n - 1) return pause();
+      playing = requestAnimationFrame(tick);
+    };
+    byId("play").textContent = "Pause";
+    playing = requestAnimationFrame(tick);
+  }
+
+  function follow(event) {
+    if (event.type === "keydown" && event.key !== "Enter" && event.key !== " ") return;
+    const target = event.target.closest("[data-step]");
+    if (!target) return;
+    event.preventDefault();
+    pause();
+    showFrame(frameOfStep(Number(target.dataset.step)));
+    byId("stage").scrollIntoView({behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth"});
+  }
+
+  function connect() {
+    byId("scrub").max = n - 1;
+    byId("scrub").addEventListener("input", (event) => { pause(); showFrame(Number(event.target.value)); });
+    byId("play").addEventListener("click", () => (playing === null ? play() : pause()));
+    byId("worst-step").addEventListener("click", () => { pause(); showFrame(data.worst); });
+    byId("camera-gap").addEventListener("click", () => replay && replay.atGap());
+    byId("camera-all").addEventListener("click", () => replay && replay.overview());
+    byId("zoom-limits").addEventListener("click", (event) => {
+      const on = event.target.getAttribute("aria-pressed") !== "true";
+      event.target.setAttribute("aria-pressed", on);
+      Plotly.relayout(curve, {"yaxis.range": [0, on ? near : greatest]});
+    });
+    document.addEventListener("click", follow);
+    document.addEventListener("keydown", follow);
+  }
+
+  function startReplay() {
+    try {
+      replay = new Replay(byId("pane"), data);
+    } catch (error) {
+      byId("pane").textContent = "This browser cannot draw in 3-D (WebGL); every figure on this page stands without it.";
+      byId("pane").classList.add("missing");
+    }
+  }
+
+  startReplay();
+  drawCurve();
+  connect();
+  showFrame(data.worst);
+  if (replay) {
+    replay.overview();
+    requestAnimationFrame(() => { byId("replay-still").src = replay.image(); });
+    window.addEventListener("beforeprint", () => { pause(); showFrame(data.worst); });
+  }
+  window.clearance = {showFrame, frameOfStep, pause, state: () => ({frame, step: data.steps[frame], ...(replay ? replay.state() : {})})};
+})();

@@ -1,0 +1,131 @@
+"""The page: one HTML file that needs no network, with meshcat's viewer and plotly's chart inside.
+
+This file only puts the parts together; the words are in `sections`, the behaviour in `page.js` and
+`replay.js`, the look in `page.css`. Geometry and poses go as base64 of float32, what is shown as a
+figure as float64.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from html import escape
+from importlib.util import find_spec
+from pathlib import Path
+from string import Template
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import Unavailable
+from clearance.report.markup import element
+from clearance.report.sections import header, sections
+from clearance.report.wording import count
+from clearance.simulate.replay import Replay
+from clearance.simulate.steps import STATUSES
+
+_HERE = Path(__file__).parent
+
+
+def page_of(summary: dict[str, Any], replay: Replay) -> str:
+    """The whole page.
+
+    Raises:
+        Unavailable: meshcat is installed without its viewer.
+    """
+    template = Template(_own("page.html"))
+    return template.substitute(
+        title=escape(f"{summary['name']}: {summary['verdict']}"),
+        style=_own("page.css"),
+        header=header(summary),
+        stage_note=_stage_note(replay),
+        sections=sections(summary),
+        footer=element("p", f"clearance {summary['versions']['clearance']}"),
+        data=_json_inside_script(_data(summary, replay)),
+        plotly=_inside_script(_plotly()),
+        meshcat=_inside_script(_meshcat()),
+        replay_script=_inside_script(_own("replay.js")),
+        page_script=_inside_script(_own("page.js")),
+    )
+
+
+def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
+    return {
+        "statuses": STATUSES,
+        "limits": summary["limits"],
+        "intervals": {
+            level: [[item["start"], item["end"]] for item in summary["intervals"][level]]
+            for level in ("below_warn", "below_fail")
+        },
+        "bodies": [
+            {
+                "name": body.name,
+                "kind": body.kind,
+                "measured": body.measured,
+                "shape": body.i_shape,
+                "poses": _floats(poses, "<f4"),
+            }
+            for body, poses in zip(replay.bodies, replay.poses, strict=True)
+        ],
+        "shapes": [
+            {"vertices": _floats(vertices, "<f4"), "triangles": _floats(triangles, "<u4")}
+            for vertices, triangles in replay.shapes
+        ],
+        "worst": replay.i_worst,
+        "steps": replay.steps.tolist(),
+        "times": _floats(replay.times, "<f8"),
+        "clearances": _floats(replay.clearances, "<f8"),
+        "lines": _floats(replay.lines, "<f8"),
+        "status": replay.status.tolist(),
+        "nearest": replay.nearest.tolist(),
+    }
+
+
+def _stage_note(replay: Replay) -> str:
+    if len(replay.steps) == replay.n_steps:
+        return ""
+    return element(
+        "p",
+        f"Drawn are {len(replay.steps):,} of {count(replay.n_steps, 'step')}, chosen so that the "
+        "least clearance of every stretch is kept; all steps are in steps.csv and steps.parquet.",
+        class_="faint",
+    )
+
+
+def _floats(array: np.ndarray, kind: str) -> str:
+    return base64.b64encode(np.ascontiguousarray(array, dtype=kind).tobytes()).decode()
+
+
+def _inside_script(text: str) -> str:
+    """A script so that no string in it can end the script element that it stands in."""
+    return re.sub(r"</(?=script)", r"<\\/", text, flags=re.IGNORECASE)
+
+
+def _json_inside_script(value: Any) -> str:
+    """JSON that holds no `<`, so that nothing in it can be taken for markup."""
+    return json.dumps(value, sort_keys=True, allow_nan=False).replace("<", "\\u003c")
+
+
+def _own(name: str) -> str:
+    return (_HERE / name).read_text(encoding="utf-8")
+
+
+def _plotly() -> str:
+    from plotly.offline import get_plotlyjs
+
+    return get_plotlyjs()
+
+
+def _meshcat() -> str:
+    """The script of meshcat's viewer, read as a file: driving meshcat is the business of room
+    `view`."""
+    found = find_spec("meshcat")
+    bundle = (
+        Path(found.origin).parent / "viewer" / "dist" / "main.min.js"
+        if found and found.origin
+        else None
+    )
+    if bundle is None or not bundle.is_file():
+        raise Unavailable("meshcat's viewer is not installed", valid="pip install meshcat")
+    return bundle.read_text(encoding="utf-8")

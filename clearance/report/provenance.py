@@ -1,0 +1,76 @@
+"""What a result rests on: the files that were read and the versions that computed it.
+
+Paths are written so that the same inputs give the same report on every machine: relative to the
+case file, or as `package:path` for files that an installed package brings.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib import metadata
+from pathlib import Path, PurePosixPath
+
+from clearance import __version__
+from clearance.world.case import Case
+
+LIBRARIES = (
+    "numpy",
+    "scipy",
+    "numba",
+    "trimesh",
+    "yourdfpy",
+    "pybullet",
+    "python-fcl",
+    "pyarrow",
+    "meshcat",
+    "plotly",
+)
+
+
+def versions() -> dict[str, str]:
+    """Versions of this package, of Python and of the libraries that can change a figure."""
+    found = {"clearance": __version__, "python": platform.python_version()}
+    return found | {name: _version(name) for name in LIBRARIES}
+
+
+def inputs(case: Case) -> list[dict[str, object]]:
+    """Path, size and sha256 of every file that was read, in the order it was read."""
+    home = _home(case)
+    return [
+        {"path": public_path(source.path, home), "sha256": source.sha256, "n_bytes": source.n_bytes}
+        for source in case.sources
+    ]
+
+
+def public_origin(case: Case, origin: str) -> str:
+    """The origin of a body with any path in it as `public_path` writes it."""
+    return ", ".join(public_path(part.strip(), _home(case)) for part in origin.split(","))
+
+
+def public_path(path: str, home: Path | None) -> str:
+    """`path` without what is particular to this machine.
+
+    Args:
+        home: folder of the case file, absolute, or None where it is not known.
+    """
+    if not os.path.isabs(path):
+        return path
+    parts = PurePosixPath(Path(path).as_posix()).parts
+    for folder in ("site-packages", "dist-packages"):
+        if folder in parts:
+            inside = parts[parts.index(folder) + 1 :]
+            return f"{inside[0]}:{'/'.join(inside[1:])}" if len(inside) > 1 else inside[0]
+    return Path(os.path.relpath(path, home)).as_posix() if home else parts[-1]
+
+
+def _home(case: Case) -> Path | None:
+    first = Path(case.sources[0].path) if case.sources else None
+    return first.parent if first is not None and first.is_absolute() else None
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "unknown"

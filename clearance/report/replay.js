@@ -1,0 +1,225 @@
+// The replay: meshcat's viewer with the robot, the obstacles and the line between the witness points.
+// It knows frames, not times; page.js decides which frame is shown.
+"use strict";
+
+const STATUS_COLOURS = {clear: 0x2b7a4b, near: 0xc77d0a, violated: 0xc0281c, contact: 0x8a0f45};
+const LINK = 0x5c7390, LINK_IDLE = 0xa9b4c0, OBSTACLE = 0xb9b4a8;
+const LINE_PIXELS = 2.4, DOT_PIXELS = 4;
+
+function decode(text, Kind) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  return new Kind(bytes.buffer);
+}
+
+class Replay {
+  constructor(pane, data) {
+    this.data = data;
+    this.pane = pane;
+    this.three = MeshCat.THREE;
+    this.viewer = new MeshCat.Viewer(pane);
+    this.viewer.gui.domElement.style.display = "none";
+    this.viewer.hide_background();
+    this.lines = decode(data.lines, Float64Array);
+    this.geometries = data.shapes.map((shape) => this.geometry(shape));
+    this.bodies = data.bodies.map((body, i) => this.body(body, i));
+    this.marks();
+    this.fit();
+    // meshcat sizes its canvas by the window; ours stands in a figure
+    this.viewer.set_3d_pane_size = () => Object.getPrototypeOf(this.viewer).set_3d_pane_size.call(
+      this.viewer, pane.clientWidth, pane.clientHeight);
+    new ResizeObserver(() => this.viewer.set_3d_pane_size()).observe(pane);
+    this.viewer.set_3d_pane_size();
+  }
+
+  geometry(shape) {
+    const geometry = new this.three.BufferGeometry();
+    geometry.setAttribute("position", new this.three.BufferAttribute(decode(shape.vertices, Float32Array), 3));
+    geometry.setIndex(new this.three.BufferAttribute(decode(shape.triangles, Uint32Array), 1));
+    geometry.computeVertexNormals();
+    geometry.computeBoundingBox();
+    return {surface: geometry, edges: new this.three.EdgesGeometry(geometry, 25)};
+  }
+
+  body(body, i) {
+    const solid = body.kind === "link";
+    const path = [body.kind + "s", `${i} ${body.name}`];
+    const colour = !solid ? OBSTACLE : body.measured ? LINK : LINK_IDLE;
+    const surface = new this.three.MeshLambertMaterial({
+      color: colour, flatShading: true, side: this.three.DoubleSide, transparent: !solid, opacity: solid ? 1 : 0.5,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+    });
+    const edges = new this.three.LineBasicMaterial({color: 0x1c2530, transparent: true, opacity: solid ? 0.35 : 0.28});
+    const shape = this.geometries[body.shape];
+    this.viewer.set_object(path.concat("surface"), new this.three.Mesh(shape.surface, surface));
+    this.viewer.set_object(path.concat("edges"), new this.three.LineSegments(shape.edges, edges));
+    const node = this.viewer.scene_tree.find(path).object;
+    const made = {node, surface, colour, poses: decode(body.poses, Float32Array), bounds: shape.surface.boundingBox, kind: body.kind};
+    this.place(made, 0);
+    return made;
+  }
+
+  // The line and its two dots: drawn over everything, as thick on the screen from near as from far.
+  marks() {
+    const material = new this.three.MeshBasicMaterial({depthTest: false, depthWrite: false, transparent: true});
+    const tube = new this.three.CylinderGeometry(1, 1, 1, 12);
+    tube.rotateX(Math.PI / 2);
+    const ball = new this.three.SphereGeometry(1, 20, 14);
+    const add = (name, geometry, pixels, along) => {
+      const mesh = new this.three.Mesh(geometry, material);
+      mesh.renderOrder = 10;
+      mesh.frustumCulled = false;
+      mesh.onBeforeRender = (renderer, scene, camera) => this.keepSize(mesh, camera, pixels, along);
+      this.viewer.set_object(["clearance", name], mesh);
+      return mesh;
+    };
+    this.line = add("line", tube, LINE_PIXELS / 2, true);
+    this.dots = [add("link point", ball, DOT_PIXELS, false), add("obstacle point", ball, DOT_PIXELS, false)];
+    this.material = material;
+  }
+
+  keepSize(mesh, camera, pixels, along) {
+    const eye = new this.three.Vector3().setFromMatrixPosition(camera.matrixWorld);
+    const centre = new this.three.Vector3().setFromMatrixPosition(mesh.matrixWorld);
+    const height = 2 * eye.distanceTo(centre) * Math.tan(camera.fov * Math.PI / 360);
+    const radius = pixels * height / this.pane.clientHeight;
+    mesh.scale.set(radius, radius, along ? mesh.scale.z : radius);
+    mesh.updateMatrixWorld(true);
+  }
+
+  place(body, frame) {
+    const start = body.poses.length > 7 ? 7 * frame : 0;
+    const pose = body.poses.subarray(start, start + 7);
+    body.node.position.set(pose[0], pose[1], pose[2]);
+    body.node.quaternion.set(pose[3], pose[4], pose[5], pose[6]);
+  }
+
+  show(frame) {
+    const {data, lines} = this;
+    this.frame = frame;
+    const status = data.statuses[data.status[frame]];
+    const colour = new this.three.Color(STATUS_COLOURS[status]);
+    this.bodies.forEach((body, i) => {
+      if (body.poses.length > 7) this.place(body, frame);
+      body.surface.color.set(body.colour);
+      if (data.nearest[frame].includes(i)) body.surface.color.lerp(colour, 0.55);
+    });
+    this.material.color.copy(colour);
+    const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(lines, 6 * frame + at));
+    this.dots.forEach((dot, i) => dot.position.copy(ends[i]));
+    const along = ends[1].clone().sub(ends[0]);
+    const length = along.length();
+    this.line.visible = length > 0;
+    this.line.position.copy(ends[0]).add(ends[1]).multiplyScalar(0.5);
+    if (length > 0) {
+      this.line.quaternion.setFromUnitVectors(new this.three.Vector3(0, 0, 1), along.divideScalar(length));
+      this.line.scale.z = length;
+    }
+    this.viewer.set_dirty();
+  }
+
+  // What the scene graph really holds, in the world frame: for tests and for the curious.
+  state() {
+    const scene = this.viewer.scene;
+    scene.updateMatrixWorld(true);
+    const worldFromView = scene.matrixWorld.clone().invert();
+    const world = (object, z) => new this.three.Vector3(0, 0, z).applyMatrix4(object.matrixWorld).applyMatrix4(worldFromView);
+    const bodies = {};
+    this.bodies.forEach((body, i) => { bodies[this.data.bodies[i].name] = world(body.node, 0).toArray(); });
+    return {
+      frame: this.frame,
+      step: this.data.steps[this.frame],
+      line: this.line.visible ? [-0.5, 0.5].map((z) => world(this.line, z).toArray()) : null,
+      dots: this.dots.map((dot) => world(dot, 0).toArray()),
+      colour: "#" + this.material.color.getHexString(),
+      bodies,
+    };
+  }
+
+  worldBox(chosen, frames) {
+    const box = new this.three.Box3();
+    for (const body of chosen) for (const frame of body.poses.length > 7 ? frames : [0]) {
+      this.place(body, frame);
+      body.node.updateMatrix();
+      box.union(body.bounds.clone().applyMatrix4(body.node.matrix));
+    }
+    return box;
+  }
+
+  // The robot's room, and of the obstacles what stands in or near it, decide what the camera frames.
+  fit() {
+    const n = this.data.steps.length;
+    const frames = Array.from({length: Math.min(n, 60)}, (_, i) => Math.floor(i * (n - 1) / Math.max(1, Math.min(n, 60) - 1)));
+    const room = this.worldBox(this.bodies.filter((body) => body.kind === "link"), frames);
+    const all = this.worldBox(this.bodies.filter((body) => body.kind === "obstacle"), [0]);
+    const reach = room.getSize(new this.three.Vector3()).length();
+    this.box = room.clone().expandByScalar(0.25 * reach).intersect(all.union(room));
+    this.size = this.box.getSize(new this.three.Vector3()).length();
+    this.viewer.camera.near = this.size / 2000;
+    this.viewer.camera.far = this.size * 40;
+    this.viewer.camera.fov = 40;
+    this.floor();
+  }
+
+  // A grid with a round spacing under the robot's room and a little beyond, on z = 0 or below what is lower.
+  floor() {
+    const spacing = 10 ** Math.round(Math.log10(this.size / 12));
+    const cells = 2 * Math.ceil(0.9 * this.size / spacing);
+    const grid = new this.three.GridHelper(cells * spacing, cells, 0xd3d8dc, 0xe3e7ea);
+    grid.rotateX(Math.PI / 2);
+    const centre = this.box.getCenter(new this.three.Vector3());
+    grid.position.set(Math.round(centre.x / spacing) * spacing, Math.round(centre.y / spacing) * spacing, Math.min(0, this.box.min.z));
+    this.viewer.set_object(["Grid"], grid);
+    this.viewer.set_property(["Axes"], "visible", false);
+  }
+
+  overview() {
+    const centre = this.box.getCenter(new this.three.Vector3());
+    this.look(centre, 0.5 * this.size / Math.sin(this.viewer.camera.fov * Math.PI / 360) * 0.8);
+  }
+
+  atGap() {
+    const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(this.lines, 6 * this.frame + at));
+    this.look(ends[0].clone().add(ends[1]).multiplyScalar(0.5), Math.max(6 * ends[0].distanceTo(ends[1]), this.size / 12));
+  }
+
+  // From whichever side shows the line least hidden and most from its side.
+  look(target, distance) {
+    const line = new this.three.Vector3().fromArray(this.lines, 6 * this.frame + 3)
+      .sub(new this.three.Vector3().fromArray(this.lines, 6 * this.frame)).normalize();
+    const middle = new this.three.Vector3().fromArray(this.lines, 6 * this.frame)
+      .add(new this.three.Vector3().fromArray(this.lines, 6 * this.frame + 3)).multiplyScalar(0.5);
+    let best = null;
+    for (let k = 0; k < 16; k++) {
+      const turn = (k + 0.5) * Math.PI / 8, lift = 0.42;
+      const direction = new this.three.Vector3(Math.cos(turn) * Math.cos(lift), Math.sin(turn) * Math.cos(lift), Math.sin(lift));
+      const eye = target.clone().addScaledVector(direction, distance);
+      const cost = this.hidden(middle, eye) + 0.8 * Math.abs(direction.dot(line));
+      if (best === null || cost < best.cost - 1e-9) best = {cost, eye};
+    }
+    this.aim(best.eye, target);
+  }
+
+  aim(eye, target) {
+    const {camera, controls} = this.viewer;
+    camera.position.set(eye.x, eye.z, -eye.y);
+    controls.target.set(target.x, target.z, -target.y);
+    controls.update();
+    this.viewer.set_dirty();
+  }
+
+  // How many bodies, by their boxes, stand between the eye and the line.
+  hidden(point, eye) {
+    const ray = new this.three.Ray(point, eye.clone().sub(point).normalize());
+    const span = eye.distanceTo(point);
+    return this.bodies.filter((body, i) => {
+      if (this.data.nearest[this.frame].includes(i)) return false;
+      body.node.updateMatrix();
+      const hit = ray.intersectBox(body.bounds.clone().applyMatrix4(body.node.matrix), new this.three.Vector3());
+      return hit !== null && hit.distanceTo(point) < span;
+    }).length;
+  }
+
+  image() {
+    return this.viewer.capture_image();
+  }
+}

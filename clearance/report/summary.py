@@ -1,0 +1,148 @@
+"""The summary of a record as plain data: what `summary.json` holds and what the page prints.
+
+Lengths are in metres, times in seconds, angles in radians, all under names that say so in the
+README of the format (`NOTES.md`). Not for: wording and rounding, which belong to the page.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from clearance.report.intervals import events, intervals, status_counts, verdict
+from clearance.report.provenance import inputs, public_origin, versions
+from clearance.simulate.record import CrossCheck, Record
+from clearance.simulate.replay import link_label
+from clearance.world.body import Body
+from clearance.world.motion import Motion
+
+FORMAT = 1
+
+
+def summary_of(record: Record) -> dict[str, Any]:
+    """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
+    exist is None."""
+    case = record.case
+    times = record.steps["time"].to_numpy()
+    return {
+        "format": FORMAT,
+        "name": case.name,
+        "verdict": verdict(record),
+        "limits": asdict(case.limits),
+        "method": record.method,
+        "motion": record.motion_kind,
+        "n_steps": record.steps.num_rows,
+        "start": float(times[0]),
+        "end": float(times[-1]),
+        "worst": _worst(record),
+        "status_counts": status_counts(record),
+        "intervals": {
+            level: [asdict(i) for i in found] for level, found in intervals(record).items()
+        },
+        "events": [asdict(event) for event in events(record)],
+        "pairs": [asdict(minimum) for minimum in record.pair_minima],
+        "unmeasured": [asdict(pair) for pair in record.unmeasured],
+        "cross_check": _cross_check(record.cross_check),
+        "tracking_error": _tracking_error(record),
+        "robots": [_robot(record, motion) for motion in record.motions],
+        "obstacles": [_body(record, obstacle.body, obstacle.name) for obstacle in case.obstacles],
+        "tessellation_bound": _tessellation_bound(record),
+        "tally": dict(record.tally),
+        "notes": _notes(record),
+        "inputs": inputs(case),
+        "versions": versions(),
+    }
+
+
+def _worst(record: Record) -> dict[str, Any]:
+    row = record.steps.slice(record.worst_step, 1).to_pylist()[0]
+    return {
+        "step": record.worst_step,
+        "time": row["time"],
+        "clearance": row["clearance"],
+        "status": row["status"],
+        "link": row["link"],
+        "obstacle": row["obstacle"],
+        "point_link": [row["link_x"], row["link_y"], row["link_z"]],
+        "point_obstacle": [row["obstacle_x"], row["obstacle_y"], row["obstacle_z"]],
+        "joints": [
+            joint for motion in record.motions for joint in _joints(motion, record.worst_step)
+        ],
+    }
+
+
+def _joints(motion: Motion, step: int) -> list[dict[str, Any]]:
+    """Name, kind, position and limits [rad] or [m] of every moving joint at one step."""
+    return [
+        {
+            "robot": motion.placed.robot.name,
+            "name": joint.name,
+            "kind": str(joint.kind),
+            "position": float(motion.positions[step, i]),
+            "lower": _finite(joint.lower),
+            "upper": _finite(joint.upper),
+        }
+        for i, joint in enumerate(motion.placed.robot.moving_joints)
+    ]
+
+
+def _robot(record: Record, motion: Motion) -> dict[str, Any]:
+    placed = motion.placed
+    return {
+        "name": placed.robot.name,
+        "excluded_links": list(placed.exclude_links),
+        "links": [
+            _body(record, body, link_label(record, motion, body.name))
+            for body in placed.robot.bodies
+        ],
+        "links_without_shape": sorted(
+            set(placed.robot.link_names) - {body.name for body in placed.robot.bodies}
+        ),
+    }
+
+
+def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
+    shape = body.shape
+    return {
+        "name": label,
+        "origin": public_origin(record.case, body.origin),
+        "triangles": shape.n_triangles,
+        "polygons": shape.n_faces,
+        "bounding_box": shape.bounds.tolist(),
+        "excess": shape.excess,
+        "closed": shape.closed,
+        "oriented": shape.oriented,
+        "volume": shape.volume,
+    }
+
+
+def _cross_check(check: CrossCheck | None) -> dict[str, Any] | None:
+    return None if check is None else asdict(check) | {"agrees": check.agrees}
+
+
+def _tracking_error(record: Record) -> dict[str, Any] | None:
+    """The greatest tracking error [rad or m] and its step; None in kinematic motion."""
+    if "tracking_error" not in record.steps.column_names:
+        return None
+    error = record.steps["tracking_error"].to_numpy()
+    step = int(np.argmax(error))
+    return {"greatest": float(error[step]), "step": step}
+
+
+def _tessellation_bound(record: Record) -> float:
+    """[m] by how much the facets of round shapes can make a clearance too small: both excesses of a
+    pair."""
+    links = [body.shape.excess for motion in record.motions for body in motion.placed.robot.bodies]
+    obstacles = [obstacle.body.shape.excess for obstacle in record.case.obstacles]
+    return max(links, default=0.0) + max(obstacles, default=0.0)
+
+
+def _notes(record: Record) -> list[str]:
+    robots = [note for motion in record.motions for note in motion.placed.robot.notes]
+    return list(dict.fromkeys([*record.case.notes, *robots, *record.notes]))
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

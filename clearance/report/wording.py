@@ -1,0 +1,49 @@
+"""How figures are put on the page: lengths in millimetres, angles in degrees, clearances rounded
+down."""
+
+from __future__ import annotations
+
+import math
+from decimal import ROUND_FLOOR, Decimal
+
+
+def mm(metres: float) -> str:
+    """A length in millimetres, rounded down so that a shown clearance is never more than the
+    measured one.
+
+    Four digits or, below 10 mm, three decimals; what is above 0 and below a micrometre says so.
+    """
+    if metres == 0.0:
+        return "0"
+    if 0.0 < metres < 1e-6:
+        return "< 0.001"
+    value = Decimal(repr(float(metres))) * 1000  # exact, so that 0.0283 m is 28.30 mm
+    places = max(0, min(3, 3 - value.adjusted()))
+    return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
+
+
+def limit_mm(metres: float) -> str:
+    """A given limit in millimetres, in as many digits as it has."""
+    return f"{metres * 1000.0:.6g}"
+
+
+def scientific_mm(metres: float) -> str:
+    """A difference in millimetres with two digits, e.g. `3.1e-10`; 0 stays 0."""
+    return "0" if metres == 0.0 else f"{metres * 1000.0:.1e}"
+
+
+def joint_value(kind: str, position: float) -> str:
+    """A joint position with its unit: degrees, or millimetres where it slides."""
+    if kind == "prismatic":
+        return f"{position * 1000.0:.2f} mm"
+    return f"{math.degrees(position):.2f}°"
+
+
+def seconds(value: float) -> str:
+    """A time with its unit, to the millisecond."""
+    return f"{value:.3f} s"
+
+
+def count(number: int, noun: str) -> str:
+    """`1 step`, `2 steps`, `12,000 steps`."""
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"

@@ -1,0 +1,127 @@
+"""Answers a case: moves the robot, measures, cross-checks, and keeps what was found together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from clearance.errors import BadInput
+from clearance.simulate.kinematic import kinematic_motion
+from clearance.simulate.measure import Progress, measure
+from clearance.simulate.record import CrossCheck, Record
+from clearance.simulate.steps import PairMinima, cut_throughout, step_table
+from clearance.world.case import Case, Limits
+from clearance.world.motion import Motion
+from clearance.world.pairs import measured_pairs
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+MOTIONS = ("kinematic", "simulated")
+METHODS = ("exact", "paper")
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A case and its answer."""
+
+    record: Record
+
+    @property
+    def steps(self) -> pa.Table:
+        """One row a step; columns as in `Record.steps`."""
+        return self.record.steps
+
+    @property
+    def worst(self) -> dict:
+        """The row of the first step of least clearance."""
+        return self.steps.slice(self.record.worst_step, 1).to_pylist()[0]
+
+    @property
+    def passed(self) -> bool:
+        """True if no step is in contact or below the fail limit."""
+        return self.worst["status"] not in ("violated", "contact")
+
+    @property
+    def cross_check(self) -> CrossCheck | None:
+        """How a peer's answers compare, if that was asked for."""
+        return self.record.cross_check
+
+    def save(self, folder: str | Path) -> Path:
+        """Writes steps.parquet, steps.csv, summary.json and report.html into `folder`; returns it.
+
+        Raises:
+            Unwritable: nothing is left half-written.
+        """
+        from clearance.report import write
+
+        return write(self.record, Path(folder))
+
+
+def check(
+    case: Case,
+    *,
+    method: str = "exact",
+    motion: str = "kinematic",
+    limits: Limits | None = None,
+    cross_check: bool = False,
+    progress: Progress | None = None,
+) -> Run:
+    """The least clearance of every step of a case.
+
+    Args:
+        method: "exact", or "paper" for the first paper's algorithm as published (no guarantee).
+        motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
+            controlled robot makes of it.
+        limits: instead of the case's.
+        cross_check: also ask FCL at every step.
+        progress: called with steps done and all steps.
+
+    Raises:
+        BadInput: an unknown method or motion. NothingToMeasure: no pair is left.
+    """
+    _require(method, METHODS, "method")
+    _require(motion, MOTIONS, "motion")
+    if limits is not None:
+        case = replace(case, limits=limits)
+    pairs, unmeasured = measured_pairs(case)
+    motions = _motions(case, motion)
+    if method == "paper":
+        from clearance.simulate.measure_paper import measure_paper
+
+        found = measure_paper(case, motions, pairs, progress)
+    else:
+        found = measure(case, motions, pairs, progress)
+    record = Record(
+        case=case,
+        motions=motions,
+        steps=step_table(case, motions, pairs, found, with_error=motion == "simulated"),
+        pair_minima=PairMinima(case, motions, pairs, found),
+        unmeasured=(*unmeasured, *cut_throughout(case, pairs, found)),
+        tally=found.tally,
+        method=method,
+        motion_kind=motion,
+        notes=(*case.notes, *(note for made in motions for note in made.notes)),
+    )
+    if cross_check:
+        from clearance.crosscheck import cross_check as ask_peer
+
+        record = replace(record, cross_check=ask_peer(record, progress))
+    return Run(record)
+
+
+def _motions(case: Case, kind: str) -> tuple[Motion, ...]:
+    if kind == "kinematic":
+        return tuple(kinematic_motion(placed) for placed in case.robots)
+    from clearance.simulate.bullet import simulated_motion
+
+    return tuple(
+        simulated_motion(placed, case.obstacles, contact_response=case.contact_response)
+        for placed in case.robots
+    )
+
+
+def _require(given: str, valid: tuple[str, ...], what: str) -> None:
+    if given not in valid:
+        raise BadInput(f"unknown {what} {given!r}", valid=f"one of {', '.join(valid)}")

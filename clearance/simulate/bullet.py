@@ -1,0 +1,313 @@
+"""Motion as a physics engine's controlled robot really makes it: the one door to pybullet.
+
+The robot's masses, joints, limits and efforts come from its URDF, its shapes from our own loader;
+gravity is on, every moving joint is position-controlled towards the trajectory, and each simulation
+step's state is kept. Not for: clearance (`measure`), which is taken from those states by our own
+kinematics.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadInput, NotFinite, Unavailable
+from clearance.simulate.physics_model import notes_on_masses, write_obj, write_physics_urdf
+from clearance.world.body import Obstacle
+from clearance.world.case import PlacedRobot
+from clearance.world.kinematics import moving_positions
+from clearance.world.motion import Motion
+from clearance.world.robot import Joint, JointKind
+
+STEPS_PER_SECOND = 240
+SUBSTEPS = 16
+"""Solver steps inside each step: the engine integrates joint damping explicitly; at 240 Hz alone a
+Fetch's wrist (5 N m s/rad) diverges: tracking error 2.2 rad; 0.007 with 4, 0.005 with 16. They are
+our own loop: with the engine's `numSubSteps` a motor pushes 16 times as hard as it may."""
+SETTLE_TIME = 0.25  # [s] kept after the trajectory's end: the robot arrives late
+GRAVITY = (0.0, 0.0, -9.81)  # [m/s^2]
+_UNLIMITED = 1e6  # [N] or [N m] where the URDF states no effort
+
+
+def simulated_motion(
+    placed: PlacedRobot,
+    obstacles: Sequence[Obstacle] = (),
+    contact_response: bool = False,
+    settle_time: float = SETTLE_TIME,
+) -> Motion:
+    """The motion of the position-controlled robot at 240 Hz, starting at rest at the first sample.
+
+    The states are those after each simulation step, the first one included; they go on for
+    `settle_time` after the last sample, while the robot arrives. Asked positions between samples
+    are linear.
+
+    Args:
+        placed: its trajectory is what is asked; joints it does not name are held at their fixed
+        value. obstacles: push back only if `contact_response`; then the links' shapes are taken as
+        their convex
+            hulls by the engine (obstacles stay as they are). The robot does not push itself.
+        settle_time: [s].
+
+    Raises:
+        BadInput: the engine cannot load the robot. NotFinite: the simulation diverged.
+        Unavailable: pybullet cannot be imported.
+    """
+    times, asked, rates = _asked(placed, settle_time)
+    with _world(placed, with_shapes=contact_response) as world:
+        if contact_response:
+            world.add(obstacles)
+        world.start(asked[0])
+        notes = (*notes_on_masses(placed), *world.notes_on_efforts())
+        positions = np.empty_like(asked)
+        positions[0] = asked[0]
+        for i_step in range(1, len(times)):
+            positions[i_step] = world.step_towards(asked[i_step], rates[i_step])
+    _require_finite(times, positions)
+    error = np.abs(positions - asked).max(axis=1, initial=0.0)
+    return Motion(placed, times, positions, error, notes)
+
+
+def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
+    """The pose of every link as the engine's own kinematics sees it, to hold ours against.
+
+    Args:
+        positions: (n, k) [rad] or [m], columns as `placed.robot.moving_joints`.
+
+    Returns:
+        (n, n_links, 4, 4) `world_from_link` [m], links as in `Robot.link_names`.
+    """
+    with _world(placed, with_shapes=False) as world:
+        return np.array([world.link_poses(row) for row in positions])
+
+
+def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(n,) times [s], (n, k) positions and (n, k) rates asked for at each simulation step."""
+    trajectory = placed.trajectory
+    samples = moving_positions(placed, trajectory.joint_names, trajectory.positions)
+    start, end = trajectory.times[0], trajectory.times[-1]
+    n_steps = int(np.ceil((end - start + settle_time) * STEPS_PER_SECOND - 1e-9)) + 1
+    times = start + np.arange(n_steps) / STEPS_PER_SECOND
+    columns = [np.interp(times, trajectory.times, column) for column in samples.T]
+    asked = np.array(columns).reshape(-1, n_steps).T
+    rates = np.diff(asked, axis=0, prepend=asked[:1]) * STEPS_PER_SECOND
+    return times, asked, rates
+
+
+def _require_finite(times: np.ndarray, positions: np.ndarray) -> None:
+    bad = ~np.isfinite(positions).all(axis=1)
+    if bad.any():
+        raise NotFinite(
+            f"the physics simulation diverged at {times[np.argmax(bad)]:g} s",
+            valid="check the masses and inertias in the URDF, or use kinematic motion",
+        )
+
+
+@dataclass(frozen=True)
+class _Follower:
+    """A mimic joint: engine index, column of its master, factor and offset along the whole
+    chain.
+    """
+
+    index: int
+    i_master: int
+    multiplier: float
+    offset: float
+
+
+class _World:
+    """One robot on its base in one engine."""
+
+    def __init__(self, engine: Any, body: int, placed: PlacedRobot, folder: Path) -> None:
+        self._engine, self._body, self._placed, self._folder = engine, body, placed, folder
+        joints = [engine.getJointInfo(body, i) for i in range(engine.getNumJoints(body))]
+        index = {joint[1].decode(): joint[0] for joint in joints}
+        self._link_index = {joint[12].decode(): joint[0] for joint in joints}
+        moving = placed.robot.moving_joints
+        self._indices = [index[joint.name] for joint in moving]
+        efforts = [joints[i][10] for i in self._indices]
+        self._without_effort = [
+            joint.name for joint, effort in zip(moving, efforts, strict=True) if effort <= 0.0
+        ]
+        self._efforts = [effort if effort > 0.0 else _UNLIMITED for effort in efforts]
+        self._followers = [
+            _follower(joint, placed, index)
+            for joint in placed.robot.joints
+            if joint.mimic is not None and joint.kind is not JointKind.FIXED
+        ]
+
+    def notes_on_efforts(self) -> list[str]:
+        """What was assumed about the joints' efforts."""
+        if not self._without_effort:
+            return []
+        names = ", ".join(self._without_effort)
+        return [
+            f"simulated motion: the URDF limits no effort of {names}; they are taken as unlimited"
+        ]
+
+    def add(self, obstacles: Sequence[Obstacle]) -> None:
+        """Puts the obstacles in as fixed bodies with all their concavities."""
+        for i_obstacle, obstacle in enumerate(obstacles):
+            path = write_obj(obstacle.body.shape, self._folder / f"obstacle_{i_obstacle}.obj")
+            shape = self._engine.createCollisionShape(
+                self._engine.GEOM_MESH,
+                fileName=str(path),
+                flags=self._engine.GEOM_FORCE_CONCAVE_TRIMESH,
+            )
+            xyz, quat = _position_and_quaternion(obstacle.world_from_body)
+            self._engine.createMultiBody(0.0, shape, basePosition=xyz, baseOrientation=quat)
+
+    def start(self, positions: np.ndarray) -> None:
+        """Puts the robot at rest at (k,) positions, under gravity, its motors ready."""
+        engine = self._engine
+        engine.setTimeStep(1.0 / (STEPS_PER_SECOND * SUBSTEPS))
+        engine.setGravity(*GRAVITY)
+        for i_link in range(-1, engine.getNumJoints(self._body)):  # no drag that no URDF asked for
+            engine.changeDynamics(self._body, i_link, linearDamping=0.0, angularDamping=0.0)
+        for i_joint in range(engine.getNumJoints(self._body)):
+            engine.setJointMotorControl2(
+                self._body, i_joint, controlMode=engine.VELOCITY_CONTROL, force=0.0
+            )
+        self._place(positions, np.zeros(len(positions)))
+
+    def step_towards(self, asked: np.ndarray, rates: np.ndarray) -> np.ndarray:
+        """The (k,) positions after one simulation step with the motors set to what is asked."""
+        if self._indices:
+            self._engine.setJointMotorControlArray(
+                self._body,
+                self._indices,
+                controlMode=self._engine.POSITION_CONTROL,
+                targetPositions=asked.tolist(),
+                targetVelocities=rates.tolist(),
+                forces=self._efforts,
+            )
+        for _ in range(SUBSTEPS):
+            self._engine.stepSimulation()
+        states = self._engine.getJointStates(self._body, self._indices) if self._indices else ()
+        positions = np.array([state[0] for state in states])
+        self._place_followers(positions, np.array([state[1] for state in states]))
+        return positions
+
+    def link_poses(self, positions: np.ndarray) -> np.ndarray:
+        """(n_links, 4, 4) `world_from_link` [m] at (k,) positions."""
+        self._place(positions, np.zeros(len(positions)))
+        poses = [self._link_pose(name) for name in self._placed.robot.link_names]
+        return np.array(poses)
+
+    def _link_pose(self, name: str) -> np.ndarray:
+        engine = self._engine
+        if name in self._link_index:
+            state = engine.getLinkState(
+                self._body, self._link_index[name], computeForwardKinematics=True
+            )
+            return _matrix(engine, state[4], state[5])
+        world_from_inertial = engine.getBasePositionAndOrientation(self._body)
+        base_from_inertial = engine.getDynamicsInfo(self._body, -1)[3:5]
+        inertial_from_base = engine.invertTransform(*base_from_inertial)
+        return _matrix(
+            engine, *engine.multiplyTransforms(*world_from_inertial, *inertial_from_base)
+        )
+
+    def _place(self, positions: np.ndarray, rates: np.ndarray) -> None:
+        for index, position, rate in zip(self._indices, positions, rates, strict=True):
+            self._engine.resetJointState(self._body, index, float(position), float(rate))
+        self._place_followers(positions, rates)
+
+    def _place_followers(self, positions: np.ndarray, rates: np.ndarray) -> None:
+        for follower in self._followers:
+            position = follower.multiplier * positions[follower.i_master] + follower.offset
+            rate = follower.multiplier * rates[follower.i_master]
+            self._engine.resetJointState(self._body, follower.index, float(position), float(rate))
+
+
+def _follower(joint: Joint, placed: PlacedRobot, index: dict[str, int]) -> _Follower:
+    by_name = {other.name: other for other in placed.robot.joints}
+    columns = {moving.name: i for i, moving in enumerate(placed.robot.moving_joints)}
+    multiplier, offset, master = 1.0, 0.0, joint
+    while master.mimic is not None:
+        offset += multiplier * master.mimic.offset
+        multiplier *= master.mimic.multiplier
+        master = by_name[master.mimic.joint]
+    return _Follower(index[joint.name], columns[master.name], multiplier, offset)
+
+
+@contextmanager
+def _world(placed: PlacedRobot, with_shapes: bool) -> Iterator[_World]:
+    with tempfile.TemporaryDirectory(prefix="clearance_physics_") as temporary:
+        folder = Path(temporary)
+        urdf = write_physics_urdf(placed, folder, with_shapes)
+        with _silence():
+            engine = _connect()
+        try:
+            with _silence():
+                body = _load(engine, urdf, placed)
+            yield _World(engine, body, placed, folder)
+        finally:
+            engine.disconnect()
+
+
+def _load(engine: Any, urdf: Path, placed: PlacedRobot) -> int:
+    xyz, quat = _position_and_quaternion(placed.world_from_base)
+    try:
+        return engine.loadURDF(str(urdf), basePosition=xyz, baseOrientation=quat, useFixedBase=True)
+    except engine.error as error:
+        raise BadInput(
+            f"the physics engine cannot load the robot {placed.robot.name!r} ({error})",
+            where=placed.urdf_path,
+            valid="use kinematic motion",
+        ) from None
+
+
+def _connect() -> Any:
+    try:
+        import pybullet
+        from pybullet_utils.bullet_client import BulletClient
+    except ImportError as error:
+        raise Unavailable(
+            f"simulated motion needs pybullet, which cannot be imported ({error})",
+            valid="pip install pybullet, or use kinematic motion",
+        ) from None
+    return BulletClient(connection_mode=pybullet.DIRECT)
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Keeps what the engine's C code prints off stdout and stderr; Python's own output is flushed
+    first.
+    """
+    flush = ctypes.CDLL(None).fflush if os.name == "posix" else (lambda _: 0)
+    for stream in (sys.stdout, sys.stderr):
+        stream.flush()
+    flush(None)
+    kept = os.dup(1), os.dup(2)
+    with open(os.devnull, "wb") as nowhere:
+        os.dup2(nowhere.fileno(), 1)
+        os.dup2(nowhere.fileno(), 2)
+    try:
+        yield
+    finally:
+        flush(None)
+        for copy, target in zip(kept, (1, 2), strict=True):
+            os.dup2(copy, target)
+            os.close(copy)
+
+
+def _position_and_quaternion(pose: np.ndarray) -> tuple[list[float], list[float]]:
+    from scipy.spatial.transform import Rotation
+
+    return pose[:3, 3].tolist(), Rotation.from_matrix(pose[:3, :3]).as_quat().tolist()
+
+
+def _matrix(engine: Any, xyz: Sequence[float], quat: Sequence[float]) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, :3] = np.reshape(engine.getMatrixFromQuaternion(quat), (3, 3))
+    pose[:3, 3] = xyz
+    return pose

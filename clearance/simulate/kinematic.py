@@ -1,0 +1,20 @@
+"""Motion that follows the trajectory exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.world.case import PlacedRobot
+from clearance.world.kinematics import moving_positions
+from clearance.world.motion import Motion
+
+
+def kinematic_motion(placed: PlacedRobot) -> Motion:
+    """The motion that goes through the samples of the trajectory, with no tracking error."""
+    asked = placed.trajectory
+    return Motion(
+        placed=placed,
+        times=asked.times,
+        positions=moving_positions(placed, asked.joint_names, asked.positions),
+        tracking_error=np.zeros(asked.n_steps),
+    )

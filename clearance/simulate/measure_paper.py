@@ -1,0 +1,75 @@
+"""Measures a motion by the first paper's algorithm as published: every pair at every step, no bounds.
+
+Kept beside `measure` so that a whole run can be held against it; its answers carry no guarantee.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.errors import NothingToMeasure
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.query.paper import distance_paper
+from clearance.query.result import Nearest
+from clearance.simulate.measure import Measurement, Minima, Progress
+from clearance.world.case import Case
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+CHUNK = 64
+"""Steps whose poses are held at a time."""
+
+
+def measure_paper(
+    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], progress: Progress | None = None
+) -> Measurement:
+    """The paper's clearances of `pairs` over `motions`; those of pairs that its rules cut are infinite.
+
+    Raises:
+        NothingToMeasure: the rules cut every polygon pair of a step.
+    """
+    n_steps = motions[0].n_steps
+    clearance, points = np.full(n_steps, np.inf), np.full((n_steps, 2, 3), np.nan)
+    winner = np.zeros(n_steps, dtype=np.int64)
+    minima = Minima(
+        np.full(len(pairs), np.inf), np.zeros(len(pairs), dtype=np.int64), np.full((len(pairs), 2, 3), np.nan)
+    )
+    tally: Counter[str] = Counter()
+    for step in range(n_steps):
+        if step % CHUNK == 0:
+            poses = [motion.poses(step, min(step + CHUNK, n_steps)) for motion in motions]
+        for i_pair, pair in enumerate(pairs):
+            near = _measured(case, pair, poses[pair.i_robot][step % CHUNK])
+            tally.update(near.tally)
+            witnesses = (near.point_a, near.point_b)
+            if near.distance < clearance[step]:
+                clearance[step], winner[step], points[step] = near.distance, i_pair, witnesses
+            if near.distance < minima.clearance[i_pair]:
+                minima.clearance[i_pair], minima.step[i_pair] = near.distance, step
+                minima.points[i_pair] = witnesses
+        _require_measured(clearance, step)
+        if progress:
+            progress(step + 1, n_steps)
+    return Measurement(clearance, winner, points, dict(tally), lambda: minima, may_cut_pairs=True)
+
+
+def _require_measured(clearance: np.ndarray, step: int) -> None:
+    """An infinite answer is no clearance: it says that nothing was measured, which overlap can cause."""
+    if np.isinf(clearance[step]):
+        raise NothingToMeasure(
+            f"method 'paper' says nothing of step {step}: its rules cut every polygon pair",
+            valid="method 'exact' measures every step",
+        )
+
+
+def _measured(case: Case, pair: Pair, world_from_link: np.ndarray) -> Nearest:
+    robot = case.robots[pair.i_robot].robot
+    link: Polyhedron = robot.bodies[pair.i_body].shape
+    obstacle = case.obstacles[pair.i_obstacle]
+    i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
+    return distance_paper(
+        link, obstacle.body.shape, world_from_link[i_link], obstacle.world_from_body
+    )

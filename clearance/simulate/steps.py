@@ -1,0 +1,118 @@
+"""Turns measurements into the table of steps and the list of pair minima that everybody reads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import StrEnum
+from functools import cached_property
+
+import numpy as np
+import pyarrow as pa
+
+from clearance.simulate.measure import Measurement
+from clearance.simulate.record import PairMinimum
+from clearance.world.case import Case, Limits, Unmeasured
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+
+class Status(StrEnum):
+    """How a step stands against the limits, worst last."""
+
+    CLEAR = "clear"
+    NEAR = "near"
+    VIOLATED = "violated"
+    CONTACT = "contact"
+
+
+STATUSES = tuple(Status)
+
+
+def status_codes(clearance: np.ndarray, limits: Limits) -> np.ndarray:
+    """(n,) indices into `STATUSES`: contact at 0, violated below `fail`, near below `warn`."""
+    below = [clearance <= 0.0, clearance < limits.fail, clearance < limits.warn]
+    return np.select(below, [3, 2, 1], default=0)
+
+
+def step_table(
+    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement, with_error: bool
+) -> pa.Table:
+    """One row a step; columns as in `Record.steps`."""
+    links, obstacles = pair_names(case, pairs)
+    columns = {
+        "step": pa.array(np.arange(len(found.clearance))),
+        "time": pa.array(motions[0].times),
+        "clearance": pa.array(found.clearance),
+        "link": _names(links, found.pair),
+        "obstacle": _names(obstacles, found.pair),
+    }
+    for i_side, side in enumerate(("link", "obstacle")):
+        for i_axis, axis in enumerate("xyz"):
+            columns[f"{side}_{axis}"] = pa.array(found.points[:, i_side, i_axis])
+    columns["status"] = _names([str(s) for s in STATUSES], status_codes(found.clearance, case.limits))
+    if with_error:
+        columns["tracking_error"] = pa.array(np.max([m.tracking_error for m in motions], axis=0))
+    return pa.table(columns)
+
+
+class PairMinima(Sequence[PairMinimum]):
+    """The least clearance of every pair over the run, least first, found when first looked at.
+
+    Ties are in the order of the pairs.
+    """
+
+    def __init__(
+        self, case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement
+    ) -> None:
+        self._names = pair_names(case, pairs)
+        self._times = motions[0].times
+        self._find = found.find_minima
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def __getitem__(self, index: int | slice) -> PairMinimum | tuple[PairMinimum, ...]:
+        return self._rows[index]
+
+    @cached_property
+    def _rows(self) -> tuple[PairMinimum, ...]:
+        links, obstacles = self._names
+        found = self._find()
+        return tuple(
+            PairMinimum(
+                link=links[i],
+                obstacle=obstacles[i],
+                clearance=float(found.clearance[i]),
+                step=int(found.step[i]),
+                time=float(self._times[found.step[i]]),
+                point_link=tuple(found.points[i, 0].tolist()),
+                point_obstacle=tuple(found.points[i, 1].tolist()),
+            )
+            for i in np.argsort(found.clearance, kind="stable")
+            if np.isfinite(found.clearance[i])  # the paper's rules can cut a pair at every step
+        )
+
+
+def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Unmeasured]:
+    """The pairs of which the paper's method says nothing at any step; none for the exact method."""
+    if not found.may_cut_pairs:
+        return []
+    links, obstacles = pair_names(case, pairs)
+    cut = np.flatnonzero(np.isinf(found.find_minima().clearance))
+    reason = "the paper's rules cut every polygon pair at every step"
+    return [Unmeasured(links[i], obstacles[i], reason) for i in cut]
+
+
+def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]:
+    """The link and the obstacle of each pair; links carry their robot's name where there are several."""
+    several = len(case.robots) > 1
+    links = []
+    for pair in pairs:
+        robot = case.robots[pair.i_robot].robot
+        name = robot.bodies[pair.i_body].name
+        links.append(f"{robot.name}/{name}" if several else name)
+    return links, [case.obstacles[pair.i_obstacle].name for pair in pairs]
+
+
+def _names(names: Sequence[str], codes: np.ndarray) -> pa.Array:
+    return pa.array(names, type=pa.string()).take(pa.array(codes))

@@ -1,0 +1,142 @@
+"""The one door to meshcat: its server, and a scene that plays in any browser that opens its
+address.
+
+Everything is sent once, before a browser is there; meshcat's server keeps it and gives it to each
+browser that comes. Playing and scrubbing are meshcat's own animation; what jumps to a step is a
+control of meshcat's viewer. Not for: which shapes, poses and colours (`playback`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from collections.abc import Sequence
+
+import meshcat
+import meshcat.animation
+import meshcat.geometry
+import numpy as np
+import umsgpack
+
+Z_FROM_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+"""Turns meshcat's cylinder, which stands along y, to stand along z."""
+
+_HOLD = 2300
+"""three.js `InterpolateDiscrete`: between two frames the first one is shown, never an invented
+pose."""
+
+
+class _HeldTrack(meshcat.animation.AnimationTrack):
+    """A track that holds each value until the next."""
+
+    __slots__ = ()
+
+    def lower(self) -> dict:
+        return {**super().lower(), "interpolation": _HOLD}
+
+
+class Stage:
+    """A meshcat server with one scene."""
+
+    def __init__(self) -> None:
+        with contextlib.redirect_stdout(
+            io.StringIO()
+        ):  # meshcat greets on stdout, which belongs to the caller
+            self._root = meshcat.Visualizer()
+        self._opening = "this.gui.open()"
+        self._clips: dict[meshcat.path.Path, meshcat.animation.AnimationClip] = {}
+        self._root["/Background"].set_property("top_color", [0.93, 0.945, 0.96])
+        self._root["/Background"].set_property("bottom_color", [0.99, 0.99, 0.985])
+        self._root["/Axes"].set_property("visible", False)
+
+    @property
+    def url(self) -> str:
+        """The address to open in a browser."""
+        return self._root.url()
+
+    def mesh(
+        self, path: str, vertices: np.ndarray, triangles: np.ndarray, colour: int, opacity: float
+    ) -> None:
+        """Puts a surface at `path`: (n, 3) [m], (m, 3) vertex indices, colour 0xRRGGBB."""
+        material = meshcat.geometry.MeshLambertMaterial(
+            color=colour, opacity=opacity, flatShading=True
+        )
+        self._root[path].set_object(
+            meshcat.geometry.TriangularMeshGeometry(vertices, triangles), material
+        )
+
+    def ball(self, path: str, radius: float, colour: int) -> None:
+        """Puts a sphere [m] at `path` that is drawn over everything else."""
+        self._root[path].set_object(meshcat.geometry.Sphere(radius), _over_all(colour))
+        self._last(path)
+
+    def rod(self, path: str, radius: float, colour: int) -> None:
+        """Puts a cylinder of unit length along z at `path` that is drawn over everything else."""
+        upright = self._root[path]["rod"]
+        upright.set_object(meshcat.geometry.Cylinder(1.0, radius), _over_all(colour))
+        upright.set_transform(Z_FROM_Y)
+        self._last(f"{path}/rod")
+
+    def _last(self, path: str) -> None:
+        """Draws what is at `path` after everything else, also after what is transparent and
+        nearer."""
+        self._root[path]["<object>"].set_property("renderOrder", 10)
+
+    def place(self, path: str, world_from_body: np.ndarray) -> None:
+        """Sets the pose (4, 4) [m] of whatever is at `path`."""
+        self._root[path].set_transform(world_from_body)
+
+    def animate(
+        self, path: str, kind: str, type_: str, times: Sequence[float], values: Sequence
+    ) -> None:
+        """Adds a track: property `kind` of three.js type `type_`, one value a time [s from the
+        start]."""
+        clip = self._clips.setdefault(self._root[path].path, meshcat.animation.AnimationClip(fps=1))
+        clip.tracks[kind] = _HeldTrack(kind, type_, list(times), list(values))
+
+    def finish(self) -> None:
+        """Sends all tracks as one animation, which starts at once and repeats."""
+        self._root.set_animation(meshcat.animation.Animation(self._clips), repetitions=1000)
+
+    def look(self, target: np.ndarray, eye: np.ndarray) -> None:
+        """Puts the camera at `eye` and lets it orbit around `target`, both (3,) [m] in the world.
+
+        To be called before the controls: meshcat has no property for the target, so they set it.
+        """
+        camera = self._root["/Cameras/default/rotated/<object>"]
+        camera.set_property("position", _y_up(eye))
+        camera.set_property("fov", 40.0)
+        self._opening = f"this.controls.target.set(...{_y_up(target)}), this.gui.open()"
+
+    def button(self, name: str, script: str) -> None:
+        """A button in the viewer's panel; `script` is a function in which `this` is meshcat's
+        viewer."""
+        self._control({"name": name, "callback": f"({self._opening}, {script})"})
+
+    def slider(self, name: str, script: str, n: int) -> None:
+        """A slider from 0 to n - 1 in the viewer's panel; `script` is a function of its value."""
+        bounds = {"value": 0, "min": 0, "max": n - 1, "step": 1}
+        self._control({"name": name, "callback": f"({self._opening}, {script})", **bounds})
+
+    def _control(self, control: dict) -> None:
+        """meshcat's viewer knows controls, its server passes on only commands that it knows itself;
+        what comes under the name of a property is kept and given to every browser unread."""
+        command = {"type": "set_control", "path": "/clearance", **control}
+        socket = self._root.window.zmq_socket
+        socket.send_multipart([b"set_property", b"/clearance", umsgpack.packb(command)])
+        socket.recv()
+
+    def close(self) -> None:
+        """Ends the server."""
+        self._root.window.server_proc.terminate()
+        self._root.window.server_proc.wait()
+
+
+def _y_up(point: np.ndarray) -> list[float]:
+    """A point of our world, where z is up, as three.js's camera sees it, where y is up."""
+    x, y, z = point.tolist()
+    return [x, z, -y]
+
+
+def _over_all(colour: int) -> meshcat.geometry.Material:
+    return meshcat.geometry.MeshBasicMaterial(color=colour, depthTest=False, transparent=True)

@@ -1,0 +1,65 @@
+"""Which bodies are measured against which, and why the others are not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from clearance.errors import NothingToMeasure
+from clearance.world.body import Body
+from clearance.world.case import Case, PlacedRobot, Unmeasured
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A link and an obstacle whose clearance is wanted: indices into `case.robots` and so on."""
+
+    i_robot: int
+    i_body: int
+    i_obstacle: int
+
+
+def measured_pairs(case: Case) -> tuple[list[Pair], list[Unmeasured]]:
+    """The pairs to measure, robots first, then links, then obstacles in their order; and what is left out.
+
+    Raises:
+        NothingToMeasure: no pair is left.
+    """
+    pairs: list[Pair] = []
+    unmeasured: list[Unmeasured] = []
+    for i_robot, placed in enumerate(case.robots):
+        unmeasured += _links_left_out(placed)
+        for i_body, body in enumerate(placed.robot.bodies):
+            if body.name in placed.exclude_links:
+                continue
+            for i_obstacle, obstacle in enumerate(case.obstacles):
+                rule = _allowing_rule(case, body, obstacle.name)
+                if rule is None:
+                    pairs.append(Pair(i_robot, i_body, i_obstacle))
+                else:
+                    reason = f"allowed by {list(rule)}"
+                    unmeasured.append(Unmeasured(body.name, obstacle.name, reason))
+    if not pairs:
+        raise NothingToMeasure(
+            "no link-obstacle pair is left to measure",
+            valid="at least one obstacle, and a link with geometry that is not excluded or allowed",
+        )
+    return pairs, unmeasured
+
+
+def _links_left_out(placed: PlacedRobot) -> list[Unmeasured]:
+    with_shape = {body.name for body in placed.robot.bodies}
+    left_out = [Unmeasured(name, "*", "excluded in the case file") for name in placed.exclude_links]
+    left_out += [
+        Unmeasured(name, "*", "no geometry")
+        for name in placed.robot.link_names
+        if name not in with_shape and name not in placed.exclude_links
+    ]
+    return left_out
+
+
+def _allowing_rule(case: Case, link: Body, obstacle: str) -> tuple[str, str] | None:
+    for rule in case.allow:
+        if fnmatchcase(link.name, rule[0]) and fnmatchcase(obstacle, rule[1]):
+            return rule
+    return None

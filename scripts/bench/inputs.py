@@ -1,0 +1,177 @@
+"""What the benchmarks run on: whole cases with their motion worked out, single bodies, polygon pairs.
+
+Everything here is made outside the clock, with fixed seeds. Not for: measuring (`peers`, `loops`).
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+for _threads in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"):
+    os.environ.setdefault(_threads, "1")  # before numpy is loaded: one thread for everybody
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))  # so that a script runs from the root without an installation
+
+import numpy as np  # noqa: E402
+
+from clearance import load_case  # noqa: E402
+from clearance.crosscheck.triangles import TriangleSoup, triangle_soup  # noqa: E402
+from clearance.geometry.polyhedron import Polyhedron  # noqa: E402
+from clearance.simulate.kinematic import kinematic_motion  # noqa: E402
+from clearance.world.body import Body  # noqa: E402
+from clearance.world.case import Case  # noqa: E402
+from clearance.world.motion import Motion  # noqa: E402
+from clearance.world.pairs import Pair, measured_pairs  # noqa: E402
+
+SHARED = ROOT.parent / "shared" / "cases"
+SCENES = ROOT / "scenes"
+
+
+class Round(NamedTuple):
+    """A sphere, or a cylinder along z of a length above 0, about a centre (3,) in the body frame [m]."""
+
+    radius: float
+    length: float
+    centre: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """A body as we take it and as the peers take it.
+
+    Attributes:
+        round_shape: what it is before it is faceted, so that a peer may use its own; None for all others.
+    """
+
+    name: str
+    shape: Polyhedron
+    soup: TriangleSoup
+    round_shape: Round | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A case ready to be measured.
+
+    Attributes:
+        links, obstacles: those that occur in `index`.
+        poses: (steps, links, 4, 4) `world_from_link` [m].
+        standing: (obstacles, 4, 4) `world_from_obstacle` [m].
+        index: (p, 2) link and obstacle of each measured pair.
+        reference: (steps,) [m] clearances made elsewhere, and (steps,) True where they are exact for
+            the meshes that are measured; None where the case brings none.
+    """
+
+    name: str
+    case: Case
+    motions: tuple[Motion, ...]
+    pairs: list[Pair]
+    links: list[Solid]
+    obstacles: list[Solid]
+    poses: np.ndarray
+    standing: np.ndarray
+    index: np.ndarray
+    reference: tuple[np.ndarray, np.ndarray] | None
+
+    @property
+    def n_steps(self) -> int:
+        """Number of steps."""
+        return len(self.poses)
+
+    @property
+    def n_triangles(self) -> int:
+        """Triangles of all links and obstacles that are measured."""
+        return sum(len(solid.soup.triangles) for solid in [*self.links, *self.obstacles])
+
+
+def solid(body: Body) -> Solid:
+    """A body with its triangles."""
+    return Solid(body.name, body.shape, triangle_soup(body.shape), round_shape(body))
+
+
+def round_shape(body: Body) -> Round | None:
+    """What a faceted round body was: all facets touch it, so their planes give its radius back.
+
+    A cylinder that is turned in its link is None; its peers get the facets.
+    """
+    if body.origin not in ("sphere", "cylinder"):
+        return None
+    low, high = body.shape.bounds
+    centre, normals = 0.5 * (low + high), body.shape.normals
+    heights = (normals * (body.shape.centres - centre)).sum(axis=1)
+    if body.origin == "sphere":
+        return Round(float(heights.min()), 0.0, centre)
+    sides = np.abs(normals[:, 2]) < 0.5
+    if sides.sum() != len(sides) - 2:
+        return None
+    return Round(float(heights[sides].min()), float(high[2] - low[2]), centre)
+
+
+def case_files() -> list[Path]:
+    """The case files of the shared cases, if they are there, and of our scenes."""
+    return sorted(SHARED.glob("*/case.yaml")) + sorted(SCENES.glob("*/case.yaml"))
+
+
+def absent_inputs() -> list[str]:
+    """What cannot be run, one line each."""
+    shared = sorted(SHARED.glob("*/case.yaml"))
+    return [] if shared else [f"skipped: no shared cases in {SHARED.name}/ beside the repository"]
+
+
+def scenes(names: list[str] | None = None) -> Iterator[Scene]:
+    """Every case whose folder name is in `names`; all of them if that is empty or None."""
+    for path in case_files():
+        if not names or path.parent.name in names:
+            yield scene_of(path)
+
+
+def scene_of(path: Path) -> Scene:
+    """A case file loaded, its motion followed, its bodies triangulated."""
+    case = load_case(path)
+    motions = tuple(kinematic_motion(placed) for placed in case.robots)
+    pairs, _ = measured_pairs(case)
+    movers = sorted({(pair.i_robot, pair.i_body) for pair in pairs})
+    fixed = sorted({pair.i_obstacle for pair in pairs})
+    standing = [case.obstacles[k] for k in fixed]
+    links = [solid(case.robots[i].robot.bodies[j]) for i, j in movers]
+    obstacles = [solid(o.body) for o in standing]
+    return Scene(
+        name=path.parent.name,
+        case=case,
+        motions=motions,
+        pairs=pairs,
+        links=links,
+        obstacles=obstacles,
+        poses=_poses(case, motions, movers),
+        standing=np.array([o.world_from_body for o in standing]),
+        index=np.array(
+            [(movers.index((p.i_robot, p.i_body)), fixed.index(p.i_obstacle)) for p in pairs]
+        ),
+        reference=_reference(case, path.with_name("reference.csv")),
+    )
+
+
+def _poses(
+    case: Case, motions: tuple[Motion, ...], movers: list[tuple[int, int]]
+) -> np.ndarray:
+    by_robot = [motion.poses() for motion in motions]
+    columns = []
+    for i_robot, i_body in movers:
+        robot = case.robots[i_robot].robot
+        columns.append(by_robot[i_robot][:, robot.link_names.index(robot.bodies[i_body].name)])
+    return np.ascontiguousarray(np.stack(columns, axis=1))
+
+
+def _reference(case: Case, path: Path) -> tuple[np.ndarray, np.ndarray] | None:
+    """The reference takes cylinders and spheres as they are; what is measured is faceted."""
+    if not path.exists():
+        return None
+    rows = np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8")
+    round_ones = {o.name for o in case.obstacles if o.body.shape.excess > 0.0}
+    return rows["clearance"], np.array([name not in round_ones for name in rows["obstacle"]])

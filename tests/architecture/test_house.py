@@ -1,0 +1,39 @@
+"""The rules of the house that a program can check: imports, style, docstrings, names."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+MODULES = sorted((ROOT / "clearance").rglob("*.py"))
+BARRED = {"utils", "util", "helpers", "helper", "common", "misc", "manager", "base"}
+
+
+def test_imports_keep_to_the_layers_and_doors():
+    lint = Path(sys.executable).with_name("lint-imports")
+    done = subprocess.run([lint, "--no-cache"], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_ruff_finds_nothing_in_the_package():
+    command = [sys.executable, "-m", "ruff", "check", "--output-format", "concise", "."]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_module_opens_with_what_it_is_for(path):
+    source = path.read_text(encoding="utf-8")
+    if not source.strip():
+        assert path.name == "__init__.py"
+        return
+    assert ast.get_docstring(ast.parse(source)), f"{path} has no docstring"
+
+
+def test_no_room_has_a_name_that_says_nothing():
+    assert [path for path in MODULES if BARRED & {path.stem, path.parent.name}] == []

@@ -1,0 +1,179 @@
+"""The command line from outside: exit codes, output, files, every bad input."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+URDF = """<robot name="cart"><link name="ground"/>
+  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
+    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
+CASE = """name: rail
+robot: {urdf: cart.urdf}
+scene:
+  obstacles:
+  - {name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0], quat_xyzw: [0, 0, 0, 1]}}
+allow: []
+trajectory: {file: path.csv}
+limits: {fail: 0.05, warn: 0.3}
+"""
+PATH = "time,rail\n0,0\n1,0.3\n2,0.7\n"  # 0.8, 0.5 and 0.1 m from the wall
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "cart.urdf").write_text(URDF)
+    (tmp_path / "case.yaml").write_text(CASE)
+    (tmp_path / "path.csv").write_text(PATH)
+    return tmp_path
+
+
+def clearance(folder: Path, *arguments: str, case: str = "case.yaml"):
+    command = [sys.executable, "-m", "clearance", "check", str(folder / case), *arguments]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+    }
+
+
+def test_near_passes_and_nothing_is_written(folder):
+    before = files(folder)
+    done = clearance(folder, "--cross-check")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("NEAR  rail: least clearance 100.0 mm")
+    assert "slider - wall" in done.stdout and "agrees at all 3 steps" in done.stdout
+    assert files(folder) == before
+
+
+def test_limits_from_the_command_line_decide(folder):
+    violated = clearance(folder, "--fail-mm", "150")
+    assert violated.returncode == 1 and violated.stdout.startswith("VIOLATED")
+    clear = clearance(folder, "--fail-mm", "1", "--warn-mm", "2", "--quiet")
+    assert (clear.returncode, clear.stdout, clear.stderr) == (0, "", "")
+
+
+def test_json_is_all_that_is_printed(folder):
+    done = clearance(folder, "--json", "--motion", "simulated")
+    summary = json.loads(done.stdout)
+    assert done.stderr == "" and summary["motion"] == "simulated"
+    assert summary["worst"]["link"] == "slider" and summary["n_steps"] > 480
+
+
+def test_report_and_junit_are_where_they_were_asked_for(folder):
+    done = clearance(folder, "--out", "deep/report", "--junit", "junit.xml")
+    assert done.returncode == 0, done.stderr
+    written = {path.name for path in (folder / "deep/report").iterdir()}
+    assert {"steps.csv", "steps.parquet", "summary.json", "report.html"} <= written
+    assert (folder / "junit.xml").read_bytes().startswith(b"<?xml")
+
+
+BAD = {
+    "unknown joint": ("path.csv", "time,rail", "time,rale", "rale"),
+    "unknown link in allow": ("case.yaml", "allow: []", "allow: [[slidr, wall]]", "slidr"),
+    "NaN in the trajectory": ("path.csv", "1,0.3", "1,nan", "path.csv"),
+    "too few columns": ("path.csv", "1,0.3", "1", "path.csv"),
+    "unknown key": ("case.yaml", "limits:", "limit:", "limits"),
+    "mesh without faces": (
+        "case.yaml", "box: {size: [0.2, 1, 1]}", "mesh: {file: none.stl}", "none",
+    ),
+    "negative radius": (
+        "case.yaml", "box: {size: [0.2, 1, 1]}", "sphere: {radius: -1}", "radius",
+    ),
+    "bad quaternion": ("case.yaml", "[0, 0, 0, 1]", "[0, 0, 0, 2]", "quat_xyzw"),
+    "time not increasing": ("path.csv", "2,0.7", "1,0.7", "time"),
+    "URDF that is not XML": ("cart.urdf", "<robot", "robot", "cart.urdf"),
+    "missing trajectory": ("case.yaml", "path.csv", "gone.csv", "gone.csv"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", BAD)
+def test_bad_input_is_one_line_and_exit_2(folder, fault):
+    name, good, bad, named = BAD[fault]
+    text = (folder / name).read_text()
+    assert good in text
+    (folder / name).write_text(text.replace(good, bad, 1))
+    (folder / "none.stl").write_text("solid none\nendsolid none\n")
+    assert_refused(folder, clearance(folder, "--out", "report"), named)
+
+
+def test_two_obstacles_with_one_name(folder):
+    text = (folder / "case.yaml").read_text()
+    row = next(line for line in text.splitlines() if "wall" in line)
+    (folder / "case.yaml").write_text(text.replace(row, f"{row}\n{row}"))
+    assert_refused(folder, clearance(folder, "--out", "report"), "wall")
+
+
+def test_a_case_that_is_not_there(folder):
+    assert_refused(folder, clearance(folder, "--out", "report", case="gone.yaml"), "gone.yaml")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "named"),
+    [
+        (("--fail-mm", "-1"), "-1"),
+        (("--warn-mm", "nan"), "nan"),
+        (("--fail-mm", "5", "--warn-mm", "2"), "below"),
+        (("--method", "fast"), "fast"),
+        (("--colour",), "--colour"),
+        (("--out", "case.yaml"), "case.yaml"),
+        (("--out", "case.yaml/below"), "case.yaml"),
+        (("--out", "/proc/report"), "/proc/report"),
+        (("--junit", "."), "--junit"),
+    ],
+)
+def test_bad_arguments_are_one_line_and_exit_2(folder, arguments, named):
+    assert_refused(folder, clearance(folder, *arguments), named)
+
+
+def assert_refused(folder: Path, done: subprocess.CompletedProcess, named: str) -> None:
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert done.stdout == "" and done.stderr.startswith("error: ")
+    assert done.stderr.count("\n") == 1 and named in done.stderr
+    assert not (folder / "report").exists()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device to write to")
+def test_a_full_disk_under_stdout_is_no_verdict(folder):
+    command = [sys.executable, "-m", "clearance", "check", str(folder / "case.yaml"), "--json"]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            command, cwd=ROOT, stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert done.returncode not in (0, 1)
+
+
+def test_an_interrupted_run_leaves_the_older_report_as_it_was(folder):
+    assert clearance(folder, "--out", "report").returncode == 0
+    before = files(folder / "report")
+    rows = (f"{i},{0.7 * (i % 1000) / 1000}" for i in range(200_000))
+    (folder / "path.csv").write_text("time,rail\n" + "\n".join(rows) + "\n")
+    command = [sys.executable, "-m", "clearance", "check", "case.yaml", "--cross-check", "--out"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    process = subprocess.Popen(
+        [*command, "report"], cwd=folder, env=environment, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    time.sleep(4.0)
+    assert process.poll() is None, "the run ended before it could be interrupted"
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert (process.returncode, out) == (130, "") and err.count("\n") == 1
+    assert "interrupted" in err
+    assert files(folder / "report") == before
+    assert not list(folder.glob("**/*.partial"))

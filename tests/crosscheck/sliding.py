@@ -1,0 +1,65 @@
+"""Records made by hand: one body on a rail past fixed bodies, with answers known on paper."""
+
+from __future__ import annotations
+
+import numpy as np
+import pyarrow as pa
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.simulate.record import Record
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot, Unmeasured
+from clearance.world.motion import Motion
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+
+BOX_FACES = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+
+
+def box(*size: float) -> Polyhedron:
+    """A box about the origin: six outward quadrilaterals."""
+    corners = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)])
+    return Polyhedron(0.5 * corners * size, BOX_FACES)
+
+
+def rail_record(
+    link: Polyhedron,
+    obstacles: dict[str, tuple[Polyhedron, tuple[float, float, float]]],
+    positions: list[float],
+    rows: list[tuple[float, str, tuple[float, float, float], tuple[float, float, float]]],
+    unmeasured: tuple[Unmeasured, ...] = (),
+) -> Record:
+    """A record of `link` sliding along x; a row is (clearance, obstacle, link point, obstacle
+    point).
+    """
+    times = np.arange(len(positions), dtype=float)
+    column = np.array(positions)[:, None]
+    rail = Joint("rail", JointKind.PRISMATIC, "ground", "slider", np.eye(4))
+    robot = Robot("cart", ("ground", "slider"), (rail,), (Body("slider", link),))
+    placed = PlacedRobot(robot, Trajectory(times, ("rail",), column))
+    standing = tuple(
+        Obstacle(Body(name, shape), _shift(place)) for name, (shape, place) in obstacles.items()
+    )
+    motion = Motion(placed, times, column, np.zeros(len(times)))
+    case = Case("rail", (placed,), standing)
+    return Record(case, (motion,), _steps(times, rows), (), unmeasured, {})
+
+
+def _steps(times: np.ndarray, rows: list) -> pa.Table:
+    columns = {
+        "step": np.arange(len(times)),
+        "time": times,
+        "clearance": [row[0] for row in rows],
+        "link": ["slider"] * len(rows),
+        "obstacle": [row[1] for row in rows],
+    }
+    for side, i_row in (("link", 2), ("obstacle", 3)):
+        for i_axis, axis in enumerate("xyz"):
+            columns[f"{side}_{axis}"] = [float(row[i_row][i_axis]) for row in rows]
+    return pa.table(columns)
+
+
+def _shift(place: tuple[float, float, float]) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, 3] = place
+    return pose

@@ -1,0 +1,166 @@
+"""The cross-check agrees with what is right and names every step that is wrong."""
+
+from __future__ import annotations
+
+import fcl
+import numpy as np
+import pytest
+
+from clearance.crosscheck import cross_check
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.tolerance import CROSS_CHECK
+from clearance.world.case import Unmeasured
+from tests.crosscheck.sliding import box, rail_record
+
+NEAR_AND_FAR = {"near": (box(0.2, 0.2, 0.2), (1, 0, 0)), "far": (box(0.2, 0.2, 0.2), (-3, 0, 0))}
+
+
+def passing(clearances: list[float], **changes):
+    """A unit-free pass: link of 0.2 m from x = 0 towards the near box at x = 1, whose face is at
+    0.9.
+    """
+    positions = [0.0, 0.3, 0.6, 0.7999]
+    rows = [
+        (given, "near", (x + 0.1, 0.05, 0.0), (0.9, 0.05, 0.0))
+        for x, given in zip(positions, clearances, strict=True)
+    ]
+    return rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, positions, rows, **changes)
+
+
+TRUE = [0.8, 0.5, 0.2, 0.0001]
+
+
+def test_right_answers_agree():
+    told = []
+    check = cross_check(passing(TRUE), progress=lambda done, total: told.append((done, total)))
+    assert check.agrees and check.n_steps == 4
+    assert check.greatest_difference < 1e-12 and check.worst_witness_error < 1e-12
+    assert told == [(4, 4)]
+    diagonal = np.linalg.norm([1.1 + 3.1, 0.2, 0.2])
+    assert check.tolerance == pytest.approx(CROSS_CHECK * diagonal, rel=1e-12)
+    assert check.peer.startswith("python-fcl")
+
+
+@pytest.mark.parametrize("error", [1e-7, -1e-7, 0.1])
+def test_a_wrong_clearance_is_listed_with_both_answers(error):
+    check = cross_check(passing([0.8, 0.5 + error, 0.2, 0.0001]))
+    assert not check.agrees and check.worst_step == 1
+    assert check.greatest_difference == pytest.approx(abs(error), rel=1e-4)
+    (row,) = check.disagreements
+    assert (row.step, row.clearance) == (1, 0.5 + error)
+    assert row.peer_clearance == pytest.approx(0.5, abs=1e-12)
+    assert (row.link, row.obstacle, row.peer_link, row.peer_obstacle) == (
+        "slider", "near", "slider", "near",
+    )  # fmt: skip
+
+
+def test_a_nan_is_a_disagreement():
+    check = cross_check(passing([0.8, np.nan, 0.2, 0.0001]))
+    assert [row.step for row in check.disagreements] == [1]
+
+
+def test_a_witness_off_its_body_is_listed_though_the_distance_is_right():
+    record = passing(TRUE)
+    lifted = record.steps
+    for name in ("link_z", "obstacle_z"):
+        i_column = lifted.schema.get_field_index(name)
+        lifted = lifted.set_column(i_column, name, [[0.0, 0.15, 0.0, 0.0]])
+    object.__setattr__(record, "steps", lifted)
+    check = cross_check(record)
+    assert check.greatest_difference < 1e-12
+    assert check.worst_witness_error == pytest.approx(0.05, abs=1e-12)
+    assert [row.step for row in check.disagreements] == [1]
+    assert "witness" in check.disagreements[0].reason
+
+
+def test_unmeasured_pairs_take_no_part():
+    rows = [(3.0 - 0.2, "far", (-0.1, 0, 0), (-2.9, 0, 0))]
+    left_out = (Unmeasured("slider", "near", "allowed"),)
+    assert cross_check(rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0], rows, left_out)).agrees
+    record = rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0], rows)
+    assert cross_check(record).disagreements[0].peer_obstacle == "near"
+
+
+def test_contact_agrees_only_if_both_say_it():
+    positions, point = [0.0, 0.95], (0.9, 0.0, 0.0)
+    first = (0.8, "near", (0.1, 0, 0), point)
+    touching = rail_record(
+        box(0.2, 0.2, 0.2), NEAR_AND_FAR, positions, [first, (0.0, "near", point, point)]
+    )
+    assert cross_check(touching).agrees
+    missed = rail_record(
+        box(0.2, 0.2, 0.2), NEAR_AND_FAR, positions,
+        [first, (0.01, "near", point, (0.91, 0, 0))],
+    )  # fmt: skip
+    (row,) = cross_check(missed).disagreements
+    assert row.peer_clearance == 0.0 and row.reason == "the peer says contact"
+    invented = rail_record(
+        box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0, 0.5], [first, (0.0, "near", point, point)]
+    )
+    (row,) = cross_check(invented).disagreements
+    assert row.peer_clearance == pytest.approx(0.3) and "peer does not" in row.reason
+
+
+@pytest.mark.parametrize(("link", "obstacle"), [((0.2,) * 3, (2.0,) * 3), ((2.0,) * 3, (0.2,) * 3)])
+def test_containment_is_contact_for_the_peer_too(link, obstacle):
+    """Field, fault 3: FCL alone says +0.9 m for a box in the middle of a larger one."""
+    rows = [(0.0, "solid", (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))]
+    record = rail_record(box(*link), {"solid": (box(*obstacle), (0, 0, 0))}, [0.0], rows)
+    assert cross_check(record).agrees
+
+
+def test_one_of_two_parts_inside_is_contact():
+    small = box(0.2, 0.2, 0.2)
+    two = Polyhedron(
+        np.vstack([small.vertices, small.vertices + np.array([5.0, 0, 0])]),
+        [*small.face_vertices.reshape(-1, 4), *(small.face_vertices.reshape(-1, 4) + 8)],
+    )
+    rows = [(0.0, "solid", (5.0, 0.0, 0.0), (5.0, 0.0, 0.0))]
+    record = rail_record(two, {"solid": (box(2, 2, 2), (5, 0, 0))}, [0.0], rows)
+    assert cross_check(record).agrees
+
+
+def test_an_open_body_has_no_inside():
+    lidless = box(2.0, 2.0, 2.0)
+    open_box = Polyhedron(lidless.vertices, lidless.face_vertices.reshape(-1, 4)[:5])
+    rows = [(0.9, "open", (0.0, 0.0, -0.1), (0.0, 0.0, -1.0))]
+    record = rail_record(box(0.2, 0.2, 0.2), {"open": (open_box, (0, 0, 0))}, [0.0], rows)
+    assert cross_check(record).agrees
+
+
+def test_a_triangle_without_area_does_not_make_a_contact():
+    """Field, fault 4: FCL answers 0 for a mesh that holds a triangle without area."""
+    plain = box(0.2, 0.2, 0.2)
+    faces = [*plain.face_vertices.reshape(-1, 4).tolist(), [0, 8, 1]]
+    vertices = np.vstack([plain.vertices, plain.vertices[:2].mean(axis=0)])
+    rows = [(0.8, "near", (0.1, 0, 0), (0.9, 0, 0))]
+    assert cross_check(rail_record(Polyhedron(vertices, faces), NEAR_AND_FAR, [0.0], rows)).agrees
+
+
+def test_a_needle_over_a_face_is_no_contact():
+    """Field, fault 1: in metres FCL says 0 where the gap is 5 micrometres."""
+    size = 5e-5
+    needle = Polyhedron(
+        np.array(
+            [[0, 0, 5e-6], [size * 1e-2, 0, size], [0, size * 1e-2, size], [-1e-6, -1e-6, size]]
+        ),
+        [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]],
+    )
+    plate = Polyhedron([[-size, -size, 0], [size, -size, 0], [0, size, 0]], [[0, 1, 2]])
+    rows = [(5e-6, "plate", (0, 0, 5e-6), (0, 0, 0))]
+    record = rail_record(needle, {"plate": (plate, (0, 0, 0))}, [0.0], rows)
+    assert cross_check(record).greatest_difference < 1e-10
+    assert peer_distance(needle, plate, scale=1.0) <= 0.0
+    assert peer_distance(needle, plate, scale=1e3) == pytest.approx(5e-3, rel=1e-6)
+
+
+def peer_distance(a: Polyhedron, b: Polyhedron, scale: float) -> float:
+    objects = []
+    for shape in (a, b):
+        model = fcl.BVHModel()
+        triangles = shape.face_vertices.reshape(-1, 3)
+        model.beginModel(len(shape.vertices), len(triangles))
+        model.addSubModel(shape.vertices * scale, triangles)
+        model.endModel()
+        objects.append(fcl.CollisionObject(model))
+    return fcl.distance(*objects)

@@ -1,0 +1,123 @@
+"""The numpy parts that decide what the peer may skip and what lies where."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from clearance.crosscheck.bounds import (
+    greatest_displacements,
+    lower_bound_boxes,
+    world_boxes,
+)
+from clearance.crosscheck.containment import is_inside, winding_number
+from clearance.crosscheck.peer_run import PeerRun
+from clearance.crosscheck.triangles import triangle_soup
+from clearance.crosscheck.witness import point_triangle_distances
+from clearance.geometry.polyhedron import Polyhedron
+from tests.crosscheck.sliding import box, rail_record
+
+
+def random_poses(rng: np.random.Generator, n: int) -> np.ndarray:
+    poses = np.tile(np.eye(4), (n, 1, 1))
+    poses[:, :3, :3] = Rotation.random(n, random_state=rng).as_matrix()
+    poses[:, :3, 3] = rng.normal(size=(n, 3))
+    return poses
+
+
+def test_a_fan_keeps_area_and_direction():
+    soup = triangle_soup(box(1.0, 2.0, 3.0))
+    corners = soup.corners
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    assert len(corners) == 12
+    assert np.isclose(np.linalg.norm(normals, axis=1).sum(), 22.0)
+    assert (np.einsum("ij,ij->i", normals, corners.mean(axis=1)) > 0).all()
+    assert soup.encloses and len(soup.part_points) == 1
+
+
+def test_a_pentagon_makes_three_triangles():
+    angles = np.arange(5) * 2 * np.pi / 5
+    ring = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(5)])
+    soup = triangle_soup(Polyhedron(ring, [range(5), (0, 1, 2)]))
+    assert len(soup.triangles) == 4 and not soup.encloses
+    assert (np.cross(*(soup.corners[:, k] - soup.corners[:, 0] for k in (1, 2)))[:, 2] > 0).all()
+
+
+def test_vertices_given_twice_do_not_open_a_surface():
+    closed = box(1, 1, 1)
+    corners = np.concatenate([closed.face(i) for i in range(6)])
+    doubled = Polyhedron(corners, np.arange(24).reshape(6, 4))
+    assert triangle_soup(doubled).encloses
+    assert not triangle_soup(Polyhedron(corners, np.arange(20).reshape(5, 4))).encloses
+
+
+def test_inside_is_what_a_box_says():
+    rng = np.random.default_rng(7)
+    points = rng.uniform(-2, 2, size=(500, 3))
+    expected = (np.abs(points) < [0.5, 1.0, 1.5]).all(axis=1)
+    soup = triangle_soup(box(1.0, 2.0, 3.0))
+    assert expected.any() and np.array_equal(is_inside(soup, points), expected)
+    numbers = winding_number(soup.corners, points)
+    assert np.allclose(numbers, np.round(numbers), atol=1e-12)
+
+
+def test_a_cavity_is_outside():
+    outer, inner = box(2, 2, 2), box(1, 1, 1)
+    shell = Polyhedron(
+        np.vstack([outer.vertices, inner.vertices]),
+        [
+            *outer.face_vertices.reshape(-1, 4),
+            *(inner.face_vertices.reshape(-1, 4)[:, ::-1] + 8),
+        ],
+    )
+    points = np.array([[0.0, 0.0, 0.0], [0.75, 0.0, 0.0], [1.5, 0.0, 0.0]])
+    assert is_inside(triangle_soup(shell), points).tolist() == [False, True, False]
+
+
+def test_bounds_never_exceed_what_samples_show():
+    rng = np.random.default_rng(3)
+    soup = triangle_soup(box(1.0, 0.1, 0.4))
+    poses = random_poses(rng, 40)
+    samples = rng.uniform(*soup.bounds, size=(200, 3))
+    world = samples @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
+    moved = np.linalg.norm(np.diff(world, axis=0), axis=2).max(axis=1)
+    bound = greatest_displacements(soup.bounds, poses)
+    assert (bound >= moved).all() and (bound < 1.5 * moved).all()
+    fixed = np.array([[-0.2, -0.3, -0.1], [0.1, 0.2, 0.3]])
+    nearest = np.clip(world, *fixed)
+    gaps = np.linalg.norm(world - nearest, axis=2).min(axis=1)
+    assert (lower_bound_boxes(world_boxes(soup.bounds, poses), fixed) <= gaps).all()
+
+
+def test_point_to_triangle_by_hand():
+    triangle = np.array([[[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]])
+    for point, expected in [
+        ((0.25, 0.25, 2.0), 2.0),
+        ((-3.0, 0.5, 0.0), 3.0),
+        ((1.0, 1.0, 0.0), np.sqrt(0.5)),
+        ((4.0, 0.0, 4.0), 5.0),
+    ]:
+        assert np.isclose(point_triangle_distances(np.array(point), triangle)[0], expected)
+    collapsed = np.array([[[0.0, 0, 0], [2, 0, 0], [1, 0, 0]], [[5.0, 0, 0]] * 3])
+    found = point_triangle_distances(np.array([1.0, 1.0, 0.0]), collapsed)
+    assert np.allclose(found, [1.0, np.sqrt(17.0)])
+
+
+def test_skipping_changes_no_answer():
+    """All pairs asked at every step give what the sorted, bounded search gives, with far fewer
+    queries.
+    """
+    rng = np.random.default_rng(11)
+    obstacles = {
+        f"o{i}": (box(*rng.uniform(0.1, 0.5, 3)), tuple(rng.uniform(-3, 3, 3))) for i in range(12)
+    }
+    positions = np.cumsum(rng.uniform(-0.2, 0.25, 60)).tolist()
+    rows = [(0.0, "o0", (0, 0, 0), (0, 0, 0))] * 60
+    run = PeerRun(rail_record(box(0.3, 0.2, 0.1), obstacles, positions, rows))
+    answers = run.measure()
+    poses = run.poses(0, 60)
+    for step in range(60):
+        run.pairs[0].link.peer.place(poses[0, step])
+        every = [pair.link.peer.distance(pair.obstacle.peer) for pair in run.pairs]
+        assert answers.clearances[step] == min(every)
+    assert answers.n_queries < 60 * 12 / 2

@@ -1,0 +1,192 @@
+"""What a polyhedron refuses, and what it finds out about itself."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance.errors import (
+    BadDimension,
+    BadPolygon,
+    BadPose,
+    BadShape,
+    ClearanceError,
+    EmptyMesh,
+    NotFinite,
+)
+from clearance.geometry.faces import split_warped
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import box, cylinder, sphere
+
+SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+PENTAGRAM = np.array([[np.cos(a), np.sin(a), 0] for a in np.arange(5) * 4 * np.pi / 5])
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "fault", "words"),
+    [
+        (SQUARE, [], EmptyMesh, "no faces"),
+        (SQUARE, np.zeros((0, 3), dtype=int), EmptyMesh, "no faces"),
+        (SQUARE * np.nan, [[0, 1, 2]], NotFinite, "vertex 0"),
+        (SQUARE[:, :2], [[0, 1, 2]], BadShape, "(4, 2)"),
+        ("abc", [[0, 1, 2]], BadShape, "numbers"),
+        (SQUARE, [[0, 1, 2], [0, 1]], BadPolygon, "face 1 has 2"),
+        (SQUARE, [[0, 1, 2], [0, 1, 4]], BadPolygon, "face 1 refers to vertex 4"),
+        (SQUARE, [[0, 1, -1]], BadPolygon, "vertex -1"),
+        (SQUARE, [[0, 1, 2], [0, 1, 1, 2]], BadPolygon, "face 1 has vertex 1 twice"),
+        (SQUARE, [[0, 1, 2, 0]], BadPolygon, "twice"),
+        (SQUARE, [[0.0, 1.0, 2.5]], BadPolygon, "whole"),
+        (SQUARE, [[0, 2, 1, 3]], BadPolygon, "face 0 is not"),
+        (SQUARE * [1, 1, 0] + [[0, 0, 0], [0, 0, 1e-6], [0, 0, 0], [0, 0, 0]], [[0, 1, 2, 3]],
+         BadPolygon, "face 0 is not flat"),
+        ([[0, 0, 0], [2, 0, 0], [0.5, 0.5, 0], [0, 2, 0]], [[0, 1, 2, 3]], BadPolygon, "not convex"),
+        (PENTAGRAM, [[0, 1, 2, 3, 4]], BadPolygon, "not convex"),
+    ],
+)  # fmt: skip
+def test_refuses(vertices, faces, fault, words):
+    with pytest.raises(fault, match=None) as caught:
+        Polyhedron(vertices, faces)
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_excess_must_not_be_negative():
+    with pytest.raises(BadDimension):
+        Polyhedron(SQUARE, [[0, 1, 2, 3]], excess=-1e-9)
+
+
+def test_rounding_far_from_the_origin_is_no_warp():
+    turn = np.eye(4)
+    turn[:3, :3] = np.linalg.qr(np.random.default_rng(0).normal(size=(3, 3)))[0]
+    turn[:3, :3] *= np.sign(np.linalg.det(turn[:3, :3]))
+    turn[:3, 3] = [1e5, -3e5, 7e4]
+    moved = cylinder(1e-3, 1e-2).transformed(turn)
+    faces = np.split(moved.face_vertices, moved.face_starts[1:-1])
+    assert Polyhedron(moved.vertices, faces).n_faces == moved.n_faces
+
+
+def test_split_warped_cuts_only_what_is_not_flat():
+    bent = np.vstack([SQUARE, SQUARE[3] + [0, 0, 0.1]])
+    faces, n_cut = split_warped(bent, [[0, 1, 2, 3], [0, 1, 2, 4]])
+    assert n_cut == 1
+    assert faces == [[0, 1, 2, 3], [0, 1, 2], [0, 2, 4]]
+    assert Polyhedron(bent, faces).n_faces == 3
+
+
+def test_normals_of_a_needle_are_right_and_of_a_line_zero():
+    tip = 1.0 / 3.0
+    v = np.array([[0, 0, 0], [1, 1, 1], [tip, tip, tip], [tip, tip, np.nextafter(tip, 1)]])
+    flat = Polyhedron(v, [[0, 1, 2], [0, 1, 3]])
+    assert not flat.normals[0].any()
+    assert np.allclose(flat.normals[1], np.array([1, -1, 0]) / np.sqrt(2), atol=1e-12)
+
+
+@pytest.mark.parametrize("size", [1e-150, 1e-9, 1.0, 1e9, 1e150])
+def test_planes_do_not_depend_on_scale(size):
+    shape, one = box((size, size, size)), box((1, 1, 1))
+    assert np.array_equal(shape.normals, one.normals)
+    assert np.allclose(shape.radii / size, np.sqrt(0.5), rtol=1e-15)
+    assert np.allclose(shape.centres / size, one.centres, rtol=1e-15)
+
+
+def test_a_box_knows_itself():
+    shape = box((1, 2, 3))
+    assert shape.closed and shape.oriented and shape.manifold and shape.volume == 6.0
+    assert shape.n_triangles == 12 and shape.triangles().shape == (12, 3)
+    assert np.array_equal(shape.bounds, [[-0.5, -1, -1.5], [0.5, 1, 1.5]])
+    assert (np.einsum("ij,ij->i", shape.normals, shape.centres) > 0).all()
+    assert shape.flipped().volume == -6.0
+
+
+def test_an_open_or_torn_surface_is_told_from_a_closed_one():
+    shape = box((1, 1, 1))
+    faces = np.split(shape.face_vertices, shape.face_starts[1:-1])
+    opened = Polyhedron(shape.vertices, faces[1:])
+    assert not opened.closed and opened.oriented and opened.volume is None
+    assert not opened.component_closed.any()
+    twisted = Polyhedron(shape.vertices, [faces[0][::-1], *faces[1:]])
+    assert twisted.closed and not twisted.oriented and twisted.volume is None
+    assert not twisted.component_closed.any()
+
+
+def test_components_are_judged_one_by_one():
+    a, b = box((1, 1, 1)), box((1, 1, 1))
+    pose = np.eye(4)
+    pose[0, 3] = 5.0
+    rest = Polyhedron(b.vertices, np.split(b.face_vertices, b.face_starts[1:-1])[1:])
+    both = Polyhedron.merged([a, rest.transformed(pose)])
+    assert both.face_component.tolist() == [0] * 6 + [1] * 5
+    assert both.component_closed.tolist() == [True, False]
+
+
+def test_boxes_that_share_an_edge_still_have_an_inside():
+    pose = np.eye(4)
+    pose[:2, 3] = 1.0
+    both = Polyhedron.merged([box((1, 1, 1)), box((1, 1, 1)).transformed(pose)])
+    assert both.closed and both.oriented and not both.manifold
+    assert both.component_closed.tolist() == [True] and both.volume == 2.0
+
+
+def test_outward_turns_what_is_inside_out_and_leaves_cavities():
+    solid, hollow = box((3, 3, 3)), box((1, 1, 1)).flipped()
+    cavity = Polyhedron.merged([solid, hollow])
+    assert cavity.volume == 26.0 and cavity.outward() is cavity
+    assert Polyhedron.merged([solid.flipped()]).outward().volume == 27.0
+    pose = np.eye(4)
+    pose[0, 3] = 9.0
+    beside = Polyhedron.merged([solid, hollow.transformed(pose)])
+    assert beside.volume == 26.0 and beside.outward().volume == 28.0
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.floats(0.01, 100) | st.floats(-100, -0.01), min_size=3, max_size=3))
+def test_scaling_keeps_the_outside_outside(factors):
+    shape = box((1, 2, 3)).scaled(factors)
+    assert shape.volume == pytest.approx(6 * abs(np.prod(factors)))
+    assert sphere(0.1).scaled(factors).excess >= sphere(0.1).excess * np.abs(factors).max()
+
+
+@pytest.mark.parametrize("factor", [0, np.nan, np.inf, (1, 2), (1, 0, 1)])
+def test_scaling_by_nonsense_is_refused(factor):
+    with pytest.raises(BadDimension):
+        box((1, 1, 1)).scaled(factor)
+
+
+def test_transforming_needs_a_rigid_motion():
+    with pytest.raises(BadPose):
+        box((1, 1, 1)).transformed(np.diag([1.0, 1, -1, 1]))
+
+
+def test_from_trimesh_takes_anything_with_vertices_and_faces():
+    trimesh = pytest.importorskip("trimesh")
+    assert Polyhedron.from_trimesh(trimesh.creation.box((1, 2, 3))).n_faces == 6
+    with pytest.raises(EmptyMesh):
+        Polyhedron.from_trimesh(42)
+    with pytest.raises(ClearanceError):
+        Polyhedron.from_trimesh(trimesh.Trimesh())
+
+
+def test_arrays_cannot_be_written():
+    with pytest.raises(ValueError, match="read-only"):
+        box((1, 1, 1)).vertices[0, 0] = 3.0
+
+
+def test_large_meshes_are_analysed_quickly():
+    n = 160  # 51,200 triangles of a torus
+    u, v = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    a, b = 2 * np.pi * u.ravel() / n, 2 * np.pi * v.ravel() / n
+    w = 1.0 + 0.3 * np.cos(b)
+    points = np.column_stack([w * np.cos(a), w * np.sin(a), 0.3 * np.sin(b)])
+    i, j = u.ravel(), v.ravel()
+    k = [i * n + j, (i + 1) % n * n + j, (i + 1) % n * n + (j + 1) % n, i * n + (j + 1) % n]
+    triangles = np.concatenate([np.stack(k[:3], 1), np.stack([k[0], k[2], k[3]], 1)])
+    box((1, 1, 1)).closed  # noqa: B018 (compiled before the clock starts)
+    start = time.perf_counter()
+    torus = Polyhedron(points, triangles)
+    assert torus.closed and torus.oriented and len(torus.normals) == 51_200
+    assert time.perf_counter() - start < 2.0  # 0.05 s on an idle core; the margin is for a busy one
+    assert torus.volume == pytest.approx(2 * np.pi**2 * 0.3**2, rel=1e-3)

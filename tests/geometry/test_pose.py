@@ -1,0 +1,70 @@
+"""Poses from quaternions and angles, their inverses, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from clearance.errors import BadPose, BadShape, ClearanceError, NotFinite
+from clearance.geometry.pose import inverse, pose_from_quaternion, pose_from_rpy, validated_pose
+
+number = st.floats(-10, 10)
+quaternions = st.lists(st.floats(-1, 1), min_size=4, max_size=4).map(np.array)
+
+
+def test_half_and_whole_turns_are_exact():
+    assert np.array_equal(pose_from_quaternion([1, 2, 3], [0, 0, 0, 1])[:3, 3], [1, 2, 3])
+    assert np.array_equal(pose_from_quaternion([0, 0, 0], [0, 0, 1, 0]), np.diag([-1.0, -1, 1, 1]))
+
+
+def test_a_quarter_turn_about_z_takes_x_to_y():
+    h = np.sqrt(0.5)
+    assert np.allclose(pose_from_quaternion([0, 0, 0], [0, 0, h, h])[:3, 0], [0, 1, 0], atol=1e-15)
+    assert np.allclose(pose_from_rpy([0, 0, 0], [0, 0, np.pi / 2])[:3, 0], [0, 1, 0], atol=1e-15)
+
+
+@given(number, number, number)
+def test_rpy_is_yaw_after_pitch_after_roll(roll, pitch, yaw):
+    def about(axis, angle):
+        half = 0.5 * angle
+        return pose_from_quaternion([0, 0, 0], [*(np.sin(half) * np.eye(3)[axis]), np.cos(half)])
+
+    expected = about(2, yaw) @ about(1, pitch) @ about(0, roll)
+    assert np.allclose(pose_from_rpy([0, 0, 0], [roll, pitch, yaw]), expected, atol=1e-14)
+
+
+@given(quaternions, st.tuples(number, number, number))
+def test_a_pose_is_rigid_and_undone_by_its_inverse(quaternion, xyz):
+    assume(np.linalg.norm(quaternion) > 1e-3)
+    pose = pose_from_quaternion(xyz, quaternion / np.linalg.norm(quaternion))
+    assert validated_pose(pose) is pose
+    assert np.allclose(pose[:3, :3].T @ pose[:3, :3], np.eye(3), atol=2e-15)
+    assert np.allclose(inverse(pose) @ pose, np.eye(4), atol=1e-13)
+    assert np.array_equal(inverse(np.stack([pose, pose]))[1], inverse(pose))
+
+
+@pytest.mark.parametrize(
+    ("make", "fault"),
+    [
+        (lambda: pose_from_quaternion([0, 0, 0], [0, 0, 0, 0]), BadPose),
+        (lambda: pose_from_quaternion([0, 0, 0], [0, 0, 0, 1.00001]), BadPose),
+        (lambda: pose_from_quaternion([0, 0, 0], [0, 0, 1]), BadShape),
+        (lambda: pose_from_quaternion([0, 0], [0, 0, 0, 1]), BadShape),
+        (lambda: pose_from_quaternion([0, 0, np.nan], [0, 0, 0, 1]), NotFinite),
+        (lambda: pose_from_quaternion("abc", [0, 0, 0, 1]), BadShape),
+        (lambda: pose_from_rpy([0, 0, 0], [0, np.inf, 0]), NotFinite),
+        (lambda: validated_pose(np.eye(3)), BadShape),
+        (lambda: validated_pose("x"), BadShape),
+        (lambda: validated_pose(np.eye(4) * np.nan), NotFinite),
+        (lambda: validated_pose(np.diag([1.0, 1, -1, 1])), BadPose),
+        (lambda: validated_pose(np.diag([1.0, 1, 1, 2])), BadPose),
+        (lambda: validated_pose(np.diag([1.0, 1, 1.001, 1])), BadPose),
+        (lambda: validated_pose(np.diag([1e300, 1e300, 1e300, 1])), BadPose),
+    ],
+)
+def test_refuses(make, fault):
+    with pytest.raises(fault) as caught:
+        make()
+    assert isinstance(caught.value, ClearanceError) and "\n" not in str(caught.value)

@@ -1,0 +1,82 @@
+"""Input on which well-known libraries answer wrongly; each must be right here."""
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from tests import oracle
+
+
+def shifted(x=0.0, y=0.0, z=0.0):
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+@pytest.mark.parametrize("gap", [1e-6, 1e-5])
+@pytest.mark.parametrize("scale", [1.0, 1e-3])
+def test_a_needle_over_a_small_face_is_not_in_contact(gap, scale):
+    """Triangles with edges of 0.1 mm in metres: an absolute threshold on |n|^2 makes others answer 0."""
+    edge = 1e-4
+    face = scale * np.array([[0, 0, 0], [edge, 0, 0], [0, edge, 0]])
+    tip = np.array([0.3 * edge, 0.3 * edge, gap])
+    needle = scale * np.array([tip, tip + [1e-6, 0, 5 * edge], tip + [0, 1e-6, 5 * edge]])
+    near = cl.polygon_distance(face, needle)
+    truth = float(oracle.root(oracle.polygon_distance_sq(face, needle)))
+    assert not near.contact
+    assert near.distance == pytest.approx(truth, rel=1e-12)
+
+
+def test_a_box_inside_another_is_contact_with_a_common_point():
+    inner, outer = cl.box((0.2, 0.2, 0.2)), cl.box((1.0, 1.0, 1.0))
+    near = cl.distance(inner, outer, pose_a=shifted(0.1, 0.0, -0.1))
+    assert near.contact
+    assert near.distance == 0.0
+    assert np.array_equal(near.point_a, near.point_b)
+    assert np.abs(near.point_a - [0.1, 0.0, -0.1]).max() <= 0.1 + 1e-15
+
+
+def test_a_box_in_the_cavity_of_a_closed_shell_is_not_in_contact():
+    outer, cavity = cl.box((1.0, 1.0, 1.0)), cl.box((0.8, 0.8, 0.8)).flipped()
+    shell = cl.Polyhedron.merged([outer, cavity])
+    near = cl.distance(cl.box((0.2, 0.2, 0.2)), shell)
+    assert not near.contact
+    assert near.distance == pytest.approx(0.3, abs=1e-15)
+
+
+def test_overlapping_boxes_meet_in_a_point_of_both():
+    a, b = cl.box((1.0, 1.0, 1.0)), cl.box((0.2, 0.2, 3.0))
+    near = cl.distance(a, b, pose_b=shifted(0.3, -0.2, 0.0))
+    assert near.contact
+    assert np.array_equal(near.point_a, near.point_b)
+    assert np.abs(near.point_a).max() <= 0.5
+    assert np.abs(near.point_a - [0.3, -0.2, 0.0]).max() <= 1.5
+
+
+def test_a_triangle_without_area_changes_nothing():
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5], [6, 6, 6], [7, 7, 7]], dtype=float)
+    with_needle = cl.Polyhedron(vertices, [[0, 1, 2], [3, 4, 5]])
+    near = cl.distance(cl.sphere(0.5), with_needle, pose_a=shifted(0.2, 0.2, 2.5))
+    assert near.face_b == 0
+    assert near.distance == pytest.approx(2.0, abs=2e-4)
+
+
+def test_a_rod_through_a_ring_keeps_its_distance():
+    """Concave made convex: hulls call this a collision of more than a metre."""
+    ring = cl.pipe(inner_radius=0.8776, outer_radius=1.2, length=0.3)
+    rod = cl.cylinder(radius=0.1, length=4.0)
+    near = cl.distance(ring, rod)
+    assert not near.contact
+    assert near.distance <= 0.7776
+    assert near.distance >= 0.7776 - ring.excess - rod.excess
+
+
+def test_a_box_flies_through_a_bore_without_touching():
+    bore = cl.pipe(inner_radius=0.1, outer_radius=0.12, length=1.0)
+    box = cl.box((0.1, 0.1, 0.1))
+    truth = 0.1 - np.hypot(0.05, 0.05)
+    for z in np.linspace(-0.9, 0.9, 19):
+        near = cl.distance(box, bore, pose_a=shifted(z=z))
+        assert not near.contact
+        if abs(z) <= 0.5:
+            assert truth - bore.excess <= near.distance <= truth + 1e-12

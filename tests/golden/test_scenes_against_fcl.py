@@ -1,0 +1,35 @@
+"""Every scene of ours, held against FCL at every step to 1e-9 m."""
+
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+
+SCENES = Path(__file__).parents[2] / "scenes"
+VERDICTS = {  # the statuses that occur, as scenes/README.md promises
+    "box_box": {"clear"},
+    "box_pipe": {"clear", "near", "violated"},
+    "hot_cell": {"clear", "near"},
+    "iiwa_pipe_rack": {"clear", "near"},
+    "panda_shelf": {"clear", "near", "contact"},
+}
+
+
+@pytest.fixture(scope="module", params=sorted(VERDICTS))
+def run(request):
+    return cl.check(cl.load_case(SCENES / request.param / "case.yaml"), cross_check=True)
+
+
+def test_fcl_agrees_at_every_step(run):
+    assert run.steps.num_rows >= 200
+    assert run.cross_check.n_steps == run.steps.num_rows
+    assert run.cross_check.disagreements == ()
+    assert run.cross_check.greatest_difference <= 1e-9
+    assert run.cross_check.worst_witness_error <= 1e-9
+
+
+def test_the_verdict_is_the_one_promised(run):
+    statuses = set(run.steps["status"].to_pylist())
+    assert statuses == VERDICTS[run.record.case.name]
+    assert run.passed == (not statuses & {"violated", "contact"})

@@ -1,0 +1,184 @@
+"""COLLADA: unit and up axis are obeyed once, transforms and instances are placed, precision is
+kept.
+"""
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadDimension, BadPolygon, BadSyntax, EmptyMesh, NotFinite
+from clearance.load.mesh import mesh_from_bytes
+from tests.load.making import signed_volume
+
+WEDGE = "0 0 0 1 0 0 0 2 0 0 0 3"
+WEDGE_TRIANGLES = "0 2 1 0 1 3 0 3 2 1 2 3"
+
+
+def document(
+    asset="",
+    vertices=WEDGE,
+    primitives=None,
+    nodes='<node><instance_geometry url="#g"/></node>',
+    more="",
+) -> bytes:
+    primitives = primitives or (
+        '<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/>'
+        f"<p>{WEDGE_TRIANGLES}</p></triangles>"
+    )
+    n = len(vertices.split())
+    return f"""<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset>{asset}</asset>{more}
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="{n}">{vertices}</float_array><technique_common>
+<accessor source="#pa" count="{n // 3}" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>{primitives}
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s">{nodes}</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>""".encode()
+
+
+def load(*args, scale=1.0, **kwargs):
+    return mesh_from_bytes(document(*args, **kwargs), "m.dae", scale)
+
+
+Z_UP = "<up_axis>Z_UP</up_axis>"
+
+
+@pytest.mark.parametrize(
+    ("asset", "upper", "lower"),
+    [
+        (Z_UP, [1, 2, 3], [0, 0, 0]),
+        ('<unit name="inch" meter="0.0254"/>' + Z_UP, [0.0254, 0.0508, 3 * 0.0254], [0, 0, 0]),
+        ('<unit meter="0.001"/>' + Z_UP, [0.001, 0.002, 0.003], [0, 0, 0]),
+        ("<up_axis>Y_UP</up_axis>", [1, 0, 2], [0, -3, 0]),
+        ("", [1, 0, 2], [0, -3, 0]),  # the specification's default is y up, in metres
+        ("<up_axis>X_UP</up_axis>", [0, 0, 1], [-2, -3, 0]),
+        ('<unit meter="0.5"/>', [0.5, 0, 1], [0, -1.5, 0]),
+    ],
+)
+def test_unit_and_up_axis_are_obeyed_once(asset, upper, lower):
+    mesh = load(asset)
+    assert mesh.shape.bounds.tolist() == [lower, upper]
+    assert signed_volume(mesh.shape) > 0
+    assert bool(mesh.notes) == (asset != Z_UP)
+
+
+def test_scale_comes_on_top_of_the_unit():
+    mesh = load('<unit meter="0.01"/>' + Z_UP, scale=(100, -100, 100))
+    assert mesh.shape.bounds.tolist() == [[0, -2, 0], [1, 0, 3]]
+    assert signed_volume(mesh.shape) == pytest.approx(1)
+
+
+def test_positions_keep_double_precision():
+    value = 0.1234567890123456
+    mesh = load(Z_UP, vertices=f"0 0 0 {value!r} 0 0 0 2 0 0 0 3")
+    assert value in mesh.shape.vertices[:, 0]
+    assert float(np.float32(value)) != value
+
+
+@pytest.mark.parametrize(
+    ("transforms", "upper"),
+    [
+        ("<translate>1 2 3</translate>", [2, 4, 6]),
+        ("<translate>1 0 0</translate><scale>2 2 2</scale>", [3, 4, 6]),
+        ("<rotate>0 0 1 90</rotate>", [0, 1, 3]),
+        ("<rotate>0 0 2 -270</rotate><rotate>1 0 0 0</rotate>", [0, 1, 3]),
+        ("<matrix>1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</matrix>", [6, 2, 3]),
+        ("<scale>1 1 -1</scale>", [1, 2, 0]),
+        ("<scale>0.1 0.1 0.1</scale>", [0.1, 0.2, 3 * 0.1]),
+    ],
+)
+def test_node_transforms_are_applied_in_order_and_keep_faces_outward(transforms, upper):
+    nodes = f'<node>{transforms}<instance_geometry url="#g"/></node>'
+    mesh = load(Z_UP, nodes=nodes)
+    assert mesh.shape.bounds[1].tolist() == upper
+    assert signed_volume(mesh.shape) > 0
+
+
+def test_nested_nodes_and_instances_are_all_placed():
+    inner = '<node><translate>0 0 10</translate><instance_geometry url="#g"/></node>'
+    nodes = (
+        f'<node><translate>5 0 0</translate>{inner}</node><node><instance_node url="#n"/></node>'
+    )
+    library = '<library_nodes><node id="n"><instance_geometry url="#g"/></node></library_nodes>'
+    text = document(Z_UP, nodes=nodes).decode()
+    text = text.replace("<library_visual_scenes>", library + "<library_visual_scenes>")
+    mesh = mesh_from_bytes(text.encode(), "m.dae")
+    assert mesh.n_triangles == 8
+    assert mesh.shape.bounds.tolist() == [[0, 0, 0], [6, 2, 13]]
+
+
+def test_polygons_of_several_primitives_are_kept_and_cut_inside():
+    dart = "2 2 0 0 1 0 -2 2 0 0 0 0"
+    shared = '<input semantic="VERTEX" source="#v" offset="0"/>'
+    primitives = (
+        f'<polylist count="1">{shared}<vcount>4</vcount><p>0 1 2 3</p></polylist>'
+        f'<polygons count="1">{shared}<p>3 2 1 0</p></polygons>'
+        f'<lines count="1">{shared}<p>0 1</p></lines>'
+    )
+    mesh = load(Z_UP, vertices=dart, primitives=primitives)
+    areas = [mesh.shape.face(i) for i in range(mesh.shape.n_faces)]
+    area = sum(np.linalg.norm(np.cross(f[1] - f[0], f[2] - f[0])) / 2 for f in areas)
+    assert mesh.n_triangles == 4
+    assert area == pytest.approx(4)
+
+
+def test_triangle_strips_turn_every_other_triangle():
+    strip = (
+        '<tristrips count="1"><input semantic="VERTEX" source="#v" offset="0"/>'
+        "<p>{}</p></tristrips>"
+    )
+    mesh = load(Z_UP, primitives=strip.format("0 2 1 3") + strip.format("1 3 0 2"))
+    assert mesh.shape.closed and mesh.shape.oriented
+    assert signed_volume(mesh.shape) == pytest.approx(1)
+
+
+def test_missing_textures_and_materials_do_not_matter():
+    images = '<library_images><image id="i"><init_from>no.png</init_from></image></library_images>'
+    nodes = (
+        '<node><instance_geometry url="#g"><bind_material><technique_common>'
+        '<instance_material symbol="m" target="#none"/></technique_common></bind_material>'
+        "</instance_geometry></node>"
+    )
+    assert load(Z_UP, nodes=nodes, more=images).n_triangles == 4
+
+
+SHORT = (
+    '<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/>'
+    "<vcount>4</vcount><p>0 1 2</p></polylist>"
+)
+OUTSIDE = (
+    '<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 9</p></triangles>'
+)
+
+
+@pytest.mark.parametrize(
+    ("data", "fault"),
+    [
+        (b"", BadSyntax),
+        (b"<COLLADA", BadSyntax),
+        (b"<robot/>", BadSyntax),
+        (document(Z_UP, nodes="<node/>"), EmptyMesh),
+        (
+            document(Z_UP).replace(b"<scene>", b"<extra>").replace(b"</scene>", b"</extra>"),
+            EmptyMesh,
+        ),
+        (document(Z_UP, vertices="nan 0 0 1 0 0 0 2 0 0 0 3"), NotFinite),
+        (document(Z_UP, vertices="x 0 0 1 0 0 0 2 0 0 0 3"), BadSyntax),
+        (document('<unit meter="0"/>' + Z_UP), BadDimension),
+        (document('<unit meter="-1"/>' + Z_UP), BadDimension),
+        (document(Z_UP, primitives=SHORT), BadSyntax),
+        (document(Z_UP, primitives=OUTSIDE), (BadSyntax, BadPolygon)),
+        (document(Z_UP, nodes='<node><instance_geometry url="#no"/></node>'), BadSyntax),
+        (
+            document(Z_UP, nodes='<node><skew>1</skew><instance_geometry url="#g"/></node>'),
+            BadSyntax,
+        ),
+    ],
+)
+def test_each_fault_is_one_line_with_the_file(data, fault):
+    with pytest.raises(fault) as caught:
+        mesh_from_bytes(data, "m.dae")
+    assert str(caught.value).startswith("m.dae: ")
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,191 @@
+"""A small record made without any file: an arm of three boxes and a gripper that swings past a post
+and dips into a table. Clearances are the true distances from the corners of the links to the boxes
+of the scene, so witness points and clearances fit together, and no engine is needed."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pyarrow as pa
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
+from clearance.simulate.steps import STATUSES
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, Limits, PlacedRobot, Source, Unmeasured
+from clearance.world.motion import Motion
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+
+LIMITS = Limits(fail=0.01, warn=0.06)
+
+
+def box(low, high, excess=0.0) -> Polyhedron:
+    """An axis-parallel box of six outward quadrilaterals."""
+    corners = [
+        [(low, high)[i][0], (low, high)[j][1], (low, high)[k][2]]
+        for i in (0, 1)
+        for j in (0, 1)
+        for k in (0, 1)
+    ]
+    return Polyhedron(
+        np.array(corners),
+        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]],
+        excess,
+    )
+
+
+def moved(x=0.0, y=0.0, z=0.0) -> np.ndarray:
+    """A pose without a turn."""
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def arm(name="arm") -> Robot:
+    """Base, two turning links and a sliding gripper."""
+    turning, sliding = JointKind.REVOLUTE, JointKind.PRISMATIC
+    joints = (
+        Joint("pan", turning, "base", "upper", moved(z=0.3), np.array([0.0, 0, 1]), -3.0, 3.0),
+        Joint(
+            "lift", turning, "upper", "fore", moved(x=0.4, z=0.2), np.array([0.0, 1, 0]), -2.0, 2.0
+        ),
+        Joint("slide", sliding, "fore", "gripper", moved(x=0.4), np.array([1.0, 0, 0]), 0.0, 0.2),
+    )
+    bodies = (
+        Body("base", box((-0.1, -0.1, 0), (0.1, 0.1, 0.3)), "base.stl"),
+        Body("upper", box((-0.05, -0.06, 0), (0.45, 0.06, 0.2)), "upper.stl"),
+        Body("fore", box((-0.05, -0.04, -0.04), (0.4, 0.04, 0.04)), "fore.stl"),
+        Body("gripper", box((0, -0.03, -0.03), (0.12, 0.03, 0.03)), "<b>gripper</b>.stl"),
+    )
+    return Robot(
+        name,
+        ("base", "upper", "fore", "gripper"),
+        joints,
+        bodies,
+        ("upper: 2 zero-area triangles left out",),
+    )
+
+
+def scene() -> tuple[Obstacle, ...]:
+    """A post, a table and a far wall, none of them turned."""
+    return (
+        Obstacle(
+            Body("post", box((-0.03, -0.03, 0), (0.03, 0.03, 1.2), excess=1e-4), "cylinder"),
+            moved(0.75, 0.55),
+        ),
+        Obstacle(Body("table", box((-0.3, -0.3, 0), (0.3, 0.3, 0.16)), "box"), moved(0.75, -0.35)),
+        Obstacle(Body("wall </script>", box((-0.02, -1, 0), (0.02, 1, 1.4)), "box"), moved(-0.7)),
+    )
+
+
+def motion(n_steps=240, robot: Robot | None = None, base: np.ndarray | None = None) -> Motion:
+    """A swing from the post to the table over 6 s."""
+    times = np.linspace(0.0, 6.0, n_steps)
+    share = times / 6.0
+    positions = np.column_stack(
+        [
+            0.75 - 1.35 * share,
+            0.35 * np.sin(np.pi * np.clip(2 * share - 0.9, 0, 1)) ** 2 - 0.1,
+            0.15 * share,
+        ]
+    )
+    trajectory = Trajectory(times, ("pan", "lift", "slide"), positions)
+    placed = PlacedRobot(
+        robot or arm(), trajectory, np.eye(4) if base is None else base, exclude_links=("base",)
+    )
+    return Motion(placed, times, positions, np.zeros(n_steps))
+
+
+def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
+    """The measured swing; `changes` replace fields of the record."""
+    motions = tuple(motion(n_steps, arm(f"arm_{i}"), moved(z=0.001 * i)) for i in range(n_robots))
+    sources = (
+        Source("/home/someone/cell/case.yaml", "ab" * 32, 1234),
+        Source("/home/someone/robots/arm.urdf", "cd" * 32, 9876),
+    )
+    case = Case(
+        "swing & <dip>",
+        tuple(m.placed for m in motions),
+        scene(),
+        limits,
+        sources=sources,
+        notes=("joint slide: no limit given for velocity",),
+    )
+    rows, minima = measure(motions, case)
+    made = Record(
+        case,
+        motions,
+        table(rows, limits),
+        minima,
+        (Unmeasured("base", "*", "excluded: bolted"),),
+        {"pairs": 9 * n_steps, "polygon_tests": 36 * n_steps},
+    )
+    return dataclasses.replace(made, **changes)
+
+
+def measure(motions, case):
+    """Per step and per pair the least distance from a link's corners to the boxes of the scene."""
+    rows, minima = [], {}
+    for one in motions:
+        poses = one.poses()
+        for k, body in enumerate(one.placed.robot.bodies):
+            if body.name in one.placed.exclude_links:
+                continue
+            corners = (
+                np.einsum("nij,kj->nki", poses[:, k, :3, :3], body.shape.vertices)
+                + poses[:, k, None, :3, 3]
+            )
+            label = f"{one.placed.robot.name}/{body.name}" if len(motions) > 1 else body.name
+            for obstacle in case.obstacles:
+                low, high = obstacle.body.shape.bounds + obstacle.world_from_body[:3, 3]
+                nearest = np.clip(corners, low, high)
+                gaps = np.linalg.norm(corners - nearest, axis=2)
+                best = gaps.argmin(axis=1)
+                at = np.arange(len(gaps))
+                found = list(
+                    zip(
+                        gaps[at, best].tolist(),
+                        corners[at, best].tolist(),
+                        nearest[at, best].tolist(),
+                        strict=True,
+                    )
+                )
+                rows.append([(gap, label, obstacle.name, *p, *q) for gap, p, q in found])
+                step = int(gaps.min(axis=1).argmin())
+                gap, p, q = found[step]
+                minima[label, obstacle.name] = PairMinimum(
+                    label, obstacle.name, gap, step, float(one.times[step]), tuple(p), tuple(q)
+                )
+    least = [min(choices, key=lambda row: row[0]) for choices in zip(*rows, strict=True)]
+    return [
+        (i, float(t), *row) for i, (t, row) in enumerate(zip(motions[0].times, least, strict=True))
+    ], tuple(sorted(minima.values(), key=lambda minimum: minimum.clearance))
+
+
+def table(rows, limits: Limits) -> pa.Table:
+    """The steps table with its status column."""
+    names = (
+        "step",
+        "time",
+        "clearance",
+        "link",
+        "obstacle",
+        "link_x",
+        "link_y",
+        "link_z",
+        "obstacle_x",
+        "obstacle_y",
+        "obstacle_z",
+    )
+    columns = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
+    gaps = np.array(columns["clearance"])
+    codes = np.select([gaps <= 0, gaps < limits.fail, gaps < limits.warn], [3, 2, 1], default=0)
+    return pa.table({**columns, "status": [str(STATUSES[code]) for code in codes]})
+
+
+def disagreeing() -> CrossCheck:
+    """A cross-check with one step that differs."""
+    wrong = Disagreement(17, 0.125, 0.1249, "fore", "post", "gripper", "post", "clearance differs")
+    return CrossCheck("python-fcl", 240, 1e-4, 17, 1e-9, 2e-13, (wrong,))

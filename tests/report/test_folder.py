@@ -1,0 +1,124 @@
+"""All or nothing: what is left behind when writing fails, at every point where it can fail."""
+
+from __future__ import annotations
+
+import errno
+import os
+from pathlib import Path
+
+import pytest
+
+from clearance.errors import Unwritable
+from clearance.report import write
+from clearance.report.folder import fill_folder, write_file
+from tests.report.records import record
+
+NAMES = {"report.html", "replay.npz", "steps.csv", "steps.parquet", "summary.json"}
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def two_files(text: str):
+    def fill(place: Path) -> None:
+        (place / "steps.csv").write_text(text)
+        (place / "summary.json").write_text(text)
+
+    return fill
+
+
+def test_a_report_is_five_files_and_nothing_else(tmp_path):
+    write(record(), tmp_path / "out")
+    assert set(contents(tmp_path / "out")) == NAMES
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_the_same_record_gives_the_same_bytes_and_replaces_an_older_report(tmp_path):
+    write(record(n_steps=60), tmp_path / "a")
+    write(record(), tmp_path / "b" / "deep")
+    older = contents(tmp_path / "a")
+    write(record(), tmp_path / "a")
+    assert contents(tmp_path / "a") == contents(tmp_path / "b" / "deep")
+    assert contents(tmp_path / "a") != older
+
+
+def test_other_files_in_the_folder_stay(tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    fill_folder(tmp_path, two_files("new"))
+    assert contents(tmp_path) == {"mine.txt": b"mine", "steps.csv": b"new", "summary.json": b"new"}
+
+
+def test_a_folder_below_a_file_is_refused_in_one_line(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(Unwritable) as caught:
+        write(record(n_steps=3), tmp_path / "file" / "out")
+    assert str(tmp_path / "file" / "out") in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("older", [False, True])
+def test_a_full_disk_leaves_everything_as_it_was(tmp_path, older):
+    folder = tmp_path / "out"
+    if older:
+        fill_folder(folder, two_files("old"))
+
+    def fill(place: Path) -> None:
+        two_files("new")(place)
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(Unwritable, match="No space left"):
+        fill_folder(folder, fill)
+    left = contents(folder) if folder.exists() else {}
+    assert left == ({"steps.csv": b"old", "summary.json": b"old"} if older else {})
+    assert [path.name for path in tmp_path.iterdir()] == (["out"] if older else [])
+
+
+@pytest.mark.parametrize("fault", [OSError(errno.EIO, "worn out"), KeyboardInterrupt()])
+@pytest.mark.parametrize("i_move", range(4))
+def test_a_fault_at_any_move_puts_the_older_report_back(tmp_path, monkeypatch, fault, i_move):
+    """Two files need four moves: each older one away, each new one in."""
+    fill_folder(tmp_path / "out", two_files("old"))
+    moves = []
+    replace = os.replace
+
+    def faulty(source, target):
+        moves.append((source, target))
+        if len(moves) == i_move + 1:
+            raise fault
+        replace(source, target)
+
+    monkeypatch.setattr(os, "replace", faulty)
+    with pytest.raises((Unwritable, KeyboardInterrupt)):
+        fill_folder(tmp_path / "out", two_files("new"))
+    assert len(moves) > i_move
+    assert contents(tmp_path / "out") == {"steps.csv": b"old", "summary.json": b"old"}
+
+
+def test_a_folder_that_is_being_replaced_never_looks_whole(tmp_path, monkeypatch):
+    """summary.json goes first and comes last: whenever it is there, all files are of one report."""
+    fill_folder(tmp_path, two_files("old"))
+    replace, seen = os.replace, []
+
+    def watched(source, target):
+        replace(source, target)
+        files = {p.name: p.read_text() for p in tmp_path.iterdir() if p.is_file()}
+        seen.append("summary.json" not in files or len(set(files.values())) == 1)
+
+    monkeypatch.setattr(os, "replace", watched)
+    fill_folder(tmp_path, two_files("new"))
+    assert len(seen) == 4
+    assert all(seen)
+
+
+def test_one_file_is_whole_or_the_older_one(tmp_path, monkeypatch):
+    path = tmp_path / "deep" / "junit.xml"
+    write_file(path, b"old")
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(Unwritable, match=r"junit\.xml"):
+        write_file(path, b"new")
+    assert contents(tmp_path / "deep") == {"junit.xml": b"old"}

@@ -1,0 +1,81 @@
+"""Intervals and events on a run of statuses written down by hand."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pyarrow as pa
+import pytest
+
+from clearance.report.intervals import events, intervals, status_counts, verdict
+from tests.report.records import record
+
+GAPS = [0.03, 0.018, 0.004, 0.0, 0.0, 0.003, 0.012, 0.05, 0.015]
+LETTERS = "c n v x x v n c n"
+WORDS = {"c": "clear", "n": "near", "v": "violated", "x": "contact"}
+
+
+def run_of(letters: str, gaps: list[float]):
+    made = record(n_steps=len(gaps))
+    steps = made.steps.set_column(2, "clearance", pa.array(gaps))
+    words = pa.array([WORDS[letter] for letter in letters.split()])
+    steps = steps.set_column(steps.column_names.index("status"), "status", words)
+    return dataclasses.replace(made, steps=steps)
+
+
+def test_intervals_by_hand():
+    found = intervals(run_of(LETTERS, GAPS))
+    spans = {
+        level: [(i.first_step, i.last_step, i.worst_step) for i in some]
+        for level, some in found.items()
+    }
+    assert spans == {
+        "below_warn": [(1, 6, 3), (8, 8, 8)],
+        "below_fail": [(2, 5, 3)],
+        "contact": [(3, 4, 3)],
+    }
+
+
+def test_intervals_carry_times_and_the_least_clearance():
+    run = run_of(LETTERS, GAPS)
+    interval = intervals(run)["below_fail"][0]
+    times = run.steps["time"].to_pylist()
+    assert (interval.start, interval.end, interval.clearance) == (times[2], times[5], 0.0)
+
+
+def test_events_by_hand():
+    found = [(event.step, event.what) for event in events(run_of(LETTERS, GAPS))]
+    assert found == [
+        (1, "warn limit entered"),
+        (2, "fail limit entered"),
+        (3, "contact begins"),
+        (5, "contact ends"),
+        (6, "fail limit left"),
+        (7, "warn limit left"),
+        (8, "warn limit entered"),
+    ]
+
+
+def test_a_jump_through_all_levels_enters_the_widest_first_and_leaves_the_deepest_first():
+    found = [(event.step, event.what) for event in events(run_of("c x c", [0.1, 0.0, 0.1]))]
+    assert found == [
+        (1, "warn limit entered"),
+        (1, "fail limit entered"),
+        (1, "contact begins"),
+        (2, "contact ends"),
+        (2, "fail limit left"),
+        (2, "warn limit left"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("letters", "expected"),
+    [("c c", "clear"), ("c n", "near miss"), ("n v", "violated"), ("x c", "violated")],
+)
+def test_the_verdict_is_the_worst_status(letters, expected):
+    assert verdict(run_of(letters, [0.1, 0.1])) == expected
+
+
+def test_counts():
+    counts = status_counts(run_of(LETTERS, GAPS))
+    assert counts == {"clear": 2, "near": 3, "violated": 2, "contact": 2}

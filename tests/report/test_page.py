@@ -1,0 +1,82 @@
+"""The page as text: complete, self-contained, and nothing in a name can break out of it."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+
+from clearance.report.page import page_of
+from clearance.report.sections import MAX_EVENT_ROWS, events
+from clearance.report.summary import summary_of
+from clearance.simulate.replay import replay_of
+from tests.report.records import disagreeing, record
+
+
+@pytest.fixture(scope="module")
+def page() -> str:
+    run = record(cross_check=disagreeing())
+    return page_of(summary_of(run), replay_of(run))
+
+
+def own_text(page: str) -> str:
+    """The page without its scripts."""
+    return re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)
+
+
+def test_names_are_escaped(page):
+    text = own_text(page)
+    assert "<b>gripper" not in text
+    assert "&lt;b&gt;gripper&lt;/b&gt;.stl" in text
+    assert "swing &amp; &lt;dip&gt;" in text
+    assert page.count("<script") - page.count("\\u003cscript") >= 5
+    data = re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)
+    assert "wall </script>" in {body["name"] for body in json.loads(data[1])["bodies"]}
+
+
+def test_nothing_is_fetched(page):
+    assert not re.search(r"<(?:script|img|link|iframe)[^>]+(?:src|href)=[\"'](?!data:|#)", page)
+    assert not re.search(
+        r"@import|url\((?!data:)", re.search(r"<style>(.*?)</style>", page, re.DOTALL)[1]
+    )
+
+
+def test_every_part_of_the_page_is_there(page):
+    text = own_text(page)
+    for title in (
+        "Limit violated", "Clearance over time", "Replay", "Worst moment", "Events", "How sure",
+        "Least clearance of every pair, mm", "Not measured", "What was loaded",
+        "Where this comes from",
+    ):  # fmt: skip
+        assert title in text, title
+    assert "disagrees with python-fcl" in text
+    assert "124.9" in text, "both answers of a step that differs"
+    assert "facets of a pair stand up to 0.1 mm outside" in text
+
+
+def test_the_matrix_leads_to_the_step_of_each_pair(page):
+    cells = re.findall(
+        r'<td class="cell (\w+)" data-step="(\d+)"[^>]*title="([^:]+):', own_text(page)
+    )
+    run = record()
+    assert {(name, int(step)) for _, step, name in cells} == {
+        (f"{p.link} - {p.obstacle}".replace("<", "&lt;").replace(">", "&gt;"), p.step)
+        for p in run.pair_minima
+    }
+    assert [shade for shade, *_ in cells].count("contact") == 1
+
+
+def test_a_long_list_of_events_is_cut_and_says_so():
+    summary = summary_of(record())
+    summary["events"] = summary["events"][:1] * (MAX_EVENT_ROWS + 7)
+    html = events(summary)
+    assert html.count("data-step") == MAX_EVENT_ROWS
+    assert "7 more events in summary.json" in html
+
+
+def test_a_long_run_is_thinned_and_says_so():
+    run = record(n_steps=900)
+    replay = replay_of(run, max_frames=200)
+    assert "Drawn are" in page_of(summary_of(run), replay)
+    assert "Drawn are" not in page_of(summary_of(run), replay_of(run))

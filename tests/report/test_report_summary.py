@@ -1,0 +1,112 @@
+"""The summary says what the record says, as JSON, without a trace of this machine."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from clearance.report import json_text, summary_of, write
+from clearance.report.provenance import public_path
+from clearance.world.robot import Joint, JointKind
+from tests.report.records import disagreeing, record
+
+
+def test_the_worst_step_is_the_least_row_of_the_table():
+    run = record()
+    worst = summary_of(run)["worst"]
+    row = min(run.steps.to_pylist(), key=lambda row: row["clearance"])
+    assert worst["step"] == row["step"]
+    assert worst["point_link"] == [row["link_x"], row["link_y"], row["link_z"]]
+    positions = run.motions[0].positions[row["step"]].tolist()
+    assert [joint["position"] for joint in worst["joints"]] == positions
+    assert [joint["name"] for joint in worst["joints"]] == ["pan", "lift", "slide"]
+
+
+def test_json_reads_back_the_same_and_sorted():
+    summary = summary_of(record(cross_check=disagreeing()))
+    text = json_text(summary)
+    back = json.loads(text)
+    assert back == json.loads(json.dumps(summary))
+    assert text == json_text(back)
+    assert back["worst"]["time"] == summary["worst"]["time"]
+
+
+def test_what_was_loaded_is_told_body_by_body():
+    summary = summary_of(record())
+    gripper = next(b for b in summary["robots"][0]["links"] if b["name"] == "gripper")
+    assert (gripper["triangles"], gripper["polygons"]) == (12, 6)
+    assert (gripper["closed"], gripper["oriented"]) == (True, True)
+    assert gripper["volume"] == pytest.approx(0.12 * 0.06 * 0.06, rel=1e-12)
+    assert gripper["bounding_box"] == [[0, -0.03, -0.03], [0.12, 0.03, 0.03]]
+    assert summary["unmeasured"][0]["reason"] == "excluded: bolted"
+    assert summary["tessellation_bound"] == 1e-4
+    assert {
+        "joint slide: no limit given for velocity",
+        "upper: 2 zero-area triangles left out",
+    } == set(summary["notes"])
+
+
+def test_every_pair_is_in_the_table_of_minima():
+    summary = summary_of(record())
+    assert len(summary["pairs"]) == 9
+    gaps = [pair["clearance"] for pair in summary["pairs"]]
+    assert gaps == sorted(gaps)
+    assert gaps[0] == summary["worst"]["clearance"]
+
+
+def test_joints_without_limits_are_null_and_not_infinity(tmp_path):
+    run = record(n_steps=5)
+    robot = run.motions[0].placed.robot
+    turning = Joint("pan", JointKind.CONTINUOUS, "base", "upper", np.eye(4), np.array([0.0, 0, 1]))
+    placed = dataclasses.replace(
+        run.motions[0].placed,
+        robot=dataclasses.replace(robot, joints=(turning, *robot.joints[1:])),
+    )
+    run = dataclasses.replace(run, motions=(dataclasses.replace(run.motions[0], placed=placed),))
+    joint = json.loads(json_text(summary_of(run)))["worst"]["joints"][0]
+    assert (joint["lower"], joint["upper"]) == (None, None)
+    write(run, tmp_path / "out")
+    assert "no limits" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_several_robots_are_told_apart():
+    summary = summary_of(record(n_robots=2))
+    assert len(summary["robots"]) == 2
+    assert {joint["robot"] for joint in summary["worst"]["joints"]} == {"arm_0", "arm_1"}
+    links = {body["name"] for robot in summary["robots"] for body in robot["links"]}
+    assert {pair["link"] for pair in summary["pairs"]} <= links
+
+
+def test_tracking_error_is_told_when_the_motion_is_simulated():
+    run = record(n_steps=5)
+    steps = run.steps.append_column("tracking_error", [[0.0, 0.1, 0.5, 0.2, 0.0]])
+    assert summary_of(run)["tracking_error"] is None
+    told = summary_of(dataclasses.replace(run, steps=steps))["tracking_error"]
+    assert told == {"greatest": 0.5, "step": 2}
+
+
+@pytest.mark.parametrize(
+    ("path", "shown"),
+    [
+        ("case.yaml", "case.yaml"),
+        ("/home/someone/cell/case.yaml", "case.yaml"),
+        ("/home/someone/robots/arm.urdf", "../robots/arm.urdf"),
+        (
+            "/x/lib/python3.11/site-packages/pybullet_data/kuka_iiwa/model.urdf",
+            "pybullet_data:kuka_iiwa/model.urdf",
+        ),
+    ],
+)
+def test_paths_name_no_machine(path, shown):
+    assert public_path(path, Path("/home/someone/cell")) == shown
+
+
+def test_no_file_of_a_report_names_the_folder_it_was_made_in(tmp_path):
+    write(record(n_steps=20), tmp_path / "out")
+    for path in (tmp_path / "out").iterdir():
+        assert b"/home/someone" not in path.read_bytes()
+        assert str(tmp_path).encode() not in path.read_bytes()

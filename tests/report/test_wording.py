@@ -1,0 +1,47 @@
+"""What is shown is never more than what was measured."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as some
+
+from clearance.report.wording import joint_value, limit_mm, mm
+
+
+@pytest.mark.parametrize(
+    ("metres", "shown"),
+    [
+        (0.0, "0"),
+        (4e-7, "< 0.001"),
+        (0.000151999, "0.151"),
+        (0.0049999, "4.999"),
+        (0.005, "5.000"),
+        (0.0283, "28.30"),
+        (0.035136, "35.13"),
+        (0.20192, "201.9"),
+        (1.23456, "1234"),
+        (12.3456, "12345"),
+    ],
+)
+def test_millimetres_by_hand(metres, shown):
+    assert mm(metres) == shown
+
+
+@given(some.floats(min_value=1e-6, max_value=1e4))
+def test_millimetres_are_rounded_down_by_less_than_a_digit(metres):
+    shown = Fraction(mm(metres))
+    exact = Fraction(repr(metres)) * 1000
+    assert shown <= exact
+    assert exact - shown < max(Fraction(1, 1000), exact / 1000)
+
+
+def test_limits_are_shown_as_given():
+    assert [limit_mm(limit) for limit in (0.0, 0.005, 0.0125, 1.0)] == ["0", "5", "12.5", "1000"]
+
+
+def test_joint_values_carry_their_unit():
+    assert joint_value("revolute", 1.5707963267948966) == "90.00°"
+    assert joint_value("prismatic", 0.0125) == "12.50 mm"

@@ -1,0 +1,210 @@
+"""Physics against what can be said on paper, and our kinematics against the engine's."""
+
+from __future__ import annotations
+
+import importlib.util
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadInput, MissingFile
+from clearance.load.case_file import load_case
+from clearance.load.input_files import InputFiles
+from clearance.load.mesh_store import MeshStore
+from clearance.load.urdf import UrdfRequest, read_robot
+from clearance.simulate.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import PlacedRobot
+from clearance.world.kinematics import link_poses
+from clearance.world.trajectory import Trajectory
+
+CASES = Path(__file__).parents[3] / "shared" / "cases"
+ENGINE_PRECISION = (
+    1e-6  # the engine is built in float32: 6e-8 a joint, about ten joints, poses to 2 m
+)
+
+CART = """<robot name="cart">
+  <link name="ground"><inertial><mass value="1"/>
+    <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <link name="slider"><inertial><origin xyz="0.05 0 0"/><mass value="2"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="follower"><inertial><mass value="0.5"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
+    <origin xyz="0.1 0.2 0.3" rpy="0.3 -0.2 0.5"/>
+    <axis xyz="{axis}"/><limit lower="-2" upper="2" effort="{effort}" velocity="2"/></joint>
+  <joint name="arm" type="revolute"><parent link="slider"/><child link="follower"/>
+    <axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="50" velocity="2"/>
+    <mimic joint="rail" multiplier="-1.5" offset="0.25"/></joint>
+</robot>"""
+
+
+def cart(tmp_path: Path, effort: float = 500.0, axis: str = "1 0 0", **changes) -> PlacedRobot:
+    path = tmp_path / "cart.urdf"
+    path.write_text(CART.format(effort=effort, axis=axis))
+    times = np.linspace(0.0, 1.0, 21)
+    asked = 0.25 * (1.0 - np.cos(np.pi * times))  # to 0.5 m, at rest at both ends
+    trajectory = Trajectory(times, ("rail",), asked[:, None])
+    return replace(placed_robot(path, trajectory), **changes)
+
+
+def placed_robot(path: Path, trajectory: Trajectory | None = None, packages=()) -> PlacedRobot:
+    robot = read_robot(UrdfRequest(path, packages), MeshStore(InputFiles(path.parent)))
+    names = tuple(joint.name for joint in robot.moving_joints)
+    still = Trajectory(np.array([0.0, 1.0]), names, np.zeros((2, len(names))))
+    return PlacedRobot(robot, trajectory or still, urdf_path=str(path))
+
+
+def tilted_base() -> np.ndarray:
+    base = np.eye(4)
+    angle = 0.7
+    base[:3, :3] = [
+        [np.cos(angle), 0.0, np.sin(angle)], [0.0, 1.0, 0.0], [-np.sin(angle), 0.0, np.cos(angle)],
+    ]  # fmt: skip
+    base[:3, 3] = [0.3, -0.4, 0.5]
+    return base
+
+
+def packaged_urdf(relative: str) -> Path:
+    # found without importing: the import would start the engine's logging
+    return Path(importlib.util.find_spec("pybullet_data").origin).parent / relative
+
+
+def assert_same_kinematics(placed: PlacedRobot) -> None:
+    placed = replace(placed, world_from_base=tilted_base())
+    rng = np.random.default_rng(5)
+    joints = placed.robot.moving_joints
+    low = [max(joint.lower, -3.0) for joint in joints]
+    high = [min(joint.upper, 3.0) for joint in joints]
+    positions = rng.uniform(low, high, size=(25, len(joints)))
+    ours, engine = link_poses(placed, positions), bullet_link_poses(placed, positions)
+    assert ours.shape == engine.shape
+    assert np.abs(ours - engine).max() < ENGINE_PRECISION
+
+
+@pytest.mark.parametrize("name", ["kuka_iiwa/model.urdf", "franka_panda/panda.urdf"])
+def test_our_kinematics_are_the_engines_on_robots_it_brings(name):
+    assert_same_kinematics(placed_robot(packaged_urdf(name), packages=(packaged_urdf(""),)))
+
+
+@pytest.mark.skipif(not CASES.is_dir(), reason="the shared cases are not here")
+@pytest.mark.parametrize(
+    "name",
+    [
+        "fetch_cage_planned",
+        "kuka_iiwa_valve_wall",
+        "lbr_puzzle_grinder",
+        "panda_bookshelf_thin_planned",  # its second finger mimics the first
+    ],
+)
+def test_our_kinematics_are_the_engines_on_the_shared_robots(name):
+    assert_same_kinematics(load_case(CASES / name / "case.yaml").robots[0])
+
+
+@pytest.mark.parametrize("axis", ["1 0 0", "0 -1 0", "1 2 -2"])
+def test_our_kinematics_are_the_engines_with_mimic_offset_and_odd_axes(tmp_path, axis):
+    assert_same_kinematics(cart(tmp_path, axis=axis))
+
+
+def test_a_strong_robot_follows_and_every_simulation_step_is_kept(tmp_path):
+    motion = simulated_motion(cart(tmp_path), settle_time=0.25)
+    assert np.allclose(np.diff(motion.times), 1 / STEPS_PER_SECOND)
+    assert motion.n_steps == 1 + 300 and motion.times[-1] == pytest.approx(1.25)
+    assert motion.tracking_error[0] == 0.0 and 0.0 < motion.tracking_error.max() < 0.02
+    assert motion.positions[-1, 0] == pytest.approx(0.5, abs=1e-3)
+    given = motion.placed.trajectory
+    asked = np.interp(motion.times, given.times, given.positions[:, 0])
+    assert np.allclose(motion.tracking_error, np.abs(motion.positions[:, 0] - asked), atol=1e-15)
+
+
+def test_a_weak_robot_lags_as_newton_says(tmp_path):
+    """A slider of 2 kg that may push with 0.5 N gains no more than 0.25 m/s each second."""
+    upright = cart(tmp_path, effort=0.5)
+    level = np.linalg.inv(link_poses(upright, np.zeros((1, 1)))[0, 1])
+    level[:3, 3] = 0.0  # turns the rail into the horizontal, so that gravity does no work
+    motion = simulated_motion(replace(upright, world_from_base=level))
+    bound = 0.5 * (0.5 / 2.0) * motion.times**2  # the follower's mass only makes it slower
+    assert (motion.positions[:, 0] <= bound + 1e-3).all()
+    assert motion.tracking_error.max() > 0.2
+
+
+def test_gravity_pulls_a_robot_that_cannot_hold_itself(tmp_path):
+    """A rail that points up and a motor of almost no force: free fall from rest, s = g t^2 / 2."""
+    weak = cart(tmp_path, effort=1e-6)
+    rail_up = np.eye(4)
+    joint = link_poses(weak, np.zeros((1, 1)))[0, 1][:3, :3]
+    turn = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])  # x to z
+    rail_up[:3, :3] = turn @ joint.T
+    still = Trajectory(np.array([0.0, 0.5]), ("rail",), np.zeros((2, 1)))
+    motion = simulated_motion(
+        replace(weak, world_from_base=rail_up, trajectory=still), settle_time=0.0
+    )
+    fallen = -0.5 * 9.81 * motion.times**2
+    assert np.allclose(motion.positions[:, 0], fallen, atol=0.02 * abs(fallen[-1]))
+    assert motion.positions[-1, 0] < -1.1
+
+
+def test_obstacles_push_back_only_when_told(tmp_path):
+    placed = cart(tmp_path, effort=50.0)
+    wall = read_box(tmp_path)
+    world_from_joint = link_poses(placed, np.zeros((1, 1)))[0, 1]
+    in_the_way = np.eye(4)
+    in_the_way[0, 3] = 0.4  # its face is 0.2 m before the slider's
+    standing = (Obstacle(wall, world_from_joint @ in_the_way),)
+    through = simulated_motion(placed, standing)
+    stopped = simulated_motion(placed, standing, contact_response=True)
+    assert through.positions[-1, 0] == pytest.approx(0.5, abs=5e-3)
+    assert stopped.positions[:, 0].max() < 0.22
+    assert stopped.tracking_error[-1] > 0.25
+    assert np.array_equal(through.positions, simulated_motion(placed).positions)
+
+
+def read_box(tmp_path: Path) -> Body:
+    from clearance.geometry.shapes import box
+
+    return Body("wall", box((0.2, 1.0, 1.0)))
+
+
+def test_a_mimic_joint_follows_in_every_pose(tmp_path):
+    motion = simulated_motion(cart(tmp_path))
+    slider, follower = motion.poses()[:, 1], motion.poses()[:, 2]
+    turned = np.linalg.inv(slider) @ follower
+    angle = np.arctan2(turned[:, 0, 2], turned[:, 0, 0])
+    assert np.allclose(angle, -1.5 * motion.positions[:, 0] + 0.25, atol=1e-12)
+
+
+def test_the_same_question_gives_the_same_motion(tmp_path):
+    first, second = (simulated_motion(cart(tmp_path)) for _ in range(2))
+    assert np.array_equal(first.positions, second.positions)
+
+
+def test_nothing_is_printed(tmp_path, capfd):
+    simulated_motion(cart(tmp_path))
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err) == ("", "")
+
+
+def test_what_is_assumed_is_said(tmp_path):
+    assert simulated_motion(cart(tmp_path)).notes == ()
+    placed = cart(tmp_path, effort=0.0)
+    (note,) = simulated_motion(placed).notes
+    assert "effort" in note and "rail" in note
+    text = CART.format(effort=5, axis="1 0 0")
+    path = Path(placed.urdf_path)
+    path.write_text(text[: text.index("<inertial><origin")] + text[text.index("<collision>") :])
+    (note,) = simulated_motion(placed_robot(path)).notes
+    assert "slider" in note and "mass" in note
+
+
+def test_a_robot_that_the_engine_cannot_read_is_refused_in_one_line(tmp_path):
+    placed = cart(tmp_path)
+    Path(placed.urdf_path).write_text("<robot name='empty'/>")
+    with pytest.raises(BadInput) as caught:
+        simulated_motion(placed)
+    assert "cannot load" in str(caught.value) and "\n" not in str(caught.value)
+    Path(placed.urdf_path).unlink()
+    with pytest.raises(MissingFile):
+        simulated_motion(placed)

@@ -1,0 +1,94 @@
+"""The replay keeps what must not be lost, and comes back from its file as it was."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadSyntax, MissingFile
+from clearance.simulate.replay import kept_steps, load_replay, replay_of
+from tests.report.records import record
+
+
+def test_a_short_run_is_kept_whole():
+    replay = replay_of(record())
+    assert replay.steps.tolist() == list(range(240))
+    assert replay.clearances.tolist() == record().clearances.tolist()
+
+
+@pytest.mark.parametrize("max_frames", [30, 50, 333])
+def test_a_long_run_keeps_the_least_of_every_stretch(max_frames):
+    run = record(n_steps=1200)
+    kept = kept_steps(run, max_frames)
+    assert len(kept) <= max_frames
+    assert (np.diff(kept) > 0).all()
+    assert {0, 1199, run.worst_step, *(minimum.step for minimum in run.pair_minima)} <= set(kept)
+    stretch = 2 * 1200 // (max_frames - 12) + 2
+    for start in range(0, 1200, 7):
+        window = slice(max(0, start - stretch), start + 2 * stretch)
+        near = kept[(kept >= window.start) & (kept < window.stop)]
+        assert run.clearances[near].min() <= run.clearances[start : start + stretch].min()
+
+
+def test_frames_are_the_rows_of_the_table():
+    run = record(n_steps=700)
+    replay = replay_of(run, max_frames=100)
+    rows = run.steps.take(replay.steps).to_pylist()
+    for i, row in enumerate(rows):
+        names = [replay.bodies[k].name for k in replay.nearest[i]]
+        assert names == [row["link"], row["obstacle"]]
+        assert replay.times[i] == row["time"]
+        assert replay.lines[i].tolist() == [
+            row[f"{body}_{axis}"] for body in ("link", "obstacle") for axis in "xyz"
+        ]
+
+
+def test_poses_put_the_shapes_where_kinematics_puts_them():
+    from scipy.spatial.transform import Rotation
+
+    run = record()
+    replay = replay_of(run)
+    expected = run.motions[0].poses()
+    for i, body in enumerate(run.case.robots[0].robot.bodies):
+        poses = np.broadcast_to(replay.poses[i], (240, 7)).astype(float)
+        vertices = replay.shapes[replay.bodies[i].i_shape][0].astype(float)
+        drawn = Rotation.from_quat(poses[:, 3:]).as_matrix() @ vertices.T + poses[:, :3, None]
+        true = expected[:, i, :3, :3] @ body.shape.vertices.T + expected[:, i, :3, 3, None]
+        assert np.abs(drawn - true).max() < 1e-6
+    assert replay.poses[0].shape == (1, 7), "the base stands still"
+
+
+def test_equal_shapes_are_stored_once():
+    replay = replay_of(record(n_robots=2))
+    assert [body.name for body in replay.bodies if body.kind == "link"][::4] == [
+        "arm_0/base",
+        "arm_1/base",
+    ]
+    assert len(replay.shapes) == 4 + 3
+
+
+def test_a_saved_replay_comes_back(tmp_path):
+    replay = replay_of(record())
+    replay.save(tmp_path / "replay.npz")
+    back = load_replay(tmp_path / "replay.npz")
+    assert (back.name, back.limits, back.n_steps) == (replay.name, replay.limits, replay.n_steps)
+    assert back.bodies == replay.bodies
+    for name in ("steps", "times", "clearances", "status", "lines", "nearest"):
+        assert np.array_equal(getattr(back, name), getattr(replay, name))
+    for mine, theirs in zip(back.poses, replay.poses, strict=True):
+        assert np.array_equal(mine, theirs)
+    for mine, theirs in zip(back.shapes, replay.shapes, strict=True):
+        assert np.array_equal(mine[0], theirs[0])
+        assert np.array_equal(mine[1], theirs[1])
+
+
+def test_a_replay_that_is_not_there_or_damaged_is_refused_in_one_line(tmp_path):
+    with pytest.raises(MissingFile, match=r"replay\.npz"):
+        load_replay(tmp_path / "replay.npz")
+    replay_of(record(n_steps=9)).save(tmp_path / "replay.npz")
+    whole = (tmp_path / "replay.npz").read_bytes()
+    for damaged in (b"", b"not a zip", whole[: len(whole) // 2]):
+        (tmp_path / "replay.npz").write_bytes(damaged)
+        with pytest.raises(BadSyntax) as caught:
+            load_replay(tmp_path / "replay.npz")
+        assert "\n" not in str(caught.value)
