@@ -88,7 +88,7 @@ def joint_parameter(pieces, i, row, s0, s1, ax, ay, bx, by, steps):
     sine, cosine = math.sin(phi), math.cos(phi)
     low, high = 0.0, 1.0
     f_low = math.copysign(1.0, alpha + beta)
-    for k in range(steps):
+    for _ in range(steps):
         u = 0.5 * (low + high)
         f = _off_joint_circle(pieces, i, s0 + u * (s1 - s0), row, sine, cosine)
         if f == 0.0:

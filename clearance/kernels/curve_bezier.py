@@ -15,7 +15,10 @@ from clearance.jit import inlined, kernel
 
 HIGHEST_DEGREE = 24
 CHOOSE = np.array(
-    [[float(math.comb(n, k)) for k in range(4 * HIGHEST_DEGREE + 1)] for n in range(4 * HIGHEST_DEGREE + 1)]
+    [
+        [float(math.comb(n, k)) for k in range(4 * HIGHEST_DEGREE + 1)]
+        for n in range(4 * HIGHEST_DEGREE + 1)
+    ]
 )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.arc import S0, S1
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
-from clearance.kernels.curve_nearest import nearest
+from clearance.kernels.curve_nearest import nearest, slide_to_foot
 from clearance.kernels.hausdorff_exact import common_normal
 
 STACK = 4000
@@ -27,7 +27,12 @@ def feet(pieces, leaves, points, out):
     for k in range(points.shape[0]):
         foot = nearest(pieces, leaves, points[k, 0], points[k, 1], hint, np.inf, work)
         hint = foot.leaf
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = foot.distance, foot.lower, foot.piece, foot.local
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = (
+            foot.distance,
+            foot.lower,
+            foot.piece,
+            foot.local,
+        )
 
 
 @inlined
@@ -48,6 +53,33 @@ def _boxes_apart(a, i, b, j, shift_x, shift_y):
     return hypotenuse(dx, dy)
 
 
+@inlined
+def _apart_at(pa, pb, i, t, j, s, shift_x, shift_y):
+    a, b = jet(pa, i, t), jet(pb, j, s)
+    return hypotenuse(a.x + shift_x - b.x, a.y + shift_y - b.y)
+
+
+@kernel
+def _closest_in(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y):
+    """A pair of parameters near the least distance of two parts, ends and corners of the cell among them.
+
+    The direction of this pair is what separates the parts: where the least distance is at the cell's border,
+    that of an inner pair leaves a gap of first order, and cells along the border would never end.
+    """
+    t, s = 0.5 * (t0 + t1), 0.5 * (s0 + s1)
+    for _ in range(3):
+        a = jet(pa, i, t)
+        s = slide_to_foot(pb, j, a.x + shift_x, a.y + shift_y, s, s0, s1)
+        b = jet(pb, j, s)
+        t = slide_to_foot(pa, i, b.x - shift_x, b.y - shift_y, t, t0, t1)
+    u, v = common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y)
+    v = min(s1, max(s0, v))
+    here = _apart_at(pa, pb, i, t, j, s, shift_x, shift_y)
+    if _apart_at(pa, pb, i, u, j, v, shift_x, shift_y) < here:
+        return u, v
+    return t, s
+
+
 @kernel
 def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
     """Lowers `best` (distance, lower bound, piece, t, piece, s) by the least distance of two leaves."""
@@ -58,16 +90,12 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
         top -= 1
         best[6] += 1.0
         t0, t1, s0, s1 = stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3]
-        t, s = 0.5 * (t0 + t1), 0.5 * (s0 + s1)
-        for trial in range(2):
-            a, b = jet(pa, i, t), jet(pb, j, s)
-            ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
-            distance = hypotenuse(ex, ey)
-            if distance < best[0]:
-                best[0], best[2], best[3], best[4], best[5] = distance, i, t, j, s
-            if trial == 0:
-                t, s = common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y)
-                s = min(s1, max(s0, s))
+        t, s = _closest_in(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y)
+        a, b = jet(pa, i, t), jet(pb, j, s)
+        ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
+        distance = hypotenuse(ex, ey)
+        if distance < best[0]:
+            best[0], best[2], best[3], best[4], best[5] = distance, i, t, j, s
         if best[0] == 0.0:
             best[1] = 0.0
             return
@@ -76,7 +104,12 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
         if distance > 0.0:
             along = (shift_x * ex + shift_y * ey) / distance
             bound = max(0.0, _apart(p, n, q, m, ex / distance, ey / distance, along))
-        if bound >= best[0] - gap or best[6] > BUDGET or top + 4 > stack.shape[0] or (t1 - t0 < 1e-15 and s1 - s0 < 1e-15):
+        if (
+            bound >= best[0] - gap
+            or best[6] > BUDGET
+            or top + 4 > stack.shape[0]
+            or (t1 - t0 < 1e-15 and s1 - s0 < 1e-15)
+        ):
             best[1] = min(best[1], max(bound, 0.0))
             continue
         t, s = 0.5 * (t0 + t1), 0.5 * (s0 + s1)
@@ -84,6 +117,23 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
             stack[top, 0], stack[top, 1] = (t0, t) if k & 1 else (t, t1)
             stack[top, 2], stack[top, 3] = (s0, s) if k & 2 else (s, s1)
             top += 1
+
+
+@kernel
+def _polish(pa, la, pb, lb, shift_x, shift_y, best, work):
+    """Lowers `best` from foot to foot, to and fro, to a local minimum: most leaves are then never opened."""
+    for _ in range(12):
+        there = jet(pb, int(best[4]), best[5])
+        foot = nearest(pa, la, there.x - shift_x, there.y - shift_y, 0, np.inf, work)
+        before = best[0]
+        if foot.distance < best[0]:
+            best[0], best[2], best[3] = foot.distance, foot.piece, foot.local
+        here = jet(pa, int(best[2]), best[3])
+        foot = nearest(pb, lb, here.x + shift_x, here.y + shift_y, 0, np.inf, work)
+        if foot.distance < best[0]:
+            best[0], best[4], best[5] = foot.distance, foot.piece, foot.local
+        if not best[0] < before:
+            return
 
 
 @kernel
@@ -98,13 +148,16 @@ def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
     work = np.empty((6, max(300, 4 * widest + 4), 4))
     n, m = la.arcs.shape[0], lb.arcs.shape[0]
     hint = 0
-    for k in range(0, n, max(1, n // 16)):  # a good bound first, so that most pairs are never opened
+    for k in range(
+        0, n, max(1, n // 16)
+    ):  # a good bound first, so that most pairs are never opened
         start = jet(pa, la.piece[k], la.arcs[k, S0])
         foot = nearest(pb, lb, start.x + shift_x, start.y + shift_y, hint, np.inf, work)
         hint = foot.leaf
         if foot.distance < best[0]:
             best[0], best[2], best[3] = foot.distance, la.piece[k], la.arcs[k, S0]
             best[4], best[5] = foot.piece, foot.local
+    _polish(pa, la, pb, lb, shift_x, shift_y, best, work)
     size_a, size_b = la.boxes.shape[0] // 2, lb.boxes.shape[0] // 2
     stack = np.empty((STACK, 2), np.int64)
     stack[0, 0], stack[0, 1] = 1, 1
@@ -112,7 +165,7 @@ def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
     while top > 0:
         top -= 1
         i, j = stack[top, 0], stack[top, 1]
-        if not _boxes_apart(la.boxes, i, lb.boxes, j, shift_x, shift_y) < best[0]:
+        if not _boxes_apart(la.boxes, i, lb.boxes, j, shift_x, shift_y) < best[0] - gap:
             continue
         if i >= size_a and j >= size_b:
             for k in range((i - size_a) * 4, min(n, (i - size_a) * 4 + 4)):
@@ -124,11 +177,14 @@ def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
                     )  # fmt: skip
             continue
         if j >= size_b or (i < size_a and i <= j):
-            stack[top, 0], stack[top, 1] = 2 * i, j
-            stack[top + 1, 0], stack[top + 1, 1] = 2 * i + 1, j
+            one, two = (2 * i, j), (2 * i + 1, j)
         else:
-            stack[top, 0], stack[top, 1] = i, 2 * j
-            stack[top + 1, 0], stack[top + 1, 1] = i, 2 * j + 1
+            one, two = (i, 2 * j), (i, 2 * j + 1)
+        far = _boxes_apart(la.boxes, one[0], lb.boxes, one[1], shift_x, shift_y)
+        if far < _boxes_apart(la.boxes, two[0], lb.boxes, two[1], shift_x, shift_y):
+            one, two = two, one
+        stack[top, 0], stack[top, 1] = one
+        stack[top + 1, 0], stack[top + 1, 1] = two
         top += 2
-    best[1] = min(best[0], best[1])
+    best[1] = min(best[0] - gap, best[1])
     return best

@@ -191,7 +191,10 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
 @inlined
 def _closest_on_line(control, start, s0, s1, x, y):
     x0, y0 = control[start, 0] / control[start, 2], control[start, 1] / control[start, 2]
-    x1, y1 = control[start + 1, 0] / control[start + 1, 2], control[start + 1, 1] / control[start + 1, 2]
+    x1, y1 = (
+        control[start + 1, 0] / control[start + 1, 2],
+        control[start + 1, 1] / control[start + 1, 2],
+    )
     dx, dy = x1 - x0, y1 - y0
     length_sq = dx * dx + dy * dy
     t = s0

@@ -66,7 +66,7 @@ def nearest_arc(leaves, x, y, hint, enough, stack):
 @inlined
 def _samples(row, pixel):
     """How many steps along one arc keep neighbouring samples about a pixel apart."""
-    return max(1, int(math.ceil(1.2 * hypotenuse(row[X1] - row[X0], row[Y1] - row[Y0]) / pixel)))
+    return max(1, math.ceil(1.2 * hypotenuse(row[X1] - row[X0], row[Y1] - row[Y0]) / pixel))
 
 
 @kernel

@@ -81,7 +81,19 @@ def directed(pa, la, pb, lb, shift_x, shift_y, trimming, gap, limit, budget, sta
     state[MAP_BOUND] = lower_bound_of_map(drawn, la, lb, pixel)
     best = drawn.deepest_leaf
     search_leaf(
-        pa, la, pb, lb, best, drawn.arc[drawn.deepest], shift_x, shift_y, gap, limit, budget, state, work
+        pa,
+        la,
+        pb,
+        lb,
+        best,
+        drawn.arc[drawn.deepest],
+        shift_x,
+        shift_y,
+        gap,
+        limit,
+        budget,
+        state,
+        work,
     )
     kept = np.ones(n_arcs, np.bool_)
     state[KEPT] = n_arcs
@@ -90,7 +102,9 @@ def directed(pa, la, pb, lb, shift_x, shift_y, trimming, gap, limit, budget, sta
         if n_arcs >= MANY:
             trim_nodes(la, lb, drawn, shift_x, shift_y, bound, kept, work[0])
         state[KEPT] = trim(la, lb, drawn, shift_x, shift_y, bound, kept)
-        if state[KEPT] > MANY:  # the map was too coarse for these curves: a better bound, and once more
+        if (
+            state[KEPT] > MANY
+        ):  # the map was too coarse for these curves: a better bound, and once more
             _sample_kept(pa, la, pb, lb, kept, drawn, shift_x, shift_y, state, work)
             state[KEPT] = trim(la, lb, drawn, shift_x, shift_y, state[LOWER], kept)
     hint = -1
@@ -122,7 +136,9 @@ def witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, out):
     out[0], out[1], out[2], out[3] = a.x, a.y, b.x, b.y
     ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
     apart = hypotenuse(ex, ey) > 1e-14 * (hypotenuse(a.x, a.y) + hypotenuse(b.x, b.y))
-    steep = apart and abs(ex * a.dx + ey * a.dy) > 1e-6 * hypotenuse(ex, ey) * hypotenuse(a.dx, a.dy)
+    steep = apart and abs(ex * a.dx + ey * a.dy) > 1e-6 * hypotenuse(ex, ey) * hypotenuse(
+        a.dx, a.dy
+    )
     if _is_end(ends_a, i, state[AT_A]):
         out[4] = 0.0
     elif steep:

@@ -12,7 +12,18 @@ import math
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance, arc_middle, segment_distance
+from clearance.kernels.arc import (
+    EPS,
+    S0,
+    S1,
+    X0,
+    X1,
+    Y0,
+    Y1,
+    arc_distance,
+    arc_middle,
+    segment_distance,
+)
 from clearance.kernels.curve_bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_nearest import nearest, slide_to_foot
@@ -77,8 +88,8 @@ def self_bisector(pa, pb, i, t_one, t_two, j, s, k, r, shift_x, shift_y):
     At `t_one` the branch (j, s) is the nearer, at `t_two` the branch (k, r). Feet are followed by Newton's
     method, so that the first two equations hold at every step.
     """
-    s_one, d_one = slide_from(pa, pb, i, t_one, j, s, shift_x, shift_y)
-    r_one, e_one = slide_from(pa, pb, i, t_one, k, r, shift_x, shift_y)
+    _, d_one = slide_from(pa, pb, i, t_one, j, s, shift_x, shift_y)
+    _, e_one = slide_from(pa, pb, i, t_one, k, r, shift_x, shift_y)
     s_two, d_two = slide_from(pa, pb, i, t_two, j, s, shift_x, shift_y)
     r_two, e_two = slide_from(pa, pb, i, t_two, k, r, shift_x, shift_y)
     low, high, f_low, f_high = t_one, t_two, d_one - e_one, d_two - e_two
@@ -172,7 +183,9 @@ def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_
         if k > low and (row[X0] != leaves.arcs[k - 1, X1] or row[Y0] != leaves.arcs[k - 1, Y1]):
             return np.inf
         x, y = row[X0] - here.x - shift_x, row[Y0] - here.y - shift_y
-        off = max(abs(dx * y - dy * x), abs(dx * (y + row[Y1] - row[Y0]) - dy * (x + row[X1] - row[X0])))
+        off = max(
+            abs(dx * y - dy * x), abs(dx * (y + row[Y1] - row[Y0]) - dy * (x + row[X1] - row[X0]))
+        )
         mx, my = arc_middle(row)
         off = max(off, abs(dx * (my - here.y - shift_y) - dy * (mx - here.x - shift_x)))
         most = max(most, off + row[EPS])
@@ -200,7 +213,8 @@ def _covered_by_run(pa, pb, lb, i, t0, t1, hint, shift_x, shift_y, state, work):
 def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, budget, state, work):
     """Raises the lower bound in `state` to the greatest distance of A on one interval to B, proven.
 
-    Stops early once the lower bound passes `limit`; returns a leaf of B near the interval. `work` is (11, k, 4); `state` the STATE numbers.
+    Stops early once the lower bound passes `limit`; returns a leaf of B near the interval.
+    `work` is (11, k, 4); `state` the STATE numbers.
     """
     straight = pa.first[i + 1] - pa.first[i] == 2 and not pa.rational[i]
     many = lb.arcs.shape[0] >= MANY
@@ -223,9 +237,7 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
         state[CUTS] += 1.0
         if straight and many and bound > 1.5 * state[DISTANCE]:
-            run = _covered_by_run(
-                pa, pb, lb, i, t0, t1, foot.leaf, shift_x, shift_y, state, work
-            )
+            run = _covered_by_run(pa, pb, lb, i, t0, t1, foot.leaf, shift_x, shift_y, state, work)
             bound = min(bound, max(run, foot.distance))
         if bound > state[DISTANCE] + gap:
             other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
@@ -239,13 +251,27 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
             state[ENDS] += 1.0
         elif share > 0.0:
             t, s = common_normal(
-                pa, pb, i, t0 + share * (t1 - t0), t0, t1, j, s0 + share * (s1 - s0), shift_x, shift_y
+                pa,
+                pb,
+                i,
+                t0 + share * (t1 - t0),
+                t0,
+                t1,
+                j,
+                s0 + share * (s1 - s0),
+                shift_x,
+                shift_y,
             )
             state[NORMALS] += 1.0
         else:
             state[ENDS] += 1.0
         seen = consider(pa, pb, lb, i, t, shift_x, shift_y, foot.leaf, state, work)
-        if bound <= state[DISTANCE] + gap or state[CUTS] > budget or top + 2 > STACK or t1 - t0 < 4e-16:
+        if (
+            bound <= state[DISTANCE] + gap
+            or state[CUTS] > budget
+            or top + 2 > STACK
+            or t1 - t0 < 4e-16
+        ):
             state[GIVEN_UP] += bound > state[DISTANCE] + gap
             state[UPPER] = max(state[UPPER], bound)
             continue
@@ -278,6 +304,18 @@ def search_leaf(pa, la, pb, lb, leaf, hint, shift_x, shift_y, gap, limit, budget
     """`search` on the interval of one leaf of A."""
     row = la.arcs[leaf]
     return search(
-        pa, pb, lb, la.piece[leaf], row[S0], row[S1], hint, shift_x, shift_y, gap, limit, budget, state,
+        pa,
+        pb,
+        lb,
+        la.piece[leaf],
+        row[S0],
+        row[S1],
+        hint,
+        shift_x,
+        shift_y,
+        gap,
+        limit,
+        budget,
+        state,
         work,
     )

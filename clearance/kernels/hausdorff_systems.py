@@ -24,7 +24,6 @@ from clearance.kernels.hausdorff_exact import (
     GIVEN_UP,
     NORMALS,
     PIECE_A,
-    STATE,
     UPPER,
     common_normal,
     consider,
@@ -119,13 +118,17 @@ def _same_foot(pb, db, one, two, ends_b, a_box, shift_x, shift_y, points, union,
         if _follows(pb, i, j, ends_b, not point):
             if _single_in(
                 pb, db, i, x[1], 1.0, a_box, shift_x, shift_y, points, union, gap, True
-            ) and _single_in(pb, db, j, 0.0, y[2], a_box, shift_x, shift_y, points, union, gap, True):
+            ) and _single_in(
+                pb, db, j, 0.0, y[2], a_box, shift_x, shift_y, points, union, gap, True
+            ):
                 return True
     return False
 
 
 @kernel
-def _solve_systems(pa, da, pb, lb, db, ends_b, i, shift_x, shift_y, budget, state, work, cells, boxes):
+def _solve_systems(
+    pa, da, pb, lb, db, ends_b, i, shift_x, shift_y, budget, state, work, cells, boxes
+):
     """Finds all candidates on piece `i` of A; see the module. `cells` (levels, most, 3) piece, s0, s1.
 
     Returns False where the budget or the depth ran out with systems unresolved.
@@ -169,7 +172,7 @@ def _solve_systems(pa, da, pb, lb, db, ends_b, i, shift_x, shift_y, budget, stat
                 enclose(pb, db[0], db[1], db[2], int(old[0]), s0, s1, points, boxes[n])
                 _gap_box(a_box[0], boxes[n, 0], shift_x, shift_y, gap)
                 if s0 != s1:
-                    f0, f1, g0, g1, _, _ = _foot_slopes(gap, boxes[n])
+                    f0, f1, g0, _, _, _ = _foot_slopes(gap, boxes[n])
                     # no foot, or only farthest points, in this cell
                     if f0 > 0.0 or f1 < 0.0 or g0 > 0.0:
                         continue
@@ -247,7 +250,11 @@ def _try_normal(pa, pb, lb, i, t0, t1, cell, shift_x, shift_y, state, work):
             t = 0.5 * (low + high)
             if high - low < 2e-16:
                 break
-            if _slope_to(pa, i, t0, end, shift_x, shift_y) * _slope_to(pa, i, t, end, shift_x, shift_y) > 0.0:
+            if (
+                _slope_to(pa, i, t0, end, shift_x, shift_y)
+                * _slope_to(pa, i, t, end, shift_x, shift_y)
+                > 0.0
+            ):
                 low = t
             else:
                 high = t

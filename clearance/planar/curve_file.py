@@ -14,7 +14,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from clearance.errors import BadInput, BadSyntax, MissingFile, MissingKey, UnknownKey, at, nearest_name
+from clearance.errors import (
+    BadInput,
+    BadSyntax,
+    MissingFile,
+    MissingKey,
+    UnknownKey,
+    at,
+    nearest_name,
+)
 from clearance.planar.curve import Curve
 
 _FORMS = {
@@ -36,7 +44,9 @@ def read_curve(path: str) -> Curve:
     if suffix == ".dxf":
         return Curve.from_dxf(path)
     if suffix not in (".yaml", ".yml"):
-        raise BadSyntax(f"a file {suffix or 'without suffix'}", where=str(path), valid=".dxf, .yaml or .yml")
+        raise BadSyntax(
+            f"a file {suffix or 'without suffix'}", where=str(path), valid=".dxf, .yaml or .yml"
+        )
     with at(str(path)):
         return _from_document(_load(path))
 
@@ -51,7 +61,9 @@ def _load(path: str):
     try:
         return YAML(typ="safe").load(file.read_text(encoding="utf-8"))
     except (YAMLError, UnicodeDecodeError) as error:
-        raise BadSyntax(f"not YAML ({' '.join(str(error).split())})", valid="a mapping `curves: [...]`") from None
+        raise BadSyntax(
+            f"not YAML ({' '.join(str(error).split())})", valid="a mapping `curves: [...]`"
+        ) from None
 
 
 def _from_document(document) -> Curve:
@@ -62,13 +74,17 @@ def _from_document(document) -> Curve:
             raise UnknownKey(f"{key!r}", valid="only `curves`")
     if not document["curves"]:
         raise MissingKey("an empty list", where="curves", valid="at least one curve")
-    return Curve.contours([_curve(entry, f"curves[{k}]") for k, entry in enumerate(document["curves"])])
+    return Curve.contours(
+        [_curve(entry, f"curves[{k}]") for k, entry in enumerate(document["curves"])]
+    )
 
 
 def _curve(entry, place: str) -> Curve:
     with at(place):
         if not isinstance(entry, dict) or len(entry) != 1:
-            raise BadSyntax(f"{entry!r:.60}", valid=f"one of {', '.join(_FORMS)} or chain with its values")
+            raise BadSyntax(
+                f"{entry!r:.60}", valid=f"one of {', '.join(_FORMS)} or chain with its values"
+            )
         form, values = next(iter(entry.items()))
         if form == "chain":
             if not isinstance(values, list):

@@ -13,8 +13,8 @@ import numpy as np
 
 from clearance.kernels.curve_gap import feet
 from clearance.planar.curve import Curve
+from clearance.planar.directed import placed
 from clearance.planar.entries import checked_number
-from clearance.planar.hausdorff import placed
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,9 @@ def _measured(a: Curve, b: Curve, which: np.ndarray, local: np.ndarray):
     own = a._jets(which, local)[:, :2]
     found = np.empty((len(own), 4))
     feet(b.pieces, b.leaves, np.ascontiguousarray(own + shift), found)
-    foot = b._jets(found[:, 2].astype(np.int64), np.ascontiguousarray(found[:, 3]))[:, :2] + b.origin
+    foot = (
+        b._jets(found[:, 2].astype(np.int64), np.ascontiguousarray(found[:, 3]))[:, :2] + b.origin
+    )
     return own + a.origin, found[:, 0], foot
 
 
@@ -120,7 +122,9 @@ def _beyond(a, b, which, local, distance, limit) -> np.ndarray:
             intervals.append((start, parameter[k - 1]))
             start = None
         if out[k] and start is None:
-            start = parameter[k] if fresh else _crossing(a, b, parameter[k - 1], parameter[k], limit)
+            start = (
+                parameter[k] if fresh else _crossing(a, b, parameter[k - 1], parameter[k], limit)
+            )
         elif not out[k] and start is not None:
             intervals.append((start, _crossing(a, b, parameter[k], parameter[k - 1], limit)))
             start = None

@@ -32,7 +32,9 @@ def read_dxf(path: str) -> Curve:
     try:
         drawing = ezdxf.readfile(str(file))
     except (ezdxf.DXFError, UnicodeDecodeError, OSError) as error:
-        raise BadSyntax(f"not a DXF drawing ({error})", where=str(path), valid="a DXF file") from None
+        raise BadSyntax(
+            f"not a DXF drawing ({error})", where=str(path), valid="a DXF file"
+        ) from None
     with at(str(path)):
         parts = [_curve_of(entity) for entity in drawing.modelspace()]
         if not parts:
@@ -128,7 +130,9 @@ def _bulge_arc(x0: float, y0: float, x1: float, y1: float, bulge: float) -> Curv
 
 def _chained(parts: list[Curve]) -> list[Curve]:
     """Parts that meet end to end, in any order and sense, joined into contours."""
-    size = float(np.hypot(*(np.max([p.box[1] for p in parts], 0) - np.min([p.box[0] for p in parts], 0))))
+    size = float(
+        np.hypot(*(np.max([p.box[1] for p in parts], 0) - np.min([p.box[0] for p in parts], 0)))
+    )
     waiting, contours = list(parts), []
     while waiting:
         chain = [waiting.pop(0)]

@@ -35,7 +35,9 @@ def checked_weights(weights: np.ndarray | None, n: int) -> np.ndarray:
     _finite(array, "weights")
     if not (array > 0.0).all():
         k = int(np.argmin(array))
-        raise BadCurve(f"weight {array[k]:g} at index {k}", where="weights", valid="positive weights")
+        raise BadCurve(
+            f"weight {array[k]:g} at index {k}", where="weights", valid="positive weights"
+        )
     return array
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from clearance.kernels.curve_gap import least_distance
 from clearance.planar.curve import Curve
-from clearance.planar.hausdorff import placed
+from clearance.planar.directed import placed
 
 
 @dataclass(frozen=True)

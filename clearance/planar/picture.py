@@ -18,14 +18,18 @@ from clearance.planar.trimming import distance_field, kept_intervals
 COLOR_A, COLOR_B, COLOR_LINE = "#c99700", "#1f5fbf", "#d62728"
 
 
-def draw_comparison(a: Curve, b: Curve, found: Hausdorff, path: str, *, field: bool = False) -> None:
+def draw_comparison(
+    a: Curve, b: Curve, found: Hausdorff, path: str, *, field: bool = False
+) -> None:
     """Writes the picture of `found` into `path`, an .svg or .png file; the same input gives the same bytes.
 
     Raises: BadInput (another suffix), Unavailable (no matplotlib), Unwritable.
     """
     suffix = Path(path).suffix.lower()
     if suffix not in (".svg", ".png"):
-        raise BadInput(f"a picture {suffix or 'without suffix'}", where=str(path), valid=".svg or .png")
+        raise BadInput(
+            f"a picture {suffix or 'without suffix'}", where=str(path), valid=".svg or .png"
+        )
     try:
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -62,8 +66,12 @@ def _fill(axes, a: Curve, b: Curve, found: Hausdorff, field: bool) -> None:
             part = one.point(np.linspace(start, end, 24))
             axes.plot(*part.T, color=color, linewidth=3.5, solid_capstyle="round")
     ends = np.stack([found.point_a, found.point_b])
-    axes.plot(*ends.T, "o-", color=COLOR_LINE, linewidth=1.4, markersize=4, label="Hausdorff distance")
-    axes.set_title(f"{found.distance:.9g} ± {found.error_bound:.1e}  ({found.direction}, {found.kind})")
+    axes.plot(
+        *ends.T, "o-", color=COLOR_LINE, linewidth=1.4, markersize=4, label="Hausdorff distance"
+    )
+    axes.set_title(
+        f"{found.distance:.9g} ± {found.error_bound:.1e}  ({found.direction}, {found.kind})"
+    )
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal")

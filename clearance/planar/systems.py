@@ -12,7 +12,7 @@ from clearance.errors import BadInput
 from clearance.kernels.hausdorff_exact import STATE
 from clearance.kernels.hausdorff_systems import solve_directed
 from clearance.planar.curve import Curve
-from clearance.planar.hausdorff import Directed, directed_of, placed
+from clearance.planar.directed import Directed, directed_of, placed
 
 BUDGET = 150_000.0
 """Intervals of one direction after which the systems count as having no end of solutions."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from clearance.kernels.hausdorff_trim import field, kept_arcs
 from clearance.planar.curve import Curve
-from clearance.planar.hausdorff import placed
+from clearance.planar.directed import placed
 
 
 def kept_intervals(a: Curve, b: Curve, lower_bound: float) -> np.ndarray:

@@ -51,8 +51,12 @@ def pairs(n, seed):
 
 
 def splines():
-    print("clamped cubic B-splines [ms]: median and worst pair of 10; fresh = biarcs and trees inside the clock")
-    print("  n    pair   prepared  fresh    worst fresh  target  worst error_bound/size  largest kind counts")
+    print(
+        "clamped cubic B-splines [ms]: median and worst pair of 10; fresh = biarcs and trees inside the clock"
+    )
+    print(
+        "  n    pair   prepared  fresh    worst fresh  target  worst error_bound/size  largest kind counts"
+    )
     for n in TARGET:
         for name in ("far", "near"):
             prepared, fresh, errors, kinds = [], [], [], {}
@@ -63,7 +67,9 @@ def splines():
                 errors.append(found.error_bound / max(a.size, b.size))
                 kinds[found.kind] = kinds.get(found.kind, 0) + 1
                 prepared.append(timed(lambda a=a, b=b: hausdorff(a, b), 5)[0])
-                fresh.append(fresh_timed(lambda c=c, d=d: (Curve.bspline(c), Curve.bspline(d)), 5)[0])
+                fresh.append(
+                    fresh_timed(lambda c=c, d=d: (Curve.bspline(c), Curve.bspline(d)), 5)[0]
+                )
             print(
                 f"  {n:3d}  {name:4s}  {np.median(prepared):8.3f}  {np.median(fresh):7.3f}  {max(fresh):10.3f}"
                 f"  {TARGET[n]:8.1f}  {max(errors):10.1e}  {kinds}"
@@ -118,8 +124,16 @@ def overlaps():
         "identical": (a, Curve.bspline(c), 0.0),
         "reversed": (a, Curve.bspline(c[::-1]), 0.0),
         "1e-9 apart splines": (a, Curve.bspline(c + 1e-9 * rng.normal(size=c.shape)), None),
-        "concentric circles": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1.25, 0.3, 0.3 + turn), 0.25),
-        "1e-9 apart circles": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1 + 1e-9, 0.3, 0.3 + turn), 1e-9),
+        "concentric circles": (
+            Curve.circle([0, 0], 1),
+            Curve.arc([0, 0], 1.25, 0.3, 0.3 + turn),
+            0.25,
+        ),
+        "1e-9 apart circles": (
+            Curve.circle([0, 0], 1),
+            Curve.arc([0, 0], 1 + 1e-9, 0.3, 0.3 + turn),
+            1e-9,
+        ),
         "offset lines": (Curve.line([0, 0], [1, 0]), Curve.line([0, 0.5], [1, 0.5]), 0.5),
     }
     print("overlap [ms], target 5; error and bound relative to size, target 1e-14")
@@ -132,7 +146,9 @@ def overlaps():
 
 
 def outlines():
-    print("polylines of 108,594 and 720 vertices [ms], target 20; prepared = biarcs and trees made before")
+    print(
+        "polylines of 108,594 and 720 vertices [ms], target 20; prepared = biarcs and trees made before"
+    )
     rng = np.random.default_rng(2)
     angle = np.linspace(0, 2 * math.pi, 108_595)[:-1]
     waves = sum(math.exp(-0.4 * k) * np.sin(k * angle + rng.uniform(0, 6)) for k in range(2, 40))
@@ -142,14 +158,21 @@ def outlines():
     rough = (1 + 0.05 * waves + 2e-3 * rng.normal(size=angle.shape))[:, None] * np.stack(
         [np.cos(angle), np.sin(angle)], axis=1
     )
-    for name, points in (("outline", smooth), ("random walk", walk), ("noise 30 x the step", rough)):
+    for name, points in (
+        ("outline", smooth),
+        ("random walk", walk),
+        ("noise 30 x the step", rough),
+    ):
         few = points[np.linspace(0, len(points) - 1, 720).astype(int)]
         a, b = Curve.polyline(points), Curve.polyline(few)
         ms, worst = timed(lambda a=a, b=b: hausdorff(a, b), 5)
         fresh = fresh_timed(lambda p=points, f=few: (Curve.polyline(p), Curve.polyline(f)), 3)[0]
         found = hausdorff(a, b)
-        print(f"  {name:20s} prepared {ms:8.2f} (worst {worst:.2f})  fresh {fresh:8.2f}  kept"
-              f" {found.tally.arcs - found.tally.trimmed_arcs} of {found.tally.arcs}  {_shapely(points, few)}")  # fmt: skip
+        kept = found.tally.arcs - found.tally.trimmed_arcs
+        print(
+            f"  {name:20s} prepared {ms:8.2f} (worst {worst:.2f})  fresh {fresh:8.2f}"
+            f"  kept {kept} of {found.tally.arcs}  {_shapely(points, few)}"
+        )
 
 
 def _shapely(points, few):
@@ -166,7 +189,9 @@ def _shapely(points, few):
 
 
 def map_memory():
-    print("pixels of the map: a page ten times as large with the same curves ten times as large, and far apart")
+    print(
+        "pixels of the map: a page ten times as large with the same curves ten times as large, and far apart"
+    )
     c, d = pairs(30, 1)["near"]
     for scale, apart in ((1, 0), (10, 0), (1, 1000)):
         found = hausdorff(Curve.bspline(c * scale), Curve.bspline(d * scale + apart))

@@ -23,17 +23,26 @@ def spline_parts(control, degree, knots=None, weights=None):
         knots = np.concatenate([np.zeros(degree), inner, np.ones(degree)])
     weights = np.ones(n) if weights is None else weights
     knots = [REAL(u) for u in knots]
-    points = [np.array([x * w, y * w, w], REAL) for (x, y), w in zip(np.array(control, REAL), np.array(weights, REAL))]
+    points = [
+        np.array([x * w, y * w, w], REAL)
+        for (x, y), w in zip(np.array(control, REAL), np.array(weights, REAL), strict=True)
+    ]
     low, high = knots[degree], knots[n]
     for u in sorted(set(k for k in knots if low <= k <= high)):
         while sum(k == u for k in knots) < degree:
             points, knots = _inserted(points, knots, degree, u)
-    starts = [i for i in range(len(knots) - 1) if knots[i] < knots[i + 1] and low <= knots[i] < high]
+    starts = [
+        i for i in range(len(knots) - 1) if knots[i] < knots[i + 1] and low <= knots[i] < high
+    ]
     return np.array([points[i - degree : i + 1] for i in starts])
 
 
 def _inserted(points, knots, degree, u):
-    k = max(i for i in range(len(knots) - 1) if knots[i] <= u and (knots[i] < knots[i + 1] or knots[i] < u))
+    k = max(
+        i
+        for i in range(len(knots) - 1)
+        if knots[i] <= u and (knots[i] < knots[i + 1] or knots[i] < u)
+    )
     if knots[k + 1] <= u and knots[k] < u:
         k = max(i for i in range(len(knots)) if knots[i] <= u)
     out = []
@@ -64,7 +73,10 @@ def arc_parts(center, radius, start, end, n=4):
         for j in range(3):
             angle = REAL(start) + step * (i + REAL(j) / 2)
             reach = radius / np.cos(step / 2) if j == 1 else REAL(radius)
-            out[i, j, 0], out[i, j, 1] = center[0] + reach * np.cos(angle), center[1] + reach * np.sin(angle)
+            out[i, j, 0], out[i, j, 1] = (
+                center[0] + reach * np.cos(angle),
+                center[1] + reach * np.sin(angle),
+            )
         out[i, 1, 2] = np.cos(step / 2)
         out[i, 1, :2] *= out[i, 1, 2]
     return out
@@ -116,7 +128,9 @@ def directed(a, b, width, levels=64, most=60_000):
             break
         middle = (a_start + a_end) / 2
         half = np.sqrt(((a_end - a_start) ** 2).sum(-1)) / 2
-        nearest = _to_chord(middle[one], b_start[two], b_end[two]) - half[one] - a_off[one] - b_off[two]
+        nearest = (
+            _to_chord(middle[one], b_start[two], b_end[two]) - half[one] - a_off[one] - b_off[two]
+        )
         keep = (upper[one] > low) & (nearest <= upper[one])
         one, two = one[keep], two[keep]
         if len(one) == 0 or len(one) > most:

@@ -63,7 +63,9 @@ def test_transformed_reversed_chain_and_contours():
     c, s = math.cos(0.7), math.sin(0.7)
     turn = np.array([[c, -s, 5], [s, c, -2]])
     u = np.linspace(0, 1, 17)
-    assert np.allclose(curve.transformed(turn).point(u), curve.point(u) @ turn[:, :2].T + turn[:, 2])
+    assert np.allclose(
+        curve.transformed(turn).point(u), curve.point(u) @ turn[:, :2].T + turn[:, 2]
+    )
     assert np.allclose(curve.reversed().point(u), curve.point(1 - u), atol=1e-14)
     two = Curve.contours([curve, Curve.circle([9, 9], 1)])
     assert set(two.contour) == {0, 1} and two.n_pieces == 5
@@ -100,7 +102,10 @@ REFUSED = [
     (lambda: Curve.arc([0, 0], 1, 0, 7), "sweep of 7"),
     (lambda: Curve.arc([0, np.nan], 1, 0, 1), "nan"),
     (lambda: Curve.chain([]), "parts: 0 parts"),
-    (lambda: Curve.chain([Curve.line([0, 0], [1, 0]), Curve.line([2, 0], [3, 0])]), "part 1 starts 1 away"),
+    (
+        lambda: Curve.chain([Curve.line([0, 0], [1, 0]), Curve.line([2, 0], [3, 0])]),
+        "part 1 starts 1 away",
+    ),
     (lambda: Curve.line([0, 0], [1, 0]).transformed(np.zeros((2, 3))), "singular"),
     (lambda: Curve.polyline([[0, 0], [1e200, 0]]), "size 1e+200"),
     (lambda: Curve.from_dxf("nowhere.dxf"), "nowhere.dxf: no such file"),

@@ -58,12 +58,18 @@ def test_random_pairs_agree_with_the_oracle(seed):
     low, high = truth(one, two)
     size = max(a.size, b.size)
     assert high - low <= 1e-9 * size
-    assert low - found.error_bound - 1e-16 * size <= found.distance <= high + found.error_bound + 1e-16 * size
+    assert (
+        low - found.error_bound - 1e-16 * size
+        <= found.distance
+        <= high + found.error_bound + 1e-16 * size
+    )
     assert found.error_bound <= 1e-12 * size
     for directed in found.directed.values():
         assert directed.lower <= directed.distance <= directed.upper
         apart = math.hypot(*(directed.point_a - directed.point_b))
-        assert apart == pytest.approx(directed.distance, abs=1e-14 * size + 1e-15 * np.abs(one[0]).max())
+        assert apart == pytest.approx(
+            directed.distance, abs=1e-14 * size + 1e-15 * np.abs(one[0]).max()
+        )
 
 
 HOSTILE = {
@@ -72,9 +78,15 @@ HOSTILE = {
     "exact cusp": ([[0, 0], [1, 1], [0, 1], [1, 0]], [[0, 0.5], [0.3, 0.5], [0.6, 0.5], [1, 0.5]]),
     "doubled back": ([[0, 0], [2, 0], [-1, 0], [1, 0]], [[0, 1], [0.3, 0.2], [0.6, 0.3], [1, 1]]),
     "common ends": ([[0, 0], [1, 2], [2, -2], [3, 0]], [[0, 0], [1, -2], [2, 2], [3, 0]]),
-    "near tangent": ([[0, 0], [1, 1], [2, 1], [3, 0]], [[0, 1.5], [1, 0.5 + 1e-9], [2, 0.5], [3, 1.5]]),
+    "near tangent": (
+        [[0, 0], [1, 1], [2, 1], [3, 0]],
+        [[0, 1.5], [1, 0.5 + 1e-9], [2, 0.5], [3, 1.5]],
+    ),
     "mirror images": ([[0, 0], [1, 2], [2, 2], [3, 0]], [[0, 0], [1, -2], [2, -2], [3, 0]]),
-    "symmetric over an arch": ([[-1, 0.3], [-0.5, 0.3], [0.5, 0.3], [1, 0.3]], [[-1, 0], [-1, 3], [1, 3], [1, 0]]),
+    "symmetric over an arch": (
+        [[-1, 0.3], [-0.5, 0.3], [0.5, 0.3], [1, 0.3]],
+        [[-1, 0], [-1, 3], [1, 3], [1, 0]],
+    ),
     "double control points": ([[0, 0], [0, 0], [2, 1], [2, 1]], [[0, 1], [1, 0], [1, 0], [2, 0]]),
 }
 
@@ -115,12 +127,24 @@ OVERLAPS = {
     ),
     "part of a line": (Curve.line([0, 0], [4, 3]), Curve.polyline([[0, 0], [2, 1.5]]), 2.5),
     "concentric": (Curve.circle([0, 0], 1), Curve.circle([0, 0], 1.25), 0.25),
-    "concentric, other start": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1.25, 0.3, 0.3 + TURN), 0.25),
-    "1e-9 apart": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1 + 1e-9, 0.3, 0.3 + TURN), (1 + 1e-9) - 1),
+    "concentric, other start": (
+        Curve.circle([0, 0], 1),
+        Curve.arc([0, 0], 1.25, 0.3, 0.3 + TURN),
+        0.25,
+    ),
+    "1e-9 apart": (
+        Curve.circle([0, 0], 1),
+        Curve.arc([0, 0], 1 + 1e-9, 0.3, 0.3 + TURN),
+        (1 + 1e-9) - 1,
+    ),
     "offset lines": (Curve.line([0, 0], [1, 0]), Curve.line([0, 0.5], [1, 0.5]), 0.5),
     "eccentric": (Curve.circle([0, 0], 1), Curve.circle([0.125, 0], 1), 0.125),
     "a dot in a circle": (Curve.circle([0, 0], 1), Curve.line([-1e-15, 0], [1e-15, 0]), 1.0),
-    "closed against open": (Curve.circle([0, 0], 1), Curve.arc([0, 0], 1, 0, math.pi), math.sqrt(2.0)),
+    "closed against open": (
+        Curve.circle([0, 0], 1),
+        Curve.arc([0, 0], 1, 0, math.pi),
+        math.sqrt(2.0),
+    ),
 }
 
 
@@ -155,7 +179,9 @@ def test_published_values():
     # shapely#2458: 4.949747468306 from the vertices, 9.849997461929 densified by 0.01
     a = Curve.polyline([(26, 8), (13, -2), (13, 19), (10, 19), (10, 23), (1, 17)])
     b = Curve.polyline([(15, 1), (28, 11), (13, 26), (1, 18)])
-    assert 9.849997461929 <= hausdorff(a, b).distance <= 9.849997461929 + 0.1  # half of its sample spacing
+    assert (
+        9.849997461929 <= hausdorff(a, b).distance <= 9.849997461929 + 0.1
+    )  # half of its sample spacing
     parts = [oracle.line_parts(p) for p in ([(26, 8), (13, -2), (13, 19), (10, 19), (10, 23), (1, 17)],
                                             [(15, 1), (28, 11), (13, 26), (1, 18)])]  # fmt: skip
     low, high = oracle.hausdorff(*parts)
@@ -175,7 +201,11 @@ def kinds():
     flat = Curve.bezier([[-1, 0], [-0.3, 0], [0.3, 0], [1, 0]])
     return [
         (flat, Curve.bezier([[-1, 0.2], [-0.3, 0.2], [0.3, 0.2], [1.5, 1.5]]), "end"),
-        (Curve.line([0.0, -3.0], [0.3, 4.0]), Curve.bezier([[-2, -3], [-2, 7], [2, 7], [2, -3]]), "any"),
+        (
+            Curve.line([0.0, -3.0], [0.3, 4.0]),
+            Curve.bezier([[-2, -3], [-2, 7], [2, 7], [2, -3]]),
+            "any",
+        ),
         (flat, Curve.bezier([[-1, 0], [-0.3, 0.8], [0.3, 0.8], [1, 0]]), "common_normal"),
         (flat, Curve.bezier([[-1, 0], [-0.3, -0.8], [0.5, -0.9], [1, 0]]), "common_normal"),
     ]
@@ -220,7 +250,9 @@ def test_axioms_of_a_metric(one, two, three):
     a, b, c = curve_of(one), curve_of(two), curve_of(three)
     ab, ba, ac, cb = hausdorff(a, b), hausdorff(b, a), hausdorff(a, c), hausdorff(c, b)
     assert abs(ab.distance - ba.distance) <= ab.error_bound + ba.error_bound
-    assert ab.distance <= ac.distance + cb.distance + ab.error_bound + ac.error_bound + cb.error_bound
+    assert (
+        ab.distance <= ac.distance + cb.distance + ab.error_bound + ac.error_bound + cb.error_bound
+    )
     assert hausdorff(a, a).distance <= 1e-14 * a.size
     assert within(a, b, ab.distance)
     assert ab.distance < 1e-6 or not within(a, b, ab.distance * (1 - 1e-9))
@@ -244,7 +276,11 @@ def test_trimming_is_safe(one, two):
     bound = 0.9 * directed.distance
     kept = kept_intervals(a, b, bound)
     u = np.linspace(a.limits[0, 0], a.limits[-1, 1], 301)
-    trimmed = ~((kept[:, :1] <= u) & (u <= kept[:, 1:])).any(axis=0) if len(kept) else np.ones(len(u), bool)
+    trimmed = (
+        ~((kept[:, :1] <= u) & (u <= kept[:, 1:])).any(axis=0)
+        if len(kept)
+        else np.ones(len(u), bool)
+    )
     for p in a.point(u[trimmed]):
         assert hausdorff_point(b, p) <= bound + 1e-15 * a.size
 
