@@ -14,6 +14,7 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.arc import (
     EPS,
+    RADIUS,
     S0,
     S1,
     X0,
@@ -182,12 +183,15 @@ def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_
         row = leaves.arcs[k]
         if k > low and (row[X0] != leaves.arcs[k - 1, X1] or row[Y0] != leaves.arcs[k - 1, Y1]):
             return np.inf
-        x, y = row[X0] - here.x - shift_x, row[Y0] - here.y - shift_y
-        off = max(
-            abs(dx * y - dy * x), abs(dx * (y + row[Y1] - row[Y0]) - dy * (x + row[X1] - row[X0]))
-        )
-        mx, my = arc_middle(row)
-        off = max(off, abs(dx * (my - here.y - shift_y) - dy * (mx - here.x - shift_x)))
+        x, y = row[X1] - here.x - shift_x, row[Y1] - here.y - shift_y
+        off = abs(dx * y - dy * x)
+        if k == low:
+            off = max(
+                off, abs(dx * (row[Y0] - here.y - shift_y) - dy * (row[X0] - here.x - shift_x))
+            )
+        if row[RADIUS] != 0.0:
+            mx, my = arc_middle(row)
+            off = max(off, abs(dx * (my - here.y - shift_y) - dy * (mx - here.x - shift_x)))
         most = max(most, off + row[EPS])
         if most > enough:
             break

@@ -36,7 +36,7 @@ def draw_comparison(
         from matplotlib.figure import Figure
     except ImportError:
         raise Unavailable("matplotlib is not installed", valid="pip install matplotlib") from None
-    figure = Figure(figsize=(8.0, 6.0), layout="constrained")
+    figure = Figure(figsize=_size_of(*_page(a, b)), layout="constrained")
     FigureCanvasAgg(figure)
     _fill(figure.add_subplot(), a, b, found, field)
     metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
@@ -47,35 +47,74 @@ def draw_comparison(
             raise Unwritable(f"cannot write ({error.strerror})", where=str(path)) from None
 
 
-def _fill(axes, a: Curve, b: Curve, found: Hausdorff, field: bool) -> None:
+def _page(a: Curve, b: Curve) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of the page: both curves with a margin."""
     low, high = np.minimum(a.box[0], b.box[0]), np.maximum(a.box[1], b.box[1])
-    edge = 0.05 * float(np.hypot(*(high - low)))
-    low, high = low - edge, high + edge
+    margin = 0.06 * float(np.hypot(*(high - low)))
+    return low - margin, high + margin
+
+
+def _size_of(low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
+    """Width and height of the figure [inch] that leave no empty bands around the page."""
+    width, height = high - low
+    scale = min(9.0 / width, 7.0 / height)
+    return max(5.0, width * scale + 0.6), max(2.2, height * scale) + 1.3
+
+
+def _fill(axes, a: Curve, b: Curve, found: Hausdorff, field: bool) -> None:
+    low, high = _page(a, b)
     if field:
-        xs, ys = np.linspace(low[0], high[0], 480), np.linspace(low[1], high[1], 480)
-        depth, which = distance_field(b, xs, ys)
-        extent = (low[0], high[0], low[1], high[1])
-        axes.imshow(which * 7 % 20, origin="lower", extent=extent, cmap="tab20", alpha=0.35)
-        axes.contour(xs, ys, depth, 12, colors="black", linewidths=0.3, alpha=0.5)
+        _draw_field(axes, b, low, high)
     pairs = ((a, b, COLOR_A, "a"), (b, a, COLOR_B, "b"))
     for (one, two, color, name), directed in zip(pairs, found.directed.values(), strict=True):
-        for line in _lines(one):
-            axes.plot(*line.T, color=color, linewidth=1.0, label=name)
-            name = None
-        for start, end in kept_intervals(one, two, max(0.0, directed.lower)):
-            part = one.point(np.linspace(start, end, 24))
-            axes.plot(*part.T, color=color, linewidth=3.5, solid_capstyle="round")
-    ends = np.stack([found.point_a, found.point_b])
-    axes.plot(
-        *ends.T, "o-", color=COLOR_LINE, linewidth=1.4, markersize=4, label="Hausdorff distance"
-    )
+        _draw_curve(axes, one, two, directed.lower, color, name)
+    _draw_distance(axes, found)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color("#999999")
+    axes.tick_params(colors="#555555", labelsize="small")
+    direction = found.direction.replace("_", " ")
+    kind = found.kind.replace("_", " ")
     axes.set_title(
-        f"{found.distance:.9g} ± {found.error_bound:.1e}  ({found.direction}, {found.kind})"
+        f"Hausdorff distance {found.distance:.9g} ± {found.error_bound:.1e}\n{direction}, {kind}",
+        fontsize="medium",
     )
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
-    axes.set_aspect("equal")
-    axes.legend(loc="best", fontsize="small")
+    axes.figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
+
+
+def _draw_field(axes, b: Curve, low: np.ndarray, high: np.ndarray) -> None:
+    """The page in a pale colour for each nearest arc of b, with lines of equal distance."""
+    step = float((high - low).max()) / 700.0
+    n_x, n_y = (int(n) for n in np.maximum(2, np.ceil((high - low) / step)))
+    xs, ys = np.linspace(low[0], high[0], n_x), np.linspace(low[1], high[1], n_y)
+    depth, which = distance_field(b, xs, ys)
+    extent = (low[0], high[0], low[1], high[1])
+    shade = which * 7 % 20
+    axes.imshow(
+        shade, origin="lower", extent=extent, cmap="tab20", vmin=0, vmax=19, alpha=0.28, zorder=0
+    )
+    axes.contour(xs, ys, depth, 10, colors="#444444", linewidths=0.35, alpha=0.45, zorder=1)
+
+
+def _draw_curve(axes, one: Curve, two: Curve, bound: float, color: str, name: str) -> None:
+    """The whole curve thin, and bold what trimming left at the proven lower bound."""
+    label = f"{name}, trimmed away"
+    for line in _lines(one):
+        axes.plot(*line.T, color=color, linewidth=1.1, label=label, zorder=3)
+        label = None
+    label = f"{name}, left to solve"
+    for start, end in kept_intervals(one, two, max(0.0, bound)):
+        part = one.point(np.linspace(start, end, 24))
+        axes.plot(
+            *part.T, color=color, linewidth=4.0, solid_capstyle="round", label=label, zorder=4
+        )
+        label = None
+
+
+def _draw_distance(axes, found: Hausdorff) -> None:
+    ends = np.stack([found.point_a, found.point_b])
+    style = {"linewidth": 1.5, "markersize": 5, "markeredgecolor": "white", "markeredgewidth": 0.8}
+    axes.plot(*ends.T, "o-", color=COLOR_LINE, label="distance", zorder=5, **style)
 
 
 def _lines(curve: Curve) -> list[np.ndarray]:
