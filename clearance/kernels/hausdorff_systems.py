@@ -232,17 +232,60 @@ def _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work):
     return d, s
 
 
+@inlined
+def _is_normal(pa, pb, i, t, j, s, shift_x, shift_y):
+    """Whether both equations of (12) hold at (t, s) to rounding: the cosines with both tangents vanish."""
+    a, b = jet(pa, i, t), jet(pb, j, s)
+    ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
+    gap = ex * ex + ey * ey
+    f, g = ex * a.dx + ey * a.dy, ex * b.dx + ey * b.dy
+    fine = f * f <= 1e-20 * gap * (a.dx * a.dx + a.dy * a.dy)
+    return fine and g * g <= 1e-20 * gap * (b.dx * b.dx + b.dy * b.dy)
+
+
+@inlined
+def _slope_at_foot(pa, pb, i, t, cell, shift_x, shift_y, work):
+    """The slope of half the squared distance along A at `t`, from A's foot in one cell of B."""
+    _, s = _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work)
+    a, b = jet(pa, i, t), jet(pb, int(cell[0]), s)
+    return (a.x + shift_x - b.x) * a.dx + (a.y + shift_y - b.y) * a.dy
+
+
+@kernel
+def _bisected_normal(pa, pb, i, t0, t1, cell, shift_x, shift_y, work):
+    """The parameter in [t0, t1] where `_slope_at_foot` changes its sign; nan where it does not: no root."""
+    low, high = t0, t1
+    at_low = _slope_at_foot(pa, pb, i, low, cell, shift_x, shift_y, work)
+    if at_low * _slope_at_foot(pa, pb, i, high, cell, shift_x, shift_y, work) > 0.0:
+        return math.nan
+    for _ in range(60):
+        t = 0.5 * (low + high)
+        if high - low < 2e-16:
+            break
+        if at_low * _slope_at_foot(pa, pb, i, t, cell, shift_x, shift_y, work) > 0.0:
+            low = t
+        else:
+            high = t
+    return 0.5 * (low + high)
+
+
 @kernel
 def _try_normal(pa, pb, lb, i, t0, t1, cell, shift_x, shift_y, state, work):
     """System (12), or (11) against an end of B: the one root in T, by Newton's method from its middle.
 
-    The system's determinant has one sign over T and the cell, so that there is one root at most.
+    The system's determinant has one sign over T and the cell, so that there is one root at most. Newton's
+    result counts only with a residual of zero inside T and the cell; else the sign of the slope along the
+    foot, monotone here, says whether a root exists, and bisection finds it.
     """
     state[NORMALS if cell[1] != cell[2] else ENDS] += 1.0
     t, j = 0.5 * (t0 + t1), int(cell[0])
     if cell[1] != cell[2]:
         s = 0.5 * (cell[1] + cell[2])
-        t, _ = common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y)
+        t, s = common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y)
+        if not _is_normal(pa, pb, i, t, j, s, shift_x, shift_y) or not cell[1] <= s <= cell[2]:
+            t = _bisected_normal(pa, pb, i, t0, t1, cell, shift_x, shift_y, work)
+            if math.isnan(t):
+                return
     else:
         end = jet(pb, j, cell[1])
         low, high = t0, t1

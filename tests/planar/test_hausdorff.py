@@ -196,25 +196,53 @@ def test_published_values():
     assert hausdorff(one, two).distance == pytest.approx(47.8, abs=0.1)
 
 
-def kinds():
-    """Small versions of the four situations of Fig. 18, each with the kind that it must be."""
-    flat = Curve.bezier([[-1, 0], [-0.3, 0], [0.3, 0], [1, 0]])
-    return [
-        (flat, Curve.bezier([[-1, 0.2], [-0.3, 0.2], [0.3, 0.2], [1.5, 1.5]]), "end"),
-        (
-            Curve.line([0.0, -3.0], [0.3, 4.0]),
-            Curve.bezier([[-2, -3], [-2, 7], [2, 7], [2, -3]]),
-            "any",
-        ),
-        (flat, Curve.bezier([[-1, 0], [-0.3, 0.8], [0.3, 0.8], [1, 0]]), "common_normal"),
-        (flat, Curve.bezier([[-1, 0], [-0.3, -0.8], [0.5, -0.9], [1, 0]]), "common_normal"),
-    ]
+def wavy_pair(n, seed):
+    """Two cubic B-splines of `n` control points that wave side by side, as in the paper's experiment."""
+    rng = np.random.default_rng(seed)
+    c = np.stack([np.arange(n) * 1.0, np.cumsum(rng.normal(size=n))], axis=1)
+    return Curve.bspline(c), Curve.bspline(c + [0.0, 0.3] + 0.8 * rng.normal(size=(n, 2)))
 
 
-def test_kinds_of_fig_18():
-    for a, b, kind in kinds():
-        found = hausdorff(a, b)
-        assert kind in (found.kind, "any")
+def slope(curve, parameter, direction):
+    """The cosine between the tangent and a direction."""
+    tangent = curve.derivative(parameter)
+    return abs(tangent @ direction) / (math.hypot(*tangent) * math.hypot(*direction))
+
+
+FIG_18 = {
+    "a": (5, 0, "end"),
+    "b": (10, 30, "self_bisector"),
+    "c": (15, 0, "common_normal"),
+    "d": (30, 0, "common_normal"),
+}
+
+
+@pytest.mark.parametrize("name", FIG_18)
+def test_the_situations_of_fig_18_have_their_kinds(name):
+    """The paper's numbers of control points; each kind is shown by what defines it."""
+    n, seed, kind = FIG_18[name]
+    a, b = wavy_pair(n, seed)
+    found = hausdorff(a, b)
+    assert found.kind == kind
+    one, at, other = (
+        (a, found.parameter_a, b) if found.direction == "a_to_b" else (b, found.parameter_b, a)
+    )
+    line = found.point_b - found.point_a
+    if kind == "end":
+        assert min(abs(at), abs(1 - at)) < 1e-12
+    elif kind == "common_normal":
+        assert slope(a, found.parameter_a, line) < 1e-7 and 1e-9 < at < 1 - 1e-9
+        assert slope(b, found.parameter_b, line) < 1e-7
+    else:
+        assert slope(one, at, line) > 1e-3
+        point = one.point(at)
+        gaps = np.hypot(*(other.point(np.linspace(0, 1, 200_001)) - point).T)
+        low = np.flatnonzero((gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] < gaps[2:])) + 1
+        nearest_two = np.sort(gaps[low])[:2]
+        assert np.allclose(nearest_two, found.distance, atol=1e-6 * other.size)
+
+
+def test_a_chord_across_an_arch_meets_its_self_bisector():
     arch = Curve.bezier([[-1, 0], [-1, 4], [1, 4], [1, 0]])
     across = Curve.bezier([[-1.2, 0.5], [-0.4, 0.6], [0.4, 0.4], [1.2, 0.5]])
     found = hausdorff(across, arch).directed["a_to_b"]
