@@ -68,7 +68,8 @@ def hausdorff(
 
     Exactness: `error_bound` holds whatever happened; it is above `tolerance` only where rounding or the
         budget of intervals stopped the search.
-    Ties: the first found; the direction "a_to_b".
+    Ties: the first found; the direction "a_to_b". Where points of different kinds reach the same distance
+        (symmetric curves), the methods may name either, and `kind` and the witnesses with it.
     Raises: UnknownMethod, BadCurve, NotFinite; Unresolved (method "untrimmed" on overlapping curves).
     Source: Kim, Oh, Kim (2010), sections 3 and 4; Elber, Grandine (2008) for the systems.
     """

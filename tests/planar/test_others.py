@@ -151,3 +151,20 @@ def test_curve_files_are_refused_with_file_and_field(tmp_path, text, said):
         and "c.yaml" in str(caught.value)
         and "\n" not in str(caught.value)
     )
+
+
+def test_least_distance_at_ends_and_corners_closes_its_bounds():
+    """Minima at borders of cells, where the distance falls linearly: once the whole budget went there."""
+    pairs = [
+        (Curve.line([0, 0], [1, 1]), Curve.line([2, 1.5], [3, 5]), math.hypot(1, 0.5)),
+        (Curve.polyline([[0, 0], [1, 1], [2, 0]]), Curve.line([-1, 3], [4, 3]), 2.0),
+        (Curve.polyline([[0, 0], [1, 1], [2, 0]]), Curve.circle([1, 4], 1), 2.0),
+        (Curve.circle([1e6, 0], 1), Curve.circle([1e6 + 3, 0], 1), 1.0),
+        (Curve.line([0, 0], [4, 0]), Curve.line([1, 0.5], [3, 0.5]), 0.5),
+        (Curve.line([0, 0], [4, 0]), Curve.line([0, 1e-9], [4, 1e-9]), 1e-9),
+    ]
+    for a, b, known in pairs:
+        found = minimum_distance(a, b)
+        assert abs(found.distance - known) <= 1e-15 * known + a.rounding + b.rounding
+        assert found.error_bound <= 1e-12 * max(a.size, b.size)
+        assert minimum_distance(b, a).distance == pytest.approx(known, abs=1e-14)
