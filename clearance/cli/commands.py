@@ -6,6 +6,7 @@ import click
 
 from clearance import __version__
 from clearance.cli.check import check
+from clearance.cli.profile import profile
 from clearance.cli.view import view
 
 
@@ -16,4 +17,5 @@ def clearance() -> None:
 
 
 clearance.add_command(check)
+clearance.add_command(profile)
 clearance.add_command(view)

@@ -1,0 +1,325 @@
+"""Compiled exact solution on what trimming left: subdivision with proven exclusion, then the systems (11)-(13).
+
+An interval T of curve A is out when the Bernstein bound of |A(t) - B(s(t))|, s following the foot of A(t),
+does not pass the lower bound by more than `gap`. Otherwise it is cut where the systems say: at an end (11),
+at a common normal found by Newton's method (12), or where the curve meets B's self-bisector (13). To cut at
+a root makes the distance monotone on both sides, so that the next bound is exact: the certificate. Intervals
+too small to cut, or beyond the budget, are given up with their bound, which the answer's error then shows.
+"""
+
+import math
+
+import numpy as np
+
+from clearance.jit import inlined, kernel
+from clearance.kernels.arc import (
+    EPS,
+    RADIUS,
+    S0,
+    S1,
+    X0,
+    X1,
+    Y0,
+    Y1,
+    arc_distance,
+    arc_middle,
+    segment_distance,
+)
+from clearance.kernels.curve_bernstein import gap_coefficients, greatest, reverse_rows
+from clearance.kernels.curve_bezier import cut, hypotenuse, jet
+from clearance.kernels.curve_nearest import nearest, slide_to_foot
+
+LOWER, DISTANCE, PIECE_A, AT_A, PIECE_B, AT_B, UPPER = 0, 1, 2, 3, 4, 5, 6
+ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP, RUNNER_UP = range(7, 17)
+STATE = 17
+STACK = 90
+MANY = 512  # arcs of B from which on a straight part of A is first held against runs of them
+LONGEST_RUN = 2000
+
+
+@inlined
+def consider(pa, pb, lb, i, t, shift_x, shift_y, hint, state, work):
+    """The foot on B of A's point at (i, t); the best such point so far is kept in `state`."""
+    here = jet(pa, i, t)
+    foot = nearest(pb, lb, here.x + shift_x, here.y + shift_y, hint, np.inf, work)
+    if foot.lower > state[LOWER] or state[PIECE_A] < 0.0:
+        state[LOWER], state[DISTANCE] = foot.lower, foot.distance
+        state[PIECE_A], state[AT_A] = i, t
+        state[PIECE_B], state[AT_B] = foot.piece, foot.local
+    return foot
+
+
+@kernel
+def slide_from(pa, pb, i, t, j, s, shift_x, shift_y):
+    """The foot of A's point at (i, t) on piece `j` of B, followed from the parameter `s`: (s, distance)."""
+    here = jet(pa, i, t)
+    x, y = here.x + shift_x, here.y + shift_y
+    s = slide_to_foot(pb, j, x, y, s, 0.0, 1.0)
+    there = jet(pb, j, s)
+    return s, hypotenuse(there.x - x, there.y - y)
+
+
+@kernel
+def common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y):
+    """A root (t, s) of system (12) near the given one, held to [t0, t1] and [0, 1]: Newton's method."""
+    for _ in range(10):
+        a, b = jet(pa, i, t), jet(pb, j, s)
+        ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
+        f, g = ex * a.dx + ey * a.dy, ex * b.dx + ey * b.dy
+        f_t = a.dx * a.dx + a.dy * a.dy + ex * a.ddx + ey * a.ddy
+        cross = a.dx * b.dx + a.dy * b.dy
+        g_s = ex * b.ddx + ey * b.ddy - b.dx * b.dx - b.dy * b.dy
+        determinant = f_t * g_s + cross * cross
+        if determinant == 0.0:
+            break
+        dt = -(f * g_s + g * cross) / determinant
+        ds = -(f_t * g - cross * f) / determinant
+        moved, slid = min(t1, max(t0, t + dt)), min(1.0, max(0.0, s + ds))
+        done = abs(moved - t) <= 1e-16 and abs(slid - s) <= 1e-16
+        t, s = moved, slid
+        if done:
+            break
+    return t, s
+
+
+@kernel
+def self_bisector(pa, pb, i, t_one, t_two, j, s, k, r, shift_x, shift_y):
+    """Where A between two parameters is equally far from two branches of B: system (13), regula falsi.
+
+    At `t_one` the branch (j, s) is the nearer, at `t_two` the branch (k, r). Feet are followed by Newton's
+    method, so that the first two equations hold at every step.
+    """
+    _, d_one = slide_from(pa, pb, i, t_one, j, s, shift_x, shift_y)
+    _, e_one = slide_from(pa, pb, i, t_one, k, r, shift_x, shift_y)
+    s_two, d_two = slide_from(pa, pb, i, t_two, j, s, shift_x, shift_y)
+    r_two, e_two = slide_from(pa, pb, i, t_two, k, r, shift_x, shift_y)
+    low, high, f_low, f_high = t_one, t_two, d_one - e_one, d_two - e_two
+    if not (f_low <= 0.0 and f_high >= 0.0) or f_low == f_high:
+        return math.nan
+    t, s, r, side = t_two, s_two, r_two, 0
+    for _ in range(60):
+        t = (low * f_high - high * f_low) / (f_high - f_low)
+        s, d = slide_from(pa, pb, i, t, j, s, shift_x, shift_y)
+        r, e = slide_from(pa, pb, i, t, k, r, shift_x, shift_y)
+        f = d - e
+        if abs(f) <= 1e-16 * (d + e) or abs(high - low) <= 2e-16:
+            break
+        if f > 0.0:
+            high, f_high = t, f
+            f_low *= 0.5 if side == 1 else 1.0
+            side = 1
+        else:
+            low, f_low = t, f
+            f_high *= 0.5 if side == -1 else 1.0
+            side = -1
+    return t
+
+
+@inlined
+def upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
+    """A proven upper bound of the distance of A on [t0, t1] to B, and where its square's bound is largest.
+
+    The bound is that to B's part between `s0` and `s1`, run through side by side. Returns also the bound at
+    t0 and t1 themselves.
+    """
+    p, q, gap, out = work[6], work[7], work[8], work[9]
+    n = cut(pa, i, t0, t1, p)
+    m = cut(pb, j, min(s0, s1), max(s0, s1), q)
+    if s0 > s1:
+        reverse_rows(q, m)
+    rational = pa.rational[i] or pb.rational[j]
+    degree = gap_coefficients(p, n, q, m, rational, shift_x, shift_y, gap, out)
+    most, which = greatest(out, degree)
+    return math.sqrt(most), which / degree
+
+
+@inlined
+def chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
+    """Another upper bound, which no speed along the curves disturbs: by way of the chord of B's part.
+
+    Each point of the chord is square under a point of B's part, no farther than the part's control points
+    are from the chord; A's control points bound its distance to the chord (convexity). Exact on lines.
+    """
+    p, q = work[6], work[7]
+    n = cut(pa, i, t0, t1, p)
+    m = cut(pb, j, min(s0, s1), max(s0, s1), q)
+    x0, y0, x1, y1 = q[0, 0] / q[0, 2], q[0, 1] / q[0, 2], q[m, 0] / q[m, 2], q[m, 1] / q[m, 2]
+    off, most = 0.0, 0.0
+    for k in range(1, m):
+        off = max(off, segment_distance(q[k, 0] / q[k, 2], q[k, 1] / q[k, 2], x0, y0, x1, y1))
+    for k in range(n + 1):
+        x, y = p[k, 0] / p[k, 2] + shift_x, p[k, 1] / p[k, 2] + shift_y
+        most = max(most, segment_distance(x, y, x0, y0, x1, y1))
+    return most + off
+
+
+@inlined
+def _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
+    """Whether a straight part of A lies within `lower` of the arc that was nearest before: no search needed."""
+    here, there = jet(pa, i, t0), jet(pa, i, t1)
+    x, y = 0.5 * (here.x + there.x) + shift_x, 0.5 * (here.y + there.y) + shift_y
+    half = 0.5 * hypotenuse(there.x - here.x, there.y - here.y)
+    row = lb.arcs[hint]
+    return half < lower and (arc_distance(row, x, y) + row[EPS] + half) * (1.0 + 1e-14) <= lower
+
+
+@inlined
+def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_x, shift_y, enough):
+    """An upper bound of the distance of a straight part of A to the run of B's arcs `first` to `last`.
+
+    The run is connected, and so is its projection onto the line: it covers all between the feet of the
+    part's two ends, which are `off_first` and `off_last` away. Every point between has a point of the run
+    square above it, no farther than the run's farthest control point is from the line (convexity).
+    """
+    here, there = jet(pa, i, t0), jet(pa, i, t1)
+    dx, dy = there.x - here.x, there.y - here.y
+    length = hypotenuse(dx, dy)
+    most = max(off_first, off_last)
+    if length == 0.0 or most > enough:
+        return np.inf if length == 0.0 else most
+    dx, dy = dx / length, dy / length
+    low, high = min(first, last), max(first, last)
+    for k in range(low, high + 1):
+        row = leaves.arcs[k]
+        if k > low and (row[X0] != leaves.arcs[k - 1, X1] or row[Y0] != leaves.arcs[k - 1, Y1]):
+            return np.inf
+        x, y = row[X1] - here.x - shift_x, row[Y1] - here.y - shift_y
+        off = abs(dx * y - dy * x)
+        if k == low:
+            off = max(
+                off, abs(dx * (row[Y0] - here.y - shift_y) - dy * (row[X0] - here.x - shift_x))
+            )
+        if row[RADIUS] != 0.0:
+            mx, my = arc_middle(row)
+            off = max(off, abs(dx * (my - here.y - shift_y) - dy * (mx - here.x - shift_x)))
+        most = max(most, off + row[EPS])
+        if most > enough:
+            break
+    return most
+
+
+@inlined
+def _covered_by_run(pa, pb, lb, i, t0, t1, hint, shift_x, shift_y, state, work):
+    """The `_chain_bound` of a straight part of A between the feet of its ends; inf where it proves nothing."""
+    if state[DISTANCE] == 0.0:
+        return np.inf
+    one = consider(pa, pb, lb, i, t0, shift_x, shift_y, hint, state, work)
+    two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
+    if abs(one.leaf - two.leaf) > LONGEST_RUN:
+        return np.inf
+    return _chain_bound(
+        pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
+        state[DISTANCE],
+    )  # fmt: skip
+
+
+@kernel
+def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, budget, state, work):
+    """Raises the lower bound in `state` to the greatest distance of A on one interval to B, proven.
+
+    Stops early once the lower bound passes `limit`; returns a leaf of B near the interval.
+    `work` is (11, k, 4); `state` the STATE numbers.
+    """
+    straight = pa.first[i + 1] - pa.first[i] == 2 and not pa.rational[i]
+    many = lb.arcs.shape[0] >= MANY
+    stack = work[10]
+    stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = t_first, t_last, hint, 0.0
+    top = 1
+    while top > 0:
+        top -= 1
+        t0, t1, hint, was_cut = stack[top, 0], stack[top, 1], int(stack[top, 2]), stack[top, 3]
+        middle = 0.5 * (t0 + t1)
+        if straight and _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, state[LOWER]):
+            state[CUTS] += 1.0
+            continue
+        foot = consider(pa, pb, lb, i, middle, shift_x, shift_y, hint, state, work)
+        if state[LOWER] > limit:
+            return hint
+        j = foot.piece
+        s0, _ = slide_from(pa, pb, i, t0, j, foot.local, shift_x, shift_y)
+        s1, _ = slide_from(pa, pb, i, t1, j, foot.local, shift_x, shift_y)
+        bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
+        state[CUTS] += 1.0
+        if straight and many and bound > 1.5 * state[DISTANCE]:
+            run = _covered_by_run(pa, pb, lb, i, t0, t1, foot.leaf, shift_x, shift_y, state, work)
+            bound = min(bound, max(run, foot.distance))
+        if bound > state[DISTANCE] + gap:
+            other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
+            bound = min(bound, max(other, foot.distance))
+        if bound <= state[DISTANCE] + gap:
+            state[UPPER] = max(state[UPPER], bound)
+            continue
+        t, s = t0, s0
+        if share == 1.0:
+            t, s = t1, s1
+            state[ENDS] += 1.0
+        elif share > 0.0:
+            t, s = common_normal(
+                pa,
+                pb,
+                i,
+                t0 + share * (t1 - t0),
+                t0,
+                t1,
+                j,
+                s0 + share * (s1 - s0),
+                shift_x,
+                shift_y,
+            )
+            state[NORMALS] += 1.0
+        else:
+            state[ENDS] += 1.0
+        seen = consider(pa, pb, lb, i, t, shift_x, shift_y, foot.leaf, state, work)
+        if (
+            bound <= state[DISTANCE] + gap
+            or state[CUTS] > budget
+            or top + 2 > STACK
+            or t1 - t0 < 4e-16
+        ):
+            state[GIVEN_UP] += bound > state[DISTANCE] + gap
+            state[UPPER] = max(state[UPPER], bound)
+            continue
+        chosen = middle
+        if was_cut == 0.0 and bound < 2.0 * state[DISTANCE]:
+            s, reached = slide_from(pa, pb, i, t, j, s, shift_x, shift_y)
+            if seen.distance < reached * (1.0 - 1e-12):
+                crossing = self_bisector(
+                    pa, pb, i, middle, t, j, foot.local, seen.piece, seen.local, shift_x, shift_y
+                )
+                state[BISECTORS] += 1.0
+                if not math.isnan(crossing):
+                    chosen = crossing
+                    consider(pa, pb, lb, i, crossing, shift_x, shift_y, foot.leaf, state, work)
+            elif 0.0 < share < 1.0:
+                chosen = t
+        special = 1.0 if chosen != middle else 0.0
+        if not t0 < chosen < t1:
+            chosen, special = middle, 0.0
+        stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3] = chosen, t1, foot.leaf, special
+        stack[top + 1, 0], stack[top + 1, 1] = t0, chosen
+        stack[top + 1, 2], stack[top + 1, 3] = foot.leaf, special
+        top += 2
+        hint = foot.leaf
+    return hint
+
+
+@kernel
+def search_leaf(pa, la, pb, lb, leaf, hint, shift_x, shift_y, gap, limit, budget, state, work):
+    """`search` on the interval of one leaf of A."""
+    row = la.arcs[leaf]
+    return search(
+        pa,
+        pb,
+        lb,
+        la.piece[leaf],
+        row[S0],
+        row[S1],
+        hint,
+        shift_x,
+        shift_y,
+        gap,
+        limit,
+        budget,
+        state,
+        work,
+    )

@@ -1,0 +1,147 @@
+"""How far one curve strays from another along its length: the profile that a report shows.
+
+Distances are exact at each sample (nearest point, certified); between samples they change by no more than
+the length between, which `spacing` states. Not for: the greatest distance, which `hausdorff` gives exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.kernels.curve_gap import feet
+from clearance.planar.curve import Curve
+from clearance.planar.directed import placed
+from clearance.planar.entries import checked_number
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """The distance of points along curve a from curve b.
+
+    Attributes:
+        parameter: (n,) parameters on a, increasing.
+        arc_length: (n,) length along a from its start, by chords.
+        distance: (n,) distance of each point from b.
+        point, foot: (n, 2) the points and their nearest points on b.
+        contour: (n,) contour of a that each point lies on.
+        beyond: (k, 2) parameter intervals of a, one contour each, where the distance exceeds `limit`; their
+            ends are refined to 1e-12 of the parameter.
+        limit: the limit, or None.
+    """
+
+    parameter: np.ndarray
+    arc_length: np.ndarray
+    distance: np.ndarray
+    point: np.ndarray
+    foot: np.ndarray
+    contour: np.ndarray
+    beyond: np.ndarray
+    limit: float | None
+
+    @cached_property
+    def spacing(self) -> float:
+        """The largest length between neighbouring samples: the profile misses at most half of it."""
+        return float(np.diff(self.arc_length).max(initial=0.0))
+
+    @cached_property
+    def _share(self) -> np.ndarray:
+        step = np.diff(self.arc_length)
+        return 0.5 * (np.append(step, 0.0) + np.append(0.0, step))
+
+    @property
+    def mean(self) -> float:
+        """The mean distance by length of a (trapezoidal rule)."""
+        return float((self._share @ self.distance) / self._share.sum())
+
+    def percentile(self, share: float) -> float:
+        """The distance that `share` percent of a's length stays within, 0 to 100."""
+        order = np.argsort(self.distance, kind="stable")
+        reached = np.cumsum(self._share[order])
+        k = np.searchsorted(reached, 0.01 * share * reached[-1])
+        return float(self.distance[order[min(k, len(order) - 1)]])
+
+
+def deviation(a: Curve, b: Curve, *, limit: float | None = None, samples: int = 1000) -> Deviation:
+    """The distance profile of `a` from `b`, at about `samples` points spread by length, all joints among them.
+
+    Raises: BadCurve, NotFinite (limit or samples).
+    """
+    limit = None if limit is None else checked_number(limit, "limit", least=0.0)
+    samples = int(checked_number(samples, "samples", least=2))
+    which, local = _spread(a, samples)
+    point, distance, foot = _measured(a, b, which, local)
+    low, high = a.limits[which].T
+    parameter = low + local * (high - low)
+    step = np.hypot(*np.diff(point, axis=0).T)
+    contour = a.contour[which]
+    step[np.diff(contour) != 0] = 0.0
+    beyond = np.empty((0, 2))
+    if limit is not None:
+        beyond = _beyond(a, b, which, local, distance, limit)
+    length = np.concatenate([[0.0], np.cumsum(step)])
+    return Deviation(parameter, length, distance, point, foot, contour, beyond, limit)
+
+
+def _spread(a: Curve, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Pieces and local parameters of the samples: each leaf gets its share by chord length."""
+    rows, owner = a.leaves.arcs, a.leaves.piece
+    chord = np.hypot(rows[:, 4] - rows[:, 2], rows[:, 5] - rows[:, 3])
+    count = np.maximum(1, np.ceil(chord / chord.sum() * samples)).astype(int)
+    index = np.repeat(np.arange(len(rows)), count)
+    rank = np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)
+    local = rows[index, 0] + (rows[index, 1] - rows[index, 0]) * rank / count[index]
+    which = owner[index]
+    last = np.flatnonzero(np.append(np.diff(a.contour[which]) != 0, True))
+    return np.insert(which, last + 1, which[last]), np.insert(local, last + 1, 1.0)
+
+
+def _measured(a: Curve, b: Curve, which: np.ndarray, local: np.ndarray):
+    shift, _ = placed(a, b)
+    own = a._jets(which, local)[:, :2]
+    found = np.empty((len(own), 4))
+    feet(b.pieces, b.leaves, np.ascontiguousarray(own + shift), found)
+    foot = (
+        b._jets(found[:, 2].astype(np.int64), np.ascontiguousarray(found[:, 3]))[:, :2] + b.origin
+    )
+    return own + a.origin, found[:, 0], foot
+
+
+def _beyond(a, b, which, local, distance, limit) -> np.ndarray:
+    """The intervals of a's parameter beyond `limit`, from the samples, their ends bisected."""
+    out = distance > limit
+    contour = a.contour[which]
+    low, high = a.limits[which].T
+    parameter = low + local * (high - low)
+    intervals, start = [], None
+    for k in range(len(out)):
+        fresh = k == 0 or contour[k] != contour[k - 1]
+        if fresh and start is not None:
+            intervals.append((start, parameter[k - 1]))
+            start = None
+        if out[k] and start is None:
+            start = (
+                parameter[k] if fresh else _crossing(a, b, parameter[k - 1], parameter[k], limit)
+            )
+        elif not out[k] and start is not None:
+            intervals.append((start, _crossing(a, b, parameter[k], parameter[k - 1], limit)))
+            start = None
+    if start is not None:
+        intervals.append((start, parameter[-1]))
+    return np.array(intervals).reshape(-1, 2)
+
+
+def _crossing(a: Curve, b: Curve, inside: float, outside: float, limit: float) -> float:
+    """Where the distance passes `limit` between two parameters, by bisection; on the outer side."""
+    for _ in range(60):
+        middle = 0.5 * (inside + outside)
+        if middle in (inside, outside):
+            break
+        _, distance, _ = _measured(a, b, *a.locate(np.array([middle])))
+        if distance[0] > limit:
+            outside = middle
+        else:
+            inside = middle
+    return outside

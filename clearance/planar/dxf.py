@@ -1,0 +1,172 @@
+"""The one door to ezdxf: a DXF drawing's entities as one curve.
+
+LINE, ARC, CIRCLE, LWPOLYLINE and 2-d POLYLINE with bulges, and SPLINE of the model space,
+in the file's own unit. Entities that meet end to end become one contour. Not for: blocks, layers, writing.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadInput, BadSyntax, MissingFile, at
+from clearance.planar.curve import Curve
+from clearance.planar.entries import BadCurve
+
+KINDS = "LINE, ARC, CIRCLE, LWPOLYLINE, POLYLINE, SPLINE"
+
+
+def read_dxf(path: str) -> Curve:
+    """The curve of all entities in the model space of the DXF file at `path`; other kinds are refused.
+
+    Raises: MissingFile, BadSyntax (not DXF, or none of its entities is a curve), BadCurve (an entity of
+        another kind, or one that lies outside the plane z = const).
+    """
+    import ezdxf
+
+    file = Path(path)
+    if not file.is_file():
+        raise MissingFile("no such file", where=str(path), valid="a DXF file")
+    try:
+        drawing = ezdxf.readfile(str(file))
+    except (ezdxf.DXFError, UnicodeDecodeError, OSError) as error:
+        raise BadSyntax(
+            f"not a DXF drawing ({error})", where=str(path), valid="a DXF file"
+        ) from None
+    with at(str(path)):
+        parts = [_curve_of(entity) for entity in drawing.modelspace()]
+        if not parts:
+            raise BadSyntax("a model space without entities", valid=f"at least one of {KINDS}")
+        return Curve.contours(_chained(parts))
+
+
+def _curve_of(entity) -> Curve:
+    readers = {
+        "LINE": _line,
+        "ARC": _arc,
+        "CIRCLE": _circle,
+        "LWPOLYLINE": _light_polyline,
+        "POLYLINE": _polyline,
+        "SPLINE": _spline,
+    }
+    kind = entity.dxftype()
+    if kind not in readers:
+        raise BadCurve(f"an entity {kind} (handle {entity.dxf.handle})", valid=f"only {KINDS}")
+    normal = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
+    if not np.allclose(tuple(normal), (0.0, 0.0, 1.0), atol=1e-12):
+        problem = f"entity {kind} (handle {entity.dxf.handle}) with extrusion {tuple(normal)}"
+        raise BadCurve(problem, valid="entities in the plane, extrusion (0, 0, 1)")
+    with at(f"{kind} (handle {entity.dxf.handle})"):
+        return readers[kind](entity)
+
+
+def _line(entity) -> Curve:
+    return Curve.line(tuple(entity.dxf.start)[:2], tuple(entity.dxf.end)[:2])
+
+
+def _arc(entity) -> Curve:
+    start, end = math.radians(entity.dxf.start_angle), math.radians(entity.dxf.end_angle)
+    while end <= start:
+        end += 2.0 * math.pi
+    return Curve.arc(tuple(entity.dxf.center)[:2], entity.dxf.radius, start, end)
+
+
+def _circle(entity) -> Curve:
+    return Curve.circle(tuple(entity.dxf.center)[:2], entity.dxf.radius)
+
+
+def _light_polyline(entity) -> Curve:
+    return _bulged([(x, y, bulge) for x, y, bulge in entity.get_points("xyb")], entity.closed)
+
+
+def _polyline(entity) -> Curve:
+    if not entity.is_2d_polyline:
+        raise BadCurve("a polyline in space, a mesh or a polyface", valid="a polyline in the plane")
+    rows = [(*tuple(v.dxf.location)[:2], v.dxf.get("bulge", 0.0)) for v in entity.vertices]
+    return _bulged(rows, entity.is_closed)
+
+
+def _spline(entity) -> Curve:
+    control = np.array([tuple(p)[:2] for p in entity.control_points], float)
+    if len(control) == 0:
+        raise BadCurve("a spline of fit points alone", valid="a spline with control points")
+    weights = np.array(entity.weights, float) if len(entity.weights) else None
+    return Curve.bspline(control, entity.dxf.degree, np.array(entity.knots, float), weights)
+
+
+def _bulged(rows: list[tuple[float, float, float]], closed: bool) -> Curve:
+    """The chain of segments and arcs of vertices (x, y, bulge); bulge = tan(sweep / 4), positive to the left."""
+    if closed:
+        rows = [*rows, (rows[0][0], rows[0][1], 0.0)]
+    parts = []
+    for (x0, y0, bulge), (x1, y1, _) in zip(rows[:-1], rows[1:], strict=True):
+        if (x0, y0) == (x1, y1):
+            continue
+        parts.append(_bulge_arc(x0, y0, x1, y1, bulge) if bulge else Curve.line((x0, y0), (x1, y1)))
+    if not parts:
+        raise BadCurve("a polyline of zero length", valid="at least two points that differ")
+    return Curve.chain(parts)
+
+
+def _bulge_arc(x0: float, y0: float, x1: float, y1: float, bulge: float) -> Curve:
+    """The arc as rational quadratics whose ends are the vertices to the last bit."""
+    sweep = 4.0 * math.atan(bulge)
+    n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - 1e-12))
+    start, end = np.array([x0, y0]), np.array([x1, y1])
+    left = np.array([y0 - y1, x1 - x0])
+    center = 0.5 * (start + end) + left * (1.0 - bulge * bulge) / (4.0 * bulge)
+    half = 0.5 * sweep / n
+    arm, points = start - center, []
+    for k in range(2 * n + 1):
+        c, s = math.cos(k * half), math.sin(k * half)
+        reach = 1.0 / math.cos(half) if k % 2 else 1.0
+        points.append(center + reach * np.array([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]]))
+    points[0], points[-1] = start, end
+    weights = [1.0, math.cos(half), 1.0]
+    return Curve.chain([Curve.bezier(points[2 * k : 2 * k + 3], weights) for k in range(n)])
+
+
+def _chained(parts: list[Curve]) -> list[Curve]:
+    """Parts that meet end to end, in any order and sense, joined into contours."""
+    size = float(
+        np.hypot(*(np.max([p.box[1] for p in parts], 0) - np.min([p.box[0] for p in parts], 0)))
+    )
+    waiting, contours = list(parts), []
+    while waiting:
+        chain = [waiting.pop(0)]
+        while not _same(_end(chain[-1]), _start(chain[0]), size):
+            k = _next(chain[-1], waiting, size)
+            if k is None:
+                break
+            part = waiting.pop(k)
+            chain.append(part if _same(_start(part), _end(chain[-1]), size) else part.reversed())
+        contours.append(_as_one(chain))
+    return contours
+
+
+def _as_one(chain: list[Curve]) -> Curve:
+    try:
+        return Curve.chain(chain)
+    except BadInput:  # meets within the drawing's size but not within the part's own
+        return Curve.contours(chain)
+
+
+def _next(last: Curve, waiting: list[Curve], size: float) -> int | None:
+    for k, part in enumerate(waiting):
+        if _same(_start(part), _end(last), size) or _same(_end(part), _end(last), size):
+            return k
+    return None
+
+
+def _start(curve: Curve) -> np.ndarray:
+    return curve.point(curve.limits[0, 0])
+
+
+def _end(curve: Curve) -> np.ndarray:
+    return curve.point(curve.limits[-1, 1])
+
+
+def _same(one: np.ndarray, two: np.ndarray, size: float) -> bool:
+    return bool(np.hypot(*(one - two)) <= 1e-9 * size)

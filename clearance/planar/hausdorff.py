@@ -1,0 +1,147 @@
+"""The exact Hausdorff distance between two planar curves, with a proven error and its witnesses.
+
+`hausdorff` measures, `within` only decides. The work is done in `clearance.kernels.hausdorff`; here its
+numbers get names. Not for: profiles along a curve (`deviation`), the least distance (`minimum`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.errors import BadInput
+from clearance.kernels.hausdorff import both_directions
+from clearance.kernels.hausdorff_exact import LOWER
+from clearance.planar.curve import Curve
+from clearance.planar.directed import Directed, Tally, directed_of, placed
+from clearance.planar.entries import checked_number
+
+SHARPER = 2.0**-10
+"""The search aims this much below the tolerance asked for, so that coincident curves come out to rounding."""
+
+BUDGET = 200_000.0
+"""Intervals after which a search gives the rest up with their bounds; only the error bound suffers."""
+
+
+class UnknownMethod(BadInput):
+    """A method of solution that there is not."""
+
+
+@dataclass(frozen=True)
+class Hausdorff:
+    """The Hausdorff distance of two curves: the greater of the two directed ones.
+
+    Attributes:
+        distance: the distance, in the curves' unit.
+        error_bound: the true value is within this of `distance`, proven, in the same unit.
+        point_a, point_b: (2,) the witnesses on a and on b.
+        parameter_a, parameter_b: their parameters.
+        direction: "a_to_b" or "b_to_a": which of the directed distances it is; "a_to_b" where they tie.
+        kind: "end", "common_normal" or "self_bisector": systems (11), (12), (13) of Kim, Oh, Kim (2010).
+        directed: both directed distances, "a_to_b" and "b_to_a".
+        tally: what the search did, both directions together.
+    """
+
+    distance: float
+    error_bound: float
+    point_a: np.ndarray
+    point_b: np.ndarray
+    parameter_a: float
+    parameter_b: float
+    direction: str
+    kind: str
+    directed: dict[str, Directed]
+    tally: Tally
+
+
+def hausdorff(
+    a: Curve, b: Curve, *, method: str = "trimmed", tolerance: float = 1e-12
+) -> Hausdorff:
+    """The Hausdorff distance between the curves `a` and `b`, exact up to a proven error.
+
+    Args:
+        a, b: curves of any number of contours.
+        method: "trimmed" (the paper's) or "untrimmed" (its systems solved on the whole curves, slow).
+        tolerance: the error to reach, relative to the size of both curves together.
+
+    Exactness: `error_bound` holds whatever happened; it is above `tolerance` only where rounding or the
+        budget of intervals stopped the search.
+    Ties: the first found; the direction "a_to_b". Where points of different kinds reach the same distance
+        (symmetric curves), the methods may name either, and `kind` and the witnesses with it.
+    Raises: UnknownMethod, BadCurve, NotFinite; Unresolved (method "untrimmed" on overlapping curves).
+    Source: Kim, Oh, Kim (2010), sections 3 and 4; Elber, Grandine (2008) for the systems.
+    """
+    tolerance = checked_number(tolerance, "tolerance", least=0.0)
+    if method == "untrimmed":
+        from clearance.planar.systems import untrimmed
+
+        forth, back = untrimmed(a, b)
+    elif method == "trimmed":
+        forth, back = _trimmed(a, b, tolerance, math.inf)
+    else:
+        raise UnknownMethod(f"{method!r}", where="method", valid="'trimmed' or 'untrimmed'")
+    return greater_of(forth, back)
+
+
+def within(a: Curve, b: Curve, distance: float) -> bool:
+    """Whether the Hausdorff distance of `a` and `b` is at most `distance`; stops at the first point beyond.
+
+    Exactness: distances within the rounding of the curves' points (about 1e-14 of their size) of `distance`
+        count as within.
+    """
+    distance = checked_number(distance, "distance", least=0.0)
+    shift, size = placed(a, b)
+    slack = a.rounding + b.rounding + 2.0**-50 * size
+    gap = max(2.0**-50 * size, 0.0)
+    found, _ = _solve(a, b, shift, gap, distance + slack)
+    return not bool(found[0, LOWER] > distance + slack or found[1, LOWER] > distance + slack)
+
+
+def greater_of(forth: Directed, back: Directed) -> Hausdorff:
+    """The `Hausdorff` of two directed distances."""
+    first = forth.distance >= back.distance
+    top = forth if first else back
+    lower, upper = max(forth.lower, back.lower), max(forth.upper, back.upper)
+    return Hausdorff(
+        distance=top.distance,
+        error_bound=max(top.distance - lower, upper - top.distance),
+        point_a=top.point_a,
+        point_b=top.point_b,
+        parameter_a=top.parameter_a,
+        parameter_b=top.parameter_b,
+        direction="a_to_b" if first else "b_to_a",
+        kind=top.kind,
+        directed={"a_to_b": forth, "b_to_a": back},
+        tally=_sum_of(forth.tally, back.tally),
+    )
+
+
+def _sum_of(one: Tally, two: Tally) -> Tally:
+    return Tally(
+        one.arcs + two.arcs,
+        one.trimmed_arcs + two.trimmed_arcs,
+        one.pixels + two.pixels,
+        one.end_systems + two.end_systems,
+        one.normal_systems + two.normal_systems,
+        one.bisector_systems + two.bisector_systems,
+        one.intervals + two.intervals,
+        one.given_up + two.given_up,
+    )
+
+
+def _solve(a, b, shift, gap, limit):
+    return both_directions(
+        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], True, gap, limit,
+        BUDGET,
+    )  # fmt: skip
+
+
+def _trimmed(a: Curve, b: Curve, tolerance: float, limit: float) -> tuple[Directed, Directed]:
+    shift, size = placed(a, b)
+    gap = max(tolerance * SHARPER, 2.0**-50) * size
+    found, points = _solve(a, b, shift, gap, limit)
+    margin = a.rounding + b.rounding + 2.0**-50 * size
+    forth = directed_of(a, b, found[0].tolist(), points[0], margin, True)
+    return forth, directed_of(b, a, found[1].tolist(), points[1], margin, False)

@@ -1,0 +1,127 @@
+"""Pictures of a comparison, like Figs. 8, 17 and 18 of the paper: the one door to matplotlib.
+
+Curve a and b, what trimming left of each (bold), the line of the distance, and on request the distance map
+of b with a colour for each nearest arc. Not for: reports' other figures.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadInput, Unavailable, Unwritable
+from clearance.planar.curve import Curve
+from clearance.planar.hausdorff import Hausdorff
+from clearance.planar.trimming import distance_field, kept_intervals
+
+COLOR_A, COLOR_B, COLOR_LINE = "#c99700", "#1f5fbf", "#d62728"
+
+
+def draw_comparison(
+    a: Curve, b: Curve, found: Hausdorff, path: str, *, field: bool = False
+) -> None:
+    """Writes the picture of `found` into `path`, an .svg or .png file; the same input gives the same bytes.
+
+    Raises: BadInput (another suffix), Unavailable (no matplotlib), Unwritable.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in (".svg", ".png"):
+        raise BadInput(
+            f"a picture {suffix or 'without suffix'}", where=str(path), valid=".svg or .png"
+        )
+    try:
+        import matplotlib
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise Unavailable("matplotlib is not installed", valid="pip install matplotlib") from None
+    figure = Figure(figsize=_size_of(*_page(a, b)), layout="constrained")
+    FigureCanvasAgg(figure)
+    _fill(figure.add_subplot(), a, b, found, field)
+    metadata = {"Date": None} if suffix == ".svg" else {"Software": None}
+    with matplotlib.rc_context({"svg.hashsalt": "clearance", "svg.fonttype": "path"}):
+        try:
+            figure.savefig(path, dpi=150, metadata=metadata)
+        except OSError as error:
+            raise Unwritable(f"cannot write ({error.strerror})", where=str(path)) from None
+
+
+def _page(a: Curve, b: Curve) -> tuple[np.ndarray, np.ndarray]:
+    """Lower and upper corner of the page: both curves with a margin."""
+    low, high = np.minimum(a.box[0], b.box[0]), np.maximum(a.box[1], b.box[1])
+    margin = 0.06 * float(np.hypot(*(high - low)))
+    return low - margin, high + margin
+
+
+def _size_of(low: np.ndarray, high: np.ndarray) -> tuple[float, float]:
+    """Width and height of the figure [inch] that leave no empty bands around the page."""
+    width, height = high - low
+    scale = min(9.0 / width, 7.0 / height)
+    return max(5.0, width * scale + 0.6), max(2.2, height * scale) + 1.3
+
+
+def _fill(axes, a: Curve, b: Curve, found: Hausdorff, field: bool) -> None:
+    low, high = _page(a, b)
+    if field:
+        _draw_field(axes, b, low, high)
+    pairs = ((a, b, COLOR_A, "a"), (b, a, COLOR_B, "b"))
+    for (one, two, color, name), directed in zip(pairs, found.directed.values(), strict=True):
+        _draw_curve(axes, one, two, directed.lower, color, name)
+    _draw_distance(axes, found)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color("#999999")
+    axes.tick_params(colors="#555555", labelsize="small")
+    direction = found.direction.replace("_", " ")
+    kind = found.kind.replace("_", " ")
+    axes.set_title(
+        f"Hausdorff distance {found.distance:.9g} ± {found.error_bound:.1e}\n{direction}, {kind}",
+        fontsize="medium",
+    )
+    axes.figure.legend(loc="outside lower center", ncols=5, fontsize="small", frameon=False)
+
+
+def _draw_field(axes, b: Curve, low: np.ndarray, high: np.ndarray) -> None:
+    """The page in a pale colour for each nearest arc of b, with lines of equal distance."""
+    step = float((high - low).max()) / 700.0
+    n_x, n_y = (int(n) for n in np.maximum(2, np.ceil((high - low) / step)))
+    xs, ys = np.linspace(low[0], high[0], n_x), np.linspace(low[1], high[1], n_y)
+    depth, which = distance_field(b, xs, ys)
+    extent = (low[0], high[0], low[1], high[1])
+    shade = which * 7 % 20
+    axes.imshow(
+        shade, origin="lower", extent=extent, cmap="tab20", vmin=0, vmax=19, alpha=0.28, zorder=0
+    )
+    axes.contour(xs, ys, depth, 10, colors="#444444", linewidths=0.35, alpha=0.45, zorder=1)
+
+
+def _draw_curve(axes, one: Curve, two: Curve, bound: float, color: str, name: str) -> None:
+    """The whole curve thin, and bold what trimming left at the proven lower bound."""
+    label = f"{name}, trimmed away"
+    for line in _lines(one):
+        axes.plot(*line.T, color=color, linewidth=1.1, label=label, zorder=3)
+        label = None
+    label = f"{name}, left to solve"
+    for start, end in kept_intervals(one, two, max(0.0, bound)):
+        part = one.point(np.linspace(start, end, 24))
+        axes.plot(
+            *part.T, color=color, linewidth=4.0, solid_capstyle="round", label=label, zorder=4
+        )
+        label = None
+
+
+def _draw_distance(axes, found: Hausdorff) -> None:
+    ends = np.stack([found.point_a, found.point_b])
+    style = {"linewidth": 1.5, "markersize": 5, "markeredgecolor": "white", "markeredgewidth": 0.8}
+    axes.plot(*ends.T, "o-", color=COLOR_LINE, label="distance", zorder=5, **style)
+
+
+def _lines(curve: Curve) -> list[np.ndarray]:
+    """Each contour as points dense enough for a picture."""
+    rows, owner = curve.leaves.arcs, curve.leaves.piece
+    count = 2 if curve.highest_degree == 1 else 12
+    local = rows[:, :1] + (rows[:, 1:2] - rows[:, :1]) * np.linspace(0.0, 1.0, count)
+    points = curve._jets(np.repeat(owner, count), local.ravel())[:, :2] + curve.origin
+    cuts = np.flatnonzero(np.diff(np.repeat(curve.contour[owner], count))) + 1
+    return np.split(points, cuts)

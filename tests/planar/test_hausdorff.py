@@ -1,0 +1,343 @@
+"""The Hausdorff distance against the oracle, against known values, and against the axioms of a metric."""
+
+import math
+import os
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance.errors import ClearanceError
+from clearance.planar.curve import Curve
+from clearance.planar.hausdorff import hausdorff, within
+from clearance.planar.systems import Unresolved
+from clearance.planar.trimming import kept_intervals
+from tests.oracle import planar_hausdorff as oracle
+
+N_RANDOM = int(os.environ.get("CLEARANCE_PLANAR_PAIRS", "60"))
+"""Random pairs held against the oracle; 600 in the long run (about two minutes)."""
+
+pytestmark = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
+
+
+def random_pair(seed):
+    """Two splines, as (control, degree, weights): walks, near copies, rational, far off, tiny and huge."""
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(4, 12))
+    degree, other = min(int(rng.integers(1, 5)), n - 1), int(rng.integers(1, 4))
+    c, d = (np.cumsum(rng.normal(size=(n, 2)), axis=0) for _ in range(2))
+    style = seed % 5
+    if style == 1:
+        d, other = c + rng.normal(size=(n, 2)) * 10.0 ** -int(rng.integers(1, 5)), degree
+    weights = rng.uniform(0.3, 3.0, n) if style == 2 else None
+    if style == 3:
+        c, d = c + 1e6, d + 1e6
+    if style == 4:
+        scale = 10.0 ** int(rng.integers(-6, 7))
+        c, d = c * scale, d * scale
+    return (c, degree, weights), (d, other, rng.uniform(0.3, 3.0, n) if seed % 3 == 2 else None)
+
+
+def truth(one, two):
+    middle = np.round(one[0].mean(axis=0)).astype(oracle.REAL)
+    moved = [(np.array(c, oracle.REAL) - middle, degree, w) for c, degree, w in (one, two)]
+    parts = [oracle.spline_parts(c, degree, weights=w) for c, degree, w in moved]
+    return oracle.hausdorff(*parts)
+
+
+def spline(c, degree, weights):
+    return Curve.bspline(c, degree, weights=weights)
+
+
+@pytest.mark.parametrize("seed", range(N_RANDOM))
+def test_random_pairs_agree_with_the_oracle(seed):
+    one, two = random_pair(seed)
+    a, b = spline(*one), spline(*two)
+    found = hausdorff(a, b)
+    low, high = truth(one, two)
+    size = max(a.size, b.size)
+    assert high - low <= 1e-9 * size
+    assert (
+        low - found.error_bound - 1e-16 * size
+        <= found.distance
+        <= high + found.error_bound + 1e-16 * size
+    )
+    assert found.error_bound <= 1e-12 * size
+    for directed in found.directed.values():
+        assert directed.lower <= directed.distance <= directed.upper
+        apart = math.hypot(*(directed.point_a - directed.point_b))
+        assert apart == pytest.approx(
+            directed.distance, abs=1e-14 * size + 1e-15 * np.abs(one[0]).max()
+        )
+
+
+HOSTILE = {
+    "cusp": ([[0, 0], [2, 2], [-1, 2], [1, 0]], [[0, 0.1], [1, 1.5], [0, 1.5], [1, 0.1]]),
+    "loop": ([[0, 0], [3, 2], [-2, 2], [1, 0]], [[0, 0], [1, 1], [0, 1], [1, 0]]),
+    "exact cusp": ([[0, 0], [1, 1], [0, 1], [1, 0]], [[0, 0.5], [0.3, 0.5], [0.6, 0.5], [1, 0.5]]),
+    "doubled back": ([[0, 0], [2, 0], [-1, 0], [1, 0]], [[0, 1], [0.3, 0.2], [0.6, 0.3], [1, 1]]),
+    "common ends": ([[0, 0], [1, 2], [2, -2], [3, 0]], [[0, 0], [1, -2], [2, 2], [3, 0]]),
+    "near tangent": (
+        [[0, 0], [1, 1], [2, 1], [3, 0]],
+        [[0, 1.5], [1, 0.5 + 1e-9], [2, 0.5], [3, 1.5]],
+    ),
+    "mirror images": ([[0, 0], [1, 2], [2, 2], [3, 0]], [[0, 0], [1, -2], [2, -2], [3, 0]]),
+    "symmetric over an arch": (
+        [[-1, 0.3], [-0.5, 0.3], [0.5, 0.3], [1, 0.3]],
+        [[-1, 0], [-1, 3], [1, 3], [1, 0]],
+    ),
+    "double control points": ([[0, 0], [0, 0], [2, 1], [2, 1]], [[0, 1], [1, 0], [1, 0], [2, 0]]),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+@pytest.mark.parametrize("scale", [1.0, 1e-6, 1e8])
+def test_hostile_pairs_agree_with_the_oracle(name, scale):
+    c, d = (np.array(points, float) * scale for points in HOSTILE[name])
+    found = hausdorff(Curve.bspline(c), Curve.bspline(d))
+    low, high = truth((c, 3, None), (d, 3, None))
+    assert low - found.error_bound <= found.distance <= high + found.error_bound
+    assert found.error_bound <= 1e-12 * scale * 4
+
+
+def test_arcs_circles_and_polylines_agree_with_the_oracle():
+    polyline = [[-2, 0], [0, 1.3], [1, -1], [2, 2]]
+    pairs = [
+        (Curve.arc([0.2, 0], 1.5, 0.3, 5.0), oracle.arc_parts([0.2, 0], 1.5, 0.3, 5.0)),
+        (Curve.polyline(polyline), oracle.line_parts(polyline)),
+        (Curve.circle([1, 1], 0.5), oracle.arc_parts([1, 1], 0.5, 0.0, 2 * oracle.REAL(math.pi))),
+    ]
+    for a, one in pairs:
+        for b, two in pairs:
+            if a is not b:
+                low, high = oracle.hausdorff(one, two)
+                assert low - 1e-13 <= hausdorff(a, b).distance <= high + 1e-13
+
+
+WAVE = np.cumsum(np.random.default_rng(1).normal(size=(30, 2)), axis=0)
+TURN = 2.0 * math.pi
+OVERLAPS = {
+    "identical": (Curve.bspline(WAVE), Curve.bspline(WAVE), 0.0),
+    "reversed": (Curve.bspline(WAVE), Curve.bspline(WAVE[::-1]), 0.0),
+    "raised degree": (
+        Curve.bezier([[0, 0], [1, 2], [2, -1], [3, 0]]),
+        Curve.bezier([[0, 0], [0.75, 1.5], [1.5, 0.5], [2.25, -0.75], [3, 0]]),
+        0.0,
+    ),
+    "part of a line": (Curve.line([0, 0], [4, 3]), Curve.polyline([[0, 0], [2, 1.5]]), 2.5),
+    "concentric": (Curve.circle([0, 0], 1), Curve.circle([0, 0], 1.25), 0.25),
+    "concentric, other start": (
+        Curve.circle([0, 0], 1),
+        Curve.arc([0, 0], 1.25, 0.3, 0.3 + TURN),
+        0.25,
+    ),
+    "1e-9 apart": (
+        Curve.circle([0, 0], 1),
+        Curve.arc([0, 0], 1 + 1e-9, 0.3, 0.3 + TURN),
+        (1 + 1e-9) - 1,
+    ),
+    "offset lines": (Curve.line([0, 0], [1, 0]), Curve.line([0, 0.5], [1, 0.5]), 0.5),
+    "eccentric": (Curve.circle([0, 0], 1), Curve.circle([0.125, 0], 1), 0.125),
+    "a dot in a circle": (Curve.circle([0, 0], 1), Curve.line([-1e-15, 0], [1e-15, 0]), 1.0),
+    "closed against open": (
+        Curve.circle([0, 0], 1),
+        Curve.arc([0, 0], 1, 0, math.pi),
+        math.sqrt(2.0),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OVERLAPS)
+def test_overlap_does_not_hurt(name):
+    a, b, known = OVERLAPS[name]
+    found = hausdorff(a, b)
+    size = max(a.size, b.size)
+    assert abs(found.distance - known) <= 1e-14 * size
+    assert found.error_bound <= 2e-14 * size
+    assert found.tally.intervals < 2000 and found.tally.given_up == 0
+
+
+def test_1e9_apart_splines():
+    near = Curve.bspline(WAVE + 1e-9 * np.random.default_rng(2).normal(size=WAVE.shape))
+    found = hausdorff(Curve.bspline(WAVE), near)
+    assert 1e-10 < found.distance < 5e-9 and found.error_bound <= 1e-14 * near.size
+    samples = Curve.bspline(WAVE).point(np.linspace(0, 1, 4001))
+    worst = max(hausdorff_point(near, p) for p in samples[::50])
+    assert worst <= found.distance + found.error_bound
+
+
+def hausdorff_point(curve, point):
+    from clearance.kernels.curve_gap import feet
+
+    out = np.empty((1, 4))
+    feet(curve.pieces, curve.leaves, (point - curve.origin)[None], out)
+    return out[0, 0]
+
+
+def test_published_values():
+    # shapely#2458: 4.949747468306 from the vertices, 9.849997461929 densified by 0.01
+    a = Curve.polyline([(26, 8), (13, -2), (13, 19), (10, 19), (10, 23), (1, 17)])
+    b = Curve.polyline([(15, 1), (28, 11), (13, 26), (1, 18)])
+    assert (
+        9.849997461929 <= hausdorff(a, b).distance <= 9.849997461929 + 0.1
+    )  # half of its sample spacing
+    parts = [oracle.line_parts(p) for p in ([(26, 8), (13, -2), (13, 19), (10, 19), (10, 23), (1, 17)],
+                                            [(15, 1), (28, 11), (13, 26), (1, 18)])]  # fmt: skip
+    low, high = oracle.hausdorff(*parts)
+    assert low - 1e-13 <= hausdorff(a, b).distance <= high + 1e-13
+    # PostGIS's manual: 14.14213562373095 from the vertices, 70 densified by half; the true value by hand
+    line = Curve.polyline([[130, 0], [0, 0], [0, 150]])
+    other = Curve.polyline([[10, 10], [10, 150], [130, 10]])
+    assert hausdorff(line, other).distance == pytest.approx(970.0 / 13.0, abs=1e-12)
+    # JTS's tests: 22.360679774997898 from the vertices, 47.8 densified by 0.001
+    one = Curve.polyline([[0, 0], [100, 0], [10, 100], [10, 100]])
+    two = Curve.polyline([[0, 100], [0, 10], [80, 10]])
+    assert hausdorff(one, two).distance == pytest.approx(47.8, abs=0.1)
+
+
+def wavy_pair(n, seed):
+    """Two cubic B-splines of `n` control points that wave side by side, as in the paper's experiment."""
+    rng = np.random.default_rng(seed)
+    c = np.stack([np.arange(n) * 1.0, np.cumsum(rng.normal(size=n))], axis=1)
+    return Curve.bspline(c), Curve.bspline(c + [0.0, 0.3] + 0.8 * rng.normal(size=(n, 2)))
+
+
+def slope(curve, parameter, direction):
+    """The cosine between the tangent and a direction."""
+    tangent = curve.derivative(parameter)
+    return abs(tangent @ direction) / (math.hypot(*tangent) * math.hypot(*direction))
+
+
+FIG_18 = {
+    "a": (5, 0, "end"),
+    "b": (10, 30, "self_bisector"),
+    "c": (15, 0, "common_normal"),
+    "d": (30, 0, "common_normal"),
+}
+
+
+@pytest.mark.parametrize("name", FIG_18)
+def test_the_situations_of_fig_18_have_their_kinds(name):
+    """The paper's numbers of control points; each kind is shown by what defines it."""
+    n, seed, kind = FIG_18[name]
+    a, b = wavy_pair(n, seed)
+    found = hausdorff(a, b)
+    assert found.kind == kind
+    one, at, other = (
+        (a, found.parameter_a, b) if found.direction == "a_to_b" else (b, found.parameter_b, a)
+    )
+    line = found.point_b - found.point_a
+    if kind == "end":
+        assert min(abs(at), abs(1 - at)) < 1e-12
+    elif kind == "common_normal":
+        assert slope(a, found.parameter_a, line) < 1e-7 and 1e-9 < at < 1 - 1e-9
+        assert slope(b, found.parameter_b, line) < 1e-7
+    else:
+        assert slope(one, at, line) > 1e-3
+        point = one.point(at)
+        gaps = np.hypot(*(other.point(np.linspace(0, 1, 200_001)) - point).T)
+        low = np.flatnonzero((gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] < gaps[2:])) + 1
+        nearest_two = np.sort(gaps[low])[:2]
+        assert np.allclose(nearest_two, found.distance, atol=1e-6 * other.size)
+
+
+def test_a_chord_across_an_arch_meets_its_self_bisector():
+    arch = Curve.bezier([[-1, 0], [-1, 4], [1, 4], [1, 0]])
+    across = Curve.bezier([[-1.2, 0.5], [-0.4, 0.6], [0.4, 0.4], [1.2, 0.5]])
+    found = hausdorff(across, arch).directed["a_to_b"]
+    assert found.kind == "self_bisector"
+    feet_apart = [hausdorff_point(arch, found.point_a), found.distance]
+    assert feet_apart[0] == pytest.approx(feet_apart[1], abs=1e-14)
+
+
+@pytest.mark.parametrize("n", range(2, 40))
+def test_polyline_vertex_count_sweep(n):
+    """A zigzag against its base line: the answer does not depend on how many vertices there are."""
+    x = np.arange(n, dtype=float)
+    zigzag = Curve.polyline(np.stack([x, (x % 2) * 0.75 + 0.25], axis=1))
+    base = Curve.line([0, 0], [n - 1.0, 0])
+    found = hausdorff(zigzag, base)
+    assert found.directed["a_to_b"].distance == 1.0
+    assert found.distance == 1.0
+
+
+points = st.lists(st.tuples(st.integers(-8, 8), st.integers(-8, 8)), min_size=4, max_size=7)
+
+
+def curve_of(control):
+    try:
+        return Curve.bspline(np.array(control, float), min(3, len(control) - 1))
+    except ClearanceError:
+        return Curve.polyline([[0, 0], [1, 0]])
+
+
+@settings(max_examples=60, deadline=None)
+@given(points, points, points)
+def test_axioms_of_a_metric(one, two, three):
+    a, b, c = curve_of(one), curve_of(two), curve_of(three)
+    ab, ba, ac, cb = hausdorff(a, b), hausdorff(b, a), hausdorff(a, c), hausdorff(c, b)
+    assert abs(ab.distance - ba.distance) <= ab.error_bound + ba.error_bound
+    assert (
+        ab.distance <= ac.distance + cb.distance + ab.error_bound + ac.error_bound + cb.error_bound
+    )
+    assert hausdorff(a, a).distance <= 1e-14 * a.size
+    assert within(a, b, ab.distance)
+    assert ab.distance < 1e-6 or not within(a, b, ab.distance * (1 - 1e-9))
+
+
+@settings(max_examples=40, deadline=None)
+@given(points, points, st.floats(0.0, 6.3), st.sampled_from([1e-7, 0.3, 1.0, 1e5]))
+def test_rigid_motion_and_scaling(one, two, angle, scale):
+    a, b = curve_of(one), curve_of(two)
+    c, s = scale * math.cos(angle), scale * math.sin(angle)
+    motion = np.array([[c, -s, 3.0 * scale], [s, c, -7.0 * scale]])
+    before, after = hausdorff(a, b), hausdorff(a.transformed(motion), b.transformed(motion))
+    assert after.distance == pytest.approx(scale * before.distance, abs=2e-14 * scale * 40)
+
+
+@settings(max_examples=60, deadline=None)
+@given(points, points)
+def test_trimming_is_safe(one, two):
+    a, b = curve_of(one), curve_of(two)
+    directed = hausdorff(a, b).directed["a_to_b"]
+    bound = 0.9 * directed.distance
+    kept = kept_intervals(a, b, bound)
+    u = np.linspace(a.limits[0, 0], a.limits[-1, 1], 301)
+    trimmed = (
+        ~((kept[:, :1] <= u) & (u <= kept[:, 1:])).any(axis=0)
+        if len(kept)
+        else np.ones(len(u), bool)
+    )
+    for p in a.point(u[trimmed]):
+        assert hausdorff_point(b, p) <= bound + 1e-15 * a.size
+
+
+@pytest.mark.parametrize("seed", range(0, 8))
+def test_trimmed_agrees_with_untrimmed(seed):
+    rng = np.random.default_rng(seed)
+    c, d = (np.cumsum(rng.normal(size=(5, 2)), axis=0) for _ in range(2))
+    a, b = Curve.bspline(c), Curve.bspline(d)
+    one = hausdorff(a, b)
+    try:
+        two = hausdorff(a, b, method="untrimmed")
+    except Unresolved:
+        pytest.skip("systems too close to call")
+    for direction in ("a_to_b", "b_to_a"):
+        p, q = one.directed[direction], two.directed[direction]
+        assert abs(p.distance - q.distance) <= 1e-13 * a.size
+    assert one.kind == two.kind and one.direction == two.direction
+
+
+def test_refusals():
+    a = Curve.line([0, 0], [1, 0])
+    for call, said in [
+        (lambda: hausdorff(a, a, method="best"), "method: 'best'; 'trimmed' or 'untrimmed'"),
+        (lambda: hausdorff(a, [[0, 0]]), "b: a list; a clearance Curve"),
+        (lambda: hausdorff(a, a, tolerance=math.nan), "tolerance: nan"),
+        (lambda: within(a, a, -1.0), "distance: -1"),
+        (lambda: hausdorff(a, a, method="untrimmed"), "more solutions than can be told apart"),
+    ]:
+        with pytest.raises(ClearanceError) as caught:
+            call()
+        assert said in str(caught.value) and "\n" not in str(caught.value)

@@ -1,0 +1,170 @@
+"""Biarcs, least distance, deviation, DXF, curve files and the compare command."""
+
+import math
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from clearance.cli.commands import clearance as command
+from clearance.errors import ClearanceError
+from clearance.planar.biarcs import biarcs
+from clearance.planar.curve import Curve
+from clearance.planar.curve_file import read_curve
+from clearance.planar.deviation import deviation
+from clearance.planar.hausdorff import hausdorff
+from clearance.planar.minimum import minimum_distance
+
+WAVE = Curve.bspline([[0, 0], [1, 2], [2, -1], [3, 0], [4, 3], [5, 0]])
+CUSP = Curve.bezier([[0, 0], [1, 1], [0, 1], [1, 0]])
+
+
+@pytest.mark.parametrize(
+    "curve", [WAVE, CUSP, Curve.circle([1e6, -1e6], 3.0), Curve.line([0, 0], [1, 2])]
+)
+@pytest.mark.parametrize("share", [1e-2, 1e-5])
+def test_biarcs_stay_within_their_proven_error(curve, share):
+    fitted = biarcs(curve, share * curve.size)
+    assert (fitted.error <= share * curve.size).all()
+    for (u0, u1), start, end, center, radius, error in zip(
+        fitted.parameters,
+        fitted.start,
+        fitted.end,
+        fitted.center,
+        fitted.radius,
+        fitted.error,
+        strict=True,
+    ):
+        points = curve.point(np.linspace(u0, u1, 33))
+        slack = error + 1e-15 * np.abs(points).max()
+        assert np.hypot(*(points[0] - start)) <= slack and np.hypot(*(points[-1] - end)) <= slack
+        if math.isfinite(radius):
+            assert np.abs(np.hypot(*(points - center).T) - radius).max() <= slack
+    assert np.allclose(fitted.parameters[1:, 0], fitted.parameters[:-1, 1])
+
+
+def test_biarcs_of_a_circle_are_the_circle():
+    fitted = biarcs(Curve.circle([0, 0], 2.0), 1e-9)
+    assert np.allclose(fitted.radius, 2.0, atol=1e-12) and len(fitted) <= 8
+    with pytest.raises(ClearanceError, match="a tolerance of 0"):
+        biarcs(WAVE, 0.0)
+
+
+def test_least_distance_against_samples_and_by_hand():
+    assert minimum_distance(
+        Curve.circle([0, 0], 1), Curve.circle([5, 0], 1.5)
+    ).distance == pytest.approx(2.5)
+    assert minimum_distance(WAVE, Curve.line([2, -5], [2, 5])).distance <= 1e-14
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        a = Curve.bspline(rng.normal(size=(6, 2)))
+        b = Curve.bspline(rng.normal(size=(7, 2)) + [3.0, 1.0])
+        found = minimum_distance(a, b)
+        p, q = (c.point(np.linspace(0, 1, 600)) for c in (a, b))
+        sampled = np.sqrt(((p[:, None] - q) ** 2).sum(axis=2)).min()
+        assert found.distance - found.error_bound <= sampled and found.distance >= sampled - 0.05
+        assert found.error_bound <= 1e-12 * a.size
+        assert np.hypot(*(found.point_a - found.point_b)) == pytest.approx(
+            found.distance, abs=1e-14
+        )
+
+
+def test_deviation_profile():
+    base = Curve.line([0, 0], [5, 0])
+    profile_of = deviation(WAVE, base, limit=0.5, samples=400)
+    assert profile_of.distance.max() <= hausdorff(WAVE, base).directed["a_to_b"].distance + 1e-14
+    assert np.allclose(profile_of.distance, np.abs(profile_of.point[:, 1]), atol=1e-14)
+    assert len(profile_of.beyond) == 2
+    assert np.allclose(np.abs(WAVE.point(profile_of.beyond.ravel())[:, 1]), 0.5, atol=1e-12)
+    tent = deviation(Curve.line([0, 0], [1, 1]), Curve.line([0, 0], [1, 0]), samples=1000)
+    assert tent.mean == pytest.approx(0.5, abs=1e-9)
+    assert tent.percentile(90) == pytest.approx(0.9, abs=2e-3)
+
+
+def test_dxf_entities_become_one_curve(tmp_path):
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    space = drawing.modelspace()
+    space.add_line((0, 0), (2, 0))
+    space.add_arc((2, 1), 1, -90, 0)
+    space.add_circle((10, 0), 2)
+    space.add_lwpolyline([(0, 5, 1.0), (2, 5, 0.0)], format="xyb")
+    space.add_open_spline([(0, 9), (1, 11), (2, 8), (3, 9)])
+    drawing.saveas(tmp_path / "part.dxf")
+    curve = Curve.from_dxf(str(tmp_path / "part.dxf"))
+    known = Curve.contours(
+        [
+            Curve.chain([Curve.line([0, 0], [2, 0]), Curve.arc([2, 1], 1, -math.pi / 2, 0)]),
+            Curve.circle([10, 0], 2),
+            Curve.arc([1, 5], 1, math.pi, 2 * math.pi),
+            Curve.bspline([[0, 9], [1, 11], [2, 8], [3, 9]]),
+        ]
+    )
+    assert hausdorff(curve, known).distance <= 1e-14 * known.size
+    assert curve.contour.max() == 3
+    space.add_text("no curve")
+    drawing.saveas(tmp_path / "text.dxf")
+    with pytest.raises(ClearanceError, match="an entity TEXT"):
+        Curve.from_dxf(str(tmp_path / "text.dxf"))
+    (tmp_path / "bad.dxf").write_text("hello")
+    with pytest.raises(ClearanceError, match=r"bad\.dxf: not a DXF"):
+        Curve.from_dxf(str(tmp_path / "bad.dxf"))
+
+
+def test_compare_prints_and_draws_the_same_bytes(tmp_path):
+    pytest.importorskip("matplotlib")
+    one, two = tmp_path / "a.yaml", tmp_path / "b.yaml"
+    one.write_text("curves:\n  - line: {start: [0, 0], end: [4, 0]}\n")
+    two.write_text("curves:\n  - polyline: {points: [[0, 1], [2, 3], [4, 1]]}\n")
+    shown = []
+    for name in ("x.svg", "y.svg", "z.png"):
+        out = CliRunner().invoke(
+            command, ["profile", "compare", str(one), str(two), "--out", str(tmp_path / name)]
+        )
+        assert out.exit_code == 0 and "hausdorff 3 ±" in out.output
+        shown.append((tmp_path / name).read_bytes())
+    assert shown[0] == shown[1] and b"<svg" in shown[0] and shown[2].startswith(b"\x89PNG")
+    out = CliRunner().invoke(command, ["profile", "compare", str(one), str(two), "--limit", "2"])
+    assert out.exit_code == 1 and "beyond" in out.output
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("curves: []", "curves: an empty list"),
+        ("curves:\n  - splin: {}", "curves[0]: 'splin'"),
+        ("curves:\n  - circle: {center: [0, 0]}", "curves[0]: circle: radius: nothing given"),
+        (
+            "curves:\n  - circle: {center: [0, 0], radius: -1}",
+            "curves[0]: circle: radius: radius -1",
+        ),
+        ("a: [", "not YAML"),
+    ],
+)
+def test_curve_files_are_refused_with_file_and_field(tmp_path, text, said):
+    file = tmp_path / "c.yaml"
+    file.write_text(text)
+    with pytest.raises(ClearanceError) as caught:
+        read_curve(str(file))
+    assert (
+        said in str(caught.value)
+        and "c.yaml" in str(caught.value)
+        and "\n" not in str(caught.value)
+    )
+
+
+def test_least_distance_at_ends_and_corners_closes_its_bounds():
+    """Minima at borders of cells, where the distance falls linearly: once the whole budget went there."""
+    pairs = [
+        (Curve.line([0, 0], [1, 1]), Curve.line([2, 1.5], [3, 5]), math.hypot(1, 0.5)),
+        (Curve.polyline([[0, 0], [1, 1], [2, 0]]), Curve.line([-1, 3], [4, 3]), 2.0),
+        (Curve.polyline([[0, 0], [1, 1], [2, 0]]), Curve.circle([1, 4], 1), 2.0),
+        (Curve.circle([1e6, 0], 1), Curve.circle([1e6 + 3, 0], 1), 1.0),
+        (Curve.line([0, 0], [4, 0]), Curve.line([1, 0.5], [3, 0.5]), 0.5),
+        (Curve.line([0, 0], [4, 0]), Curve.line([0, 1e-9], [4, 1e-9]), 1e-9),
+    ]
+    for a, b, known in pairs:
+        found = minimum_distance(a, b)
+        assert abs(found.distance - known) <= 1e-15 * known + a.rounding + b.rounding
+        assert found.error_bound <= 1e-12 * max(a.size, b.size)
+        assert minimum_distance(b, a).distance == pytest.approx(known, abs=1e-14)
