@@ -14,6 +14,10 @@ from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch_place import assign
 
+RESTARTS = 60
+"""How often a numeric cluster is tried: measured on irreducible clusters of 100 points off by 20 %, where one
+start solves 3 of 4 and each further one about half of the rest."""
+
 
 @inlined
 def columns(s, vertices, body_of, first):
@@ -161,8 +165,8 @@ def _room(s, vertices):
 
 
 @inlined
-def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
-    """Moves the vertices until max |residual| <= floor or nothing is gained; True when <= tolerance.
+def _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
+    """Moves the vertices until |residual| <= floor or nothing is gained; True when <= tolerance.
 
     `first` (v,) is scratch: -1 on entry and on return. `vertices` lists a body's members together.
     """
@@ -174,7 +178,7 @@ def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
     pivots = pivot.copy()
     damping = 0.0
     total = assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient)
-    for _ in range(80):
+    for _ in range(longest):
         if not total > floor * floor:
             break
         if damping == 0.0 and m == n:
@@ -210,6 +214,59 @@ def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
     for v in vertices:
         first[v] = -1
     return total <= tolerance * tolerance
+
+
+@inlined
+def _shake(s, vertices, x, body_of, pivot, spread, state):
+    """Moves every vertex (bodies as a whole) by up to `spread`, by a fixed sequence; its next state."""
+    last = -1
+    shift = np.zeros(3)
+    for v in vertices:
+        b = body_of[v]
+        if b < 0 or b != last:
+            for k in range(3):
+                state = (state * 1103515245 + 12345) % 2147483648
+                shift[k] = spread * (2.0 * state / 2147483648.0 - 1.0)
+            if b >= 0:
+                pivot[b, 0] += shift[0]
+                pivot[b, 1] += shift[1]
+        last = b
+        i = s.root[v]
+        if s.kind[v] == POINT:
+            x[i] += shift[0]
+            x[i + 1] += shift[1]
+        elif b < 0 and s.kind[v] != TURN:
+            assign(s, v, x[i] + shift[0], x)
+        elif b >= 0 and s.kind[v] == SLIDE:
+            assign(s, v, x[i] - math.sin(x[i - 1]) * shift[0] + math.cos(x[i - 1]) * shift[1], x)
+    return state
+
+
+@inlined
+def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
+    """Moves the vertices until their equations hold; True when they do to `tolerance`.
+
+    Where the descent ends in a local minimum it starts again from the sketch, shaken by a fixed sequence
+    of shifts that grows from a fifth of the first residual to twice it. On failure x is as it was.
+    `first` (v,) is scratch: -1 on entry and on return. `vertices` lists a body's members together.
+    """
+    kept = np.empty(_room(s, vertices))
+    keep(s, vertices, x, kept, False)
+    pivots = pivot.copy()
+    spread = math.sqrt(total_of(s, rows, x, np.empty(8)) / rows.shape[0])
+    state = 12345
+    for attempt in range(RESTARTS):
+        if attempt > 0:
+            keep(s, vertices, x, kept, True)
+            pivot[:] = pivots
+            strength = 0.2 + 1.8 * attempt / RESTARTS
+            state = _shake(s, vertices, x, body_of, pivot, strength * spread, state)
+        longest = 30 if attempt == 0 else 16
+        if _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
+            return True
+    keep(s, vertices, x, kept, True)
+    pivot[:] = pivots
+    return False
 
 
 @kernel

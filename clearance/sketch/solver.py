@@ -114,8 +114,8 @@ def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
     return worst(s.code, s.var, s.coef, s.value, x, problem.length_scale)
 
 
-def run(problem: Problem, before: np.ndarray, sides=()) -> Outcome:
-    """Solves a problem from the numbers `before` (n,)."""
+def run(problem: Problem, before: np.ndarray, sides=(), moving: bool = True) -> Outcome:
+    """Solves a problem from the numbers `before` (n,); without `moving`, anywhere instead of nearest."""
     size, s = problem.size, problem.system
     dependent = problem.plan.dependent
     contradicted = np.flatnonzero(problem.fate == 3)
@@ -129,13 +129,29 @@ def run(problem: Problem, before: np.ndarray, sides=()) -> Outcome:
     active_part = unsettled(s, loose, problem.n_parts, x, problem.length_scale, SETTLED * size)
     fates = np.full(problem.plan.vertex.shape[0], 3)
     if active_part.any():
-        fates, x = _solve_parts(problem, x, sketch_raw, active_part)
+        fates, x = _solve_parts(problem, x, sketch_raw, active_part, moving)
     if problem.tables.together:
         x = x[problem.alias]
     residual, broken = _verdict(problem, x, dependent, contradicted)
     if broken < 0 and sides and not _sides_hold(x, sides, size):
         broken = -2
     return Outcome(x, fates, broken, residual)
+
+
+def run_after(problem: Problem, block: int, x: np.ndarray) -> np.ndarray:
+    """The numbers after the steps that follow a numeric cluster are run again from x."""
+    size = problem.size
+    later = int(np.flatnonzero(problem.plan.block == block)[0]) + 1
+    plan = problem.plan._replace(
+        vertex=problem.plan.vertex[later:], partner=problem.plan.partner[later:],
+        edges=problem.plan.edges[later:], block=problem.plan.block[later:], origin=problem.plan.origin[later:],
+    )  # fmt: skip
+    out = x.copy()
+    active = np.ones(problem.system.kind.size, np.uint8)
+    execute(
+        problem.system, plan, out, x.copy(), active, SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK
+    )
+    return out
 
 
 def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
@@ -147,7 +163,7 @@ def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
     return out
 
 
-def _solve_parts(problem: Problem, x: np.ndarray, sketch: np.ndarray, active_part: np.ndarray):
+def _solve_parts(problem: Problem, x: np.ndarray, sketch: np.ndarray, active_part: np.ndarray, moving: bool):
     size, s = problem.size, problem.system
     start = x.copy()
     active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
@@ -159,6 +175,8 @@ def _solve_parts(problem: Problem, x: np.ndarray, sketch: np.ndarray, active_par
     broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part):
         _numeric_part(problem, p, x, start)
+    if not moving:
+        return fates, x
     settle = np.where(rigid & (active_part > 0) & (problem.hold < 2), 3 - problem.hold, 0)
     if settle.any():
         weight = np.ones(s.kind.shape[0])
