@@ -243,7 +243,7 @@ def _shake(s, vertices, x, body_of, pivot, spread, state):
 
 
 @inlined
-def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
+def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts):
     """Moves the vertices until their equations hold; True when they do to `tolerance`.
 
     Where the descent ends in a local minimum it starts again from the sketch, shaken by a fixed sequence
@@ -255,11 +255,11 @@ def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
     pivots = pivot.copy()
     spread = math.sqrt(total_of(s, rows, x, np.empty(8)) / rows.shape[0])
     state = 12345
-    for attempt in range(RESTARTS):
+    for attempt in range(attempts):
         if attempt > 0:
             keep(s, vertices, x, kept, True)
             pivot[:] = pivots
-            strength = 0.2 + 1.8 * attempt / RESTARTS
+            strength = 0.2 + 1.8 * attempt / attempts
             state = _shake(s, vertices, x, body_of, pivot, strength * spread, state)
         longest = 30 if attempt == 0 else 16
         if _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
@@ -270,7 +270,7 @@ def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
 
 
 @kernel
-def solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance):
+def solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance, attempts):
     """`newton` for one call from outside."""
     first = np.full(s.kind.shape[0], -1, np.int64)
-    return newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance)
+    return newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts)

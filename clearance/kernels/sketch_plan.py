@@ -345,7 +345,7 @@ def _pivots(s, body_of, n_bodies, x):
 
 
 @kernel
-def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block):
+def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block, attempts):
     """Runs the steps in place on x; `failed` (s,) is 0 done, 1 no such place, 2 block too large, 3 left alone.
 
     `active` (v,) leaves out the vertices of parts that need no work. A step is left alone when its equations
@@ -356,6 +356,8 @@ def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block
     gradient = np.empty(8)
     first = np.full(s.kind.shape[0], -1, np.int64)
     pivot = np.zeros((plan.held.shape[0], 2))
+    alone = np.full(s.kind.shape[0], -1, np.int64)
+    pair = np.empty(2, np.int64)
     fresh = True
     for k in range(n_steps):
         b = plan.block[k]
@@ -366,6 +368,11 @@ def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block
         if b < 0:
             if _holds(s, plan.edges[k], x, gradient, settled):
                 failed[k] = 3
+            elif s.kind[v] == POINT and plan.partner[k] >= 0:  # a circle from three conditions
+                pair[0], pair[1] = v, plan.partner[k]
+                three = plan.edges[k][plan.edges[k] >= 0]
+                if not newton(s, pair, three, x, alone, pivot, first, floor, tolerance, attempts):
+                    failed[k] = 1
             elif not place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient):
                 failed[k] = 1
             continue
@@ -378,6 +385,8 @@ def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block
             failed[k] = 3
         elif rows.shape[0] > largest_block:
             failed[k] = 2
-        elif not newton(s, vertices, rows, x, plan.body_of, pivot, first, floor, tolerance):
+        elif not newton(
+            s, vertices, rows, x, plan.body_of, pivot, first, floor, tolerance, attempts
+        ):
             failed[k] = 1
     return failed

@@ -8,6 +8,7 @@ the rest can be solved without it (QuickXplain's halving, Junker 2004), so minim
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -28,25 +29,37 @@ class Repair:
     size: float
 
 
-@dataclass(frozen=True)
 class Diagnosis:
-    """A minimal conflict and its repairs, the least first."""
+    """A minimal conflict; its repairs, the least first, are worked out when asked for."""
 
-    names: list[str]
-    repairs: list[Repair]
+    def __init__(self, trial: _Trials, conflict: list[int]) -> None:
+        self._trial = trial
+        self._conflict = conflict
+        self.names = [trial.sketch._ordered[i].name for i in conflict]
+
+    @cached_property
+    def repairs(self) -> list[Repair]:
+        """See `Repair`."""
+        return _repairs(self._trial, self._conflict)
 
 
 def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis:
     """Why a problem has no solution; the sketch is not changed."""
-    trial = _Trials(sketch, problem, before)
     suspects = _suspects(problem, outcome.broken)
-    if suspects is None or trial.solvable(suspects):
-        suspects = trial.everything(outcome.broken)
-        if trial.solvable(suspects):
-            return Diagnosis([], [])
-    conflict = trial.minimal(suspects)
-    ordered = sketch._ordered
-    return Diagnosis([ordered[i].name for i in conflict], _repairs(trial, conflict))
+    for effort in (0, 1):  # quick trials first; their answer counts only when full ones confirm it
+        trial = _Trials(sketch, problem, before, effort)
+        chosen = suspects
+        if chosen is None or trial.solvable(chosen):
+            chosen = trial.everything(outcome.broken)
+        if trial.solvable(chosen):
+            continue
+        conflict = trial.minimal(chosen)
+        trial.effort = 1
+        if trial.is_minimal(conflict):
+            break
+    else:
+        return Diagnosis(trial, conflict if not trial.solvable(chosen) else [])
+    return Diagnosis(trial, conflict)
 
 
 def _suspects(problem: Problem, broken: int) -> list[int] | None:
@@ -66,7 +79,8 @@ def _suspects(problem: Problem, broken: int) -> list[int] | None:
 class _Trials:
     """Solves of parts of the constraints from the sketch as it was."""
 
-    def __init__(self, sketch, problem: Problem, before: np.ndarray) -> None:
+    def __init__(self, sketch, problem: Problem, before: np.ndarray, effort: int) -> None:
+        self.effort = effort
         self.sketch = sketch
         self.tables: Tables = problem.tables
         self.problem = problem
@@ -85,7 +99,7 @@ class _Trials:
             for i, c in enumerate(self.sketch._ordered)
             if marks[i] and c.kind == "same_side" and not c.driven
         ]
-        return run(part, self.before, sides, moving=False)
+        return run(part, self.before, sides, effort=self.effort)
 
     def solvable(self, chosen: list[int]) -> bool:
         """Whether these constraints (by index) can hold together."""
@@ -100,6 +114,12 @@ class _Trials:
             return sorted({int(o) for o in owner} | set(extra))
         return sorted({int(o) for o in owner[self.problem.row_part == part]} | {int(o) for o in owner[
             (self.problem.row_part < 0)]})  # fmt: skip
+
+    def is_minimal(self, conflict: list[int]) -> bool:
+        """Whether the set cannot be solved, and can without any one of its members."""
+        return not self.solvable(conflict) and all(
+            self.solvable([i for i in conflict if i != drop]) for drop in conflict
+        )
 
     def minimal(self, suspects: list[int]) -> list[int]:
         """A subset that cannot be solved while every smaller one can. Built-in incidences are tried last."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.kernels.sketch_graph import DIRECTION, IN_GRAPH, MERGED, SLIDE, X, edges, members, merge, vertices
+from clearance.kernels.sketch_graph import DIRECTION, IN_GRAPH, MERGED, OFFSET, SLIDE, X, edges, members, merge, vertices
 from clearance.kernels.sketch_place import System
 from clearance.kernels.sketch_plan import Plan, components, make_plan
 from clearance.kernels.sketch_start import counts, row_parts
@@ -183,13 +183,23 @@ def _fresh(tables, alias, weight, repeated, var, value, parent, scale, shift, fa
     system = System(
         tables.code, var, tables.coef, value, kind, root, parent, scale, shift, start, member, vertex_of, ends
     )
-    plan = make_plan(kind, ends, tables.ground, theta_of)
-    part, n_parts, hold = components(kind, ends, theta_of, tables.ground)
+    placed = (tables.role == OFFSET) & (vertex_of == 0)
+    ground = np.where((placed[var] & (var >= 0)).any(axis=1) & (fate == 0), 1, tables.ground)
+    first_is_ground = (ground == 1) & (tables.ground == 0)
+    ends[first_is_ground] = np.array([_ground_first(e) for e in ends[first_is_ground]]).reshape(-1, 5)
+    plan = make_plan(kind, ends, ground, theta_of)
+    part, n_parts, hold = components(kind, ends, theta_of, ground)
     free = counts(kind, ends, part, n_parts, plan.dependent, FREEDOMS)
     return Problem(
-        tables, alias, weight, repeated, system, fate, tables.ground, theta_of, plan, part, n_parts, hold,
+        tables, alias, weight, repeated, system, fate, ground, theta_of, plan, part, n_parts, hold,
         free, row_parts(ends, var, part, vertex_of), length_scale, size,
     )  # fmt: skip
+
+
+def _ground_first(ends: np.ndarray) -> list[int]:
+    """The vertices of an edge with the ground in front, as rows that name a place have it."""
+    rest = [int(v) for v in ends if v > 0]
+    return ([0, *rest] + [-1] * 5)[:5]
 
 
 def size_of(tables: Tables, x: np.ndarray, value: np.ndarray) -> float:

@@ -45,14 +45,15 @@ def roots_of(problem: Problem, b: int, x: np.ndarray) -> list[np.ndarray]:
     vertices, rows = block_of(problem, b)
     random = np.random.default_rng(7)
     mine = _variables(s, vertices)
-    reach = max(np.ptp(x[mine[s_role(problem, mine)]], initial=0.0), 0.1 * size)
+    places = x[mine[s_role(problem, mine)]]
+    reach = max(float(np.ptp(places)) if places.size else 0.0, 0.1 * size)
     found = [x]
     for _ in range(STARTS):
         tried = x.copy()
         _scatter(problem, vertices, tried, random, reach)
         pivot = _pivots(problem, tried)
         body_of = problem.plan.body_of
-        if not solve_block(s, vertices, rows, tried, body_of, pivot, 2e-16 * size, RESIDUAL * size):
+        if not solve_block(s, vertices, rows, tried, body_of, pivot, 2e-16 * size, RESIDUAL * size, 1):
             continue
         if _is_new(problem, tried, found, mine):
             found.append(tried)

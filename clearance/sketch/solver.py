@@ -14,7 +14,7 @@ import numpy as np
 from clearance.kernels.sketch_equations import worst
 from clearance.kernels.sketch_fit import set_down
 from clearance.kernels.sketch_graph import POINT
-from clearance.kernels.sketch_newton import solve_block
+from clearance.kernels.sketch_newton import RESTARTS, solve_block
 from clearance.kernels.sketch_plan import execute
 from clearance.kernels.sketch_start import agree, unsettled
 from clearance.sketch.movement import least_movement
@@ -114,8 +114,12 @@ def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
     return worst(s.code, s.var, s.coef, s.value, x, problem.length_scale)
 
 
-def run(problem: Problem, before: np.ndarray, sides=(), moving: bool = True) -> Outcome:
-    """Solves a problem from the numbers `before` (n,); without `moving`, anywhere instead of nearest."""
+def run(problem: Problem, before: np.ndarray, sides=(), effort: int = 2) -> Outcome:
+    """Solves a problem from the numbers `before` (n,).
+
+    Args:
+        effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
+    """
     size, s = problem.size, problem.system
     dependent = problem.plan.dependent
     contradicted = np.flatnonzero(problem.fate == 3)
@@ -129,7 +133,7 @@ def run(problem: Problem, before: np.ndarray, sides=(), moving: bool = True) -> 
     active_part = unsettled(s, loose, problem.n_parts, x, problem.length_scale, SETTLED * size)
     fates = np.full(problem.plan.vertex.shape[0], 3)
     if active_part.any():
-        fates, x = _solve_parts(problem, x, sketch_raw, active_part, moving)
+        fates, x = _solve_parts(problem, x, sketch_raw, active_part, effort)
     if problem.tables.together:
         x = x[problem.alias]
     residual, broken = _verdict(problem, x, dependent, contradicted)
@@ -149,8 +153,9 @@ def run_after(problem: Problem, block: int, x: np.ndarray) -> np.ndarray:
     out = x.copy()
     active = np.ones(problem.system.kind.size, np.uint8)
     execute(
-        problem.system, plan, out, x.copy(), active, SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK
-    )
+        problem.system, plan, out, x.copy(), active, SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK,
+        RESTARTS,
+    )  # fmt: skip
     return out
 
 
@@ -163,19 +168,22 @@ def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
     return out
 
 
-def _solve_parts(problem: Problem, x: np.ndarray, sketch: np.ndarray, active_part: np.ndarray, moving: bool):
+def _solve_parts(problem: Problem, x: np.ndarray, sketch: np.ndarray, active_part: np.ndarray, effort: int):
     size, s = problem.size, problem.system
     start = x.copy()
     active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
     fates = execute(
-        s, problem.plan, x, start, active, SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK
-    )
+        s, problem.plan, x, start, active, SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK,
+        RESTARTS if effort else 4,
+    )  # fmt: skip
+    if effort == 0 and (fates == 1).any():
+        return fates, x
     rigid = problem.is_rigid
     loose = _loosened(problem, problem.plan.dependent)
     broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part):
         _numeric_part(problem, p, x, start)
-    if not moving:
+    if effort < 2:
         return fates, x
     settle = np.where(rigid & (active_part > 0) & (problem.hold < 2), 3 - problem.hold, 0)
     if settle.any():
@@ -200,7 +208,7 @@ def _numeric_part(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
     pivot = np.zeros((0, 2))
     for origin in (start, x):
         tried = origin.copy()
-        if solve_block(s, vertices, rows, tried, alone, pivot, FLOOR * size, RESIDUAL * size):
+        if solve_block(s, vertices, rows, tried, alone, pivot, FLOOR * size, RESIDUAL * size, 6):
             x[:] = tried
             return True
     return False
