@@ -33,7 +33,7 @@ def least_movement(problem: Problem, part: int, x, target, weight, start=None) -
     work = _Work(problem, part, target, weight)
     best, least = None, math.inf
     for origin in (x, start):
-        if origin is None:
+        if origin is None or (best is not None and work.n > DENSE // 2):
             continue
         found = work.optimum(origin.copy())
         if found is None:
@@ -105,7 +105,7 @@ class _Work:
         """Sequential quadratic programming from x; None when the equations could not be satisfied."""
         size = self.problem.size
         multipliers = np.zeros(self.rows.size)
-        for k in range(60):
+        for k in range(30):
             f, rows, cols, entries = spread(self.system, self.rows, x, self.first)
             gap = self.offsets(x)
             bent = bend(self.system, self.rows, x, self.first, multipliers) if k > 1 else None
@@ -114,7 +114,7 @@ class _Work:
                 return None
             moved, taken = self._search(x, f, gap, step, fresh)
             x, multipliers = moved, fresh
-            if taken * np.abs(step).max() <= 1e-11 * max(size, 1.0):
+            if taken * np.abs(step).max() <= 1e-9 * size:
                 break
         return self._restored(x)
 

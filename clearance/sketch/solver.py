@@ -208,7 +208,7 @@ def _numeric_part(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
     pivot = np.zeros((0, 2))
     for origin in (start, x):
         tried = origin.copy()
-        if solve_block(s, vertices, rows, tried, alone, pivot, FLOOR * size, RESIDUAL * size, 6):
+        if solve_block(s, vertices, rows, tried, alone, pivot, FLOOR * size, RESIDUAL * size, 6 if rows.size < 60 else 2):
             x[:] = tried
             return True
     return False
