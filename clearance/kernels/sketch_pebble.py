@@ -89,8 +89,9 @@ def play(kind, ends, absolute, live):
     starts = np.zeros(m + 1, np.int64)
     circuit = np.empty(max(m, 1) * 4 + 16, np.int64)
     count, filled, stamp = 0, 0, 0
-    for row in range(m):
-        if not live[row]:
+    for turn in range(2 * m):  # what is held by the ground first: a dimension is the better suspect
+        row = turn % m
+        if not live[row] or (absolute[row] == 1) != (turn < m):
             continue
         for k in range(5):
             mine[row, k] = ends[row, k]

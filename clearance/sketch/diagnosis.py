@@ -157,8 +157,11 @@ def _repairs(trial: _Trials, conflict: list[int]) -> list[Repair]:
     ordered, size = trial.sketch._ordered, trial.problem.size
     dimensions = [i for i in conflict if ordered[i].given is not None]
     found = []
+    whole = [int(k) for k in np.unique(trial.tables.owner)]
     for i in dimensions:
-        outcome = trial.run([k for k in conflict if k != i])
+        outcome = trial.run([k for k in whole if k != i])  # so that the repair suits all other constraints
+        if outcome.broken != -1:  # there are more conflicts than this one
+            outcome = trial.run([k for k in conflict if k != i])
         if outcome.broken == -1:
             number = measured(ordered[i], outcome.x.tolist())
             found.append(_repair(ordered, size, {i: number}))
@@ -180,14 +183,16 @@ def _shared(trial: _Trials, conflict: list[int], dimensions: list[int]) -> dict[
 
     from clearance.kernels.sketch_equations import residuals
 
-    marks = np.zeros(len(trial.sketch._ordered), bool)
-    marks[conflict] = True
-    tables = trial.tables.only(marks)
-    if tables.code.size == 0 or tables.code.size > 400:
+    tables = trial.tables
+    if tables.code.size > 300:
+        marks = np.zeros(len(trial.sketch._ordered), bool)
+        marks[conflict] = True
+        tables = trial.tables.only(marks)
+    if tables.code.size == 0 or tables.code.size > 300:
         return None
     soft = np.isin(tables.owner, dimensions) & (tables.scale != 0.0)
     free = np.unique(tables.var[tables.var >= 0])
-    weight = np.where(soft, 1.0, 1e4)
+    weight = np.where(soft, 1.0, 1e3)
     from clearance.sketch.problem import joined
 
     alias, _, _ = joined(tables)
@@ -198,10 +203,10 @@ def _shared(trial: _Trials, conflict: list[int], dimensions: list[int]) -> dict[
         x[free] = numbers
         return weight * residuals(tables.code, var, tables.coef, tables.value, x[alias])
 
-    fitted = least_squares(violation, trial.before[free], xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=60)
+    fitted = least_squares(violation, trial.before[free], xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=300)
     x = trial.before.copy()
     x[free] = fitted.x
     x = x[alias]
-    if not fitted.success or np.abs(violation(x[free])[~soft]).max(initial=0.0) > 1e-3 * trial.problem.size:
+    if np.abs(violation(x[free])[~soft]).max(initial=0.0) > 1e-3 * trial.problem.size:
         return None
     return {i: measured(trial.sketch._ordered[i], x.tolist()) for i in dimensions}

@@ -32,6 +32,10 @@ wins from about 500 on)."""
 FLOOR = 2e-16
 """[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
 
+NEARLY = 1e-5
+"""[-] Error of an implied equation, relative to the size, up to which all equations are solved together once
+more: where the rest is singular (two loci that touch) a rounding of 1e-16 shows as its root, 1e-8."""
+
 DRAGGED = 1e6
 """[-] Weight of a dragged point against 1 for all others."""
 
@@ -137,6 +141,11 @@ def run(problem: Problem, before: np.ndarray, sides=(), effort: int = 2) -> Outc
     if problem.tables.together:
         x = x[problem.alias]
     residual, broken = _verdict(problem, x, dependent, contradicted)
+    if dependent.size and RESIDUAL * size < residual <= NEARLY * size and not contradicted.size:
+        for p in np.unique(problem.row_part[dependent]):
+            _numeric_part(problem, p, x, x.copy())
+        x = x[problem.alias]
+        residual, broken = _verdict(problem, x, dependent, contradicted)
     if broken < 0 and sides and not _sides_hold(x, sides, size):
         broken = -2
     return Outcome(x, fates, broken, residual)

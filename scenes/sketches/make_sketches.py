@@ -141,7 +141,7 @@ class Midship:
         """A rigid bracket touching three plates (numeric, c) and a brace of four bars (extended)."""
         s = self.s
         x = BREADTH - TANK
-        corners = {"knee_a": (x, 17.4), "knee_b": (BREADTH, 17.9), "knee_c": (14.7, DEPTH)}
+        corners = {"knee_a": (x, 17.4), "knee_b": (BREADTH, 18.4), "knee_c": (14.7, DEPTH)}
         for name, place in corners.items():
             self.at(name, *place)
         for (a, p), (b, q) in _pairs(list(corners.items())):

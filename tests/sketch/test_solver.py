@@ -92,7 +92,7 @@ def test_no_triangle_flips():
         assert s.solve().solved
         x = np.array([q.position for q in p])
         for k in range(98):
-            a, b = (np.cross(y[k + 1] - y[k], y[k + 2] - y[k]) for y in (x, points))
+            a, b = (np.linalg.det([y[k + 1] - y[k], y[k + 2] - y[k]]) for y in (x, points))
             assert a * b > 0.0
 
 
