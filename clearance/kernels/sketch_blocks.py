@@ -1,16 +1,18 @@
-"""The core in clusters: rigid bodies grown along rigid chains, then the least sets solvable at once.
+"""The core in clusters: rigid bodies grown along rigid chains, then the least sets solvable at
+once.
 
-A body starts from two entities with three degrees of freedom and takes in every vertex that hangs on it by
-as many edges as it has freedom (Fig. 8 a and b of the paper). With bodies contracted to vertices of three
-freedoms and one of them held, a matching of edges to freedoms and the strongly connected parts of the
-directed graph give the smallest clusters (Fig. 8 c and d, and extended ones) in the order of placing.
-Source: Kwon, Lee, Lee 2001, section 3.5; Hoffmann, Lomonosov, Sitharam 1997 for minimal dense subgraphs.
+A body starts from two entities with three degrees of freedom and takes in every vertex that hangs
+on it by as many edges as it has freedom (Fig. 8 a and b of the paper). With bodies contracted to
+vertices of three freedoms and one of them held, a matching of edges to freedoms and the strongly
+connected parts of the directed graph give the smallest clusters (Fig. 8 c and d, and extended ones)
+in the order of placing.
+Source: Kwon, Lee, Lee 2001, section 3.5; Hoffmann, Lomonosov, Sitharam 1997 for minimal dense
+subgraphs.
 """
 
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.sketch_equations import POINT_LINE, POINT_POINT
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 
 
@@ -36,8 +38,11 @@ def _hanging(v, line, ends, starts, rows, live, body_of, body, found):
 
 
 @inlined
-def _grow(seeds, n_seeds, body, kind, ends, starts, rows, live, theta_of, free, body_of, log, n_log, found):
-    """Grows a body from its seeds; appends (vertex, partner, edges) to `log` from `n_log` on; its new end."""
+def _grow(
+    seeds, n_seeds, body, kind, ends, starts, rows, live, theta_of, free, body_of, log, n_log, found
+):
+    """Grows a body from its seeds; appends (vertex, partner, edges) to `log` from `n_log` on; its
+    new end."""
     queue = np.empty(64, np.int64)
     tail = 0
     for k in range(n_seeds):
@@ -84,10 +89,11 @@ def _grow(seeds, n_seeds, body, kind, ends, starts, rows, live, theta_of, free, 
 
 @kernel
 def bodies(kind, ends, starts, rows, live, theta_of, free):
-    """Rigid bodies of at least three entities among the `free` vertices, each entity in at most one.
+    """Rigid bodies of at least three entities among the `free` vertices, each entity in at most
+    one.
 
-    Returns (body_of (v,), steps (s, 4) of vertex, partner and two edges, step starts of every body).
-    The first steps of a body are its initial cluster: they have fewer edges than freedoms.
+    Returns (body_of (v,), steps (s, 4) of vertex, partner and two edges, step starts of every
+    body). The first steps of a body are its initial cluster: they have fewer edges than freedoms.
     """
     n = kind.shape[0]
     body_of = np.full(n, -1, np.int64)
@@ -123,8 +129,8 @@ def bodies(kind, ends, starts, rows, live, theta_of, free):
             log[begin, :] = np.array([b, -1, -1, -1])
             log[begin + 1, :] = np.array([a, -1, row, -1])
         n_log = _grow(
-            seeds, 3 if c >= 0 else 2, count, kind, ends, starts, rows, live, theta_of, free, body_of,
-            log, begin + 2, found,
+            seeds, 3 if c >= 0 else 2, count, kind, ends, starts, rows, live, theta_of, free,
+            body_of, log, begin + 2, found,
         )  # fmt: skip
         if n_log == begin + 2:
             body_of[a] = body_of[b] = -1
@@ -139,7 +145,8 @@ def bodies(kind, ends, starts, rows, live, theta_of, free):
 
 @inlined
 def _augment(row, stamp, hold, ends, owner, capacity, paid, seen, came, queue):
-    """Finds a freedom for an edge by moving others; True when it has one. `hold` maps vertices to nodes."""
+    """Finds a freedom for an edge by moving others; True when it has one. `hold` maps vertices to
+    nodes."""
     head, tail = 0, 1
     queue[0] = row
     came[row] = -1
@@ -156,7 +163,9 @@ def _augment(row, stamp, hold, ends, owner, capacity, paid, seen, came, queue):
             seen[node] = stamp
             if capacity[node] > 0:
                 capacity[node] -= 1
-                while e >= 0:  # e takes this node; the node it leaves is taken by the edge before it
+                while (
+                    e >= 0
+                ):  # e takes this node; the node it leaves is taken by the edge before it
                     before = owner[e]
                     _move_payment(e, before, node, paid)
                     owner[e] = node
@@ -190,10 +199,11 @@ def _move_payment(e, before, node, paid):
 
 @kernel
 def match(kind, ends, live, hold, capacity):
-    """Assigns every live edge to a node with freedom left; `capacity` (nodes,) becomes what is unused.
+    """Assigns every live edge to a node with freedom left; `capacity` (nodes,) becomes what is
+    unused.
 
-    `hold` (v,) is the node of every vertex (-1: held fast). Returns the node (m,) of every edge, -1 where
-    there was none.
+    `hold` (v,) is the node of every vertex (-1: held fast). Returns the node (m,) of every edge, -1
+    where there was none.
     """
     m = ends.shape[0]
     owner = np.full(m, -1, np.int64)
@@ -211,7 +221,8 @@ def match(kind, ends, live, hold, capacity):
 def ordered_parts(ends, live, hold, owner, n_nodes, present):
     """Strongly connected parts of "is placed from" in the order of placing.
 
-    Returns (part of every node (-1 where absent), number of parts). Tarjan's algorithm, without recursion.
+    Returns (part of every node (-1 where absent), number of parts). Tarjan's algorithm, without
+    recursion.
     """
     start = np.zeros(n_nodes + 1, np.int64)
     for row in range(ends.shape[0]):

@@ -21,7 +21,8 @@ def _column(s, i, first):
 
 @kernel
 def spread(s, rows, x, first):
-    """(residuals (m,), and the derivative's entries as rows, columns, values; repeated entries add up)."""
+    """(residuals (m,), and the derivative's entries as rows, columns, values; repeated entries add
+    up)."""
     m = rows.shape[0]
     residual = np.empty(m)
     at_row, at_column, value = np.empty(8 * m, np.int64), np.empty(8 * m, np.int64), np.empty(8 * m)
@@ -39,7 +40,8 @@ def spread(s, rows, x, first):
 
 @kernel
 def bend(s, rows, x, first, multipliers):
-    """The second derivative of the equations, weighted by their multipliers, as (rows, columns, values).
+    """The second derivative of the equations, weighted by their multipliers, as (rows, columns,
+    values).
 
     Central differences of the analytic first derivatives, symmetrised.
     """

@@ -1,9 +1,10 @@
 """The equations of a sketch: residuals and derivatives of every kind of constraint.
 
-A sketch is one flat vector `x`: two numbers a point (x, y), two a line (direction theta and signed offset d
-of n . p = d with the normal n = (-sin theta, cos theta)), one a circle (its radius; its centre is a point).
-An equation is a row: a code, up to eight indices into `x` (-1 pads), up to four coefficients and a value.
-Lengths [m], angles [rad]; every residual is a length except those of angles, which are scaled by the caller.
+A sketch is one flat vector `x`: two numbers a point (x, y), two a line (direction theta and signed
+offset d of n . p = d with the normal n = (-sin theta, cos theta)), one a circle (its radius; its
+centre is a point). An equation is a row: a code, up to eight indices into `x` (-1 pads), up to four
+coefficients and a value. Lengths [m], angles [rad]; every residual is a length except those of
+angles, which are scaled by the caller.
 """
 
 import math
@@ -128,7 +129,8 @@ def gradients(code, var, coef, value, x):
 
 @kernel
 def worst(code, var, coef, value, x, length_scale):
-    """The largest |residual|, those of direction equations times `length_scale`, and its row (-1: none).
+    """The largest |residual|, those of direction equations times `length_scale`, and its row (-1:
+    none).
 
     A NaN counts as infinite. `length_scale` (m,) holds 1 for equations in lengths.
     """

@@ -1,7 +1,8 @@
-"""Rigid parts set down where the sketch has them: the turn and shift of least movement, in closed form.
+"""Rigid parts set down where the sketch has them: the turn and shift of least movement, in closed
+form.
 
-Source: the planar case of Procrustes' problem (Schönemann 1966): the best turn's tangent is the ratio of the
-summed cross and dot products about the weighted centroids.
+Source: the planar case of Procrustes' problem (Schönemann 1966): the best turn's tangent is the
+ratio of the summed cross and dot products about the weighted centroids.
 """
 
 import math
@@ -15,10 +16,11 @@ from clearance.kernels.sketch_place import assign
 
 @kernel
 def set_down(s, part, freedom, x, sketch, weight):
-    """Moves every part with `freedom` 3 (turn and shift) or 2 (shift) rigidly to lie nearest the sketch.
+    """Moves every part with `freedom` 3 (turn and shift) or 2 (shift) rigidly to lie nearest the
+    sketch.
 
-    `part` (v,) with -1 outside, `freedom` (parts,) other than 2 and 3 leaves a part alone, `weight` (v,) of
-    the points. Works in place on x. Offsets of lines follow; a part without points stays.
+    `part` (v,) with -1 outside, `freedom` (parts,) other than 2 and 3 leaves a part alone, `weight`
+    (v,) of the points. Works in place on x. Offsets of lines follow; a part without points stays.
     """
     n = freedom.shape[0]
     total, sums = np.zeros(n), np.zeros((n, 4))

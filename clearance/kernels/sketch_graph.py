@@ -1,9 +1,11 @@
-"""From equations to the constraint graph: pseudo entities merged, then vertices, edges and their lists.
+"""From equations to the constraint graph: pseudo entities merged, then vertices, edges and their
+lists.
 
-Relations that are linear between directions, between offsets of parallel lines, or between radii are merged
-beforehand by a weighted union-find (the paper's preprocessing: edges of valency 2 make pseudo entities).
-What is left is a hypergraph: a vertex is a point (2 degrees of freedom), a class of directions, of offsets
-or of radii (1 each), or the ground (vertex 0: a rigid body, 3); an edge is one equation.
+Relations that are linear between directions, between offsets of parallel lines, or between radii
+are merged beforehand by a weighted union-find (the paper's preprocessing: edges of valency 2 make
+pseudo entities). What is left is a hypergraph: a vertex is a point (2 degrees of freedom), a class
+of directions, of offsets or of radii (1 each), or the ground (vertex 0: a rigid body, 3); an edge
+is one equation.
 """
 
 import numpy as np
@@ -46,7 +48,8 @@ def _mergeable(code, var, role, row):
 
 @kernel
 def merge(code, var, coef, value, role, length_scale, tolerance):
-    """Parents, scales, shifts (n + 1,) of the union-find forest and the fate (m,) of every equation.
+    """Parents, scales, shifts (n + 1,) of the union-find forest and the fate (m,) of every
+    equation.
 
     x_i = scale_i x_parent + shift_i; node n stands for a known number (scale 0).
     """
@@ -96,7 +99,8 @@ def merge(code, var, coef, value, role, length_scale, tolerance):
 
 @kernel
 def vertices(role, parent, used):
-    """The vertex of every variable (-1: a known radius or unused), and of every vertex its kind and root.
+    """The vertex of every variable (-1: a known radius or unused), and of every vertex its kind and
+    root.
 
     Returns (vertex_of (n,), kind (v,), root (v,)).
     """

@@ -1,8 +1,8 @@
 """Numeric clusters: several vertices and rigid bodies moved at once until their equations hold.
 
-Unknowns are the freedoms of the vertices and, for a body, a small turn about its pivot and a shift; a body's
-members are moved rigidly, so that what is already true inside it stays true. Newton with a step control
-(the residual must fall), and Levenberg and Marquardt's damping where Newton fails.
+Unknowns are the freedoms of the vertices and, for a body, a small turn about its pivot and a shift;
+a body's members are moved rigidly, so that what is already true inside it stays true. Newton with a
+step control (the residual must fall), and Levenberg and Marquardt's damping where Newton fails.
 """
 
 import math
@@ -15,13 +15,14 @@ from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch_place import assign
 
 RESTARTS = 60
-"""How often a numeric cluster is tried: measured on irreducible clusters of 100 points off by 20 %, where one
-start solves 3 of 4 and each further one about half of the rest."""
+"""How often a numeric cluster is tried: measured on irreducible clusters of 100 points off by 20 %,
+where one start solves 3 of 4 and each further one about half of the rest."""
 
 
 @inlined
 def columns(s, vertices, body_of, first):
-    """Fills `first` (v,) with the first column of every vertex (of its body, if it has one); their number.
+    """Fills `first` (v,) with the first column of every vertex (of its body, if it has one); their
+    number.
 
     `first` must be -1 for all others.
     """
@@ -183,7 +184,9 @@ def _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, long
             break
         if damping == 0.0 and m == n:
             for k in range(n):
-                jacobian[k, k] += 1e-15  # an exactly singular matrix must not stop the factorisation
+                jacobian[k, k] += (
+                    1e-15  # an exactly singular matrix must not stop the factorisation
+                )
             step = np.linalg.solve(jacobian, -residual)
         else:
             normal = jacobian.T @ jacobian
@@ -218,7 +221,8 @@ def _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, long
 
 @inlined
 def _shake(s, vertices, x, body_of, pivot, spread, state):
-    """Moves every vertex (bodies as a whole) by up to `spread`, by a fixed sequence; its next state."""
+    """Moves every vertex (bodies as a whole) by up to `spread`, by a fixed sequence; its next
+    state."""
     last = -1
     shift = np.zeros(3)
     for v in vertices:
@@ -246,9 +250,10 @@ def _shake(s, vertices, x, body_of, pivot, spread, state):
 def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts):
     """Moves the vertices until their equations hold; True when they do to `tolerance`.
 
-    Where the descent ends in a local minimum it starts again from the sketch, shaken by a fixed sequence
-    of shifts that grows from a fifth of the first residual to twice it. On failure x is as it was.
-    `first` (v,) is scratch: -1 on entry and on return. `vertices` lists a body's members together.
+    Where the descent ends in a local minimum it starts again from the sketch, shaken by a fixed
+    sequence of shifts that grows from a fifth of the first residual to twice it. On failure x is as
+    it was. `first` (v,) is scratch: -1 on entry and on return. `vertices` lists a body's members
+    together.
     """
     kept = np.empty(_room(s, vertices))
     keep(s, vertices, x, kept, False)
@@ -261,7 +266,7 @@ def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attemp
             pivot[:] = pivots
             strength = 0.2 + 1.8 * attempt / attempts
             state = _shake(s, vertices, x, body_of, pivot, strength * spread, state)
-        longest = 30 if attempt == 0 else 16
+        longest = 40 if attempt == 0 else 20
         if _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
             return True
     keep(s, vertices, x, kept, True)

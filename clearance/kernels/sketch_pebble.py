@@ -1,8 +1,10 @@
-"""The pebble game: which equations of the core depend on others by Definitions 1 to 3, and on which.
+"""The pebble game: which equations of the core depend on others by Definitions 1 to 3, and on
+which.
 
-Every vertex holds as many pebbles as degrees of freedom; an equation is independent when four pebbles can
-be gathered on its vertices, and then one of them pays for it. A dependent equation closes a circuit: itself
-and the equations of the least tight set around it (three pebbles in all), found by following payments.
+Every vertex holds as many pebbles as degrees of freedom; an equation is independent when four
+pebbles can be gathered on its vertices, and then one of them pays for it. A dependent equation
+closes a circuit: itself and the equations of the least tight set around it (three pebbles in all),
+found by following payments.
 Source: Jacobs and Hendrickson 1997; Lee and Streinu 2008 for hypergraphs and other counts.
 """
 
@@ -42,7 +44,8 @@ def _search(v, stamp, ends, paid_start, paid_next, pebbles, seen, came, via, que
 
 @inlined
 def _pass(v, w, paid_start, paid_next, pebbles, came, via):
-    """Lets w pay for the edge it was reached by, that edge's payer for the one before, and so on to v."""
+    """Lets w pay for the edge it was reached by, that edge's payer for the one before, and so on to
+    v."""
     pebbles[w] -= 1
     while True:
         u, row = came[w], via[w]

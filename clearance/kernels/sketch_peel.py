@@ -1,10 +1,12 @@
-"""Peeling: a vertex with no more edges than degrees of freedom is placed last, given all the others.
+"""Peeling: a vertex with no more edges than degrees of freedom is placed last, given all the
+others.
 
-Taking such vertices off one after another until none is left orders every ruler-and-compass sketch in
-linear time, without a search for clusters; the reverse order is a plan. What remains (the core) has only
-vertices with more edges than freedom. A vertex taken off with fewer edges leaves freedom: an assumption.
-Source: Owen 1991 and the inverse of the first Henneberg step; joint vertices (a line's direction and
-offset, a circle's centre and radius) are ours.
+Taking such vertices off one after another until none is left orders every ruler-and-compass sketch
+in linear time, without a search for clusters; the reverse order is a plan. What remains (the core)
+has only vertices with more edges than freedom. A vertex taken off with fewer edges leaves freedom:
+an assumption.
+Source: Owen 1991 and the inverse of the first Henneberg step; joint vertices (a line's direction
+and offset, a circle's centre and radius) are ours.
 """
 
 import numpy as np
@@ -22,7 +24,8 @@ def _freedom(kind):
 
 @inlined
 def _collect(v, partner, starts, rows, live, found):
-    """Fills `found` with the live edges of v and partner, each once; the count, or 4 when there are more."""
+    """Fills `found` with the live edges of v and partner, each once; the count, or 4 when there are
+    more."""
     count = 0
     for which in range(2):
         u = v if which == 0 else partner
@@ -46,7 +49,8 @@ def _collect(v, partner, starts, rows, live, found):
 
 @inlined
 def _independent(v, partner, found, count, kind, ends, absolute):
-    """Whether the count of freedoms allows these edges at v (3 must remain for the part as a whole)."""
+    """Whether the count of freedoms allows these edges at v (3 must remain for the part as a
+    whole)."""
     total = _freedom(kind[v]) + (_freedom(kind[partner]) if partner >= 0 else 0)
     for a in range(count):
         for k in range(5):
@@ -59,13 +63,16 @@ def _independent(v, partner, found, count, kind, ends, absolute):
                     if ends[found[b], j] == u:
                         fresh = False
             if fresh:
-                total += 3 if u == 0 and absolute[found[a]] == 1 else _freedom(kind[u]) if u > 0 else 1
+                total += (
+                    3 if u == 0 and absolute[found[a]] == 1 else _freedom(kind[u]) if u > 0 else 1
+                )
     return total - count >= 3
 
 
 @inlined
 def _joint_partner(v, kind, ends, starts, rows, live, slide_count, theta_of, degree, removed):
-    """The vertex that v may only be placed with: a direction's one offset, a centre's own radius; or -1."""
+    """The vertex that v may only be placed with: a direction's one offset, a centre's own radius;
+    or -1."""
     if kind[v] == TURN and slide_count[v] == 1:
         for at in range(starts[v], starts[v + 1]):
             row = rows[at]
@@ -98,7 +105,8 @@ def _joint_partner(v, kind, ends, starts, rows, live, slide_count, theta_of, deg
 def peel(kind, ends, starts, rows, absolute, theta_of, live, removed):
     """Takes off what can be; clears `live` and sets `removed` in place.
 
-    Returns the steps in the order of taking off: (vertex (s,), partner (s,), edges (s, 3) with -1 padding).
+    Returns the steps in the order of taking off: (vertex (s,), partner (s,), edges (s, 3) with -1
+    padding).
     """
     n = kind.shape[0]
     degree = np.zeros(n, np.int64)

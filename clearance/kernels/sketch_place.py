@@ -1,9 +1,10 @@
-"""Ruler and compass: one vertex (or a line, or a circle) placed in closed form from what already stands.
+"""Ruler and compass: one vertex (or a line, or a circle) placed in closed form from what already
+stands.
 
-A condition on a point is a locus, a line n . p = c or a circle; two loci meet in at most two points, and
-the one is taken that lies on the same side as in the sketch, so that no branch ever flips. Where a
-condition is missing the sketch is moved least (the paper's assumptions): the nearest point of a locus,
-a line's old direction.
+A condition on a point is a locus, a line n . p = c or a circle; two loci meet in at most two
+points, and the one is taken that lies on the same side as in the sketch, so that no branch ever
+flips. Where a condition is missing the sketch is moved least (the paper's assumptions): the nearest
+point of a locus, a line's old direction.
 """
 
 import math
@@ -27,7 +28,8 @@ from clearance.kernels.sketch_equations import (
 from clearance.kernels.sketch_graph import POINT, SIZE, SLIDE, TURN
 
 GRAZING = 4e-13
-"""How far, relative to the squared lengths, two loci may miss each other and still count as touching."""
+"""How far, relative to the squared lengths, two loci may miss each other and still count as
+touching."""
 
 
 class System(NamedTuple):
@@ -101,7 +103,8 @@ def _lengths_locus(s, row, i, x):
 
 @inlined
 def locus(s, row, i, x):
-    """Where the point at variable i may lie for equation `row`: (1, nx, ny, c), (2, cx, cy, r) or (0, ...)."""
+    """Where the point at variable i may lie for equation `row`: (1, nx, ny, c), (2, cx, cy, r) or
+    (0, ...)."""
     code = s.code[row]
     v = s.value[row]
     if code == LINEAR:
@@ -163,7 +166,8 @@ def _root_of(square, scale):
 
 @inlined
 def _side(value, plus, minus):
-    """Which of two solutions: the sketch's side, or the nearer one when the sketch lies on the border."""
+    """Which of two solutions: the sketch's side, or the nearer one when the sketch lies on the
+    border."""
     if value == 0.0:
         return 1.0 if plus <= minus else -1.0
     return 1.0 if value > 0.0 else -1.0
@@ -235,7 +239,8 @@ def _place_point(s, v, rows, count, x, sketch):
 
 @inlined
 def _place_number(s, v, row, x, gradient):
-    """Places an offset or a radius, in which every equation is linear; a radius must not be negative."""
+    """Places an offset or a radius, in which every equation is linear; a radius must not be
+    negative."""
     assign(s, v, 0.0, x)
     f0 = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
     assign(s, v, 1.0, x)
@@ -253,7 +258,8 @@ def _place_number(s, v, row, x, gradient):
 
 @inlined
 def _line_condition(s, row, own, x):
-    """(1, px, py, w) for n . p - d = w on the line at variables own, own + 1; (2, ux, uy, 0) for n || u."""
+    """(1, px, py, w) for n . p - d = w on the line at variables own, own + 1; (2, ux, uy, 0) for n
+    || u."""
     code = s.code[row]
     if code == ACROSS:
         ux = x[s.var[row, 2]] - x[s.var[row, 0]]
@@ -274,7 +280,8 @@ def _line_condition(s, row, own, x):
 
 @inlined
 def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
-    """Gives the line at `own` the normal (nx, ny) and offset d; its direction stays near the sketch's."""
+    """Gives the line at `own` the normal (nx, ny) and offset d; its direction stays near the
+    sketch's."""
     theta = math.atan2(-nx, ny)
     theta += 2.0 * math.pi * round((sketch[own] - theta) / (2.0 * math.pi))
     assign(s, turn, theta - s.shift[own], x)
@@ -334,7 +341,8 @@ def _place_line(s, turn, slide, rows, count, x, sketch):
 
 @inlined
 def place(s, v, partner, rows, x, sketch, gradient):
-    """Places vertex v, with its partner if any, from `rows` (-1 pads); False when there is no such place."""
+    """Places vertex v, with its partner if any, from `rows` (-1 pads); False when there is no such
+    place."""
     count = 0
     while count < 3 and rows[count] >= 0:
         count += 1

@@ -1,8 +1,9 @@
-"""The construction plan: which vertices are placed from which equations, in which order, and its execution.
+"""The construction plan: which vertices are placed from which equations, in which order, and its
+execution.
 
-Peeled vertices come last; before them the core: rigid bodies in their own frame, then the clusters in the
-order of placing. A step is closed (one vertex, a line or a circle) or numeric (a block). A step whose
-equations already hold is left alone, which makes a second solve after one change cheap.
+Peeled vertices come last; before them the core: rigid bodies in their own frame, then the clusters
+in the order of placing. A step is closed (one vertex, a line or a circle) or numeric (a block). A
+step whose equations already hold is left alone, which makes a second solve after one change cheap.
 """
 
 from typing import NamedTuple
@@ -11,7 +12,7 @@ import numpy as np
 
 from clearance.jit import inlined, kernel
 from clearance.kernels.sketch_blocks import bodies, match, ordered_parts
-from clearance.kernels.sketch_equations import POINT_LINE, POINT_POINT, evaluate
+from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN, lists
 from clearance.kernels.sketch_newton import newton
 from clearance.kernels.sketch_pebble import play
@@ -22,8 +23,9 @@ from clearance.kernels.sketch_place import place
 class Plan(NamedTuple):
     """Steps (s,) in order: vertex and partner (closed) or block (numeric, else -1), edges (s, 3).
 
-    `origin` says where a step comes from: 0 peeled, 1 inside a body, 2 a cluster of the core. Blocks list
-    their vertices and rows. `body_of` (v,) is -1 outside bodies; `held` (b,) marks the initial clusters.
+    `origin` says where a step comes from: 0 peeled, 1 inside a body, 2 a cluster of the core.
+    Blocks list their vertices and rows. `body_of` (v,) is -1 outside bodies; `held` (b,) marks the
+    initial clusters.
     """
 
     vertex: np.ndarray
@@ -99,10 +101,11 @@ def components(kind, ends, theta_of, absolute):
 
 @inlined
 def _bases(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies):
-    """Chooses the initial cluster of every part of the core: ground, largest body, or an edge's two ends.
+    """Chooses the initial cluster of every part of the core: ground, largest body, or an edge's two
+    ends.
 
-    Returns (held (bodies + n_parts + 1,), n_bodies, seed edge of the bodies made here). An edge's ends
-    become a new body; a part held by directions only holds its first point.
+    Returns (held (bodies + n_parts + 1,), n_bodies, seed edge of the bodies made here). An edge's
+    ends become a new body; a part held by directions only holds its first point.
     """
     held = np.zeros(n_bodies + n_parts + 1, np.uint8)
     seed = np.full(n_bodies + n_parts + 1, -1, np.int64)
@@ -200,7 +203,11 @@ def make_plan(kind, ends, absolute, theta_of):
     removed = np.zeros(n, np.uint8)
     v1, p1, e1 = peel(kind, ends, starts, rows, absolute, theta_of, live, removed)
     v2, p2, e2 = v1[:0], p1[:0], e1[:0]
-    dependent, circuit_start, circuit = np.empty(0, np.int64), np.zeros(1, np.int64), np.empty(0, np.int64)
+    dependent, circuit_start, circuit = (
+        np.empty(0, np.int64),
+        np.zeros(1, np.int64),
+        np.empty(0, np.int64),
+    )
     if live.any():
         dependent, circuit_start, circuit = play(kind, ends, absolute, live)
         for row in dependent:
@@ -244,7 +251,9 @@ def make_plan(kind, ends, absolute, theta_of):
         for v in range(n):
             if hold[v] >= 0:
                 present[hold[v]] = 1
-        node_part, n_clusters = ordered_parts(ends, between, hold, owner, capacity.shape[0], present)
+        node_part, n_clusters = ordered_parts(
+            ends, between, hold, owner, capacity.shape[0], present
+        )
         vs, vl = _by_part(hold, node_part, body_of, n_clusters)
         es, el = _rows_by_part(owner, between, node_part, n_clusters)
         for c in range(n_clusters):
@@ -274,9 +283,9 @@ def make_plan(kind, ends, absolute, theta_of):
         vertex[steps], partner[steps], edges[steps] = v1[at], p1[at], e1[at]
         steps += 1
     return Plan(
-        vertex[:steps], partner[:steps], edges[:steps], block[:steps], origin[:steps], bvs[: blocks + 1],
-        bv[: bvs[blocks]], brs[: blocks + 1], br[: brs[blocks]], body_of, held, dependent, circuit_start,
-        circuit,
+        vertex[:steps], partner[:steps], edges[:steps], block[:steps], origin[:steps], bvs[: blocks
+        + 1], bv[: bvs[blocks]], brs[: blocks + 1], br[: brs[blocks]], body_of, held, dependent,
+        circuit_start, circuit,
     )  # fmt: skip
 
 
@@ -346,10 +355,12 @@ def _pivots(s, body_of, n_bodies, x):
 
 @kernel
 def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block, attempts):
-    """Runs the steps in place on x; `failed` (s,) is 0 done, 1 no such place, 2 block too large, 3 left alone.
+    """Runs the steps in place on x; `failed` (s,) is 0 done, 1 no such place, 2 block too large, 3
+    left alone.
 
-    `active` (v,) leaves out the vertices of parts that need no work. A step is left alone when its equations
-    hold to `settled`; a numeric one aims at `floor` and counts as done at `tolerance` [m].
+    `active` (v,) leaves out the vertices of parts that need no work. A step is left alone when its
+    equations hold to `settled`; a numeric one aims at `floor` and counts as done at `tolerance`
+    [m].
     """
     n_steps = plan.vertex.shape[0]
     failed = np.zeros(n_steps, np.int64)

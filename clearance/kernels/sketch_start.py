@@ -14,7 +14,8 @@ from clearance.kernels.sketch_graph import DIRECTION, OFFSET, RADIUS
 
 @kernel
 def agree(s, role, x, middle, settled):
-    """Makes merged numbers agree, in place on x; lines turn about `middle` (n, 2), given by direction index.
+    """Makes merged numbers agree, in place on x; lines turn about `middle` (n, 2), given by
+    direction index.
 
     Numbers that agree to `settled` are left as they are. `s` is a System.
     """
@@ -72,7 +73,8 @@ def row_parts(ends, var, part, vertex_of):
 
 @kernel
 def counts(kind, ends, part, n_parts, dependent, dof):
-    """Degrees of freedom left in every part: those of its vertices less its independent equations."""
+    """Degrees of freedom left in every part: those of its vertices less its independent
+    equations."""
     out = np.zeros(n_parts, np.int64)
     for v in range(1, kind.shape[0]):
         out[part[v]] += dof[kind[v]]

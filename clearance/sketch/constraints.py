@@ -1,8 +1,8 @@
 """Constraint kinds: between which entities, with which valency, and the equations they stand for.
 
-A kind turns entities into rows (see `clearance.kernels.sketch_equations`). Whatever an equation leaves open
-by sign (the side of a line, inside or outside, the turn of an angle) is read from the sketch when the
-constraint is made and never changes afterwards. Not for: solving.
+A kind turns entities into rows (see `clearance.kernels.sketch_equations`). Whatever an equation
+leaves open by sign (the side of a line, inside or outside, the turn of an angle) is read from the
+sketch when the constraint is made and never changes afterwards. Not for: solving.
 """
 
 from __future__ import annotations
@@ -238,7 +238,8 @@ def _midpoint(x, m, line):
 
 def _middle(x, m, p, q):
     return [
-        Row(LINEAR, (m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5)) for k in (0, 1)
+        Row(LINEAR, (m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5))
+        for k in (0, 1)
     ]
 
 
@@ -269,7 +270,8 @@ def _nothing(x, *entities):
 
 
 class Form(NamedTuple):
-    """One way to use a kind: the entities it takes, how it becomes rows, and its dimension's unit."""
+    """One way to use a kind: the entities it takes, how it becomes rows, and its dimension's
+    unit."""
 
     takes: tuple[type, ...]
     rows: Callable[..., list[Row]]
@@ -334,7 +336,9 @@ def form_of(kind: str, entities: Sequence[Entity]) -> tuple[Form, tuple[Entity, 
 def _check_spans(kind: str, form: Form, entities: Sequence[Entity]) -> None:
     for e in entities:
         if form.spans and isinstance(e, Line) and e.ends is None:
-            raise BadConstraint(f"{kind} of the infinite line {e.name}", valid="a line through two points")
+            raise BadConstraint(
+                f"{kind} of the infinite line {e.name}", valid="a line through two points"
+            )
 
 
 def measured(constraint: Constraint, x: list[float]) -> float:

@@ -1,17 +1,21 @@
-"""Conflicts: a minimal set of constraints that cannot hold together, and the least changes that repair it.
+"""Conflicts: a minimal set of constraints that cannot hold together, and the least changes that
+repair it.
 
-The first suspects are the circuit that the graph (or the merging of directions) closes around the broken
-equation; otherwise the broken part as a whole. The set is then thinned by trying: a constraint stays only if
-the rest can be solved without it (QuickXplain's halving, Junker 2004), so minimality is checked by machine.
+The first suspects are the circuit that the graph (or the merging of directions) closes around the
+broken equation; otherwise the broken part as a whole. The set is then thinned by trying: a
+constraint stays only if the rest can be solved without it (QuickXplain's halving, Junker 2004), so
+minimality is checked by machine.
 """
 
 from __future__ import annotations
 
+import heapq
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from clearance.kernels.sketch_equations import POINT_POINT
 from clearance.sketch.constraints import measured
 from clearance.sketch.problem import Problem, Tables, problem_of
 
@@ -46,6 +50,11 @@ class Diagnosis:
 def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis:
     """Why a problem has no solution; the sketch is not changed."""
     suspects = _suspects(problem, outcome.broken)
+    chain = _too_short(problem, suspects or [], outcome.broken)
+    if chain:
+        trial = _Trials(sketch, problem, before, 1)
+        if trial.is_minimal(chain):
+            return Diagnosis(trial, chain)
     for effort in (0, 1):  # quick trials first; their answer counts only when full ones confirm it
         trial = _Trials(sketch, problem, before, effort)
         chosen = suspects
@@ -72,8 +81,45 @@ def _suspects(problem: Problem, broken: int) -> list[int] | None:
             touched = set(problem.system.var[rows][problem.system.var[rows] >= 0])
             near = [r for r in merged if touched & set(problem.system.var[r])]
             together = [i for i, _ in problem.tables.together]
-            return sorted({int(o) for o in owner[rows]} | {int(owner[r]) for r in near} | set(together))
+            return sorted(
+                {int(o) for o in owner[rows]} | {int(owner[r]) for r in near} | set(together)
+            )
     return None
+
+
+def _too_short(problem: Problem, suspects: list[int], broken: int) -> list[int]:
+    """A distance and a chain of other distances that cannot span it, if there is one (else empty).
+
+    The shortest chain between the broken distance's ends, by Dijkstra's method.
+    """
+    tables, var = problem.tables, problem.system.var
+    if broken < 0 or tables.code[broken] != POINT_POINT:
+        return []
+    value, near = tables.value, {}
+    for row in np.flatnonzero((tables.code == POINT_POINT) & np.isin(tables.owner, suspects)):
+        if row != broken:
+            a, b = int(var[row, 0]), int(var[row, 2])
+            near.setdefault(a, []).append((b, float(value[row]), int(row)))
+            near.setdefault(b, []).append((a, float(value[row]), int(row)))
+    start, goal = int(var[broken, 0]), int(var[broken, 2])
+    came, waiting, done = {}, [(0.0, start, -1, -1)], set()
+    while waiting:
+        length, at, before, row = heapq.heappop(waiting)
+        if at in done:
+            continue
+        done.add(at)
+        came[at] = (before, row)
+        if at == goal:
+            break
+        for other, step, by in near.get(at, []):
+            heapq.heappush(waiting, (length + step, other, at, by))
+    if goal not in came or length >= value[broken]:
+        return []
+    chain = [broken]
+    while goal != start:
+        goal, row = came[goal]
+        chain.append(row)
+    return sorted(int(o) for o in tables.owner[chain])
 
 
 class _Trials:
@@ -106,13 +152,19 @@ class _Trials:
         return not chosen or self.run(chosen).broken == -1
 
     def everything(self, broken: int) -> list[int]:
-        """All constraints of the broken part of the sketch (of the whole when it cannot be told)."""
+        """All constraints of the broken part of the sketch (of the whole when it cannot be
+        told)."""
         owner = self.tables.owner
         part = self.problem.row_part[broken] if broken >= 0 else -1
         if part < 0 or not (self.problem.fate == 0).any():
-            extra = [i for i, c in enumerate(self.sketch._ordered) if c.kind == "same_side" and not c.driven]
+            extra = [
+                i
+                for i, c in enumerate(self.sketch._ordered)
+                if c.kind == "same_side" and not c.driven
+            ]
             return sorted({int(o) for o in owner} | set(extra))
-        return sorted({int(o) for o in owner[self.problem.row_part == part]} | {int(o) for o in owner[
+        return sorted({int(o) for o in owner[self.problem.row_part == part]} | {int(o) for o in
+        owner[
             (self.problem.row_part < 0)]})  # fmt: skip
 
     def is_minimal(self, conflict: list[int]) -> bool:
@@ -122,7 +174,8 @@ class _Trials:
         )
 
     def minimal(self, suspects: list[int]) -> list[int]:
-        """A subset that cannot be solved while every smaller one can. Built-in incidences are tried last."""
+        """A subset that cannot be solved while every smaller one can. Built-in incidences are tried
+        last."""
         ordered = self.sketch._ordered
         background = [i for i in suspects if ordered[i].built_in]
         changeable = [i for i in suspects if not ordered[i].built_in]
@@ -132,7 +185,8 @@ class _Trials:
         return sorted(core + self._explain(core, background, False))
 
     def _explain(self, fixed: list[int], rest: list[int], grew: bool) -> list[int]:
-        """Junker's QuickXplain: the part of `rest` that conflicts together with `fixed`, minimal."""
+        """Junker's QuickXplain: the part of `rest` that conflicts together with `fixed`,
+        minimal."""
         if grew and not self.solvable(fixed):
             return []
         if not self.solvable(fixed) or not rest:
@@ -153,13 +207,16 @@ class _Trials:
 
 
 def _repairs(trial: _Trials, conflict: list[int]) -> list[Repair]:
-    """One dimension changed at a time, and all together by least squares; the least change first."""
+    """One dimension changed at a time, and all together by least squares; the least change
+    first."""
     ordered, size = trial.sketch._ordered, trial.problem.size
     dimensions = [i for i in conflict if ordered[i].given is not None]
     found = []
     whole = [int(k) for k in np.unique(trial.tables.owner)]
     for i in dimensions:
-        outcome = trial.run([k for k in whole if k != i])  # so that the repair suits all other constraints
+        outcome = trial.run(
+            [k for k in whole if k != i]
+        )  # so that the repair suits all other constraints
         if outcome.broken != -1:  # there are more conflicts than this one
             outcome = trial.run([k for k in conflict if k != i])
         if outcome.broken == -1:
@@ -178,7 +235,8 @@ def _repair(ordered, size: float, numbers: dict[int, float]) -> Repair:
 
 
 def _shared(trial: _Trials, conflict: list[int], dimensions: list[int]) -> dict[int, float] | None:
-    """The least-squares change of all dimensions at once, the other constraints kept; None if not found."""
+    """The least-squares change of all dimensions at once, the other constraints kept; None if not
+    found."""
     from scipy.optimize import least_squares
 
     from clearance.kernels.sketch_equations import residuals
@@ -203,7 +261,9 @@ def _shared(trial: _Trials, conflict: list[int], dimensions: list[int]) -> dict[
         x[free] = numbers
         return weight * residuals(tables.code, var, tables.coef, tables.value, x[alias])
 
-    fitted = least_squares(violation, trial.before[free], xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=300)
+    fitted = least_squares(
+        violation, trial.before[free], xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=300
+    )
     x = trial.before.copy()
     x[free] = fitted.x
     x = x[alias]

@@ -1,7 +1,8 @@
-"""The things a sketch is made of: points, infinite lines and circles, and segments, arcs, polylines on them.
+"""The things a sketch is made of: points, infinite lines and circles, and segments, arcs, polylines
+on them.
 
-An entity is a handle: its numbers live in the sketch's one flat vector and change when the sketch is solved.
-Lengths [m], directions as unit vectors; a line runs from its first point to its second.
+An entity is a handle: its numbers live in the sketch's one flat vector and change when the sketch
+is solved. Lengths [m], directions as unit vectors; a line runs from its first point to its second.
 """
 
 from __future__ import annotations
@@ -41,7 +42,8 @@ class Point(Entity):
 
 
 class Line(Entity):
-    """An infinite line: 2 degrees of freedom; `ends` are the two points it was drawn through, if any."""
+    """An infinite line: 2 degrees of freedom; `ends` are the two points it was drawn through, if
+    any."""
 
     what = "line"
 

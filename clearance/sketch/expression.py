@@ -1,7 +1,8 @@
 """Dimensions as expressions of named parameters, evaluated without `eval`.
 
-Allowed: numbers, names, + - * / **, unary signs, parentheses, pi, and the functions sqrt, sin, cos, tan, asin,
-acos, atan, atan2, radians, degrees, abs, min, max, hypot. Anything else is refused with the expression.
+Allowed: numbers, names, + - * / **, unary signs, parentheses, pi, and the functions sqrt, sin, cos,
+tan, asin, acos, atan, atan2, radians, degrees, abs, min, max, hypot. Anything else is refused with
+the expression.
 """
 
 from __future__ import annotations
@@ -67,12 +68,15 @@ def evaluated(expression: str, numbers: Mapping[str, float]) -> float:
 @functools.lru_cache(maxsize=4096)
 def _parsed(expression: str) -> ast.expr:
     if len(expression) > _LONGEST:
-        raise BadSyntax(f"an expression of {len(expression)} characters", valid=f"at most {_LONGEST}")
+        raise BadSyntax(
+            f"an expression of {len(expression)} characters", valid=f"at most {_LONGEST}"
+        )
     try:
         return ast.parse(expression, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise BadSyntax(
-            f"{expression!r} is not an expression", valid="numbers, names, + - * / **, sqrt, sin, ..."
+            f"{expression!r} is not an expression",
+            valid="numbers, names, + - * / **, sqrt, sin, ...",
         ) from None
 
 
@@ -99,4 +103,6 @@ def _value(node: ast.expr, numbers: Mapping[str, float], whole: str) -> float:
             f"unknown function {node.func.id!r} in {whole!r}",
             valid=nearest_name(node.func.id, _FUNCTIONS),
         )
-    raise BadSyntax(f"{whole!r} uses what is not allowed", valid="numbers, names, + - * / **, sqrt(...), ...")
+    raise BadSyntax(
+        f"{whole!r} uses what is not allowed", valid="numbers, names, + - * / **, sqrt(...), ..."
+    )

@@ -1,7 +1,8 @@
-"""Degrees of freedom of a solved sketch: the whole, every entity, and equations that follow from others.
+"""Degrees of freedom of a solved sketch: the whole, every entity, and equations that follow from
+others.
 
-The graph's count is generic; where a part is not too large its derivative matrix at the solution is factored
-as well, so that dependencies which no count can see (theorems of geometry) are found.
+The graph's count is generic; where a part is not too large its derivative matrix at the solution is
+factored as well, so that dependencies which no count can see (theorems of geometry) are found.
 """
 
 from __future__ import annotations
@@ -13,10 +14,12 @@ from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 from clearance.sketch.problem import Problem
 
 FACTORED = 1500
-"""Freedoms of a part up to which its matrix is factored; beyond that the plan's own steps are the evidence."""
+"""Freedoms of a part up to which its matrix is factored; beyond that the plan's own steps are the
+evidence."""
 
 SINGULAR = 1e-9
-"""[-] Ratio to the largest below which a singular value is taken for 0: dimensions are scaled to one size."""
+"""[-] Ratio to the largest below which a singular value is taken for 0: dimensions are scaled to
+one size."""
 
 
 def derivative(problem: Problem, x: np.ndarray, part: int, rows: np.ndarray):
@@ -42,7 +45,9 @@ def rows_of(problem: Problem, part: int, *, independent: bool) -> np.ndarray:
     return np.flatnonzero(chosen)
 
 
-def rigid_motions(problem: Problem, x: np.ndarray, vertices: np.ndarray, first: np.ndarray) -> np.ndarray:
+def rigid_motions(
+    problem: Problem, x: np.ndarray, vertices: np.ndarray, first: np.ndarray
+) -> np.ndarray:
     """(n, 3) two shifts and a turn about the origin as motions of the columns."""
     s = problem.system
     out = np.zeros((int(np.max(first)) + 2, 3))
@@ -73,7 +78,8 @@ def freedom_of(problem: Problem, x: np.ndarray) -> int:
 
 
 def _part_freedom(problem: Problem, x: np.ndarray, part: int) -> int:
-    """Freedoms of one part including its placement; the matrix decides where the plan had to compute."""
+    """Freedoms of one part including its placement; the matrix decides where the plan had to
+    compute."""
     suspicious = bool((problem.plan.block >= 0).any()) or problem.plan.dependent.size > 0
     vertices = np.flatnonzero(problem.part == part)
     if not suspicious or vertices.size > FACTORED // 2:
@@ -113,7 +119,8 @@ def whole_placement(problem: Problem, x: np.ndarray) -> int:
 
 
 def redundant_rows(problem: Problem, x: np.ndarray, solved: bool) -> list[int]:
-    """Equations that follow from the others: by merges, by the graph's count, or at the solution."""
+    """Equations that follow from the others: by merges, by the graph's count, or at the
+    solution."""
     rows = [*problem.repeated, *np.flatnonzero(problem.fate >= 2), *problem.plan.dependent]
     if not solved or not (problem.plan.block >= 0).any():
         return sorted(int(r) for r in rows)
@@ -178,7 +185,9 @@ def _freedom_at(problem: Problem, motions: dict, variables: list[int]) -> int:
 
 def _loose_motions(problem: Problem, x: np.ndarray, part: int):
     """(basis of the motions left (n, k), first columns) with the part's initial cluster held."""
-    matrix, vertices, first = derivative(problem, x, part, rows_of(problem, part, independent=False))
+    matrix, vertices, first = derivative(
+        problem, x, part, rows_of(problem, part, independent=False)
+    )
     hold = problem.hold[part]
     if hold < 2:
         matrix = np.vstack([matrix, _gauge(problem, vertices, first, matrix.shape[1], x, hold)])
@@ -192,7 +201,12 @@ def _gauge(problem: Problem, vertices, first, n: int, x, hold: int) -> np.ndarra
     motions = rigid_motions(problem, x, vertices, first)[:n, : 2 if hold else 3]
     rows = []
     inside = set(int(v) for v in vertices)
-    ordered = [int(v) for k in range(problem.plan.vertex.size) for v in _placed(problem, k) if int(v) in inside]
+    ordered = [
+        int(v)
+        for k in range(problem.plan.vertex.size)
+        for v in _placed(problem, k)
+        if int(v) in inside
+    ]
     for v in dict.fromkeys([*ordered, *map(int, vertices)]):
         for c in range(first[v], first[v] + (2 if problem.system.kind[v] == POINT else 1)):
             trial = [*rows, c]

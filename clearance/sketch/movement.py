@@ -1,8 +1,9 @@
 """Least movement: the sketch nearest to the one drawn among all that satisfy the constraints.
 
-Movement is the root of the summed squares of the points' shifts, the radii's changes and, for a line drawn
-without points, its shift and turn at its foot (a turn counted as an arc at the sketch's size). The optimum is found
-by Newton's method on the Lagrangian (sequential quadratic programming) with a line search.
+Movement is the root of the summed squares of the points' shifts, the radii's changes and, for a
+line drawn without points, its shift and turn at its foot (a turn counted as an arc at the sketch's
+size). The optimum is found by Newton's method on the Lagrangian (sequential quadratic programming)
+with a line search.
 """
 
 from __future__ import annotations
@@ -17,14 +18,16 @@ from clearance.kernels.sketch_place import System
 from clearance.sketch.problem import RESIDUAL, Problem
 
 DENSE = 160
-"""Unknowns up to which the dense factorisation of the optimality system is the faster one (measured)."""
+"""Unknowns up to which the dense factorisation of the optimality system is the faster one
+(measured)."""
 
 WEAK = 1e-7
 """[-] Weight of lines that points carry: their own numbers do not count as movement."""
 
 
 def least_movement(problem: Problem, part: int, x, target, weight, start=None) -> np.ndarray | None:
-    """The numbers (n,) nearest to `target` with all equations of one part true; None when none was found.
+    """The numbers (n,) nearest to `target` with all equations of one part true; None when none was
+    found.
 
     Args:
         x: numbers that satisfy the equations (or nearly); `start`, the sketch, is tried first.
@@ -102,7 +105,8 @@ class _Work:
         return float(np.sum(h * g[i.astype(int)] ** 2))
 
     def optimum(self, x: np.ndarray) -> np.ndarray | None:
-        """Sequential quadratic programming from x; None when the equations could not be satisfied."""
+        """Sequential quadratic programming from x; None when the equations could not be
+        satisfied."""
         size = self.problem.size
         multipliers = np.zeros(self.rows.size)
         for k in range(30):
@@ -119,17 +123,21 @@ class _Work:
         return self._restored(x)
 
     def _step(self, f, rows, cols, entries, gap, bent):
-        i, j, h = self.hessian.T
+        i, _, h = self.hessian.T
         diagonal = np.bincount(i.astype(int), h, self.n)
         m = f.size
         right = np.concatenate([-diagonal * gap, -f])
         for with_bend in (bent is not None, False):
-            solution = self._solved(diagonal, bent if with_bend else None, rows, cols, entries, m, right)
+            solution = self._solved(
+                diagonal, bent if with_bend else None, rows, cols, entries, m, right
+            )
             if solution is None or not np.isfinite(solution).all():
                 continue
             step = solution[: self.n]
             if with_bend:
-                curved = np.sum(bent[2] * step[bent[0]] * step[bent[1]]) + np.sum(diagonal * step**2)
+                curved = np.sum(bent[2] * step[bent[0]] * step[bent[1]]) + np.sum(
+                    diagonal * step**2
+                )
                 if curved <= 1e-3 * np.sum(diagonal * step**2):
                     continue
             return step, solution[self.n :]

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 
 def curve_of(sketch) -> Curve:
-    """The drawn parts as contours: segments and arcs that share ends are chained, circles stand alone.
+    """The drawn parts as contours: segments and arcs that share ends are chained, circles stand
+    alone.
 
     Raises:
         BadShape: nothing is drawn (infinite lines and points draw nothing).
@@ -22,7 +23,9 @@ def curve_of(sketch) -> Curve:
 
     entities = list(sketch.entities.values())
     parts = [e for e in entities if isinstance(e, (Segment, Arc))]
-    contours = [Curve.chain([_piece(e, back) for e, back in chain]) for chain in chains(sketch, parts)]
+    contours = [
+        Curve.chain([_piece(e, back) for e, back in chain]) for chain in chains(sketch, parts)
+    ]
     for e in entities:
         if type(e) is Circle:
             contours.append(Curve.circle(e.center.position, e.radius))
@@ -39,7 +42,10 @@ def chains(sketch, parts: list) -> list[list[tuple[object, bool]]]:
         for p in ends_of(e):
             at.setdefault(int(alias[p.variable]), []).append(k)
     left, out = set(range(len(parts))), []
-    for first in sorted(left, key=lambda k: (min(len(at[int(alias[p.variable])]) == 2 for p in ends_of(parts[k])), k)):
+    for first in sorted(
+        left,
+        key=lambda k: (min(len(at[int(alias[p.variable])]) == 2 for p in ends_of(parts[k])), k),
+    ):
         if first in left:
             out.append(_chain(parts, first, left, at, alias))
     return out

@@ -1,4 +1,5 @@
-"""A sketch as an SVG picture: what is drawn in black, construction lines and circles thin and grey."""
+"""A sketch as an SVG picture: what is drawn in black, construction lines and circles thin and
+grey."""
 
 from __future__ import annotations
 
@@ -11,11 +12,16 @@ from clearance.sketch.entities import Arc, Circle, Line, Point, Segment
 
 def svg_of(sketch, *, width: int = 800, title: str = "") -> str:
     """The text of an SVG picture, y upwards."""
-    points = np.array([e.position for e in sketch.entities.values() if isinstance(e, Point)] or [[0.0, 0.0]])
+    points = np.array(
+        [e.position for e in sketch.entities.values() if isinstance(e, Point)] or [[0.0, 0.0]]
+    )
     low, high = points.min(axis=0), points.max(axis=0)
     for e in sketch.entities.values():
         if type(e) is Circle:
-            low, high = np.minimum(low, e.center.position - e.radius), np.maximum(high, e.center.position + e.radius)
+            low, high = (
+                np.minimum(low, e.center.position - e.radius),
+                np.maximum(high, e.center.position + e.radius),
+            )
     margin = 0.06 * max(float(np.max(high - low)), 1e-9)
     low, high = low - margin, high + margin
     scale = width / (high[0] - low[0])
@@ -51,7 +57,11 @@ def _drawn(e, low, high, scale: float) -> str:
         start, end = angles_of(e)
         r = e.radius * scale
         large = int(end - start > np.pi)
-        return _path(f"M{at(e.start.position)} A{r:.2f} {r:.2f} 0 {large} 0 {at(e.end.position)}", "black", 1.6)
+        return _path(
+            f"M{at(e.start.position)} A{r:.2f} {r:.2f} 0 {large} 0 {at(e.end.position)}",
+            "black",
+            1.6,
+        )
     x, y = at(e.center.position).split()
     return f'<circle cx="{x}" cy="{y}" r="{e.radius * scale:.2f}" fill="none" stroke="black" stroke-width="1.6"/>'
 

@@ -1,8 +1,9 @@
 """The construction plan in words, step by step as the paper's figures name them.
 
-Clusters: (a) three entities, an initial cluster; (b) an entity on a cluster by two edges; (c) two bodies by
-three edges; (d) three bodies; extended, four or more; and the same with edges missing (Fig. 13), whose
-assumptions are counted. Not for: making the plan (`clearance.kernels.sketch_plan`).
+Clusters: (a) three entities, an initial cluster; (b) an entity on a cluster by two edges; (c) two
+bodies by three edges; (d) three bodies; extended, four or more; and the same with edges missing
+(Fig. 13), whose assumptions are counted. Not for: making the plan
+(`clearance.kernels.sketch_plan`).
 """
 
 from __future__ import annotations
@@ -22,9 +23,11 @@ class Step:
         kind: "preprocess", "initial", "a", "b", "c", "d" or "extended".
         places: the entities that it merges or places.
         uses: the constraints that it satisfies.
-        cluster: number of the body or cluster that it works in; 0 is the one that takes in all in the end.
+        cluster: number of the body or cluster that it works in; 0 is the one that takes in all in
+        the end.
         method: "assumed", "algebraic" or "numeric".
-        assumptions: how many conditions are missing and taken from the sketch (initial placement apart).
+        assumptions: how many conditions are missing and taken from the sketch (initial placement
+        apart).
         outcome: "done", "kept" (it held already) or "failed".
     """
 
@@ -39,7 +42,9 @@ class Step:
     def __str__(self) -> str:
         under = f", {self.assumptions} assumed" if self.assumptions else ""
         by = f" by {', '.join(self.uses)}" if self.uses else ""
-        return f"({self.kind}) {self.method}{under}: {', '.join(self.places)}{by} -> R{self.cluster}"
+        return (
+            f"({self.kind}) {self.method}{under}: {', '.join(self.places)}{by} -> R{self.cluster}"
+        )
 
 
 class _Names:
@@ -96,7 +101,11 @@ def readable(sketch, problem, fates: np.ndarray) -> list[Step]:
         size[key] = size.get(key, 0) + 1
         word = "initial" if initial and key not in begun else "b"
         if initial or word == "b":
-            word = "initial" if initial else ("a" if size[key] == 3 and problem.hold[part] < 2 else "b")
+            word = (
+                "initial"
+                if initial
+                else ("a" if size[key] == 3 and problem.hold[part] < 2 else "b")
+            )
         method = "assumed" if not rows else "algebraic"
         out.append(Step(word, places, names.rows(rows), cluster, method, assumed, outcome))
         begun.add(key)
@@ -117,7 +126,10 @@ def _block_step(names: _Names, problem, b: int, outcome: str) -> Step:
     plan, s = problem.plan, problem.system
     vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
     rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
-    nodes = {("body", int(plan.body_of[v])) if plan.body_of[v] >= 0 else ("vertex", int(v)) for v in vertices}
+    nodes = {
+        ("body", int(plan.body_of[v])) if plan.body_of[v] >= 0 else ("vertex", int(v))
+        for v in vertices
+    }
     freedom = sum(3 if n[0] == "body" else (2 if s.kind[n[1]] == POINT else 1) for n in nodes)
     bodies = sum(n[0] == "body" for n in nodes)
     kind = "extended"
@@ -125,7 +137,9 @@ def _block_step(names: _Names, problem, b: int, outcome: str) -> Step:
         kind = "c"
     elif bodies == len(nodes) == 2:
         kind = "d"
-    return Step(kind, names.vertices(vertices), names.rows(rows), 0, "numeric", freedom - rows.size, outcome)
+    return Step(
+        kind, names.vertices(vertices), names.rows(rows), 0, "numeric", freedom - rows.size, outcome
+    )
 
 
 __all__ = ["GROUND", "SIZE", "TURN", "Step", "readable"]

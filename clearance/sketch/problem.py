@@ -1,7 +1,8 @@
-"""A sketch lowered to flat arrays, its constraint graph and its plan; made anew when the structure changes.
+"""A sketch lowered to flat arrays, its constraint graph and its plan; made anew when the structure
+changes.
 
-Coincident points share their variables. A problem can also be made of some of the constraints only, which
-is how conflicts are searched.
+Coincident points share their variables. A problem can also be made of some of the constraints only,
+which is how conflicts are searched.
 """
 
 from __future__ import annotations
@@ -11,7 +12,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.kernels.sketch_graph import DIRECTION, IN_GRAPH, MERGED, OFFSET, SLIDE, X, edges, members, merge, vertices
+from clearance.kernels.sketch_graph import (
+    DIRECTION,
+    IN_GRAPH,
+    MERGED,
+    OFFSET,
+    SLIDE,
+    X,
+    edges,
+    members,
+    merge,
+    vertices,
+)
 from clearance.kernels.sketch_place import System
 from clearance.kernels.sketch_plan import Plan, components, make_plan
 from clearance.kernels.sketch_start import counts, row_parts
@@ -20,14 +32,16 @@ if TYPE_CHECKING:
     from clearance.sketch.constraints import Constraint
 
 RESIDUAL = 1e-12
-"""[-] Largest residual of a solved sketch relative to its size: some hundred roundings of a coordinate."""
+"""[-] Largest residual of a solved sketch relative to its size: some hundred roundings of a
+coordinate."""
 
 SETTLED = 2e-13
-"""[-] Equations that hold to this, relative to the size, are left alone: a solved sketch solves to itself."""
+"""[-] Equations that hold to this, relative to the size, are left alone: a solved sketch solves to
+itself."""
 
 DEPENDENT = 1e-9
-"""[-] How far a dimension that others imply may be off, relative to the size, and still agree with them: a
-long circuit loses digits by its condition."""
+"""[-] How far a dimension that others imply may be off, relative to the size, and still agree with
+them: a long circuit loses digits by its condition."""
 
 FREEDOMS = np.array([3, 2, 1, 1, 1])
 """Degrees of freedom by kind of vertex."""
@@ -61,7 +75,8 @@ class Tables:
         together = [pair for pair in self.together if chosen[pair[0]]]
         return Tables(
             self.role, self.code[rows], self.var[rows], self.coef[rows], self.scale[rows],
-            self.offset[rows], self.ground[rows], self.owner[rows], self.line_ends, together, self.numbers,
+            self.offset[rows], self.ground[rows], self.owner[rows], self.line_ends, together,
+            self.numbers,
         )  # fmt: skip
 
 
@@ -70,7 +85,9 @@ def tables_of(sketch) -> Tables:
     ordered: list[Constraint] = sketch._ordered
     together = []
     for i, c in enumerate(ordered):
-        if c.n_rows and (c.kind == "concentric" or (c.kind == "coincident" and c.entities[0].what == "point")):
+        if c.n_rows and (
+            c.kind == "concentric" or (c.kind == "coincident" and c.entities[0].what == "point")
+        ):
             together.append((i, c.first_row))
     return Tables(
         np.array(sketch._roles, np.int64),
@@ -91,8 +108,9 @@ def tables_of(sketch) -> Tables:
 class Problem:
     """Everything about a sketch that a solve needs and that does not depend on where it starts.
 
-    `alias` (n,) is the variable that stands for each; `weight` (n,) how many variables it stands for (0 for
-    those stood for). `free` (parts,) are the freedoms left, `hold` how each part hangs on the ground.
+    `alias` (n,) is the variable that stands for each; `weight` (n,) how many variables it stands
+    for (0 for those stood for). `free` (parts,) are the freedoms left, `hold` how each part hangs
+    on the ground.
     """
 
     tables: Tables
@@ -146,7 +164,8 @@ def joined(tables: Tables) -> tuple[np.ndarray, np.ndarray, list[int]]:
 
 
 def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Problem:
-    """The problem of these tables; x only sets the size. `like`, with the same structure, saves the plan."""
+    """The problem of these tables; x only sets the size. `like`, with the same structure, saves the
+    plan."""
     value = tables.value
     size = size_of(tables, x, value)
     if like is None:
@@ -161,7 +180,11 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     parent, scale, shift, fate = merge(
         tables.code, var, tables.coef, value, tables.role, length_scale, DEPENDENT * size
     )
-    same = like is not None and np.array_equal(parent, like.system.parent) and np.array_equal(fate, like.fate)
+    same = (
+        like is not None
+        and np.array_equal(parent, like.system.parent)
+        and np.array_equal(fate, like.fate)
+    )
     if same:
         system = like.system._replace(value=value, scale=scale, shift=shift)
         out = Problem(**{**vars(like), "tables": tables, "system": system})
@@ -170,10 +193,14 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     if tables.together:
         rows = np.flatnonzero((var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & (tables.code == 6))
         fate[rows] = MERGED
-    return _fresh(tables, alias, weight, repeated, var, value, parent, scale, shift, fate, size, length_scale)
+    return _fresh(
+        tables, alias, weight, repeated, var, value, parent, scale, shift, fate, size, length_scale
+    )
 
 
-def _fresh(tables, alias, weight, repeated, var, value, parent, scale, shift, fate, size, length_scale):
+def _fresh(
+    tables, alias, weight, repeated, var, value, parent, scale, shift, fate, size, length_scale
+):
     vertex_of, kind, root = vertices(tables.role, parent, weight > 0)
     ends = edges(var, tables.ground, fate, vertex_of)
     start, member = members(vertex_of, tables.role, parent, kind.shape[0])
@@ -181,12 +208,26 @@ def _fresh(tables, alias, weight, repeated, var, value, parent, scale, shift, fa
     slides = np.flatnonzero(kind == SLIDE)
     theta_of[slides] = vertex_of[root[slides] - 1]
     system = System(
-        tables.code, var, tables.coef, value, kind, root, parent, scale, shift, start, member, vertex_of, ends
+        tables.code,
+        var,
+        tables.coef,
+        value,
+        kind,
+        root,
+        parent,
+        scale,
+        shift,
+        start,
+        member,
+        vertex_of,
+        ends,
     )
     placed = (tables.role == OFFSET) & (vertex_of == 0)
     ground = np.where((placed[var] & (var >= 0)).any(axis=1) & (fate == 0), 1, tables.ground)
     first_is_ground = (ground == 1) & (tables.ground == 0)
-    ends[first_is_ground] = np.array([_ground_first(e) for e in ends[first_is_ground]]).reshape(-1, 5)
+    ends[first_is_ground] = np.array([_ground_first(e) for e in ends[first_is_ground]]).reshape(
+        -1, 5
+    )
     plan = make_plan(kind, ends, ground, theta_of)
     part, n_parts, hold = components(kind, ends, theta_of, ground)
     free = counts(kind, ends, part, n_parts, plan.dependent, FREEDOMS)
@@ -217,4 +258,13 @@ def is_point(role: np.ndarray) -> np.ndarray:
     return role == X
 
 
-__all__ = ["IN_GRAPH", "Problem", "Tables", "is_point", "joined", "problem_of", "size_of", "tables_of"]
+__all__ = [
+    "IN_GRAPH",
+    "Problem",
+    "Tables",
+    "is_point",
+    "joined",
+    "problem_of",
+    "size_of",
+    "tables_of",
+]

@@ -21,7 +21,8 @@ class SketchResult:
     """The outcome of `Sketch.solve` or `Sketch.drag`.
 
     Attributes:
-        residual: [m] the largest equation error that is left (directions as arcs at the sketch's size).
+        residual: [m] the largest equation error that is left (directions as arcs at the sketch's
+        size).
         movement: [m] root of the summed squares of the points' shifts.
     """
 
@@ -39,7 +40,7 @@ class SketchResult:
 
     @cached_property
     def status(self) -> str:
-        """"well", "under", "over" (some constraints follow from others) or "inconsistent"."""
+        """ "well", "under", "over" (some constraints follow from others) or "inconsistent"."""
         if not self.solved:
             return "inconsistent"
         if self.redundant:
@@ -121,4 +122,6 @@ class SketchResult:
         return [] if self.solved else self._diagnosis.repairs
 
     def __repr__(self) -> str:
-        return f"<SketchResult {self.status}, freedom {self.freedom}, residual {self.residual:.1e} m>"
+        return (
+            f"<SketchResult {self.status}, freedom {self.freedom}, residual {self.residual:.1e} m>"
+        )

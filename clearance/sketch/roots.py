@@ -1,15 +1,16 @@
 """All real roots of the small numeric clusters: many starts, one list, nearest to the sketch first.
 
-The starts are spread over the turns and places a cluster can take; roots are told apart by their distance.
-It is a search, not a proof: a root with a basin smaller than the spacing of the starts may be missed.
+The starts are spread over the turns and places a cluster can take; roots are told apart by their
+distance. It is a search, not a proof: a root with a basin smaller than the spacing of the starts
+may be missed.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch_newton import solve_block
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
+from clearance.kernels.sketch_newton import solve_block
 from clearance.kernels.sketch_place import System
 from clearance.sketch.problem import RESIDUAL, Problem
 
@@ -31,7 +32,8 @@ def block_of(problem: Problem, b: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def is_small(problem: Problem, b: int) -> bool:
-    """Whether a cluster has at most `SMALL` nodes (a body counts as one) and as many equations as freedoms."""
+    """Whether a cluster has at most `SMALL` nodes (a body counts as one) and as many equations as
+    freedoms."""
     vertices, rows = block_of(problem, b)
     body, kind = problem.plan.body_of[vertices], problem.system.kind[vertices]
     nodes = len(set(body[body >= 0])) + int(np.sum(body < 0))
@@ -40,7 +42,8 @@ def is_small(problem: Problem, b: int) -> bool:
 
 
 def roots_of(problem: Problem, b: int, x: np.ndarray) -> list[np.ndarray]:
-    """All numbers (n,) found with the cluster's equations true, everything else as in x; x's own first."""
+    """All numbers (n,) found with the cluster's equations true, everything else as in x; x's own
+    first."""
     s, size = problem.system, problem.size
     vertices, rows = block_of(problem, b)
     random = np.random.default_rng(7)
@@ -53,7 +56,9 @@ def roots_of(problem: Problem, b: int, x: np.ndarray) -> list[np.ndarray]:
         _scatter(problem, vertices, tried, random, reach)
         pivot = _pivots(problem, tried)
         body_of = problem.plan.body_of
-        if not solve_block(s, vertices, rows, tried, body_of, pivot, 2e-16 * size, RESIDUAL * size, 1):
+        if not solve_block(
+            s, vertices, rows, tried, body_of, pivot, 2e-16 * size, RESIDUAL * size, 1
+        ):
             continue
         if _is_new(problem, tried, found, mine):
             found.append(tried)
@@ -115,7 +120,9 @@ def _scatter(problem: Problem, vertices, x: np.ndarray, random, reach: float) ->
                 _set(s, v, x[i] + change, x)
         elif s.kind[v] == POINT:
             c, si = np.cos(turn), np.sin(turn)
-            x[i : i + 2] = pivot[b] + shift + np.array([[c, -si], [si, c]]) @ (x[i : i + 2] - pivot[b])
+            x[i : i + 2] = (
+                pivot[b] + shift + np.array([[c, -si], [si, c]]) @ (x[i : i + 2] - pivot[b])
+            )
         elif s.kind[v] == SLIDE:
             d = x[i] - np.array([-np.sin(x[i - 1]), np.cos(x[i - 1])]) @ pivot[b]
             t = x[i - 1] + turn
@@ -130,7 +137,8 @@ def _set(s: System, v: int, number: float, x: np.ndarray) -> None:
 
 
 def alternatives_of(sketch, problem: Problem, x: np.ndarray) -> list[dict[str, np.ndarray]]:
-    """The other solutions, one small cluster changed at a time, as numbers of every entity by name."""
+    """The other solutions, one small cluster changed at a time, as numbers of every entity by
+    name."""
     from clearance.sketch.solver import residual_of, run_after
 
     found = []

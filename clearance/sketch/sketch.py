@@ -1,6 +1,8 @@
-"""The sketch as a user builds it: entities, constraints, parameters; checked on entry, solved on demand.
+"""The sketch as a user builds it: entities, constraints, parameters; checked on entry, solved on
+demand.
 
-All numbers live in one flat vector and all equations in flat lists, so that solving starts without walking
+All numbers live in one flat vector and all equations in flat lists, so that solving starts without
+walking
 over objects. Not for: how a sketch is solved (`solver`), nor its files (`sketch_file`).
 """
 
@@ -11,7 +13,15 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadDimension, BadShape, DuplicateName, NotFinite, UnknownKey, at, nearest_name
+from clearance.errors import (
+    BadDimension,
+    BadShape,
+    DuplicateName,
+    NotFinite,
+    UnknownKey,
+    at,
+    nearest_name,
+)
 from clearance.kernels.sketch_graph import DIRECTION, OFFSET, RADIUS, X, Y
 from clearance.sketch.constraints import Constraint, form_of, measured
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
@@ -20,13 +30,15 @@ from clearance.sketch.faults import DegenerateSketch, UnknownEntity
 
 if TYPE_CHECKING:
     from clearance.planar import Curve
+
     from clearance.sketch.result import SketchResult
 
 
 class Sketch:
     """A plane sketch of points, lines and circles, and what must be true of them.
 
-    Entities and constraints are added by the methods below; `solve` moves the entities so that every
+    Entities and constraints are added by the methods below; `solve` moves the entities so that
+    every
     constraint holds. Lengths [m], angles [rad].
     """
 
@@ -59,8 +71,11 @@ class Sketch:
         x, y = _number(x, f"{name}.x"), _number(y, f"{name}.y")
         return self._add(Point(self, name, self._grow((x, X), (y, Y))))
 
-    def line(self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: str | None = None) -> Line:
-        """A new infinite line through two points of the sketch, or drawn through two pairs of numbers.
+    def line(
+        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: str | None = None
+    ) -> Line:
+        """A new infinite line through two points of the sketch, or drawn through two pairs of
+        numbers.
 
         Raises:
             DegenerateSketch: the two points coincide.
@@ -68,11 +83,14 @@ class Sketch:
         return self._line(Line, a, b, name)
 
     def segment(self, a: Point, b: Point, *, name: str | None = None) -> Segment:
-        """A new segment between two points of the sketch (or pairs of numbers, which become points)."""
+        """A new segment between two points of the sketch (or pairs of numbers, which become
+        points)."""
         a, b = (p if isinstance(p, Entity) else self.point(*_two(p, "segment")) for p in (a, b))
         return self._line(Segment, a, b, name)
 
-    def circle(self, center: Point | Sequence[float], radius: float, *, name: str | None = None) -> Circle:
+    def circle(
+        self, center: Point | Sequence[float], radius: float, *, name: str | None = None
+    ) -> Circle:
         """A new circle about a point of the sketch, or about a new point at a pair of numbers."""
         name = self._name(name, "circle")
         radius = _number(radius, f"{name}.radius")
@@ -80,8 +98,11 @@ class Sketch:
             raise DegenerateSketch(f"the radius of {name} is {radius}", valid="a radius above 0")
         return self._add(Circle(self, name, *self._round(center, radius, name)))
 
-    def arc(self, center: Point | Sequence[float], start: Point, end: Point, *, name: str | None = None) -> Arc:
-        """A new arc about a centre, counter-clockwise from `start` to `end`, which lie on its circle."""
+    def arc(
+        self, center: Point | Sequence[float], start: Point, end: Point, *, name: str | None = None
+    ) -> Arc:
+        """A new arc about a centre, counter-clockwise from `start` to `end`, which lie on its
+        circle."""
         name = self._name(name, "arc")
         for p in (start, end):
             self._own(p, Point)
@@ -95,7 +116,9 @@ class Sketch:
             self._constrain("incident", (p, arc), name=f"{name}.{which}", built_in=True)
         return arc
 
-    def polyline(self, points: Iterable[Point | Sequence[float]], *, closed: bool = False) -> Polyline:
+    def polyline(
+        self, points: Iterable[Point | Sequence[float]], *, closed: bool = False
+    ) -> Polyline:
         """New segments through points of the sketch (or pairs of numbers, which become points)."""
         ends = [p if isinstance(p, Entity) else self.point(*_two(p, "polyline")) for p in points]
         if len(ends) < 2:
@@ -126,7 +149,8 @@ class Sketch:
         return self.add("fix", entity, name=name)
 
     def distance(self, a, b, value=None, *, name=None, driven=False) -> Constraint:
-        """Distance [m] of two points, a point and a line or circle, or two lines (made parallel)."""
+        """Distance [m] of two points, a point and a line or circle, or two lines (made
+        parallel)."""
         return self.add("distance", a, b, value=value, name=name, driven=driven)
 
     def incident(self, a, b, *, name=None) -> Constraint:
@@ -138,7 +162,8 @@ class Sketch:
         return self.add("coincident", a, b, name=name)
 
     def tangent(self, a, b, *, inside: bool | None = None, name=None) -> Constraint:
-        """A line touches a circle, or two circles touch (by default as drawn: inside or outside)."""
+        """A line touches a circle, or two circles touch (by default as drawn: inside or
+        outside)."""
         return self.add("tangent", a, b, inside=inside, name=name)
 
     def angle(self, a, b, value=None, *, name=None, driven=False) -> Constraint:
@@ -235,13 +260,17 @@ class Sketch:
     def constraint(self, name: str) -> Constraint:
         """The constraint of that name."""
         if name not in self.constraints:
-            raise UnknownEntity(f"no constraint named {name!r}", valid=nearest_name(name, self.constraints))
+            raise UnknownEntity(
+                f"no constraint named {name!r}", valid=nearest_name(name, self.constraints)
+            )
         return self.constraints[name]
 
     def entity(self, name: str) -> Entity:
         """The entity of that name."""
         if name not in self.entities:
-            raise UnknownEntity(f"no entity named {name!r}", valid=nearest_name(name, self.entities))
+            raise UnknownEntity(
+                f"no entity named {name!r}", valid=nearest_name(name, self.entities)
+            )
         return self.entities[name]
 
     # --- solving ------------------------------------------------------------------------------------
@@ -324,9 +353,13 @@ class Sketch:
     def _own(self, entity: Entity, kind: type) -> None:
         if not isinstance(entity, kind):
             what = entity.what if isinstance(entity, Entity) else repr(entity)
-            raise UnknownEntity(f"{what} where a {kind.what} is needed", valid=f"a {kind.what} of this sketch")
+            raise UnknownEntity(
+                f"{what} where a {kind.what} is needed", valid=f"a {kind.what} of this sketch"
+            )
         if entity.sketch is not self or self.entities.get(entity.name) is not entity:
-            raise UnknownEntity(f"{entity.name!r} is of another sketch", valid="an entity of this one")
+            raise UnknownEntity(
+                f"{entity.name!r} is of another sketch", valid="an entity of this one"
+            )
 
     def _find(self, entity: Entity | str) -> Entity:
         if isinstance(entity, str):
@@ -342,7 +375,9 @@ class Sketch:
                 self._own(p, Point)
         (px, py), (qx, qy) = ((p.position if points else _two(p, name)) for p in (a, b))
         if px == qx and py == qy:
-            raise DegenerateSketch(f"the two points of {name} coincide", valid="two different points")
+            raise DegenerateSketch(
+                f"the two points of {name} coincide", valid="two different points"
+            )
         theta = math.atan2(qy - py, qx - px)
         offset = math.cos(theta) * 0.5 * (py + qy) - math.sin(theta) * 0.5 * (px + qx)
         variable = self._grow((theta, DIRECTION), (offset, OFFSET))
@@ -361,18 +396,31 @@ class Sketch:
             center = self.point(*_two(center, name), name=f"{name}.center")
         return self._grow((radius, RADIUS)), center
 
-    def _constrain(self, kind, entities, value=None, name=None, driven=False, built_in=False, options=None):
+    def _constrain(
+        self, kind, entities, value=None, name=None, driven=False, built_in=False, options=None
+    ):
         form, entities = form_of(kind, entities)
         name = self._name(name, kind)
         constraint = Constraint(
-            name, kind, entities, None, math.nan, driven, built_in, len(self._codes), 0, options or {}
+            name,
+            kind,
+            entities,
+            None,
+            math.nan,
+            driven,
+            built_in,
+            len(self._codes),
+            0,
+            options or {},
         )
         if form.unit:
             given = measured(constraint, self._numbers) if value is None or driven else value
             constraint.number = self._dimension(constraint, given)
             constraint.given = given
         elif value is not None:
-            raise BadDimension(f"{kind} {name} with the value {value}", valid=f"{kind} takes no value")
+            raise BadDimension(
+                f"{kind} {name} with the value {value}", valid=f"{kind} takes no value"
+            )
         if not driven:
             self._append(constraint, form.rows(self._numbers, *entities, **constraint.options))
         self._remember(constraint)
@@ -447,7 +495,9 @@ def _number(value: float, where: str) -> float:
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise NotFinite(f"{value!r} is not a number", where=where, valid="a finite number") from None
+        raise NotFinite(
+            f"{value!r} is not a number", where=where, valid="a finite number"
+        ) from None
     if not math.isfinite(number):
         raise NotFinite(f"the value is {number}", where=where, valid="a finite number")
     return number
@@ -457,5 +507,7 @@ def _two(position: Sequence[float], where: str) -> tuple[float, float]:
     try:
         x, y = position
     except (TypeError, ValueError):
-        raise BadShape(f"{position!r} is not a position", where=where, valid="two numbers") from None
+        raise BadShape(
+            f"{position!r} is not a position", where=where, valid="two numbers"
+        ) from None
     return _number(x, where), _number(y, where)

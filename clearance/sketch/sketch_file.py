@@ -17,7 +17,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from clearance.errors import BadSyntax, MissingFile, MissingKey, UnknownKey, Unwritable, at, nearest_name
+from clearance.errors import (
+    BadSyntax,
+    MissingFile,
+    MissingKey,
+    UnknownKey,
+    Unwritable,
+    at,
+    nearest_name,
+)
 from clearance.sketch.entities import Entity
 
 _SECTIONS = ("parameters", "points", "lines", "segments", "circles", "arcs", "constraints")
@@ -28,15 +36,17 @@ def read(path: Path, kind):
     """The sketch in a file.
 
     Raises:
-        MissingFile, BadSyntax, MissingKey, UnknownKey, and what the sketch's own methods raise, each with
-        the file and the field.
+        MissingFile, BadSyntax, MissingKey, UnknownKey, and what the sketch's own methods raise,
+        each with the file and the field.
     """
     with at(str(path)):
         content = _content(path)
         sketch = kind()
         for section in content:
             if section not in _SECTIONS:
-                raise UnknownKey(f"unknown section {section!r}", valid=nearest_name(str(section), _SECTIONS))
+                raise UnknownKey(
+                    f"unknown section {section!r}", valid=nearest_name(str(section), _SECTIONS)
+                )
         _entities(sketch, content)
         for i, entry in enumerate(_listed(content.get("constraints"))):
             with at(f"constraints[{i}]"):
@@ -51,7 +61,9 @@ def _content(path: Path) -> dict:
     try:
         content = YAML(typ="safe").load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as fault:
-        raise MissingFile(f"cannot be read ({fault.__class__.__name__})", valid="a sketch file") from None
+        raise MissingFile(
+            f"cannot be read ({fault.__class__.__name__})", valid="a sketch file"
+        ) from None
     except YAMLError as fault:
         raise BadSyntax(f"is not YAML: {' '.join(str(fault).split())[:200]}") from None
     if not isinstance(content, dict):
@@ -94,7 +106,12 @@ def _entities(sketch, content: dict) -> None:
     for name, entry in _mapping(content, "arcs").items():
         with at(f"arcs.{name}"):
             center, start, end = _fields(entry, ("center", "start", "end"))
-            sketch.arc(_place(sketch, center), sketch.entity(str(start)), sketch.entity(str(end)), name=name)
+            sketch.arc(
+                _place(sketch, center),
+                sketch.entity(str(start)),
+                sketch.entity(str(end)),
+                name=name,
+            )
 
 
 def _place(sketch, value):

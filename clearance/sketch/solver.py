@@ -1,8 +1,9 @@
-"""Runs a sketch's plan and sets the result down with least movement; falls back on numbers where it fails.
+"""Runs a sketch's plan and sets the result down with least movement; falls back on numbers where it
+fails.
 
-Order: numbers that are merged agree; parts that already hold are left bit for bit; the plan places the
-rest; rigid parts are set down where the sketch has them; parts with freedom move least as a whole; what
-the plan could not place is tried numerically; what is left is inconsistent.
+Order: numbers that are merged agree; parts that already hold are left bit for bit; the plan places
+the rest; rigid parts are set down where the sketch has them; parts with freedom move least as a
+whole; what the plan could not place is tried numerically; what is left is inconsistent.
 """
 
 from __future__ import annotations
@@ -26,22 +27,25 @@ if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch
 
 LARGEST_BLOCK = 600
-"""Equations of a numeric cluster up to which a dense factorisation is the faster one (measured: a sparse one
-wins from about 500 on)."""
+"""Equations of a numeric cluster up to which a dense factorisation is the faster one (measured: a
+sparse one wins from about 500 on)."""
 
 FLOOR = 2e-16
 """[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
 
 NEARLY = 1e-5
-"""[-] Error of an implied equation, relative to the size, up to which all equations are solved together once
-more: where the rest is singular (two loci that touch) a rounding of 1e-16 shows as its root, 1e-8."""
+"""[-] Error of an implied equation, relative to the size, up to which all equations are solved
+together once
+more: where the rest is singular (two loci that touch) a rounding of 1e-16 shows as its root,
+1e-8."""
 
 DRAGGED = 1e6
 """[-] Weight of a dragged point against 1 for all others."""
 
 
 class Outcome:
-    """What a run gave: numbers, steps' fates and the worst equation that does not hold (-1: all do)."""
+    """What a run gave: numbers, steps' fates and the worst equation that does not hold (-1: all
+    do)."""
 
     def __init__(self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float) -> None:
         self.x = x
@@ -122,7 +126,8 @@ def run(problem: Problem, before: np.ndarray, sides=(), effort: int = 2) -> Outc
     """Solves a problem from the numbers `before` (n,).
 
     Args:
-        effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
+        effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps
+        fail.
     """
     size, s = problem.size, problem.system
     dependent = problem.plan.dependent
@@ -157,13 +162,14 @@ def run_after(problem: Problem, block: int, x: np.ndarray) -> np.ndarray:
     later = int(np.flatnonzero(problem.plan.block == block)[0]) + 1
     plan = problem.plan._replace(
         vertex=problem.plan.vertex[later:], partner=problem.plan.partner[later:],
-        edges=problem.plan.edges[later:], block=problem.plan.block[later:], origin=problem.plan.origin[later:],
+        edges=problem.plan.edges[later:], block=problem.plan.block[later:],
+        origin=problem.plan.origin[later:],
     )  # fmt: skip
     out = x.copy()
     active = np.ones(problem.system.kind.size, np.uint8)
     execute(
-        problem.system, plan, out, x.copy(), active, SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK,
-        RESTARTS,
+        problem.system, plan, out, x.copy(), active, SETTLED * size, FLOOR * size, RESIDUAL * size,
+        LARGEST_BLOCK, RESTARTS,
     )  # fmt: skip
     return out
 
@@ -177,13 +183,15 @@ def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
     return out
 
 
-def _solve_parts(problem: Problem, x: np.ndarray, sketch: np.ndarray, active_part: np.ndarray, effort: int):
+def _solve_parts(
+    problem: Problem, x: np.ndarray, sketch: np.ndarray, active_part: np.ndarray, effort: int
+):
     size, s = problem.size, problem.system
     start = x.copy()
     active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
     fates = execute(
-        s, problem.plan, x, start, active, SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK,
-        RESTARTS if effort else 4,
+        s, problem.plan, x, start, active, SETTLED * size, FLOOR * size, RESIDUAL * size,
+        LARGEST_BLOCK, RESTARTS if effort else 4,
     )  # fmt: skip
     if effort == 0 and (fates == 1).any():
         return fates, x
@@ -207,7 +215,8 @@ def _solve_parts(problem: Problem, x: np.ndarray, sketch: np.ndarray, active_par
 
 
 def _numeric_part(problem: Problem, part: int, x: np.ndarray, start: np.ndarray) -> bool:
-    """Solves one whole part at once, from the sketch and then from where the plan came; True when it holds."""
+    """Solves one whole part at once, from the sketch and then from where the plan came; True when
+    it holds."""
     size, s = problem.size, problem.system
     vertices = np.flatnonzero(problem.part == part)
     rows = np.flatnonzero((problem.row_part == part) & (problem.fate == 0))
@@ -217,7 +226,17 @@ def _numeric_part(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
     pivot = np.zeros((0, 2))
     for origin in (start, x):
         tried = origin.copy()
-        if solve_block(s, vertices, rows, tried, alone, pivot, FLOOR * size, RESIDUAL * size, 6 if rows.size < 60 else 2):
+        if solve_block(
+            s,
+            vertices,
+            rows,
+            tried,
+            alone,
+            pivot,
+            FLOOR * size,
+            RESIDUAL * size,
+            6 if rows.size < 60 else 2,
+        ):
             x[:] = tried
             return True
     return False
@@ -234,7 +253,8 @@ def _join(problem: Problem, x: np.ndarray) -> None:
 
 
 def middles(problem: Problem, x: np.ndarray) -> np.ndarray:
-    """(n, 2) by direction index: the point about which a line turns: its points' middle, or its foot."""
+    """(n, 2) by direction index: the point about which a line turns: its points' middle, or its
+    foot."""
     out = np.zeros((x.size, 2))
     ends = problem.tables.line_ends
     if ends.size:
@@ -289,7 +309,9 @@ def check_degenerate(sketch: Sketch, x: np.ndarray, size: float) -> None:
     small = np.flatnonzero((role == RADIUS) & (x <= RESIDUAL * size))
     for entity in sketch.entities.values() if small.size else ():
         if entity.variable in small:
-            raise DegenerateSketch(f"{entity.name} would have the radius 0", valid="a radius above 0")
+            raise DegenerateSketch(
+                f"{entity.name} would have the radius 0", valid="a radius above 0"
+            )
     ends = np.array(sketch._line_ends).reshape(-1, 3)
     drawn = ends[ends[:, 1] >= 0]
     if not drawn.size:
@@ -297,8 +319,14 @@ def check_degenerate(sketch: Sketch, x: np.ndarray, size: float) -> None:
     _, a, b = drawn.T
     short = np.hypot(x[a] - x[b], x[a + 1] - x[b + 1]) <= RESIDUAL * size
     for line in drawn[short, 0]:
-        name = next(e.name for e in sketch.entities.values() if e.what in ("line", "segment") and e.variable == line)
-        raise DegenerateSketch(f"the two points of {name} would coincide", valid="a line of some length")
+        name = next(
+            e.name
+            for e in sketch.entities.values()
+            if e.what in ("line", "segment") and e.variable == line
+        )
+        raise DegenerateSketch(
+            f"the two points of {name} would coincide", valid="a line of some length"
+        )
 
 
 __all__ = ["DEPENDENT", "Outcome", "Solver", "run"]

@@ -2,7 +2,8 @@
 
     python scenes/sketches/make_sketches.py
 
-Points are placed first and dimensions measured or taken from named parameters; then the drawn positions are
+Points are placed first and dimensions measured or taken from named parameters; then the drawn
+positions are
 moved off by a fixed sequence, so that every file has something to solve. Lengths [m].
 """
 
@@ -32,7 +33,8 @@ def jitter(sketch: Sketch, amount: float, seed: int = 5) -> None:
 class Midship:
     """The midship section, starboard half drawn and port half mirrored in the centre line.
 
-    `stage` is the paper's: b hull and tanks, c girders, d stiffeners, e all; until e some dimensions lack.
+    `stage` is the paper's: b hull and tanks, c girders, d stiffeners, e all; until e some
+    dimensions lack.
     """
 
     def __init__(self, stage: str) -> None:
@@ -64,7 +66,14 @@ class Midship:
 
     def hull(self) -> None:
         s = self.s
-        for name, value in (("B", BREADTH), ("D", DEPTH), ("h", BOTTOM), ("w", TANK), ("r", BILGE), ("t", DECK)):
+        for name, value in (
+            ("B", BREADTH),
+            ("D", DEPTH),
+            ("h", BOTTOM),
+            ("w", TANK),
+            ("r", BILGE),
+            ("t", DECK),
+        ):
             s.parameter(name, value)
         keel = self.at("keel", 0, 0)
         s.fix(keel, name="origin")
@@ -76,8 +85,14 @@ class Midship:
         self.at("deck_edge", BREADTH, DEPTH), self.at("coaming", BREADTH - TANK, DEPTH)
         self.at("margin", BREADTH - TANK, BOTTOM), self.at("margin_out", BREADTH, BOTTOM)
         self.mirror("bilge_low", "bilge_high", "deck_edge", "coaming", "margin", "margin_out")
-        low, side = self.member("bottom", "keel", "bilge_low"), self.member("side", "bilge_high", "deck_edge")
-        deck, wall = self.member("deck", "deck_edge", "coaming"), self.member("wall", "coaming", "margin")
+        low, side = (
+            self.member("bottom", "keel", "bilge_low"),
+            self.member("side", "bilge_high", "deck_edge"),
+        )
+        deck, wall = (
+            self.member("deck", "deck_edge", "coaming"),
+            self.member("wall", "coaming", "margin"),
+        )
         inner = self.member("inner", "crown", "margin")
         s.horizontal(low, name="flat"), s.vertical(side, name="wall_sided")
         s.horizontal(deck, name="deck_flat"), s.vertical(wall, name="bulkhead")
@@ -98,7 +113,8 @@ class Midship:
                 s.radius(arc, "r", name="bilge_radius")
 
     def girders(self) -> None:
-        """Vertical girders between bottom and inner bottom, and the second deck in the wing tank."""
+        """Vertical girders between bottom and inner bottom, and the second deck in the wing
+        tank."""
         s = self.s
         for k, x in enumerate((4.0, 8.0), 1):
             low, high = f"girder{k}_low", f"girder{k}_high"
@@ -125,7 +141,11 @@ class Midship:
         where += [("wall", "x", 5.0), ("side", "x", 13.0), ("wall", "x", 15.0)]
         for k, (plate, along, place) in enumerate(where, 1):
             root, tip = f"stiffener{k}_root", f"stiffener{k}_tip"
-            base = {"bottom": (place, 0.0), "side": (BREADTH, place), "wall": (BREADTH - TANK, place)}[plate]
+            base = {
+                "bottom": (place, 0.0),
+                "side": (BREADTH, place),
+                "wall": (BREADTH - TANK, place),
+            }[plate]
             step = {"bottom": (0.0, 0.5), "side": (-0.5, 0.0), "wall": (0.5, 0.0)}[plate]
             self.at(root, *base), self.at(tip, base[0] + step[0], base[1] + step[1])
             self.mirror(root, tip)
@@ -138,7 +158,8 @@ class Midship:
                 s.distance(s.entity(root), s.entity(datum), place, name=f"stiffener{k}_place")
 
     def brackets(self) -> None:
-        """A rigid bracket touching three plates (numeric, c) and a brace of four bars (extended)."""
+        """A rigid bracket touching three plates (numeric, c) and a brace of four bars
+        (extended)."""
         s = self.s
         x = BREADTH - TANK
         corners = {"knee_a": (x, 17.4), "knee_b": (BREADTH, 18.4), "knee_c": (14.7, DEPTH)}
@@ -153,8 +174,18 @@ class Midship:
         for name, (place, plate) in bars.items():
             self.at(name, *place)
             s.incident(s.entity(name), s.entity(plate), name=f"{name}_on_{plate}")
-        for a, b in (("brace_a", "brace_b"), ("brace_b", "brace_c"), ("brace_c", "brace_d"), ("brace_d", "brace_a")):
-            s.distance(s.entity(a), s.entity(b), round(math.dist(bars[a][0], bars[b][0]), 6), name=f"{a}_{b}")
+        for a, b in (
+            ("brace_a", "brace_b"),
+            ("brace_b", "brace_c"),
+            ("brace_c", "brace_d"),
+            ("brace_d", "brace_a"),
+        ):
+            s.distance(
+                s.entity(a),
+                s.entity(b),
+                round(math.dist(bars[a][0], bars[b][0]), 6),
+                name=f"{a}_{b}",
+            )
         self.mirror(*corners, *bars)
         for plate in ("bottom", "side", "inner"):
             line = s.entity(plate)
@@ -180,11 +211,17 @@ def midship(stage: str) -> Sketch:
 
 
 def bar_in_box(*, length_known: bool) -> Sketch:
-    """Fig. 4: a bar of thickness t in a box W by H, its length given (three contacts) or not (four)."""
+    """Fig. 4: a bar of thickness t in a box W by H, its length given (three contacts) or not
+    (four)."""
     s = Sketch()
     for name, value in (("W", 10.0), ("H", 6.0), ("t", 1.0)):
         s.parameter(name, value)
-    lines = {"left": ((0, 0), (0, 1)), "bottom": ((0, 0), (1, 0)), "right": ((10, 0), (10, 1)), "top": ((0, 6), (1, 6))}
+    lines = {
+        "left": ((0, 0), (0, 1)),
+        "bottom": ((0, 0), (1, 0)),
+        "right": ((10, 0), (10, 1)),
+        "top": ((0, 6), (1, 6)),
+    }
     left, bottom, right, top = (s.line(*ends, name=name) for name, ends in lines.items())
     s.distance(left, right, "W", name="width")
     s.distance(bottom, top, "H", name="height")
@@ -195,7 +232,10 @@ def bar_in_box(*, length_known: bool) -> Sketch:
     if length_known:
         s.parameter("L", 10.0)
         foot = np.array([0.5, 0.3])
-        ends = [s.line(foot + k * d, foot + k * d + m, name=n) for k, n in ((0.0, "near"), (10.0, "far"))]
+        ends = [
+            s.line(foot + k * d, foot + k * d + m, name=n)
+            for k, n in ((0.0, "near"), (10.0, "far"))
+        ]
         s.distance(*ends, "L", name="length")
         places = [foot, foot + 10.0 * d, foot + 10.0 * d + m, foot + m]
         p = [s.point(*q, name=f"P{i}") for i, q in enumerate(places)]

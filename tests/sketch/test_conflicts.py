@@ -40,7 +40,11 @@ def test_one_wrong_dimension(seed):
 def test_triangle_inequality():
     s = Sketch()
     a, b, c = s.point(0, 0), s.point(1, 0), s.point(0.5, 0.5)
-    s.distance(a, b, 1.0, name="ab"), s.distance(b, c, 1.0, name="bc"), s.distance(a, c, 3.0, name="ac")
+    (
+        s.distance(a, b, 1.0, name="ab"),
+        s.distance(b, c, 1.0, name="bc"),
+        s.distance(a, c, 3.0, name="ac"),
+    )
     s.distance(c, s.point(2, 2), 1.0, name="apart")
     result = s.solve()
     assert result.conflicts == ["ab", "bc", "ac"]

@@ -13,7 +13,8 @@ def slot():
     m, n = s.point(0, 0, name="m"), s.point(4.1, 0.1, name="n")
     p = [s.point(*q, name=f"p{k}") for k, q in enumerate(((0, -1), (4, -1), (4, 1), (0, 1)))]
     low, high = s.segment(p[0], p[1], name="low"), s.segment(p[2], p[3], name="high")
-    right, left = s.arc(n, p[1], p[2], name="right"), s.arc(m, p[3], p[0], name="left")
+    s.arc(n, p[1], p[2], name="right")
+    left = s.arc(m, p[3], p[0], name="left")
     s.fix(m, name="origin"), s.horizontal(m, n), s.distance(m, n, 4.0, name="pitch")
     s.radius(left, "r", name="radius"), s.horizontal(low), s.horizontal(high)
     s.vertical(m, p[0]), s.vertical(m, p[3]), s.vertical(n, p[1]), s.vertical(n, p[2])

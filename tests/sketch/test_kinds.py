@@ -1,4 +1,5 @@
-"""Every kind of constraint in a sketch of its own: it holds after solving, and its derivatives are right."""
+"""Every kind of constraint in a sketch of its own: it holds after solving, and its derivatives are
+right."""
 
 import math
 
@@ -48,7 +49,7 @@ def test_it_holds_after_solving(kind, k):
 
 @pytest.mark.parametrize(("kind", "k"), CASES)
 def test_derivatives_match_differences(kind, k):
-    s, c, _ = made(kind, k)
+    s, _c, _ = made(kind, k)
     t = tables_of(s)
     x = np.array(s._numbers) + np.random.default_rng(1).uniform(-0.3, 0.3, len(s._numbers))
     _, slots = gradients(t.code, t.var, t.coef, t.value, x)

@@ -1,4 +1,5 @@
-"""The paper's examples from their files: plans, verdicts, roots, the midship section in its stages."""
+"""The paper's examples from their files: plans, verdicts, roots, the midship section in its
+stages."""
 
 from pathlib import Path
 
@@ -50,7 +51,10 @@ def test_bar_in_the_box_from_60_starts():
             theta = sketch._numbers[line.variable]
             theta += np.remainder(np.arctan2(*(b - a)[::-1]) - theta + np.pi, 2 * np.pi) - np.pi
             normal = np.array([-np.sin(theta), np.cos(theta)])
-            sketch._numbers[line.variable : line.variable + 2] = [theta, float(normal @ (a + b) / 2)]
+            sketch._numbers[line.variable : line.variable + 2] = [
+                theta,
+                float(normal @ (a + b) / 2),
+            ]
         result = sketch.solve()
         assert result.solved and result.residual <= 1e-12 * 10.0
 

@@ -27,7 +27,9 @@ def s():
 def test_names(s):
     refused(lambda: s.point(0, 0, name="a"), "'a'", "taken")
     refused(lambda: s.distance("a", "bb", 1.0), "'bb'", "did you mean 'b'")
-    refused(lambda: s.distance(s.entity("a"), Sketch().point(0, 0, name="z"), 1.0), "another sketch")
+    refused(
+        lambda: s.distance(s.entity("a"), Sketch().point(0, 0, name="z"), 1.0), "another sketch"
+    )
     refused(lambda: s.set("width", 1.0), "width")
     s.distance("a", "b", 1.0, name="width")
     refused(lambda: s.distance("a", "c", 1.0, name="width"), "taken")
@@ -42,7 +44,9 @@ def test_kinds(s):
     refused(lambda: s.add("parallel", "a", "b", value=3.0), "parallel")
 
 
-@pytest.mark.parametrize("value", [-1.0, 0.0, math.nan, math.inf, "1/0", "sqrt(-1)", "__import__('os')", "w", "1 +"])
+@pytest.mark.parametrize(
+    "value", [-1.0, 0.0, math.nan, math.inf, "1/0", "sqrt(-1)", "__import__('os')", "w", "1 +"]
+)
 def test_values(s, value):
     refused(lambda: s.distance("a", "b", value, name="width"), "width")
     assert "width" not in s.constraints

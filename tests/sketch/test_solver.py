@@ -1,4 +1,5 @@
-"""Properties of solving, on sketches whose truth is known: points are placed first, dimensions measured."""
+"""Properties of solving, on sketches whose truth is known: points are placed first, dimensions
+measured."""
 
 import math
 
@@ -13,9 +14,12 @@ QUICK = settings(max_examples=25, deadline=None)
 
 
 def truth(n, seed, extra=0, missing=0, off=0.03, place=(0.0, 0.0), scale=1.0, turn=0.0):
-    """A sketch of n points: a triangulated strip, with some edges more or fewer; (sketch, points, truth)."""
+    """A sketch of n points: a triangulated strip, with some edges more or fewer; (sketch, points,
+    truth)."""
     random = np.random.default_rng(seed)
-    points = np.array([(0.5 * k, 0.9 * (k % 2)) for k in range(n)]) + random.uniform(-0.1, 0.1, (n, 2))
+    points = np.array([(0.5 * k, 0.9 * (k % 2)) for k in range(n)]) + random.uniform(
+        -0.1, 0.1, (n, 2)
+    )
     edges = [(0, 1)] + [(k - j, k) for k in range(2, n) for j in (1, 2)]
     chosen = list(random.permutation(len(edges)))
     edges = [edges[k] for k in sorted(chosen[missing:])]
@@ -43,13 +47,15 @@ def test_well_constrained(n, seed):
     result = s.solve()
     assert result.status == "well" and result.freedom == 0
     assert result.residual <= 1e-12 * n
-    assert shape(p) == pytest.approx(np.linalg.norm(points[:, None] - points[None], axis=2), abs=1e-9)
+    assert shape(p) == pytest.approx(
+        np.linalg.norm(points[:, None] - points[None], axis=2), abs=1e-9
+    )
 
 
 @QUICK
 @given(st.integers(5, 20), st.integers(0, 10**6), st.integers(1, 2))
 def test_under_constrained_by_the_missing_edges(n, seed, missing):
-    s, p, points, edges = truth(n, seed, missing=missing)
+    s, p, _points, _edges = truth(n, seed, missing=missing)
     result = s.solve()
     assert result.status == "under" and result.freedom == missing
     assert result.residual <= 1e-12 * n
@@ -60,7 +66,7 @@ def test_under_constrained_by_the_missing_edges(n, seed, missing):
 @QUICK
 @given(st.integers(6, 20), st.integers(0, 10**6), st.integers(1, 2))
 def test_over_constrained_is_consistent_and_named(n, seed, extra):
-    s, p, _, edges = truth(n, seed, extra=extra)
+    s, _p, _, _edges = truth(n, seed, extra=extra)
     result = s.solve()
     assert result.status == "over" and len(result.redundant) == extra
     assert result.conflicts == []
@@ -69,7 +75,13 @@ def test_over_constrained_is_consistent_and_named(n, seed, extra):
 
 
 @QUICK
-@given(st.integers(3, 20), st.integers(0, 10**6), st.floats(-3, 3), st.floats(0.01, 100), st.integers(-50, 50))
+@given(
+    st.integers(3, 20),
+    st.integers(0, 10**6),
+    st.floats(-3, 3),
+    st.floats(0.01, 100),
+    st.integers(-50, 50),
+)
 def test_rigid_motion_and_scaling(n, seed, turn, scale, shift):
     s, p, _, _ = truth(n, seed)
     t, q, _, _ = truth(n, seed, place=(shift * scale, 2.0 * scale), scale=scale, turn=turn)
@@ -80,7 +92,7 @@ def test_rigid_motion_and_scaling(n, seed, turn, scale, shift):
 @QUICK
 @given(st.integers(3, 40), st.integers(0, 10**6))
 def test_solved_sketches_solve_to_themselves_bit_for_bit(n, seed):
-    s, p, _, _ = truth(n, seed)
+    s, _p, _, _ = truth(n, seed)
     s.solve()
     before = list(s._numbers)
     assert s.solve().solved and s._numbers == before
@@ -97,7 +109,7 @@ def test_no_triangle_flips():
 
 
 def test_free_pieces_are_set_down_where_they_were_drawn():
-    s, p, points, _ = truth(30, 4)
+    s, p, _points, _ = truth(30, 4)
     drawn = np.array([q.position for q in p])
     s.solve()
     x = np.array([q.position for q in p])
@@ -116,7 +128,9 @@ def test_least_movement_against_an_independent_optimiser(seed):
 
     def gaps(x):
         y = x.reshape(-1, 2)
-        return np.array([np.linalg.norm(y[a] - y[b]) - d for (a, b), d in zip(edges, spans, strict=True)])
+        return np.array(
+            [np.linalg.norm(y[a] - y[b]) - d for (a, b), d in zip(edges, spans, strict=True)]
+        )
 
     result = s.solve()
     reference = minimize(
