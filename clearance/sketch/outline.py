@@ -9,7 +9,7 @@ from clearance.errors import BadShape
 from clearance.sketch.entities import Arc, Circle, Point, Segment
 
 if TYPE_CHECKING:
-    from clearance.planar import Curve
+    from clearance.planar.curve import Curve
 
 
 def curve_of(sketch) -> Curve:
@@ -19,7 +19,7 @@ def curve_of(sketch) -> Curve:
     Raises:
         BadShape: nothing is drawn (infinite lines and points draw nothing).
     """
-    from clearance.planar import Curve
+    from clearance.planar.curve import Curve
 
     entities = list(sketch.entities.values())
     parts = [e for e in entities if isinstance(e, (Segment, Arc))]
@@ -74,7 +74,7 @@ def ends_of(e) -> tuple[Point, Point]:
 
 
 def _piece(e, back: bool):
-    from clearance.planar import Curve
+    from clearance.planar.curve import Curve
 
     a, b = (p.position for p in ends_of(e))
     if isinstance(e, Segment):

@@ -29,7 +29,7 @@ from clearance.sketch.expression import evaluated, names_in
 from clearance.sketch.faults import DegenerateSketch, UnknownEntity
 
 if TYPE_CHECKING:
-    from clearance.planar import Curve
+    from clearance.planar.curve import Curve
 
     from clearance.sketch.result import SketchResult
 
@@ -63,7 +63,7 @@ class Sketch:
         self._counts: dict[str, int] = {}
         self._solver = None
 
-    # --- entities -----------------------------------------------------------------------------------
+    # --- entities ---
 
     def point(self, x: float, y: float, *, name: str | None = None) -> Point:
         """A new point at (x, y) [m]."""
@@ -128,10 +128,17 @@ class Sketch:
         self.polylines.append(out)
         return out
 
-    # --- constraints --------------------------------------------------------------------------------
+    # --- constraints ---
 
-    def add(self, kind: str, *entities: Entity | str, value: float | str | None = None,
-            name: str | None = None, driven: bool = False, inside: bool | None = None) -> Constraint:  # fmt: skip
+    def add(
+        self,
+        kind: str,
+        *entities: Entity | str,
+        value: float | str | None = None,
+        name: str | None = None,
+        driven: bool = False,
+        inside: bool | None = None,
+    ) -> Constraint:
         """A new constraint of any kind (a key of `clearance.sketch.constraints.KINDS`).
 
         Args:
@@ -222,7 +229,7 @@ class Sketch:
         """Two points lie on one side of a line."""
         return self.add("same_side", a, b, line, name=name)
 
-    # --- dimensions ---------------------------------------------------------------------------------
+    # --- dimensions ---
 
     def parameter(self, name: str, value: float) -> None:
         """A new named number for expressions."""
@@ -273,7 +280,7 @@ class Sketch:
             )
         return self.entities[name]
 
-    # --- solving ------------------------------------------------------------------------------------
+    # --- solving ---
 
     def solve(self) -> SketchResult:
         """Moves the entities least so that every constraint holds; see `SketchResult`.
@@ -313,7 +320,7 @@ class Sketch:
         """Part of the flat vector of all entities' numbers; for the entities."""
         return self._numbers[first : first + count]
 
-    # --- inside -------------------------------------------------------------------------------------
+    # --- inside ---
 
     def _engine(self):
         from clearance.sketch.solver import Solver

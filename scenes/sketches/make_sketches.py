@@ -169,8 +169,12 @@ class Midship:
             s.distance(s.entity(a), s.entity(b), round(math.dist(p, q), 6), name=f"{a}_{b}")
         for name, plate in zip(corners, ("wall", "side", "deck"), strict=True):
             s.incident(s.entity(name), s.entity(plate), name=f"{name}_on_{plate}")
-        bars = {"brace_a": ((x, 3.1), "wall"), "brace_b": ((15.62, BOTTOM), "inner"),
-                "brace_c": ((BREADTH, 9.96), "side"), "brace_d": ((13.97, DECK), "shelf")}  # fmt: skip
+        bars = {
+            "brace_a": ((x, 3.1), "wall"),
+            "brace_b": ((15.62, BOTTOM), "inner"),
+            "brace_c": ((BREADTH, 9.96), "side"),
+            "brace_d": ((13.97, DECK), "shelf"),
+        }
         for name, (place, plate) in bars.items():
             self.at(name, *place)
             s.incident(s.entity(name), s.entity(plate), name=f"{name}_on_{plate}")

@@ -40,7 +40,7 @@ def test_picture_names_every_part():
 
 
 def test_curves_are_one_closed_contour():
-    pytest.importorskip("clearance.planar")
+    pytest.importorskip("clearance.planar.curve")
     s = slot()
     s.solve()
     curve = s.curves()
