@@ -133,7 +133,7 @@ class _Trials:
         self.before = before
         self.count = 0
 
-    def run(self, chosen: list[int]):
+    def run(self, chosen: list[int], effort: int | None = None):
         from clearance.sketch.solver import run
 
         self.count += 1
@@ -145,11 +145,13 @@ class _Trials:
             for i, c in enumerate(self.sketch._ordered)
             if marks[i] and c.kind == "same_side" and not c.driven
         ]
-        return run(part, self.before, sides, effort=self.effort)
+        return run(part, self.before, sides, effort=self.effort if effort is None else effort)
 
     def solvable(self, chosen: list[int]) -> bool:
         """Whether these constraints (by index) can hold together."""
-        return not chosen or self.run(chosen).broken == -1
+        if not chosen or self.run(chosen, 0).broken == -1:
+            return True
+        return self.effort > 0 and self.run(chosen).broken == -1
 
     def everything(self, broken: int) -> list[int]:
         """All constraints of the broken part of the sketch (of the whole when it cannot be

@@ -40,7 +40,9 @@ class SketchResult:
 
     @cached_property
     def status(self) -> str:
-        """ "well", "under", "over" (some constraints follow from others) or "inconsistent"."""
+        """ "well", "under", "over" (some constraints follow from others) or
+        "inconsistent": no solution was found, which for a large numeric cluster is a failed search and
+        not a proof; `conflicts` then names what the search could not solve together."""
         if not self.solved:
             return "inconsistent"
         if self.redundant:

@@ -148,7 +148,7 @@ def run(problem: Problem, before: np.ndarray, sides=(), effort: int = 2) -> Outc
     residual, broken = _verdict(problem, x, dependent, contradicted)
     if dependent.size and RESIDUAL * size < residual <= NEARLY * size and not contradicted.size:
         for p in np.unique(problem.row_part[dependent]):
-            _numeric_part(problem, p, x, x.copy())
+            _numeric_part(problem, p, x, x.copy(), effort)
         x = x[problem.alias]
         residual, broken = _verdict(problem, x, dependent, contradicted)
     if broken < 0 and sides and not _sides_hold(x, sides, size):
@@ -199,7 +199,7 @@ def _solve_parts(
     loose = _loosened(problem, problem.plan.dependent)
     broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part):
-        _numeric_part(problem, p, x, start)
+        _numeric_part(problem, p, x, start, effort)
     if effort < 2:
         return fates, x
     settle = np.where(rigid & (active_part > 0) & (problem.hold < 2), 3 - problem.hold, 0)
@@ -214,7 +214,9 @@ def _solve_parts(
     return fates, x
 
 
-def _numeric_part(problem: Problem, part: int, x: np.ndarray, start: np.ndarray) -> bool:
+def _numeric_part(
+    problem: Problem, part: int, x: np.ndarray, start: np.ndarray, effort: int
+) -> bool:
     """Solves one whole part at once, from the sketch and then from where the plan came; True when
     it holds."""
     size, s = problem.size, problem.system
@@ -235,7 +237,7 @@ def _numeric_part(problem: Problem, part: int, x: np.ndarray, start: np.ndarray)
             pivot,
             FLOOR * size,
             RESIDUAL * size,
-            6 if rows.size < 60 else 2,
+            6 if rows.size < 60 and effort == 2 else effort,
         ):
             x[:] = tried
             return True
