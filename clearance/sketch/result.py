@@ -40,9 +40,12 @@ class SketchResult:
 
     @cached_property
     def status(self) -> str:
-        """ "well", "under", "over" (some constraints follow from others) or
-        "inconsistent": no solution was found, which for a large numeric cluster is a failed search and
-        not a proof; `conflicts` then names what the search could not solve together."""
+        """The verdict: one of "well", "under", "over" and "inconsistent".
+
+        "over": some constraints follow from others. "inconsistent": no solution was found; for a large
+        numeric cluster that is a failed search, not a proof, and `conflicts` names what the search
+        could not solve together.
+        """
         if not self.solved:
             return "inconsistent"
         if self.redundant:
