@@ -42,9 +42,9 @@ class SketchResult:
     def status(self) -> str:
         """The verdict: one of "well", "under", "over" and "inconsistent".
 
-        "over": some constraints follow from others. "inconsistent": no solution was found; for a large
-        numeric cluster that is a failed search, not a proof, and `conflicts` names what the search
-        could not solve together.
+        "over": some constraints follow from others. "inconsistent": no solution was found; for a
+        large numeric cluster that is a failed search, not a proof, and `conflicts` names what the
+        search could not solve together.
         """
         if not self.solved:
             return "inconsistent"
