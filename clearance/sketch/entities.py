@@ -8,12 +8,17 @@ is solved. Lengths [m], directions as unit vectors; a line runs from its first p
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from clearance.sketch.sketch import Sketch
+
+class Numbers(Protocol):
+    """What an entity needs of its sketch: part of the flat vector of all numbers."""
+
+    def numbers(self, first: int, count: int) -> list[float]:
+        """The `count` numbers from `first` on."""
+        ...
 
 
 class Entity:
@@ -21,7 +26,7 @@ class Entity:
 
     what = "entity"
 
-    def __init__(self, sketch: Sketch, name: str, variable: int) -> None:
+    def __init__(self, sketch: Numbers, name: str, variable: int) -> None:
         self.sketch = sketch
         self.name = name
         self.variable = variable
@@ -48,7 +53,7 @@ class Line(Entity):
     what = "line"
 
     def __init__(
-        self, sketch: Sketch, name: str, variable: int, ends: tuple[Point, Point] | None
+        self, sketch: Numbers, name: str, variable: int, ends: tuple[Point, Point] | None
     ) -> None:
         super().__init__(sketch, name, variable)
         self.ends = ends
@@ -83,7 +88,7 @@ class Circle(Entity):
 
     what = "circle"
 
-    def __init__(self, sketch: Sketch, name: str, variable: int, center: Point) -> None:
+    def __init__(self, sketch: Numbers, name: str, variable: int, center: Point) -> None:
         super().__init__(sketch, name, variable)
         self.center = center
 
@@ -99,7 +104,7 @@ class Arc(Circle):
     what = "arc"
 
     def __init__(
-        self, sketch: Sketch, name: str, variable: int, center: Point, start: Point, end: Point
+        self, sketch: Numbers, name: str, variable: int, center: Point, start: Point, end: Point
     ) -> None:
         super().__init__(sketch, name, variable, center)
         self.start = start

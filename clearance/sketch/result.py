@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from clearance.sketch.diagnosis import Repair
     from clearance.sketch.plan import Step
     from clearance.sketch.problem import Problem
-    from clearance.sketch.sketch import Sketch
 
 
 class SketchResult:
@@ -26,7 +25,7 @@ class SketchResult:
         movement: [m] root of the summed squares of the points' shifts.
     """
 
-    def __init__(self, sketch: Sketch, problem: Problem, before: np.ndarray, outcome) -> None:
+    def __init__(self, sketch, problem: Problem, before: np.ndarray, outcome) -> None:
         self.sketch = sketch
         self._problem = problem
         self._before = before

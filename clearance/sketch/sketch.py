@@ -290,12 +290,12 @@ class Sketch:
         Raises:
             DegenerateSketch: the solution would leave a line or circle without extent.
         """
-        return self._engine().solve()
+        return self._result(*self._engine().solve())
 
     def drag(self, point: Point, position: Sequence[float]) -> SketchResult:
         """Brings a point as near to `position` as the constraints allow; all else moves least."""
         self._own(point, Point)
-        return self._engine().drag(point, _two(position, "drag"))
+        return self._result(*self._engine().drag(point, _two(position, "drag")))
 
     def curves(self) -> Curve:
         """The drawn parts (segments, arcs, circles) as one curve; chains where ends meet."""
@@ -321,6 +321,11 @@ class Sketch:
         return self._numbers[first : first + count]
 
     # --- inside ---
+
+    def _result(self, problem, before, outcome) -> SketchResult:
+        from clearance.sketch.result import SketchResult
+
+        return SketchResult(self, problem, before, outcome)
 
     def _engine(self):
         from clearance.sketch.solver import Solver

@@ -20,11 +20,9 @@ from clearance.kernels.sketch_plan import execute
 from clearance.kernels.sketch_start import agree, unsettled
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem, problem_of, tables_of
-from clearance.sketch.result import SketchResult
 
 if TYPE_CHECKING:
     from clearance.sketch.constraints import Constraint
-    from clearance.sketch.sketch import Sketch
 
 LARGEST_BLOCK = 600
 """Equations of a numeric cluster up to which a dense factorisation is the faster one (measured: a
@@ -57,7 +55,7 @@ class Outcome:
 class Solver:
     """A sketch's current problem; it lives as long as the sketch's structure."""
 
-    def __init__(self, sketch: Sketch) -> None:
+    def __init__(self, sketch) -> None:
         self.sketch = sketch
         self.tables = tables_of(sketch)
         self.index = {id(c): i for i, c in enumerate(sketch._ordered)}
@@ -76,14 +74,14 @@ class Solver:
             self.stale = False
         return self.problem
 
-    def solve(self) -> SketchResult:
+    def solve(self) -> tuple[Problem, np.ndarray, Outcome]:
         """See `Sketch.solve`."""
         problem = self.current()
         before = np.array(self.sketch._numbers)
         outcome = run(problem, before, sides=self.sketch_sides())
         return self._finish(problem, before, outcome)
 
-    def drag(self, point, position: tuple[float, float]) -> SketchResult:
+    def drag(self, point, position: tuple[float, float]) -> tuple[Problem, np.ndarray, Outcome]:
         """See `Sketch.drag`."""
         problem = self.current()
         before = np.array(self.sketch._numbers)
@@ -109,11 +107,15 @@ class Solver:
             if c.kind == "same_side" and not c.driven
         ]
 
-    def _finish(self, problem: Problem, before: np.ndarray, outcome: Outcome) -> SketchResult:
+    def _finish(
+        self, problem: Problem, before: np.ndarray, outcome: Outcome
+    ) -> tuple[Problem, np.ndarray, Outcome]:
+        self, problem: Problem, before: np.ndarray, outcome: Outcome
+    ) -> tuple[Problem, np.ndarray, Outcome]:
         if outcome.broken < 0:
             check_degenerate(self.sketch, outcome.x, problem.size)
             self.sketch._numbers[:] = outcome.x.tolist()
-        return SketchResult(self.sketch, problem, before, outcome)
+        return problem, before, outcome
 
 
 def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
@@ -302,7 +304,7 @@ def _sides_hold(x: np.ndarray, sides, size: float) -> bool:
     return True
 
 
-def check_degenerate(sketch: Sketch, x: np.ndarray, size: float) -> None:
+def check_degenerate(sketch, x: np.ndarray, size: float) -> None:
     """Refuses a solution with a circle of radius 0 or a line whose points coincide."""
     from clearance.kernels.sketch_graph import RADIUS
     from clearance.sketch.faults import DegenerateSketch
