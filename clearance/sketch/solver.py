@@ -110,8 +110,6 @@ class Solver:
     def _finish(
         self, problem: Problem, before: np.ndarray, outcome: Outcome
     ) -> tuple[Problem, np.ndarray, Outcome]:
-        self, problem: Problem, before: np.ndarray, outcome: Outcome
-    ) -> tuple[Problem, np.ndarray, Outcome]:
         if outcome.broken < 0:
             check_degenerate(self.sketch, outcome.x, problem.size)
             self.sketch._numbers[:] = outcome.x.tolist()
