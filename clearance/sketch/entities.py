@@ -1,0 +1,120 @@
+"""The things a sketch is made of: points, infinite lines and circles, and segments, arcs, polylines
+on them.
+
+An entity is a handle: its numbers live in the sketch's one flat vector and change when the sketch
+is solved. Lengths [m], directions as unit vectors; a line runs from its first point to its second.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+import numpy as np
+
+
+class Numbers(Protocol):
+    """What an entity needs of its sketch: part of the flat vector of all numbers."""
+
+    def numbers(self, first: int, count: int) -> list[float]:
+        """The `count` numbers from `first` on."""
+        ...
+
+
+class Entity:
+    """What all entities have: a name, unique in the sketch, and the place of their numbers."""
+
+    what = "entity"
+
+    def __init__(self, sketch: Numbers, name: str, variable: int) -> None:
+        self.sketch = sketch
+        self.name = name
+        self.variable = variable
+
+    def __repr__(self) -> str:
+        return f"<{self.what} {self.name}>"
+
+
+class Point(Entity):
+    """A point: 2 degrees of freedom."""
+
+    what = "point"
+
+    @property
+    def position(self) -> np.ndarray:
+        """(2,) coordinates [m]."""
+        return np.array(self.sketch.numbers(self.variable, 2))
+
+
+class Line(Entity):
+    """An infinite line: 2 degrees of freedom; `ends` are the two points it was drawn through, if
+    any."""
+
+    what = "line"
+
+    def __init__(
+        self, sketch: Numbers, name: str, variable: int, ends: tuple[Point, Point] | None
+    ) -> None:
+        super().__init__(sketch, name, variable)
+        self.ends = ends
+
+    @property
+    def direction(self) -> np.ndarray:
+        """(2,) unit vector from the first towards the second point."""
+        theta = self.sketch.numbers(self.variable, 1)[0]
+        return np.array([math.cos(theta), math.sin(theta)])
+
+    @property
+    def offset(self) -> float:
+        """[m] signed distance of the line from the origin along its normal (-sin, cos)."""
+        return float(self.sketch.numbers(self.variable, 2)[1])
+
+    @property
+    def length(self) -> float:
+        """[m] distance of its two points; NaN without points."""
+        if self.ends is None:
+            return math.nan
+        return float(np.linalg.norm(self.ends[1].position - self.ends[0].position))
+
+
+class Segment(Line):
+    """The part of a line between two points."""
+
+    what = "segment"
+
+
+class Circle(Entity):
+    """A circle: its centre is a point of the sketch (2 degrees of freedom), its radius one more."""
+
+    what = "circle"
+
+    def __init__(self, sketch: Numbers, name: str, variable: int, center: Point) -> None:
+        super().__init__(sketch, name, variable)
+        self.center = center
+
+    @property
+    def radius(self) -> float:
+        """[m]"""
+        return float(self.sketch.numbers(self.variable, 1)[0])
+
+
+class Arc(Circle):
+    """The part of a circle from `start` to `end`, counter-clockwise."""
+
+    what = "arc"
+
+    def __init__(
+        self, sketch: Numbers, name: str, variable: int, center: Point, start: Point, end: Point
+    ) -> None:
+        super().__init__(sketch, name, variable, center)
+        self.start = start
+        self.end = end
+
+
+class Polyline:
+    """Segments end to end through `points`; `closed` returns to the first."""
+
+    def __init__(self, points: list[Point], segments: list[Segment], closed: bool) -> None:
+        self.points = points
+        self.segments = segments
+        self.closed = closed

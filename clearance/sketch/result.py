@@ -1,0 +1,131 @@
+"""What a solve found; details are worked out when they are asked for.
+
+Not for: the search itself (`solver`), conflicts (`diagnosis`), the plan's wording (`plan`).
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from clearance.sketch.diagnosis import Repair
+    from clearance.sketch.plan import Step
+    from clearance.sketch.problem import Problem
+
+
+class SketchResult:
+    """The outcome of `Sketch.solve` or `Sketch.drag`.
+
+    Attributes:
+        residual: [m] the largest equation error that is left (directions as arcs at the sketch's
+        size).
+        movement: [m] root of the summed squares of the points' shifts.
+    """
+
+    def __init__(self, sketch, problem: Problem, before: np.ndarray, outcome) -> None:
+        self.sketch = sketch
+        self._problem = problem
+        self._before = before
+        self._outcome = outcome
+        self.residual = outcome.residual
+
+    @property
+    def solved(self) -> bool:
+        """Whether all constraints hold."""
+        return self._outcome.broken == -1
+
+    @cached_property
+    def status(self) -> str:
+        """The verdict: one of "well", "under", "over" and "inconsistent".
+
+        "over": some constraints follow from others. "inconsistent": no solution was found; for a
+        large numeric cluster that is a failed search, not a proof, and `conflicts` names what the
+        search could not solve together.
+        """
+        if not self.solved:
+            return "inconsistent"
+        if self.redundant:
+            return "over"
+        return "under" if self.freedom > 0 else "well"
+
+    @cached_property
+    def freedom(self) -> int:
+        """Degrees of freedom left beyond placing the whole."""
+        from clearance.sketch.freedom import freedom_of
+
+        return freedom_of(self._problem, self._outcome.x)
+
+    @cached_property
+    def freedom_of(self) -> dict[str, int]:
+        """Degrees of freedom of every entity with the initial cluster held."""
+        from clearance.sketch.freedom import entity_freedoms
+
+        return entity_freedoms(self.sketch, self._problem, self._outcome.x)
+
+    @cached_property
+    def redundant(self) -> list[str]:
+        """Constraints that follow from the others."""
+        from clearance.sketch.freedom import redundant_rows
+
+        ordered = self.sketch._ordered
+        rows = redundant_rows(self._problem, self._outcome.x, self.solved)
+        owner = self._problem.tables.owner
+        return list(dict.fromkeys(ordered[owner[r]].name for r in rows))
+
+    @cached_property
+    def over_constrained(self) -> list[list[str]]:
+        """Every over-constrained part: the constraints of a circuit of the graph (Definition 2)."""
+        plan, owner = self._problem.plan, self._problem.tables.owner
+        out = []
+        for k in range(plan.dependent.size):
+            rows = plan.circuit[plan.circuit_start[k] : plan.circuit_start[k + 1]]
+            names = dict.fromkeys(self.sketch._ordered[o].name for o in owner[np.sort(rows)])
+            out.append(list(names))
+        return out
+
+    @cached_property
+    def movement(self) -> float:
+        """[m] how far the points moved: root of the summed squares."""
+        from clearance.kernels.sketch_graph import X, Y
+
+        role = self._problem.tables.role
+        shift = (self._outcome.x - self._before)[(role == X) | (role == Y)]
+        return float(np.linalg.norm(shift))
+
+    @cached_property
+    def plan(self) -> list[Step]:
+        """The construction plan, step by step."""
+        from clearance.sketch.plan import readable
+
+        return readable(self.sketch, self._problem, self._outcome.fates)
+
+    @cached_property
+    def alternatives(self) -> list[dict[str, np.ndarray]]:
+        """Other solutions of the small numeric clusters: the numbers of every entity, by name."""
+        from clearance.sketch.roots import alternatives_of
+
+        return alternatives_of(self.sketch, self._problem, self._outcome.x) if self.solved else []
+
+    @cached_property
+    def _diagnosis(self):
+        from clearance.sketch.diagnosis import diagnose
+
+        return diagnose(self.sketch, self._problem, self._before, self._outcome)
+
+    @property
+    def conflicts(self) -> list[str]:
+        """A minimal set of constraints that cannot hold together; empty when all hold."""
+        return [] if self.solved else self._diagnosis.names
+
+    @property
+    def repairs(self) -> list[Repair]:
+        """Changes of dimensions that make the conflict solvable, the least first."""
+        return [] if self.solved else self._diagnosis.repairs
+
+    def __repr__(self) -> str:
+        return (
+            f"<SketchResult {self.status}, freedom {self.freedom}, residual {self.residual:.1e} m>"
+        )

@@ -1,0 +1,202 @@
+"""Sketch files: YAML with parameters, entities, constraints, in the order in which they are made.
+
+```yaml
+parameters: {W: 10.0}
+points: {a: [0, 0], b: [9.7, 0.2]}
+lines: {l: [a, b]}                 # or [[x, y], [x, y]] for a line without points
+segments: {edge: [a, b]}
+circles: {c: {center: [4, 3], radius: 2.1}}
+arcs: {round: {center: m, start: p, end: q}}
+constraints:
+  - {kind: distance, of: [a, b], value: W, name: width}
+```
+Directions are kept in radians. Not for: anything but sketches.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from clearance.errors import (
+    BadSyntax,
+    MissingFile,
+    MissingKey,
+    UnknownKey,
+    Unwritable,
+    at,
+    nearest_name,
+)
+from clearance.sketch.entities import Entity
+
+_SECTIONS = ("parameters", "points", "lines", "segments", "circles", "arcs", "constraints")
+_FIELDS = {"kind", "of", "value", "name", "driven", "inside"}
+
+
+def read(path: Path, kind):
+    """The sketch in a file.
+
+    Raises:
+        MissingFile, BadSyntax, MissingKey, UnknownKey, and what the sketch's own methods raise,
+        each with the file and the field.
+    """
+    with at(str(path)):
+        content = _content(path)
+        sketch = kind()
+        for section in content:
+            if section not in _SECTIONS:
+                raise UnknownKey(
+                    f"unknown section {section!r}", valid=nearest_name(str(section), _SECTIONS)
+                )
+        _entities(sketch, content)
+        for i, entry in enumerate(_listed(content.get("constraints"))):
+            with at(f"constraints[{i}]"):
+                _constraint(sketch, entry)
+    return sketch
+
+
+def _content(path: Path) -> dict:
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    try:
+        content = YAML(typ="safe").load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as fault:
+        raise MissingFile(
+            f"cannot be read ({fault.__class__.__name__})", valid="a sketch file"
+        ) from None
+    except YAMLError as fault:
+        raise BadSyntax(f"is not YAML: {' '.join(str(fault).split())[:200]}") from None
+    if not isinstance(content, dict):
+        raise BadSyntax("is not a sketch", valid=f"a mapping with {', '.join(_SECTIONS)}")
+    return content
+
+
+def _mapping(content: dict, section: str) -> dict:
+    value = content.get(section) or {}
+    if not isinstance(value, dict):
+        raise BadSyntax(f"{section} is not a mapping", valid="name: value")
+    return {str(name): entry for name, entry in value.items()}
+
+
+def _listed(value) -> list:
+    if value is None:
+        return []
+    if not isinstance(value, list):
+        raise BadSyntax("constraints is not a list", valid="- {kind: ..., of: [...]}")
+    return value
+
+
+def _entities(sketch, content: dict) -> None:
+    for name, value in _mapping(content, "parameters").items():
+        with at(f"parameters.{name}"):
+            sketch.parameter(name, value)
+    for name, place in _mapping(content, "points").items():
+        with at(f"points.{name}"):
+            sketch.point(*_some(place, 2), name=name)
+    for name, ends in _mapping(content, "lines").items():
+        with at(f"lines.{name}"):
+            sketch.line(*(_place(sketch, e) for e in _some(ends, 2)), name=name)
+    for name, ends in _mapping(content, "segments").items():
+        with at(f"segments.{name}"):
+            sketch.segment(*(_place(sketch, e) for e in _some(ends, 2)), name=name)
+    for name, entry in _mapping(content, "circles").items():
+        with at(f"circles.{name}"):
+            center, radius = _fields(entry, ("center", "radius"))
+            sketch.circle(_place(sketch, center), radius, name=name)
+    for name, entry in _mapping(content, "arcs").items():
+        with at(f"arcs.{name}"):
+            center, start, end = _fields(entry, ("center", "start", "end"))
+            sketch.arc(
+                _place(sketch, center),
+                sketch.entity(str(start)),
+                sketch.entity(str(end)),
+                name=name,
+            )
+
+
+def _place(sketch, value):
+    return sketch.entity(value) if isinstance(value, str) else value
+
+
+def _some(value, count: int) -> list:
+    if not isinstance(value, list) or len(value) != count:
+        raise BadSyntax(f"{value!r} given", valid=f"a list of {count}")
+    return value
+
+
+def _fields(entry, names: tuple[str, ...]) -> list:
+    if not isinstance(entry, dict):
+        raise BadSyntax(f"{entry!r} given", valid=f"a mapping with {', '.join(names)}")
+    for name in names:
+        if name not in entry:
+            raise MissingKey(f"{name} is missing", valid=f"{', '.join(names)}")
+    for key in entry:
+        if key not in names:
+            raise UnknownKey(f"unknown key {key!r}", valid=nearest_name(str(key), names))
+    return [entry[name] for name in names]
+
+
+def _constraint(sketch, entry) -> None:
+    if not isinstance(entry, dict) or "kind" not in entry or "of" not in entry:
+        raise MissingKey("kind or of is missing", valid="{kind: ..., of: [...]}")
+    for key in entry:
+        if key not in _FIELDS:
+            raise UnknownKey(f"unknown key {key!r}", valid=nearest_name(str(key), _FIELDS))
+    of = entry["of"] if isinstance(entry["of"], list) else [entry["of"]]
+    options = {k: entry[k] for k in ("value", "name", "driven", "inside") if k in entry}
+    sketch.add(str(entry["kind"]), *map(str, of), **options)
+
+
+def write(sketch, path: Path) -> None:
+    """Writes a sketch; reading it back gives the same numbers bit for bit.
+
+    Raises:
+        Unwritable: the file cannot be written.
+    """
+    from ruamel.yaml import YAML
+
+    yaml = YAML()
+    yaml.default_flow_style = None
+    yaml.width = 110
+    try:
+        with path.open("w", encoding="utf-8") as out:
+            yaml.dump(_tree(sketch), out)
+    except OSError as fault:
+        raise Unwritable(f"{path} cannot be written ({fault.__class__.__name__})") from None
+
+
+def _tree(sketch) -> dict:
+    tree: dict = {name: {} for name in _SECTIONS[:-1]}
+    tree["parameters"] = dict(sketch.parameters)
+    for name, e in sketch.entities.items():
+        if e.what == "point":
+            tree["points"][name] = e.position.tolist()
+        elif e.what in ("line", "segment"):
+            tree[e.what + "s"][name] = [p.name for p in e.ends] if e.ends else _drawn(e)
+        elif e.what == "circle":
+            tree["circles"][name] = {"center": e.center.name, "radius": e.radius}
+        else:
+            tree["arcs"][name] = {"center": e.center.name, "start": e.start.name, "end": e.end.name}
+    tree["constraints"] = [_entry(c) for c in sketch.constraints.values() if not c.built_in]
+    return {k: v for k, v in tree.items() if v}
+
+
+def _drawn(line: Entity) -> list:
+    foot = line.offset * _normal(line)
+    return [(foot - 0.5 * line.direction).tolist(), (foot + 0.5 * line.direction).tolist()]
+
+
+def _normal(line):
+    import numpy as np
+
+    return np.array([-line.direction[1], line.direction[0]])
+
+
+def _entry(c) -> dict:
+    entry = {"kind": c.kind, "of": [e.name for e in c.entities]}
+    if c.given is not None:
+        entry["value"] = c.given
+    entry["name"] = c.name
+    if c.driven:
+        entry["driven"] = True
+    return entry | c.options

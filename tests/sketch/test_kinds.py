@@ -1,0 +1,150 @@
+"""Every kind of constraint in a sketch of its own: it holds after solving, and its derivatives are
+right."""
+
+import math
+
+import numpy as np
+import pytest
+
+from clearance.kernels.sketch_equations import gradients, residuals
+from clearance.sketch import Sketch
+from clearance.sketch.constraints import KINDS, measured
+from clearance.sketch.problem import tables_of
+
+
+def entities(s, takes):
+    random = np.random.default_rng(3)
+    made = []
+    for k, kind in enumerate(takes):
+        x, y = 3.0 * k + random.uniform(0, 1, 2)
+        if kind.what == "point":
+            made.append(s.point(x, y))
+        elif kind.what == "line":
+            made.append(s.line(s.point(x, y), s.point(x + 2.0, y + 0.7 + 0.4 * k)))
+        else:
+            made.append(s.circle((x, y), 1.0 + 0.3 * k))
+    return made
+
+
+CASES = [(kind, k) for kind, forms in KINDS.items() for k in range(len(forms))]
+DIMENSION = {"length": 1.7, "angle": 0.8, "ratio": 1.3, "": None}
+
+
+def made(kind, k):
+    s = Sketch()
+    form = KINDS[kind][k]
+    c = s.add(kind, *entities(s, form.takes), value=DIMENSION[form.unit], name="tested")
+    return s, c, form
+
+
+@pytest.mark.parametrize(("kind", "k"), CASES)
+def test_it_holds_after_solving(kind, k):
+    s, c, form = made(kind, k)
+    result = s.solve()
+    assert result.solved, (kind, k)
+    assert result.residual <= 1e-12 * 10
+    if form.unit:
+        assert measured(c, s._numbers) == pytest.approx(DIMENSION[form.unit], rel=1e-12)
+
+
+@pytest.mark.parametrize(("kind", "k"), CASES)
+def test_derivatives_match_differences(kind, k):
+    s, _c, _ = made(kind, k)
+    t = tables_of(s)
+    x = np.array(s._numbers) + np.random.default_rng(1).uniform(-0.3, 0.3, len(s._numbers))
+    _, slots = gradients(t.code, t.var, t.coef, t.value, x)
+    analytic = np.zeros((t.code.size, x.size))
+    for row, var in enumerate(t.var):
+        for slot, i in enumerate(var):
+            if i >= 0:
+                analytic[row, i] += slots[row, slot]
+    h = 1e-6
+    for i in range(x.size):
+        up, down = x.copy(), x.copy()
+        up[i] += h
+        down[i] -= h
+        ahead, behind = (residuals(t.code, t.var, t.coef, t.value, y) for y in (up, down))
+        assert np.abs((ahead - behind) / (2 * h) - analytic[:, i]).max(initial=0.0) < 1e-8
+
+
+PAPER = {
+    ("distance", ("point", "point")): 1, ("distance", ("point", "line")): 1,
+    ("distance", ("point", "circle")): 1, ("distance", ("line", "line")): 2,
+    ("incident", ("point", "line")): 1, ("incident", ("point", "circle")): 1,
+    ("coincident", ("point", "point")): 2, ("coincident", ("line", "line")): 2,
+    ("tangent", ("line", "circle")): 1, ("tangent", ("circle", "circle")): 1,
+    ("angle", ("line", "line")): 1, ("parallel", ("line", "line")): 1,
+    ("concentric", ("point", "circle")): 2,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("kind", "takes"), PAPER)
+def test_valencies_are_those_of_table_1(kind, takes):
+    k = next(k for k, f in enumerate(KINDS[kind]) if tuple(t.what for t in f.takes) == takes)
+    _, c, _ = made(kind, k)
+    assert c.valency == PAPER[kind, takes]
+
+
+def test_the_example_of_the_documentation():
+    s = Sketch()
+    a, b = s.point(0, 0, name="a"), s.point(9.7, 0.2)
+    line, c = s.line(a, b), s.circle((4, 3), 2.1)
+    s.fix(a), s.distance(a, b, 10.0, name="width"), s.tangent(line, c), s.radius(c, 2.0)
+    result = s.solve()
+    assert result.status == "under" and result.freedom == 1  # the turn about a places the whole
+    assert np.linalg.norm(b.position) == pytest.approx(10.0, abs=1e-12)
+    normal = np.array([-line.direction[1], line.direction[0]])
+    assert normal @ (c.center.position - a.position) == pytest.approx(2.0, abs=1e-12)
+    s.set("width", 12.0)
+    assert s.solve().solved and np.linalg.norm(b.position) == pytest.approx(12.0, abs=1e-11)
+    s.drag(b, (11, 5))
+    assert np.linalg.norm(b.position) == pytest.approx(12.0, abs=1e-11)
+    assert math.atan2(*b.position[::-1]) == pytest.approx(math.atan2(5, 11), abs=1e-4)
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_circles_touch_inside_and_outside(inside):
+    s = Sketch()
+    c, d = s.circle((0, 0), 3.0), s.circle((1.5 if inside else 4.5, 0.2), 1.0)
+    s.radius(c, 3.0), s.radius(d, 1.0), s.tangent(c, d)
+    assert s.solve().solved
+    gap = np.linalg.norm(c.center.position - d.center.position)
+    assert gap == pytest.approx(2.0 if inside else 4.0, abs=1e-12)
+
+
+def test_same_side_mirrors_what_is_drawn_on_the_wrong_side():
+    s = Sketch()
+    a, b = s.point(0, 0), s.point(4, 0)
+    line = s.line(a, b)
+    p, q = s.point(1, 1), s.point(3, -0.8)
+    s.fix(a), s.fix(b), s.distance(p, a, 1.5), s.distance(p, b, 3.5)
+    s.distance(q, a, 3.2), s.distance(q, b, 1.4), s.same_side(p, q, line)
+    assert s.solve().solved and q.position[1] > 0.0 and p.position[1] > 0.0
+
+
+def test_apollonius_a_circle_from_three_tangencies():
+    s = Sketch()
+    p = [s.point(*q) for q in ((0, 0), (4, 0), (1, 3))]
+    lines = [s.line(p[i], p[(i + 1) % 3]) for i in range(3)]
+    for q in p:
+        s.fix(q)
+    c = s.circle((1.6, 0.9), 0.5)
+    for line in lines:
+        s.tangent(line, c)
+    assert s.solve().status == "well"
+    sides = [np.linalg.norm(p[i].position - p[(i + 1) % 3].position) for i in range(3)]
+    assert c.radius == pytest.approx(2.0 * 6.0 / sum(sides), rel=1e-12)
+
+
+def test_expressions_follow_their_parameters():
+    s = Sketch()
+    s.parameter("w", 3.0)
+    a, b, c = s.point(0, 0), s.point(2, 0), s.point(1, 2)
+    s.distance(a, b, "w", name="base")
+    s.distance(a, c, "sqrt(base**2 + 1)"), s.distance(b, c, "2 * base / 3")
+    s.distance(c, s.point(5, 5), driven=True, name="seen")
+    assert s.solve().solved
+    s.set("w", 4.0)
+    assert s.solve().solved
+    assert np.linalg.norm(c.position - a.position) == pytest.approx(math.sqrt(17.0), abs=1e-12)
+    assert s.value("seen") == pytest.approx(np.linalg.norm(c.position - [5, 5]))

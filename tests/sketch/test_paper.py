@@ -1,0 +1,103 @@
+"""The paper's examples from their files: plans, verdicts, roots, the midship section in its
+stages."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from clearance.sketch import Sketch
+
+SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
+
+
+def load(name):
+    return Sketch.load(SKETCHES / f"{name}.yaml")
+
+
+def test_bar_in_the_box_plan_of_figures_7_and_9():
+    result = load("bar_in_box").solve()
+    assert result.status == "well"
+    steps = result.plan
+    numeric = [step for step in steps if step.method == "numeric"]
+    assert [step.kind for step in numeric] == ["c"]
+    assert set(numeric[0].uses) == {"P0_on_bottom", "P1_on_right", "P3_on_left"}
+    before = steps[: steps.index(numeric[0])]
+    assert {step.kind for step in before} == {"preprocess", "initial", "b"}
+    assert all(step.cluster == 1 for step in before if step.kind != "preprocess")
+
+
+def test_bar_of_unknown_length_has_both_roots():
+    sketch = load("bar_length")
+    result = sketch.solve()
+    lengths = [sketch.value("length")]
+    lengths += [float(np.linalg.norm(a["P1"] - a["P0"])) for a in result.alternatives]
+    assert sorted(round(v, 4) for v in lengths) == [10.8149, 12.5679]
+
+
+def test_bar_in_the_box_from_60_starts():
+    for seed in range(60):
+        sketch = load("bar_length")
+        random = np.random.default_rng(seed)
+        turn, place = random.uniform(0.2, 1.2), np.array([5.0, 3.0]) + random.uniform(-1, 1, 2)
+        d = np.array([np.cos(turn), np.sin(turn)])
+        m = np.array([-d[1], d[0]])
+        for i, (u, v) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):
+            at = sketch.entity(f"P{i}").variable
+            sketch._numbers[at : at + 2] = (place + 4.5 * u * d + 0.5 * v * m).tolist()
+        for i in range(4):
+            line = sketch.entity(f"bar{i}")
+            a, b = (p.position for p in line.ends)
+            theta = sketch._numbers[line.variable]
+            theta += np.remainder(np.arctan2(*(b - a)[::-1]) - theta + np.pi, 2 * np.pi) - np.pi
+            normal = np.array([-np.sin(theta), np.cos(theta)])
+            sketch._numbers[line.variable : line.variable + 2] = [
+                theta,
+                float(normal @ (a + b) / 2),
+            ]
+        result = sketch.solve()
+        assert result.solved and result.residual <= 1e-12 * 10.0
+
+
+def test_extended_cluster_of_figure_11():
+    result = load("extended_cluster").solve()
+    assert result.status == "well"
+    numeric = [step for step in result.plan if step.method == "numeric"]
+    assert [step.kind for step in numeric] == ["extended"]
+    assert len(numeric[0].uses) == 8 and "L6" in numeric[0].places
+    assert sum(step.kind == "a" for step in result.plan) == 3
+
+
+def test_under_constrained_sketch_of_figures_12_to_16():
+    sketch = load("under_constrained")
+    result = sketch.solve()
+    assert len(sketch.entities) == 18 and len(sketch.constraints) == 30
+    assert result.status == "under" and result.freedom == 3
+    assumed = [step.assumptions for step in result.plan if step.assumptions]
+    assert assumed == [1, 1, 1]
+    assert result.residual <= 1e-12 * 5.0
+
+
+@pytest.mark.parametrize(("stage", "freedom"), [("b", 2), ("c", 2), ("d", 3), ("e", 0)])
+def test_midship_section_stages(stage, freedom):
+    sketch = load(f"midship_{stage}")
+    result = sketch.solve()
+    assert result.solved and result.freedom == freedom
+    assert result.status == ("well" if stage == "e" else "under")
+    assert result.residual <= 1e-12 * 19.0
+
+
+def test_midship_section_and_its_design_changes():
+    sketch = load("midship_e")
+    assert len(sketch.entities) == 106 and len(sketch.constraints) == 173
+    result = sketch.solve()
+    kinds = {step.kind for step in result.plan if step.method == "numeric"}
+    assert kinds == {"c", "extended"}
+    changes = {"B": 16.6, "D": 19.4, "h": 2.2, "w": 2.5, "r": 1.9, "t": 11.2}
+    for name, value in changes.items():
+        sketch.set(name, value)
+    changed = sketch.solve()
+    assert changed.status == "well" and changed.residual <= 1e-12 * 19.0
+    assert sketch.entity("deck_edge").position == pytest.approx([16.6, 19.4])
+    assert sketch.entity("deck_edge_p").position == pytest.approx([-16.6, 19.4])
+    assert sketch.entity("bilge_p").radius == pytest.approx(1.9)

@@ -1,0 +1,81 @@
+"""Bad input is refused in one line that names what was wrong."""
+
+import math
+
+import pytest
+
+from clearance.errors import ClearanceError
+from clearance.sketch import Sketch
+
+
+def refused(call, *words):
+    with pytest.raises(ClearanceError) as caught:
+        call()
+    text = str(caught.value)
+    assert "\n" not in text and len(text) < 300
+    for word in words:
+        assert word in text, text
+
+
+@pytest.fixture
+def s():
+    sketch = Sketch()
+    sketch.point(0, 0, name="a"), sketch.point(1, 0, name="b"), sketch.circle((3, 3), 1.0, name="c")
+    return sketch
+
+
+def test_names(s):
+    refused(lambda: s.point(0, 0, name="a"), "'a'", "taken")
+    refused(lambda: s.distance("a", "bb", 1.0), "'bb'", "did you mean 'b'")
+    refused(
+        lambda: s.distance(s.entity("a"), Sketch().point(0, 0, name="z"), 1.0), "another sketch"
+    )
+    refused(lambda: s.set("width", 1.0), "width")
+    s.distance("a", "b", 1.0, name="width")
+    refused(lambda: s.distance("a", "c", 1.0, name="width"), "taken")
+    refused(lambda: s.set("widht", 1.0), "did you mean 'width'")
+
+
+def test_kinds(s):
+    refused(lambda: s.radius(s.entity("a"), 1.0), "radius", "circle")
+    refused(lambda: s.parallel("a", "b"), "parallel", "line-line")
+    refused(lambda: s.add("distence", "a", "b"), "distence")
+    refused(lambda: s.distance("a", "a", 1.0), "different entities")
+    refused(lambda: s.add("parallel", "a", "b", value=3.0), "parallel")
+
+
+@pytest.mark.parametrize(
+    "value", [-1.0, 0.0, math.nan, math.inf, "1/0", "sqrt(-1)", "__import__('os')", "w", "1 +"]
+)
+def test_values(s, value):
+    refused(lambda: s.distance("a", "b", value, name="width"), "width")
+    assert "width" not in s.constraints
+
+
+def test_dimensions_set_later(s):
+    s.distance("a", "b", 1.0, name="width")
+    refused(lambda: s.set("width", -2.0), "-2.0")
+    assert s.value("width") == 1.0
+
+
+def test_degenerate(s):
+    refused(lambda: s.line(s.entity("a"), s.point(0, 0, name="twin"), name="l"), "l")
+    refused(lambda: s.circle((0, 0), 0.0, name="k"), "k", "0")
+    line = s.line(s.entity("a"), s.entity("b"), name="edge")
+    s.fix("a")
+    s.coincident("a", "b")
+    refused(s.solve, "edge")
+    assert line.length == 1.0
+
+
+def test_files(tmp_path):
+    path = tmp_path / "s.yaml"
+    refused(lambda: Sketch.load(path), "s.yaml")
+    for text, word in (
+        ("points: {a: [0]}", "points.a"), ("points: [1", "YAML"), ("pionts: {}", "points"),
+        ("points: {a: [0, .nan]}", "points.a"),
+        ("points: {a: [0, 0]}\nconstraints: [{kind: fix, of: [q]}]", "constraints[0]"),
+        ("points: {a: [0, 0]}\nconstraints: [{kind: fix, off: [a]}]", "constraints[0]"),
+    ):  # fmt: skip
+        path.write_text(text)
+        refused(lambda: Sketch.load(path), "s.yaml", word)

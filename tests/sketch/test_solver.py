@@ -1,0 +1,191 @@
+"""Properties of solving, on sketches whose truth is known: points are placed first, dimensions
+measured."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance.sketch import Sketch
+
+QUICK = settings(max_examples=25, deadline=None)
+
+
+def truth(n, seed, extra=0, missing=0, off=0.03, place=(0.0, 0.0), scale=1.0, turn=0.0):
+    """A sketch of n points: a triangulated strip, with some edges more or fewer; (sketch, points,
+    truth)."""
+    random = np.random.default_rng(seed)
+    points = np.array([(0.5 * k, 0.9 * (k % 2)) for k in range(n)]) + random.uniform(
+        -0.1, 0.1, (n, 2)
+    )
+    edges = [(0, 1)] + [(k - j, k) for k in range(2, n) for j in (1, 2)]
+    chosen = list(random.permutation(len(edges)))
+    edges = [edges[k] for k in sorted(chosen[missing:])]
+    far = [(a, b) for a in range(n) for b in range(a + 3, n)]
+    edges += [far[k] for k in random.permutation(len(far))[:extra]]
+    drawn = points + random.uniform(-off, off, points.shape)
+    c, s_ = math.cos(turn), math.sin(turn)
+    drawn = scale * drawn @ np.array([[c, s_], [-s_, c]]) + np.array(place)
+    s = Sketch()
+    p = [s.point(*q) for q in drawn]
+    for a, b in edges:
+        s.distance(p[a], p[b], scale * float(np.linalg.norm(points[a] - points[b])))
+    return s, p, points, edges
+
+
+def shape(p):
+    x = np.array([q.position for q in p])
+    return np.linalg.norm(x[:, None] - x[None], axis=2)
+
+
+@QUICK
+@given(st.integers(3, 30), st.integers(0, 10**6))
+def test_well_constrained(n, seed):
+    s, p, points, _ = truth(n, seed)
+    result = s.solve()
+    assert result.status == "well" and result.freedom == 0
+    assert result.residual <= 1e-12 * n
+    assert shape(p) == pytest.approx(
+        np.linalg.norm(points[:, None] - points[None], axis=2), abs=1e-9
+    )
+
+
+@QUICK
+@given(st.integers(5, 20), st.integers(0, 10**6), st.integers(1, 2))
+def test_under_constrained_by_the_missing_edges(n, seed, missing):
+    s, p, _points, _edges = truth(n, seed, missing=missing)
+    result = s.solve()
+    assert result.status == "under" and result.freedom == missing
+    assert result.residual <= 1e-12 * n
+    before = [q.position for q in p]
+    assert s.solve().solved and all((a == q.position).all() for a, q in zip(before, p, strict=True))
+
+
+@QUICK
+@given(st.integers(6, 20), st.integers(0, 10**6), st.integers(1, 2))
+def test_over_constrained_is_consistent_and_named(n, seed, extra):
+    s, _p, _, _edges = truth(n, seed, extra=extra)
+    result = s.solve()
+    assert result.status == "over" and len(result.redundant) == extra
+    assert result.conflicts == []
+    for name in result.redundant:
+        assert any(name in part for part in result.over_constrained)
+
+
+@QUICK
+@given(
+    st.integers(3, 20),
+    st.integers(0, 10**6),
+    st.floats(-3, 3),
+    st.floats(0.01, 100),
+    st.integers(-50, 50),
+)
+def test_rigid_motion_and_scaling(n, seed, turn, scale, shift):
+    s, p, _, _ = truth(n, seed)
+    t, q, _, _ = truth(n, seed, place=(shift * scale, 2.0 * scale), scale=scale, turn=turn)
+    assert s.solve().solved and t.solve().solved
+    assert shape(q) == pytest.approx(scale * shape(p), rel=1e-9, abs=1e-10 * scale)
+
+
+@QUICK
+@given(st.integers(3, 40), st.integers(0, 10**6))
+def test_solved_sketches_solve_to_themselves_bit_for_bit(n, seed):
+    s, _p, _, _ = truth(n, seed)
+    s.solve()
+    before = list(s._numbers)
+    assert s.solve().solved and s._numbers == before
+
+
+def test_no_triangle_flips():
+    for seed in range(10):
+        s, p, points, _ = truth(100, seed, off=0.1)
+        assert s.solve().solved
+        x = np.array([q.position for q in p])
+        for k in range(98):
+            a, b = (np.linalg.det([y[k + 1] - y[k], y[k + 2] - y[k]]) for y in (x, points))
+            assert a * b > 0.0
+
+
+def test_free_pieces_are_set_down_where_they_were_drawn():
+    s, p, _points, _ = truth(30, 4)
+    drawn = np.array([q.position for q in p])
+    s.solve()
+    x = np.array([q.position for q in p])
+    assert x.mean(axis=0) == pytest.approx(drawn.mean(axis=0), abs=1e-12)
+    a, b = x - x.mean(axis=0), drawn - drawn.mean(axis=0)
+    assert np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) == pytest.approx(0.0, abs=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_least_movement_against_an_independent_optimiser(seed):
+    from scipy.optimize import minimize
+
+    s, p, _, edges = truth(8, seed, missing=2 + seed % 2, off=0.15)
+    drawn = np.array([q.position for q in p]).ravel()
+    spans = [c.number for c in s.constraints.values()]
+
+    def gaps(x):
+        y = x.reshape(-1, 2)
+        return np.array(
+            [np.linalg.norm(y[a] - y[b]) - d for (a, b), d in zip(edges, spans, strict=True)]
+        )
+
+    result = s.solve()
+    reference = minimize(
+        lambda x: float(np.sum((x - drawn) ** 2)), drawn, method="SLSQP",
+        constraints={"type": "eq", "fun": gaps}, options={"maxiter": 500, "ftol": 1e-14},
+    )  # fmt: skip
+    assert np.abs(gaps(reference.x)).max() < 1e-8
+    assert result.movement <= 1.001 * math.sqrt(reference.fun)
+
+
+def test_square_of_rods():
+    s = Sketch()
+    p = [s.point(*q) for q in ((0, 0), (1.1, 0), (1, 1.2), (0, 0.9))]
+    for i in range(4):
+        s.distance(p[i], p[(i + 1) % 4], 1.0)
+    result = s.solve()
+    assert result.status == "under" and result.freedom == 1
+    assert sorted(result.freedom_of.values()) == [0, 0, 1, 1]
+
+
+def test_changing_one_dimension_moves_only_what_depends_on_it():
+    s = Sketch()
+    p = [s.point(x, y) for x, y in ((0, 0), (2, 0), (2, 1), (4, 0.2), (4, 1.3))]
+    s.fix(p[0]), s.fix(p[1])
+    s.distance(p[0], p[2], 2.2), s.distance(p[1], p[2], 1.0)
+    s.distance(p[2], p[3], 2.1), s.distance(p[1], p[3], 2.0)
+    s.distance(p[3], p[4], 1.0, name="last"), s.distance(p[2], p[4], 2.0)
+    s.solve()
+    before = [q.position for q in p]
+    s.set("last", 1.1)
+    result = s.solve()
+    assert [step.outcome for step in result.plan].count("done") == 1
+    assert all((a == q.position).all() for a, q in zip(before[:4], p[:4], strict=True))
+
+
+def test_irreducible_cluster():
+    """K(3,3): no triangle, no vertex of two edges; one numeric cluster."""
+    random = np.random.default_rng(2)
+    points = random.uniform(0, 3, (6, 2))
+    s = Sketch()
+    p = [s.point(*q) for q in points + random.uniform(-0.05, 0.05, (6, 2))]
+    for a in range(3):
+        for b in range(3, 6):
+            s.distance(p[a], p[b], float(np.linalg.norm(points[a] - points[b])))
+    result = s.solve()
+    assert result.status == "well" and result.residual < 1e-12
+    assert any(step.method == "numeric" for step in result.plan)
+
+
+def test_drag_keeps_the_constraints_and_follows():
+    s = Sketch()
+    p = [s.point(*q) for q in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    for i in range(4):
+        s.distance(p[i], p[(i + 1) % 4], 1.0)
+    s.fix(p[0]), s.fix(p[1])
+    result = s.drag(p[2], (1.6, 0.8))
+    assert result.solved and result.residual < 1e-12
+    assert p[2].position == pytest.approx([1.6, 0.8], abs=1e-4)
