@@ -24,6 +24,8 @@ _ROOM_OF = {
     "Record": "simulate.record",
     "Robot": "world.robot",
     "Run": "run",
+    "Sketch": "sketch",
+    "SketchResult": "sketch",
     "Trajectory": "world.trajectory",
     "biarcs": "planar.biarcs",
     "box": "geometry.shapes",

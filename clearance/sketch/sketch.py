@@ -30,7 +30,6 @@ from clearance.sketch.faults import DegenerateSketch, UnknownEntity
 
 if TYPE_CHECKING:
     from clearance.planar.curve import Curve
-
     from clearance.sketch.result import SketchResult
 
 
