@@ -90,13 +90,15 @@ def check(
     from clearance.run import check as answer
     from clearance.tolerance import CERTIFY_GAP
 
-    with shown_progress(quiet or as_json, cross_check) as progress:
+    certify = certify or certify_mm is not None
+    passes = ["measuring"] + ["certifying"] * certify + ["cross-checking"] * cross_check
+    with shown_progress(quiet or as_json, passes) as progress:
         run = answer(
             case,
             method=method,
             motion=motion,
             limits=limits,
-            certify=certify or certify_mm is not None,
+            certify=certify,
             certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
             cross_check=cross_check,
             progress=progress,

@@ -32,6 +32,13 @@ def _require_writable(place: Path, folder: Path) -> None:
     """Makes and removes a nameless file where `place` would go: permission bits alone do not
     tell.
     """
+    for link in (folder.absolute(), *folder.absolute().parents):
+        if link.is_symlink() and not link.exists():
+            raise Unwritable(
+                f"{link.name!r} is a link that leads nowhere",
+                where=str(place),
+                valid="a place inside a folder that can be written is needed",
+            )
     existing = next(p for p in (folder.absolute(), *folder.absolute().parents) if p.exists())
     try:
         with tempfile.TemporaryFile(dir=existing):

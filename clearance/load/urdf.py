@@ -68,7 +68,8 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
         bare = [name for name in link_names if not _elements(by_name[name], request)]
         if bare:
             what = f"no {request.geometry} geometry and not measured: {', '.join(bare)}"
-            notes.append(f"{shown}: {len(bare)} links with {what}")
+            links = "1 link" if len(bare) == 1 else f"{len(bare)} links"
+            notes.append(f"{shown}: {links} with {what}")
     return Robot(model.name, link_names, ordered, tuple(bodies), tuple(notes))
 
 

@@ -114,6 +114,7 @@
       annotations: shownLimits().map(([name, limit, colour]) => limitLabel(name, limit, colour)),
     };
     Plotly.newPlot(curve, traces, layout, {responsive: true, displaylogo: false, displayModeBar: false, doubleClick: "reset"});
+    new ResizeObserver(() => { if (curve.clientHeight > 0) Plotly.Plots.resize(curve); }).observe(curve); // hidden in print
     const cursor = document.createElement("div");
     cursor.id = "cursor";
     curve.append(cursor);

@@ -40,3 +40,31 @@ def test_a_gap_of_zero_is_refused_in_one_line():
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "above 0" in done.stderr
+
+
+def test_each_pass_has_its_own_bar(monkeypatch):
+    from rich import progress as rich_progress
+
+    from clearance.cli.progress import shown_progress
+
+    told = []
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setattr(
+        rich_progress.Progress,
+        "update",
+        lambda bars, task, **values: told.append((task, values["completed"])),
+    )
+    with shown_progress(False, ["measuring", "certifying", "cross-checking"]) as progress:
+        for done in (5, 10, 5, 10, 1, 10):
+            progress(done, 10)
+    assert told == [(0, 5), (0, 10), (1, 5), (1, 10), (2, 1), (2, 10)]
+
+
+def test_an_out_that_is_a_dangling_link_is_refused_before_the_work(tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
+    (tmp_path / "loop").symlink_to(tmp_path / "loop")
+    for place in ("link", "loop", "link/deeper"):
+        done = clearance("--out", str(tmp_path / place))
+        assert done.returncode == 2
+        assert "leads nowhere" in done.stderr
+        assert done.stdout == ""
