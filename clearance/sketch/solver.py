@@ -24,9 +24,8 @@ from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem, prob
 if TYPE_CHECKING:
     from clearance.sketch.constraints import Constraint
 
-LARGEST_BLOCK = 600
-"""Equations of a numeric cluster up to which a dense factorisation is the faster one (measured: a
-sparse one wins from about 500 on)."""
+LARGEST_BLOCK = 6000
+"""Equations of a numeric cluster up to which it is tried; large ones are solved on a band."""
 
 FLOOR = 2e-16
 """[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
