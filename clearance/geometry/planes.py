@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.edges import rings_of
+
 _DOUBTFUL = 2.0**-30
 """Below this part of the squared radius a float area vector has lost so many digits (error about 2^-49 of
 the squared radius) that its direction is computed again in rationals."""
@@ -61,9 +63,7 @@ def _area_vectors(spans: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """(m, 3) twice the area vectors of faces whose corners are given relative to their first."""
     if len(spans) == 3 * (len(starts) - 1):
         return np.cross(spans[1::3], spans[2::3])
-    ahead = np.arange(1, len(spans) + 1)
-    ahead[starts[1:] - 1] = starts[:-1]
-    return np.add.reduceat(np.cross(spans, spans[ahead]), starts[:-1], axis=0)
+    return np.add.reduceat(np.cross(spans, spans[rings_of(starts).ahead]), starts[:-1], axis=0)
 
 
 def _exact_direction(corners: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from clearance.geometry.edges import rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.face_planes import face_planes
 from clearance.kernels.surface import Surface
@@ -95,14 +96,13 @@ def _build(shape: Polyhedron) -> Surface:
     vertices, weld = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
     corners = weld.reshape(-1)[shape.face_vertices].astype(np.int64)
     starts = shape.face_starts.copy()
-    face_of_corner = np.repeat(np.arange(shape.n_faces), np.diff(starts))
-    following = _following(starts)
+    ring = rings_of(starts)
     normals, blunt, width = np.empty((shape.n_faces, 3)), np.empty(shape.n_faces), np.empty(shape.n_faces)
     bent = np.empty(shape.n_faces, dtype=np.bool_)
     face_planes(vertices, starts, corners, normals, blunt, width, bent)
-    owned_vertices, vertex_starts = _owned(corners, face_of_corner, shape.n_faces)
-    edges = np.stack([corners, corners[following]], axis=1)
-    owned_edges, edge_starts = _owned(np.sort(edges, axis=1), face_of_corner, shape.n_faces)
+    owned_vertices, vertex_starts = _owned(corners, ring.face, shape.n_faces)
+    edges = np.stack([corners, corners[ring.ahead]], axis=1)
+    owned_edges, edge_starts = _owned(np.sort(edges, axis=1), ring.face, shape.n_faces)
     axes, centres, halves, children = _tree(vertices[corners], starts)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
@@ -116,7 +116,7 @@ def _build(shape: Polyhedron) -> Surface:
         blunt=blunt,
         width=width,
         bent=bent,
-        corner_normals=_corner_normals(vertices, edges, normals[face_of_corner]),
+        corner_normals=_corner_normals(vertices, edges, normals[ring.face]),
         vertex_starts=vertex_starts,
         owned_vertices=owned_vertices,
         edge_starts=edge_starts,
@@ -131,13 +131,6 @@ def _build(shape: Polyhedron) -> Surface:
         solid_starts=np.array([0, len(solid_faces)]),
         solid_faces=solid_faces,
     )
-
-
-def _following(starts: np.ndarray) -> np.ndarray:
-    """(c,) for each corner the next corner of the same face."""
-    following = np.arange(1, starts[-1] + 1)
-    following[starts[1:] - 1] = starts[:-1]
-    return following
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

@@ -19,7 +19,7 @@ from clearance.kernels.bounds import (
     rounding_slack,
     sight_along,
 )
-from clearance.kernels.descent import Scratch, margin_of, new_scratch, nothing_yet
+from clearance.kernels.descent import Scratch, breadth, margin_of, new_scratch, nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.drift import (
     drift_of,
@@ -101,12 +101,6 @@ def _node_floor(a, node_a, b, node_b, m, sight, slack, drift, target):
 
 
 @inlined
-def _breadth(surface, node):
-    x, y, z = surface.halves[node, 0], surface.halves[node, 1], surface.halves[node, 2]
-    return x + y + z - max(x, max(y, z))
-
-
-@inlined
 def allowed_gap(least, gap, fail):
     """[m] how far below the least distance seen the bound may stay: less where that leaves `fail` undecided."""
     if least < fail:
@@ -170,7 +164,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             if bound < target and moved >= STILL * allowed:
                 return Held(0.0, least, False, near_a, near_b)
             continue
-        if leaf_b or (not leaf_a and _breadth(a, node_a) >= _breadth(b, node_b)):
+        if leaf_b or (not leaf_a and breadth(a, node_a) >= breadth(b, node_b)):
             a0, a1, b0, b1 = a.children[node_a, 0], a.children[node_a, 1], node_b, node_b
         else:
             a0, a1, b0, b1 = node_a, node_a, b.children[node_b, 0], b.children[node_b, 1]

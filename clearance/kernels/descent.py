@@ -69,7 +69,7 @@ def nothing_yet(limit_sq):
 
 
 @inlined
-def _breadth(surface, node):
+def breadth(surface, node):
     """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
     x, y, z = surface.halves[node, 0], surface.halves[node, 1], surface.halves[node, 2]
     return x + y + z - max(x, max(y, z))
@@ -172,7 +172,7 @@ def descend(a, root_a, b, root_b, frames, best, slack, scratch):
                 scratch.near_sq[n_pairs] = near.near_sq
                 n_pairs += 1
             continue
-        if leaf_b or (not leaf_a and _breadth(a, node_a) >= _breadth(b, node_b)):
+        if leaf_b or (not leaf_a and breadth(a, node_a) >= breadth(b, node_b)):
             a0, a1 = a.children[node_a, 0], a.children[node_a, 1]
             b0, b1 = node_b, node_b
         else:

@@ -18,6 +18,7 @@ from clearance.kernels.sketch_newton import newton
 from clearance.kernels.sketch_pebble import play
 from clearance.kernels.sketch_peel import peel
 from clearance.kernels.sketch_place import place
+from clearance.kernels.topology import find_root
 
 
 class Plan(NamedTuple):
@@ -44,14 +45,6 @@ class Plan(NamedTuple):
     circuit: np.ndarray
 
 
-@inlined
-def _find(group, v):
-    while group[v] != v:
-        group[v] = group[group[v]]
-        v = group[v]
-    return v
-
-
 @kernel
 def components(kind, ends, theta_of, absolute):
     """The connected part of every vertex (the ground's is -1), and how each hangs on the ground.
@@ -65,19 +58,19 @@ def components(kind, ends, theta_of, absolute):
         for k in range(5):
             v = ends[row, k]
             if v > 0:
-                a = _find(group, v)
+                a = find_root(group, v)
                 if first >= 0:
                     group[max(a, first)] = min(a, first)
                     a = min(a, first)
                 first = a
     for v in range(1, n):
         if kind[v] == SLIDE and theta_of[v] > 0:
-            a, b = _find(group, v), _find(group, theta_of[v])
+            a, b = find_root(group, v), find_root(group, theta_of[v])
             group[max(a, b)] = min(a, b)
     part = np.full(n, -1, np.int64)
     count = 0
     for v in range(1, n):
-        r = _find(group, v)
+        r = find_root(group, v)
         if r == v:
             part[v] = count
             count += 1

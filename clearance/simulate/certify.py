@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadDimension
+from clearance.geometry.edges import rings_of
 from clearance.kernels.certify import Asked, certify
 from clearance.kernels.drift import Chain
 from clearance.kernels.surface import Surface
@@ -76,11 +77,9 @@ def _lay_out(
 def _with_whole_faces(surface: Surface) -> Surface:
     """The surface in which every face owns all its corners and edges, not only those it answers for."""
     starts, corners = surface.face_starts, surface.face_vertices
-    following = np.arange(1, len(corners) + 1)
-    following[starts[1:] - 1] = starts[:-1]
     return surface._replace(
         vertex_starts=starts,
         owned_vertices=corners,
         edge_starts=starts,
-        owned_edges=np.stack([corners, corners[following]], axis=1),
+        owned_edges=np.stack([corners, corners[rings_of(starts).ahead]], axis=1),
     )
