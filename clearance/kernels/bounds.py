@@ -3,20 +3,20 @@
 import math
 from typing import NamedTuple
 
-from clearance.jit import inlined
+from clearance.jit import merged
 from clearance.kernels.vec3 import Rigid, Vec3, dot, row, sub, turn, turn_back
 
 SLACK = 128.0 * 2.0**-53
 """Rounding of a box bound, relative to the sum of the coordinates' magnitudes: 40 operations, doubled."""
 
 
-@inlined
+@merged
 def _axis_gap(centre, half_a, half_b, slack):
     gap = abs(centre) - half_a - half_b - slack
     return gap if gap > 0.0 else 0.0
 
 
-@inlined
+@merged
 def _between_boxes(a, node_a, b, node_b, m):
     """The rotation from the axes of box b to those of box a; its `t` is b's centre in the frame of box a."""
     p = a.axes[node_a]
@@ -36,7 +36,7 @@ def _between_boxes(a, node_a, b, node_b, m):
     )  # fmt: skip
 
 
-@inlined
+@merged
 def lower_bound_boxes_sq(a, node_a, b, node_b, m, slack):
     """A lower bound on the squared distance of two node boxes.
 
@@ -78,7 +78,7 @@ class Sight(NamedTuple):
     offset: float  # [m] u . t of `a_from_b`
 
 
-@inlined
+@merged
 def sight_along(p, q, m):
     """The sight from `p` to `q` (frame of a); one of zero length bounds nothing."""
     d = sub(q, p)
@@ -88,7 +88,7 @@ def sight_along(p, q, m):
     return Sight(d, turn_back(m, d), dot(d, m.t))
 
 
-@inlined
+@merged
 def _box_reach(surface, node, direction):
     """[m] how far a node's box reaches from its centre along a direction."""
     axes = surface.axes[node]
@@ -100,7 +100,7 @@ def _box_reach(surface, node, direction):
     return reach
 
 
-@inlined
+@merged
 def lower_bound_boxes_in_sight(a, node_a, b, node_b, sight):
     """[m] a lower bound on the distance of two node boxes, without their rounding slack; may be negative."""
     far_of_a = dot(sight.u, row(a.centres, node_a)) + _box_reach(a, node_a, sight.u)
@@ -108,7 +108,7 @@ def lower_bound_boxes_in_sight(a, node_a, b, node_b, sight):
     return near_of_b + sight.offset - far_of_a
 
 
-@inlined
+@merged
 def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
     """[m] a lower bound on the distance of two faces, without rounding slack; may be negative."""
     far_of_a = -math.inf
@@ -120,7 +120,7 @@ def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
     return near_of_b + sight.offset - far_of_a
 
 
-@inlined
+@merged
 def _reach(surface, root):
     """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
     reach = 0.0
@@ -129,7 +129,7 @@ def _reach(surface, root):
     return reach
 
 
-@inlined
+@merged
 def rounding_slack(a, root_a, b, root_b, frames):
     """[m] how much rounding, and rotations that are not quite orthonormal, can raise a box bound."""
     t = frames.m.t
@@ -137,7 +137,7 @@ def rounding_slack(a, root_a, b, root_b, frames):
     return (SLACK + 8.0 * frames.defect) * (apart + _reach(a, root_a) + _reach(b, root_b))
 
 
-@inlined
+@merged
 def displacement(surface, root, before, after):
     """[m] an upper bound on how far a motion of the body from one pose to another moves any of its points.
 

@@ -8,7 +8,7 @@ both; each is a candidate here, over the features that the two faces own. Not fo
 import math
 from typing import NamedTuple
 
-from clearance.jit import inlined
+from clearance.jit import merged
 from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
 from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
 
@@ -39,7 +39,7 @@ class Near(NamedTuple):
     near_sq: float
 
 
-@inlined
+@merged
 def limit_of(a, face_a, b, face_b, best_gap, margin):
     """[m] the greatest distance in doubles that a feature pair of two faces may have and still win."""
     blunt_a, blunt_b = a.blunt[face_a], b.blunt[face_b]
@@ -51,7 +51,7 @@ def limit_of(a, face_a, b, face_b, best_gap, margin):
     )
 
 
-@inlined
+@merged
 def take(near, found_sq, upper_sq, face_a, face_b, p, q):
     """`near` with one more candidate, which is within the limit."""
     best = near.best
@@ -60,7 +60,7 @@ def take(near, found_sq, upper_sq, face_a, face_b, p, q):
     return Near(best, min(near.near_sq, found_sq))
 
 
-@inlined
+@merged
 def is_over(surface, face, x):
     """True if the foot of `x` on the plane of `face` lies in the face (body frame)."""
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
@@ -70,7 +70,7 @@ def is_over(surface, face, x):
     return True
 
 
-@inlined
+@merged
 def may_be_over(surface, face, x, margin):
     """True unless the foot of `x` is outside the face by more than rounding."""
     room = margin * surface.blunt[face] + surface.width[face]
@@ -82,21 +82,21 @@ def may_be_over(surface, face, x, margin):
     return True
 
 
-@inlined
+@merged
 def height(surface, face, x):
     """The signed height of `x` over the plane of `face` (body frame)."""
     first = row(surface.vertices, surface.face_vertices[surface.face_starts[face]])
     return dot(row(surface.normals, face), sub(x, first))
 
 
-@inlined
+@merged
 def has_plane(surface, face):
     """True if the face has a normal that is more than rounding."""
     n = row(surface.normals, face)
     return n.x != 0.0 or n.y != 0.0 or n.z != 0.0
 
 
-@inlined
+@merged
 def _upper_sq(surface, face, h, margin):
     """An upper bound on the squared distance of a point at height `h` over the face."""
     blunt = surface.blunt[face]
@@ -104,7 +104,7 @@ def _upper_sq(surface, face, h, margin):
     return upper * upper
 
 
-@inlined
+@merged
 def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
     if has_plane(b, face_b):
@@ -119,7 +119,7 @@ def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@inlined
+@merged
 def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
     flat = has_plane(a, face_a)
@@ -142,7 +142,7 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@inlined
+@merged
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`."""
     for k in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
@@ -166,7 +166,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
     return near
 
 
-@inlined
+@merged
 def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with owned vertices against owned vertices."""
     for i in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
@@ -179,7 +179,7 @@ def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     return near
 
 
-@inlined
+@merged
 def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     """The best pair of points, and the nearest that two faces come if it could be the minimum, else infinity.
 
@@ -196,7 +196,7 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     return edges_to_edges(a, face_a, b, face_b, m, limit_sq, near)
 
 
-@inlined
+@merged
 def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
     """True if all corners of the other face are clearly on one side of the plane of `face`."""
     least, most = math.inf, -math.inf
@@ -207,7 +207,7 @@ def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
     return least > tolerance or most < -tolerance
 
 
-@inlined
+@merged
 def may_meet(a, face_a, b, face_b, m, margin):
     """False only if one face is clearly on one side of the other's plane."""
     far = margin / (512.0 * 2.0**-53)

@@ -8,7 +8,7 @@ and a lower bound along the connecting line tells how far the answer can be abov
 import math
 from typing import NamedTuple
 
-from clearance.jit import inlined, kernel
+from clearance.jit import kernel, merged
 from clearance.kernels.double_double import (
     NOISE,
     Wide,
@@ -74,7 +74,7 @@ class Ask(NamedTuple):
     margin: float
 
 
-@inlined
+@merged
 def nothing_refined():
     """What any pair of points beats."""
     zero = wide(0.0)
@@ -82,7 +82,7 @@ def nothing_refined():
     return Refined(wide(math.inf), 2**62, 2**62, nowhere, nowhere, nowhere, wide(math.inf))
 
 
-@inlined
+@merged
 def _wins(found_sq, face_a, face_b, best):
     """True where a new pair is nearer, or as near with lesser faces."""
     if less(best.gap_sq, found_sq):
@@ -92,7 +92,7 @@ def _wins(found_sq, face_a, face_b, best):
     return face_a < best.face_a or (face_a == best.face_a and face_b < best.face_b)
 
 
-@inlined
+@merged
 def _n_segments(surface, face):
     """Edges that a face owns, and the diagonals of its fan if it is bent."""
     owned = surface.edge_starts[face + 1] - surface.edge_starts[face]
@@ -101,7 +101,7 @@ def _n_segments(surface, face):
     return owned
 
 
-@inlined
+@merged
 def _segment(surface, face, k):
     """The two vertices of segment `k` of a face."""
     first = surface.edge_starts[face]
@@ -112,7 +112,7 @@ def _segment(surface, face, k):
     return surface.face_vertices[start], surface.face_vertices[corner]
 
 
-@inlined
+@merged
 def _vertex_pairs(a, face_a, b, face_b, frames, ask, best):
     for k in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
         j = b.owned_vertices[k]
@@ -128,18 +128,18 @@ def _vertex_pairs(a, face_a, b, face_b, frames, ask, best):
     return best
 
 
-@inlined
+@merged
 def _placed(frames, v, is_a):
     return point_of_a(frames, v) if is_a else point_of_b(frames, v)
 
 
-@inlined
+@merged
 def _swapped(is_first, x, y):
     """(x, y) or (y, x)."""
     return (x, y) if is_first else (y, x)
 
 
-@inlined
+@merged
 def _vertices_over(one, face_one, two, face_two, frames, is_a, ask, face_a, face_b, best):
     """`best` with the vertices owned by one face against the triangles of the other's fan."""
     first = two.face_starts[face_two]
@@ -169,7 +169,7 @@ def _vertices_over(one, face_one, two, face_two, frames, is_a, ask, face_a, face
     return best
 
 
-@inlined
+@merged
 def _vertices_and_segments(one, face_one, two, face_two, frames, is_a, ask, face_a, face_b, best):
     """`best` with the vertices owned by one face against the segments of the other."""
     for i in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
@@ -195,7 +195,7 @@ def _vertices_and_segments(one, face_one, two, face_two, frames, is_a, ask, face
     return best
 
 
-@inlined
+@merged
 def _far_apart(p0, p1, q0, q1, limit):
     """True if two segments are clearly farther apart than a limit, by the plane between their middles."""
     u, v = sub(p1, p0), sub(q1, q0)
@@ -208,7 +208,7 @@ def _far_apart(p0, p1, q0, q1, limit):
     return spare > 0.0 and spare * spare > limit * limit * length_sq * (1.0 + 1e-9)
 
 
-@inlined
+@merged
 def _segment_pairs(a, face_a, b, face_b, frames, ask, best):
     """`best` with the insides of the segments of both faces."""
     for k in range(_n_segments(b, face_b)):
@@ -233,13 +233,13 @@ def _segment_pairs(a, face_a, b, face_b, frames, ask, best):
     return best
 
 
-@inlined
+@merged
 def _plain_share(surface, corner, pose, w):
     """How far a corner reaches along `w`, rounded, without the shift of its body."""
     return dot(w, turn(pose, row(surface.exact, surface.face_vertices[corner])))
 
 
-@inlined
+@merged
 def _greatest_share(surface, face, frames, is_a, sign, found):
     """(share, reach): the greatest sign * w . (x - p) over the corners, and the greatest coordinate sum.
 
@@ -266,7 +266,7 @@ def _greatest_share(surface, face, frames, is_a, sign, found):
     return share, reach
 
 
-@inlined
+@merged
 def _floor_along(a, face_a, b, face_b, frames, found):
     """[m] a lower bound on the distance of two faces: their gap along the direction found."""
     length = root(dot3(found.w, found.w))
@@ -299,7 +299,7 @@ def refine_faces(a, face_a, b, face_b, frames, ask, best):
     return Refined(best.gap_sq, best.face_a, best.face_b, best.p, best.q, best.w, floor)
 
 
-@inlined
+@merged
 def _nearer(x, y, is_a, best):
     """`best`, or the points x of one face and y of the other if they are nearer."""
     found_sq = wide_gap_sq(x, y)
@@ -309,7 +309,7 @@ def _nearer(x, y, is_a, best):
     return best
 
 
-@inlined
+@merged
 def _pierced(one, face_one, two, face_two, frames, is_a, best):
     """`best`, or nearer: where the edges of one face meet the edges and triangles of the other's fan."""
     start, end = one.face_starts[face_one], one.face_starts[face_one + 1]
@@ -348,7 +348,7 @@ def common_points(a, face_a, b, face_b, frames):
     return _pierced(b, face_b, a, face_a, frames, False, best)
 
 
-@inlined
+@merged
 def settle(a, b, frames, best_gap, margin, pairs, near_sq, n_pairs, best):
     """`best` after all waiting face pairs that can still win."""
     for i in range(n_pairs):
@@ -359,7 +359,7 @@ def settle(a, b, frames, best_gap, margin, pairs, near_sq, n_pairs, best):
     return best
 
 
-@inlined
+@merged
 def shed(a, b, best_gap, margin, pairs, near_sq, n_pairs):
     """Drops the waiting face pairs that cannot win any more; how many are left."""
     kept = 0
@@ -372,7 +372,7 @@ def shed(a, b, best_gap, margin, pairs, near_sq, n_pairs):
     return kept
 
 
-@inlined
+@merged
 def error_of(refined, distance):
     """[m] a bound on |distance - true distance|, `distance` being the refined one rounded."""
     length = root(refined.gap_sq)

@@ -1,10 +1,10 @@
 """Nearest points of points and segments, and of two segments inside both, in doubles."""
 
-from clearance.jit import inlined
+from clearance.jit import merged
 from clearance.kernels.vec3 import along, cross, dot, sub
 
 
-@inlined
+@merged
 def nearest_on_segment(x, start, end):
     """The point of the segment nearest to `x`; an end point where the foot lies beyond it."""
     d = sub(end, start)
@@ -21,7 +21,7 @@ def nearest_on_segment(x, start, end):
     return along(start, s, d)
 
 
-@inlined
+@merged
 def foot_inside(x, start, end):
     """(inside, foot): the foot of `x` on the line, if strictly between the ends."""
     d = sub(end, start)
@@ -34,7 +34,7 @@ def foot_inside(x, start, end):
     return True, along(start, along_d / length_sq, d)
 
 
-@inlined
+@merged
 def common_perpendicular(p0, p1, q0, q1):
     """(inside, p, q): the feet of the common perpendicular of two segments, if inside both.
 
@@ -56,7 +56,7 @@ def common_perpendicular(p0, p1, q0, q1):
     return True, p, nearest_on_segment(p, q0, q1)
 
 
-@inlined
+@merged
 def may_be_inside(x, start, end, margin):
     """True unless the foot of `x` on the line is beyond the ends by more than rounding."""
     d = sub(end, start)
@@ -66,7 +66,7 @@ def may_be_inside(x, start, end, margin):
     return -room <= s <= length_sq + room
 
 
-@inlined
+@merged
 def may_be_inside_both(p0, p1, q0, q1, margin):
     """True unless the common perpendicular misses one of the segments by more than rounding."""
     u = sub(p1, p0)

@@ -5,7 +5,7 @@ Not for: arrays of points (numpy) and poses as users give them (room `geometry.p
 
 from typing import NamedTuple
 
-from clearance.jit import inlined
+from clearance.jit import merged
 
 
 class Vec3(NamedTuple):
@@ -31,37 +31,37 @@ class Rigid(NamedTuple):
     t: Vec3
 
 
-@inlined
+@merged
 def add(a, b):
     """a + b."""
     return Vec3(a.x + b.x, a.y + b.y, a.z + b.z)
 
 
-@inlined
+@merged
 def sub(a, b):
     """a - b."""
     return Vec3(a.x - b.x, a.y - b.y, a.z - b.z)
 
 
-@inlined
+@merged
 def along(a, s, d):
     """a + s d."""
     return Vec3(a.x + s * d.x, a.y + s * d.y, a.z + s * d.z)
 
 
-@inlined
+@merged
 def dot(a, b):
     """The scalar product."""
     return a.x * b.x + a.y * b.y + a.z * b.z
 
 
-@inlined
+@merged
 def cross(a, b):
     """The vector product."""
     return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 
 
-@inlined
+@merged
 def gap_sq(a, b):
     """The squared distance of two points."""
     x = a.x - b.x
@@ -70,13 +70,13 @@ def gap_sq(a, b):
     return x * x + y * y + z * z
 
 
-@inlined
+@merged
 def row(array, i):
     """Row `i` of an (n, 3) array."""
     return Vec3(array[i, 0], array[i, 1], array[i, 2])
 
 
-@inlined
+@merged
 def turn(m, v):
     """R v."""
     return Vec3(
@@ -86,7 +86,7 @@ def turn(m, v):
     )
 
 
-@inlined
+@merged
 def turn_back(m, v):
     """R^T v."""
     return Vec3(
@@ -96,19 +96,19 @@ def turn_back(m, v):
     )
 
 
-@inlined
+@merged
 def move(m, v):
     """R v + t."""
     return add(turn(m, v), m.t)
 
 
-@inlined
+@merged
 def move_back(m, v):
     """R^T (v - t): the inverse motion."""
     return turn_back(m, sub(v, m.t))
 
 
-@inlined
+@merged
 def rigid(matrix):
     """The motion that a (4, 4) or (3, 4) matrix describes."""
     return Rigid(
@@ -119,7 +119,7 @@ def rigid(matrix):
     )  # fmt: skip
 
 
-@inlined
+@merged
 def relative(world_from_a, world_from_b):
     """The motion `a_from_b`; the origins are differenced before anything is multiplied."""
     a = world_from_a
