@@ -9,6 +9,7 @@ from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.containment import contained
 from clearance.kernels.descent import Tally, descend, margin_of, new_scratch, nothing_yet
 from clearance.kernels.double_double import Wide3, frames_of, plus3, root, rounded, wide
+from clearance.kernels.front import no_fronts
 from clearance.kernels.face_pair import Hit, nearest_of_faces
 from clearance.kernels.refine import common_points, error_of
 from clearance.kernels.vec3 import move, rigid
@@ -16,18 +17,38 @@ from clearance.kernels.vec3 import move, rigid
 NO_FACE = -1
 
 
+class Asked(NamedTuple):
+    """What is asked of a body pair.
+
+    Attributes:
+        limit: [m] a lower bound beyond this needs not be better.
+        wanted: [m] points farther apart than this are not wanted; at most `limit`.
+        face_a, face_b: faces that were nearest before, or NO_FACE; they change the work, not the answer.
+        apart: True if it is known that neither body is inside the other.
+    """
+
+    limit: float
+    wanted: float
+    face_a: int
+    face_b: int
+    apart: bool
+
+
 class Measured(NamedTuple):
     """What is known of a body pair.
 
     Attributes:
-        hit: the nearest points in the world, if nearer than the limit asked for; else faces of 2**62.
+        hit: the nearest points in the world, if nearer than the distance wanted; else faces of 2**62.
         lower_bound: [m] proven.
         error: [m] a bound on how far the distance of `hit` is from the truth.
+        face_a, face_b: where to begin the next time; NO_FACE if nothing was found within the limit.
     """
 
     hit: Hit
     lower_bound: float
     error: float
+    face_a: int
+    face_b: int
     tally: Tally
 
 
@@ -40,44 +61,50 @@ def _in_world(frames, x):
 
 @inlined
 def _contact(a, b, frames, found, tally):
-    common = common_points(a, found.hit.face_a, b, found.hit.face_b, frames)
+    face_a, face_b = found.hit.face_a, found.hit.face_b
+    common = common_points(a, face_a, b, face_b, frames)
     p, q = _in_world(frames, common.p), _in_world(frames, common.q)
-    return Measured(Hit(0.0, found.hit.face_a, found.hit.face_b, p, q), 0.0, 0.0, tally)
+    return Measured(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
 
 
 @inlined
-def measure_pair(a, body_a, b, body_b, frames, limit_sq, seed_a, seed_b, apart, scratch):
+def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch):
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
 
     Args:
         frames: of `frames_of`.
-        limit_sq: [m^2] pairs of points farther apart are not wanted.
-        seed_a, seed_b: faces that were nearest before, or NO_FACE; they change the work, not the answer.
-        apart: True if it is known that neither body is inside the other.
+        asked: what is wanted and known, an `Asked`.
+        fronts, pair, moved: of `descend`.
     """
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
-    limit = np.sqrt(limit_sq) + margin
+    limit = asked.limit + margin
     best = nothing_yet(limit * limit)
-    if seed_a >= 0:
-        best = nearest_of_faces(a, seed_a, b, seed_b, frames.m, margin, best).best
-    found = descend(a, root_a, b, root_b, frames, best, slack, scratch)
+    if asked.face_a >= 0:
+        best = nearest_of_faces(a, asked.face_a, b, asked.face_b, frames.m, margin, best).best
+    found = descend(
+        a, root_a, b, root_b, frames, best, asked.wanted, slack, fronts, pair, moved, scratch
+    )
     tally = found.tally
-    if found.meet and (seed_a >= 0 or limit_sq < np.inf):
+    if found.meet and (asked.face_a >= 0 or asked.limit < np.inf):
         # which of several contacts is found must not depend on where the search began
-        found = descend(a, root_a, b, root_b, frames, nothing_yet(np.inf), slack, scratch)
+        best = nothing_yet(np.inf)
+        found = descend(a, root_a, b, root_b, frames, best, np.inf, slack, fronts, pair, moved, scratch)
     if found.meet:
         return _contact(a, b, frames, found, tally)
-    if not apart:
+    if not asked.apart:
         inside, x = contained(a, body_a, b, body_b, frames.m)
         if inside:
             x = move(frames.a, x)
-            return Measured(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, tally)
-    floor = max(0.0, np.sqrt(found.floor_sq) - slack - 2.0 * margin)
+            return Measured(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
+    floor = max(0.0, found.floor - slack - 2.0 * margin)
+    face_a, face_b = found.hit.face_a, found.hit.face_b
+    if face_a == 2**62:
+        face_a, face_b = NO_FACE, NO_FACE
     refined = found.refined
     if refined.face_a == 2**62:
-        return Measured(nothing_yet(limit_sq), floor, 0.0, tally)
+        return Measured(nothing_yet(asked.wanted * asked.wanted), floor, 0.0, face_a, face_b, tally)
     distance = root(refined.gap_sq).hi
     error = error_of(refined, distance)
     hit = Hit(
@@ -87,11 +114,13 @@ def measure_pair(a, body_a, b, body_b, frames, limit_sq, seed_a, seed_b, apart, 
         _in_world(frames, refined.p),
         _in_world(frames, refined.q),
     )
-    return Measured(hit, min(floor, max(0.0, distance - error)), error, tally)
+    floor = min(floor, max(0.0, distance - error))
+    return Measured(hit, floor, error, refined.face_a, refined.face_b, tally)
 
 
 @kernel
 def nearest_bodies(a, b, world_from_a, world_from_b):
     """The nearest points of two bodies at given (4, 4) poses, in the world."""
     frames = frames_of(rigid(world_from_a), rigid(world_from_b))
-    return measure_pair(a, 0, b, 0, frames, np.inf, NO_FACE, NO_FACE, False, new_scratch())
+    asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
+    return measure_pair(a, 0, b, 0, frames, asked, no_fronts(1, 0), 0, 0.0, new_scratch())

@@ -132,12 +132,12 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
     sight = sight_along(best.p, best.q, m)
     floor = math.inf
     scratch.nodes[0, 0], scratch.nodes[0, 1] = root_a, root_b
-    scratch.bounds_sq[0] = _node_floor(a, root_a, b, root_b, m, sight, slack, drift, target)
+    scratch.bounds[0] = _node_floor(a, root_a, b, root_b, m, sight, slack, drift, target)
     n_waiting = 1
     while n_waiting > 0:
         n_waiting -= 1
         node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
-        bound = scratch.bounds_sq[n_waiting]
+        bound = scratch.bounds[n_waiting]
         if bound >= target:
             floor = min(floor, bound)
             continue
@@ -175,7 +175,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             a0, a1, b0, b1, first, second = a1, a0, b1, b0, second, first
         scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = a0, b0
         scratch.nodes[n_waiting + 1, 0], scratch.nodes[n_waiting + 1, 1] = a1, b1
-        scratch.bounds_sq[n_waiting], scratch.bounds_sq[n_waiting + 1] = first, second
+        scratch.bounds[n_waiting], scratch.bounds[n_waiting + 1] = first, second
         n_waiting += 2
     return Held(floor, least, True, near_a, near_b)
 

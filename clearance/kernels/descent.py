@@ -1,25 +1,29 @@
-"""Nearest-first descent of two trees: the exact nearest faces of two bodies, or a proof that they are far."""
+"""Nearest-first descent of two trees: the exact nearest faces of two bodies, or a proof that they are far.
+
+A descent goes on from the front that the last one of the same pair has left, if there is one (`front`).
+"""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined
+from clearance.jit import inlined, merged
 from clearance.kernels.bounds import (
     lower_bound_boxes_in_sight,
     lower_bound_boxes_sq,
     lower_bound_faces_in_sight,
     sight_along,
 )
-from clearance.kernels.face_pair import Hit, may_meet, nearest_of_faces
+from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_faces
+from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, keep
 from clearance.kernels.predicates import Exact, faces_meet, room_for_exact
 from clearance.kernels.refine import Refined, nothing_refined, settle, shed
 from clearance.kernels.vec3 import Vec3
 
-STACK_DEPTH = 4096
-"""Node pairs that can wait: each split adds one, so twice the depths of both trees is enough; trees of a
-million faces split at the mean are below 200 deep, and `descend` checks."""
+STACK_DEPTH = 8192
+"""Node pairs that can wait: each split adds one, so twice the depths of both trees and a front is enough;
+trees of a million faces split at the mean are below 200 deep, and `descend` checks."""
 
 
 N_WAITING = 64
@@ -29,8 +33,10 @@ N_WAITING = 64
 class Scratch(NamedTuple):
     """Room for waiting node pairs and face pairs and for exact arithmetic, reused between queries."""
 
-    nodes: np.ndarray  # (STACK_DEPTH, 2) int64
-    bounds_sq: np.ndarray  # (STACK_DEPTH,)
+    nodes: np.ndarray  # (STACK_DEPTH, 2) int32
+    bounds: np.ndarray  # (STACK_DEPTH,)
+    left: np.ndarray  # (LONGEST + 1, 2) int32, node pairs that were left
+    floors: np.ndarray  # (LONGEST + 1,)
     pairs: np.ndarray  # (N_WAITING, 2) int64
     near_sq: np.ndarray  # (N_WAITING,)
     exact: Exact
@@ -50,13 +56,13 @@ class Found(NamedTuple):
     Attributes:
         meet: True if the bodies have a common point, in the faces of `hit`.
         hit: the best pair of points in doubles, no worse than what was given.
-        floor_sq: a lower bound on the squared distance of the face pairs that were left out [m^2].
+        floor: [m] a lower bound on the distance of the face pairs that were not refined.
         refined: the answer in wide numbers, if there is one within the limit.
     """
 
     meet: bool
     hit: Hit
-    floor_sq: float
+    floor: float
     refined: Refined
     tally: Tally
 
@@ -75,21 +81,23 @@ def breadth(surface, node):
     return x + y + z - max(x, max(y, z))
 
 
-@inlined
-def _bound_sq(a, node_a, b, node_b, m, sight, slack, cut):
-    """A lower bound on the squared distance of two nodes: the cheap one in sight if that excludes them."""
+@merged
+def _bound(a, node_a, b, node_b, m, sight, slack, cut):
+    """[m] a lower bound on the distance of two nodes: the cheap one in sight if that excludes them."""
     in_sight = lower_bound_boxes_in_sight(a, node_a, b, node_b, sight) - slack
     if in_sight > cut:
-        return in_sight * in_sight
-    return lower_bound_boxes_sq(a, node_a, b, node_b, m, slack)
+        return in_sight
+    return math.sqrt(lower_bound_boxes_sq(a, node_a, b, node_b, m, slack))
 
 
 @inlined
 def new_scratch():
     """Room for one search at a time."""
     return Scratch(
-        np.empty((STACK_DEPTH, 2), dtype=np.int64),
+        np.empty((STACK_DEPTH, 2), dtype=np.int32),
         np.empty(STACK_DEPTH),
+        np.empty((LONGEST + 1, 2), dtype=np.int32),
+        np.empty(LONGEST + 1),
         np.empty((N_WAITING, 2), dtype=np.int64),
         np.empty(N_WAITING),
         room_for_exact(),
@@ -102,13 +110,46 @@ def margin_of(slack):
     return 4.0 * slack
 
 
+@merged
+def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
+    """Splits the front of a pair: what is still far stays in it, the rest waits. (kept, waiting, floor)"""
+    start = fronts.spans[pair, 0]
+    n_kept = 0
+    n_waiting = 0
+    floor = math.inf
+    for i in range(start, start + fronts.spans[pair, 1]):
+        node_a, node_b = fronts.nodes[i, 0], fronts.nodes[i, 1]
+        carried = fronts.floors[i]
+        if carried - moved <= cut:
+            bound = _bound(a, node_a, b, node_b, m, sight, slack, cut)
+            if bound <= cut:
+                k = n_waiting  # nearest last
+                while k > 0 and scratch.bounds[k - 1] < bound:
+                    scratch.bounds[k] = scratch.bounds[k - 1]
+                    scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k - 1, 0], scratch.nodes[k - 1, 1]
+                    k -= 1
+                scratch.bounds[k] = bound
+                scratch.nodes[k, 0], scratch.nodes[k, 1] = node_a, node_b
+                n_waiting += 1
+                continue
+            carried = (bound + moved) * KEPT_DOWN
+        floor = min(floor, carried)
+        fronts.nodes[start + n_kept, 0], fronts.nodes[start + n_kept, 1] = node_a, node_b
+        fronts.floors[start + n_kept] = carried
+        n_kept += 1
+    return n_kept, n_waiting, floor - moved
+
+
 @inlined
-def descend(a, root_a, b, root_b, frames, best, slack, scratch):
+def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair, moved, scratch):
     """All face pairs of two bodies that can be nearest within the distance of `best`, near node pairs first.
 
     Args:
         best: where to start: a hit, or `nothing_yet(limit_sq)`; node pairs farther than it are not opened.
+        wanted_gap: [m] face pairs farther apart are not refined.
         slack: [m] of `rounding_slack`.
+        fronts, pair: where the front of the pair is kept.
+        moved: [m] what both bodies have moved in all.
 
     A pair of nodes or faces is left only if a lower bound exceeds the best distance by more than its own
     error, so that every face pair that attains the minimum is refined, and the answer does not depend on
@@ -119,83 +160,102 @@ def descend(a, root_a, b, root_b, frames, best, slack, scratch):
     best_gap = math.sqrt(best.gap_sq)
     cut = best_gap + margin
     sight = sight_along(best.p, best.q, m)
-    floor_sq = np.inf
     refined = nothing_refined()
     n_nodes = 1
     n_faces = 0
     n_exact = scratch.exact.count[0]
     n_pairs = 0
     meet = False
-    scratch.nodes[0, 0] = root_a
-    scratch.nodes[0, 1] = root_b
-    scratch.bounds_sq[0] = lower_bound_boxes_sq(a, root_a, b, root_b, m, slack)
-    n_waiting = 1
+    n_left = 0
+    measured = math.inf
+    if fronts.spans[pair, 1] > 0:
+        n_nodes = fronts.spans[pair, 1]
+        n_kept, n_waiting, floor = _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch)
+        n_nodes -= n_kept
+    else:
+        n_kept, n_waiting, floor = 0, 1, math.inf
+        scratch.nodes[0, 0] = root_a
+        scratch.nodes[0, 1] = root_b
+        scratch.bounds[0] = math.sqrt(lower_bound_boxes_sq(a, root_a, b, root_b, m, slack))
     while n_waiting > 0:
         n_waiting -= 1
         node_a = scratch.nodes[n_waiting, 0]
         node_b = scratch.nodes[n_waiting, 1]
-        bound_sq = scratch.bounds_sq[n_waiting]
-        if bound_sq > cut * cut:
-            floor_sq = min(floor_sq, bound_sq)
-            continue
+        bound = scratch.bounds[n_waiting]
         leaf_a = a.children[node_a, 1] < 0
         leaf_b = b.children[node_b, 1] < 0
-        if leaf_a and leaf_b:
+        is_left = bound > cut
+        if not is_left and leaf_a and leaf_b:
+            is_left = True
             face_a, face_b = a.children[node_a, 0], b.children[node_b, 0]
             in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-            if in_sight > cut:
-                floor_sq = min(floor_sq, in_sight * in_sight)
-                continue
-            n_faces += 1
-            before_sq = best.gap_sq
-            near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
-            best = near.best
-            if best.gap_sq < before_sq:
-                best_gap = math.sqrt(best.gap_sq)
-                cut = best_gap + margin
-                sight = sight_along(best.p, best.q, m)
-                in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-            if bound_sq == 0.0 and in_sight <= 0.0 and may_meet(a, face_a, b, face_b, m, margin):
-                meet = faces_meet(a, face_a, b, face_b, frames, scratch.exact)
-                if meet:
-                    best = Hit(0.0, face_a, face_b, m.t, m.t)
-                    break
-            if near.near_sq < np.inf:
-                if n_pairs == N_WAITING:
-                    n_pairs = shed(a, b, best_gap, margin, scratch.pairs, scratch.near_sq, n_pairs)
-                    if n_pairs > N_WAITING // 2:
-                        refined = settle(
-                            a, b, frames, best_gap, margin, scratch.pairs, scratch.near_sq, n_pairs, refined
-                        )
-                        n_pairs = 0
-                scratch.pairs[n_pairs, 0], scratch.pairs[n_pairs, 1] = face_a, face_b
-                scratch.near_sq[n_pairs] = near.near_sq
-                n_pairs += 1
+            if in_sight <= cut:
+                n_faces += 1
+                before_sq = best.gap_sq
+                near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
+                best = near.best
+                if best.gap_sq < before_sq:
+                    best_gap = math.sqrt(best.gap_sq)
+                    cut = best_gap + margin
+                    sight = sight_along(best.p, best.q, m)
+                    in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
+                if bound == 0.0 and in_sight <= 0.0 and may_meet(a, face_a, b, face_b, m, margin):
+                    meet = faces_meet(a, face_a, b, face_b, frames, scratch.exact)
+                    if meet:
+                        best = Hit(0.0, face_a, face_b, m.t, m.t)
+                        break
+                if near.near_sq < math.inf:
+                    if n_pairs == N_WAITING:
+                        n_pairs = shed(a, b, best_gap, margin, scratch.pairs, scratch.near_sq, n_pairs)
+                        if n_pairs > N_WAITING // 2:
+                            refined = settle(
+                                a, b, frames, min(best_gap, wanted_gap), margin,
+                                scratch.pairs, scratch.near_sq, n_pairs, refined,
+                            )
+                            n_pairs = 0
+                    scratch.pairs[n_pairs, 0], scratch.pairs[n_pairs, 1] = face_a, face_b
+                    scratch.near_sq[n_pairs] = near.near_sq
+                    n_pairs += 1
+                    gap = math.sqrt(near.near_sq)
+                    measured = min(measured, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
+            else:
+                floor = min(floor, in_sight)
+            bound = max(bound, in_sight)
+        elif is_left:
+            floor = min(floor, bound)
+        if is_left:
+            scratch.left[n_left, 0], scratch.left[n_left, 1] = node_a, node_b
+            scratch.floors[n_left] = (bound + moved) * KEPT_DOWN
+            n_left += n_left < LONGEST
             continue
         if leaf_b or (not leaf_a and breadth(a, node_a) >= breadth(b, node_b)):
             a0, a1 = a.children[node_a, 0], a.children[node_a, 1]
-            b0, b1 = node_b, node_b
+            b0, b1 = np.int64(node_b), np.int64(node_b)
         else:
-            a0, a1 = node_a, node_a
+            a0, a1 = np.int64(node_a), np.int64(node_a)
             b0, b1 = b.children[node_b, 0], b.children[node_b, 1]
-        first_sq = _bound_sq(a, a0, b, b0, m, sight, slack, cut)
-        second_sq = _bound_sq(a, a1, b, b1, m, sight, slack, cut)
+        first = _bound(a, a0, b, b0, m, sight, slack, cut)
+        second = _bound(a, a1, b, b1, m, sight, slack, cut)
         n_nodes += 2
-        if first_sq < second_sq:
+        if first < second:
             a0, a1 = a1, a0
             b0, b1 = b1, b0
-            first_sq, second_sq = second_sq, first_sq
+            first, second = second, first
         assert n_waiting + 2 <= STACK_DEPTH
         scratch.nodes[n_waiting, 0] = a0
         scratch.nodes[n_waiting, 1] = b0
-        scratch.bounds_sq[n_waiting] = first_sq
+        scratch.bounds[n_waiting] = first
         scratch.nodes[n_waiting + 1, 0] = a1
         scratch.nodes[n_waiting + 1, 1] = b1
-        scratch.bounds_sq[n_waiting + 1] = second_sq
+        scratch.bounds[n_waiting + 1] = second
         n_waiting += 2
-    if not meet:
+    if meet:
+        forget(fronts, pair)
+    else:
         refined = settle(
-            a, b, frames, best_gap, margin, scratch.pairs, scratch.near_sq, n_pairs, refined
+            a, b, frames, min(best_gap, wanted_gap), margin,
+            scratch.pairs, scratch.near_sq, n_pairs, refined,
         )
+        keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
     tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)
-    return Found(meet, best, min(floor_sq, cut * cut), refined, tally)
+    return Found(meet, best, min(floor, min(measured, cut)), refined, tally)

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.body_pair import NO_FACE, measure_pair
+from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.descent import Scratch, new_scratch
+from clearance.kernels.front import Fronts, forget, no_fronts
 from clearance.kernels.sweep import add_travel, pair_frames, root_bound
 
 DEPTH = 128
@@ -31,6 +32,7 @@ class Probe(NamedTuple):
     faces: np.ndarray  # (2,)
     points: np.ndarray  # (2, 3) world [m]
     scratch: Scratch
+    fronts: Fronts
 
 
 @kernel
@@ -48,10 +50,12 @@ def _ask(surface, world, pair, step, margin, probe, tally):
     """[m] a lower bound on the distance of the pair at a step; `probe` takes it if it is the best."""
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     limit = probe.gap[0] + margin
+    asked = Asked(limit, probe.gap[0], probe.faces[0], probe.faces[1], False)
+    frames = pair_frames(world, pair, step)
+    forget(probe.fronts, pair)
     measured = measure_pair(
-        surface, body_a, surface, body_b, pair_frames(world, pair, step), limit * limit,
-        probe.faces[0], probe.faces[1], False, probe.scratch,
-    )  # fmt: skip
+        surface, body_a, surface, body_b, frames, asked, probe.fronts, pair, 0.0, probe.scratch
+    )
     tally[1] += 1
     tally[2] += measured.tally.nodes
     tally[3] += measured.tally.faces
@@ -123,8 +127,9 @@ def _search(surface, world, pair, travel, probe, tally):
 def pair_minima(surface, world, travel, gaps, steps, faces, points, tally):
     """Fills for each pair its least clearance [m] over all steps, the first such step, faces and points."""
     scratch = new_scratch()
+    fronts = no_fronts(len(world.pairs), 0)
     for pair in range(len(world.pairs)):
-        probe = Probe(gaps[pair : pair + 1], steps[pair : pair + 1], faces[pair], points[pair], scratch)
+        probe = Probe(gaps[pair : pair + 1], steps[pair : pair + 1], faces[pair], points[pair], scratch, fronts)
         probe.gap[0] = np.inf
         probe.step[0] = len(world.poses)
         probe.faces[:] = NO_FACE

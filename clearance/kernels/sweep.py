@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.body_pair import NO_FACE, measure_pair
+from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, lower_bound_boxes_sq, rounding_slack
 from clearance.kernels.descent import new_scratch, nothing_yet
 from clearance.kernels.double_double import frames_of
+from clearance.kernels.front import KEPT_DOWN, POOL, no_fronts
 from clearance.kernels.vec3 import rigid
 
 GROWTH = 1.0 + 1e-9
@@ -112,6 +113,7 @@ def sweep(surface, world, first, last, rows, tally):
         floors[pair] = root_bound(surface, world, pair, first)
     winner = np.argmin(floors)
     scratch = new_scratch()
+    fronts = no_fronts(n_pairs, POOL)
     for step in range(first, last):
         if step > first:
             add_travel(surface, world, step, travel)
@@ -129,18 +131,18 @@ def sweep(surface, world, first, last, rows, tally):
                 tally[0] += 1
                 continue
             limit = best_gap + LOOK_AHEAD * (travel[body_a] + travel[body_b]) / max(1, step - first)
+            asked = Asked(limit, best_gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
             measured = measure_pair(
-                surface, body_a, surface, body_b, pair_frames(world, pair, step), limit * limit,
-                seeds[pair, 0], seeds[pair, 1], floor > 0.0, scratch,
+                surface, body_a, surface, body_b, pair_frames(world, pair, step), asked,
+                fronts, pair, moved, scratch,
             )  # fmt: skip
-            floors[pair] = measured.lower_bound + moved
+            floors[pair] = (measured.lower_bound + moved) * KEPT_DOWN
+            seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
             tally[1] += 1
             tally[2] += measured.tally.nodes
             tally[3] += measured.tally.faces
             hit = measured.hit
             if hit.face_a < 2**62:
-                seeds[pair, 0] = hit.face_a
-                seeds[pair, 1] = hit.face_b
                 if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
                     best = hit
                     best_pair = pair

@@ -1,0 +1,100 @@
+"""Where the last search of each body pair ended: node pairs that were left, with how far apart they are.
+
+A search that goes on from its front instead of the roots retests only what the motion since then could have
+brought near (front tracking: Ehmann & Lin 2001, Li & Chen 1998; the bounds carried with it are ours). All
+fronts lie in one pool of fixed size; where it is full they are dropped and built anew.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.jit import inlined, merged
+
+POOL = 1 << 17
+"""Node pairs that are kept in all (16 bytes each), whatever the number of pairs and steps."""
+
+LONGEST = 4096
+"""Node pairs that the front of one body pair may have; a longer one is not kept."""
+
+GROWN = 3
+"""A front that has grown to this many times its first length, and 64, is built anew from the roots."""
+
+KEPT_DOWN = 1.0 - 2.0**-50
+"""Covers the rounding of a bound to which the way so far was added."""
+
+
+class Fronts(NamedTuple):
+    """The fronts of all pairs.
+
+    Attributes:
+        nodes: (POOL, 2) node of a, node of b.
+        floors: (POOL,) [m] a lower bound on their distance plus what both bodies had moved by then.
+        spans: (p, 4) of each pair: its first place in the pool, its length, its room, its first length.
+        used: (1,) places of the pool that are given away.
+    """
+
+    nodes: np.ndarray
+    floors: np.ndarray
+    spans: np.ndarray
+    used: np.ndarray
+
+
+@inlined
+def no_fronts(n_pairs, pool):
+    """Fronts of length 0; those of single queries have no pool."""
+    return Fronts(
+        np.empty((pool, 2), dtype=np.int32),
+        np.empty(pool),
+        np.zeros((n_pairs, 4), dtype=np.int64),
+        np.zeros(1, dtype=np.int64),
+    )
+
+
+@inlined
+def forget(fronts, pair):
+    """Lets the next search of a pair begin at the roots."""
+    fronts.spans[pair, 1] = 0
+
+
+@inlined
+def _room_for(fronts, pair, n_kept, length):
+    """Finds `length` places for a pair, moving the `n_kept` first of its front there; False if there are none."""
+    spans = fronts.spans
+    if length <= spans[pair, 2]:
+        return True
+    room = 2 * length + 16
+    pool = len(fronts.floors)
+    if room > pool:
+        return False
+    before = spans[pair, 0]
+    if fronts.used[0] + room > pool:
+        spans[:, 1] = 0
+        spans[:, 2] = 0
+        fronts.used[0] = 0
+    first = fronts.used[0]
+    for i in range(n_kept):  # upward: the new place may begin below the old one
+        fronts.nodes[first + i, 0] = fronts.nodes[before + i, 0]
+        fronts.nodes[first + i, 1] = fronts.nodes[before + i, 1]
+        fronts.floors[first + i] = fronts.floors[before + i]
+    fronts.used[0] = first + room
+    spans[pair, 0], spans[pair, 2] = first, room
+    return True
+
+
+@merged
+def keep(fronts, pair, n_kept, nodes, floors, n_fresh):
+    """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new node pairs."""
+    length = n_kept + n_fresh
+    if length > LONGEST or not _room_for(fronts, pair, n_kept, length):
+        forget(fronts, pair)
+        return
+    spans = fronts.spans
+    at = spans[pair, 0] + n_kept
+    for i in range(n_fresh):
+        fronts.nodes[at + i, 0] = nodes[i, 0]
+        fronts.nodes[at + i, 1] = nodes[i, 1]
+        fronts.floors[at + i] = floors[i]
+    if n_kept == 0:
+        spans[pair, 3] = length
+    spans[pair, 1] = 0 if length > GROWN * spans[pair, 3] + 64 else length
