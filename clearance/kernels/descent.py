@@ -35,8 +35,8 @@ class Scratch(NamedTuple):
 
     nodes: np.ndarray  # (STACK_DEPTH, 2) int32
     bounds: np.ndarray  # (STACK_DEPTH,)
-    left: np.ndarray  # (LONGEST + 1, 2) int32, node pairs that were left
-    floors: np.ndarray  # (LONGEST + 1,)
+    left: np.ndarray  # (LONGEST + 2, 2) int32, node pairs that were left
+    floors: np.ndarray  # (LONGEST + 2,)
     pairs: np.ndarray  # (N_WAITING, 2) int64
     near_sq: np.ndarray  # (N_WAITING,)
     exact: Exact
@@ -96,8 +96,8 @@ def new_scratch():
     return Scratch(
         np.empty((STACK_DEPTH, 2), dtype=np.int32),
         np.empty(STACK_DEPTH),
-        np.empty((LONGEST + 1, 2), dtype=np.int32),
-        np.empty(LONGEST + 1),
+        np.empty((LONGEST + 2, 2), dtype=np.int32),
+        np.empty(LONGEST + 2),
         np.empty((N_WAITING, 2), dtype=np.int64),
         np.empty(N_WAITING),
         room_for_exact(),
@@ -116,6 +116,8 @@ def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
     start = fronts.spans[pair, 0]
     n_kept = 0
     n_waiting = 0
+    nearest = 0
+    least = math.inf
     floor = math.inf
     for i in range(start, start + fronts.spans[pair, 1]):
         node_a, node_b = fronts.nodes[i, 0], fronts.nodes[i, 1]
@@ -123,13 +125,11 @@ def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
         if carried - moved <= cut:
             bound = _bound(a, node_a, b, node_b, m, sight, slack, cut)
             if bound <= cut:
-                k = n_waiting  # nearest last
-                while k > 0 and scratch.bounds[k - 1] < bound:
-                    scratch.bounds[k] = scratch.bounds[k - 1]
-                    scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k - 1, 0], scratch.nodes[k - 1, 1]
-                    k -= 1
-                scratch.bounds[k] = bound
-                scratch.nodes[k, 0], scratch.nodes[k, 1] = node_a, node_b
+                scratch.bounds[n_waiting] = bound
+                scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = node_a, node_b
+                if bound < least:
+                    least = bound
+                    nearest = n_waiting
                 n_waiting += 1
                 continue
             carried = (bound + moved) * KEPT_DOWN
@@ -137,6 +137,12 @@ def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
         fronts.nodes[start + n_kept, 0], fronts.nodes[start + n_kept, 1] = node_a, node_b
         fronts.floors[start + n_kept] = carried
         n_kept += 1
+    if n_waiting > 0:  # nearest last
+        last = n_waiting - 1
+        nodes = scratch.nodes
+        nodes[nearest, 0], nodes[last, 0] = nodes[last, 0], nodes[nearest, 0]
+        nodes[nearest, 1], nodes[last, 1] = nodes[last, 1], nodes[nearest, 1]
+        scratch.bounds[nearest], scratch.bounds[last] = scratch.bounds[last], least
     return n_kept, n_waiting, floor - moved
 
 
@@ -226,7 +232,7 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
         if is_left:
             scratch.left[n_left, 0], scratch.left[n_left, 1] = node_a, node_b
             scratch.floors[n_left] = (bound + moved) * KEPT_DOWN
-            n_left += n_left < LONGEST
+            n_left += n_left <= LONGEST  # one too many says that not all are there
             continue
         if leaf_b or (not leaf_a and breadth(a, node_a) >= breadth(b, node_b)):
             a0, a1 = a.children[node_a, 0], a.children[node_a, 1]
