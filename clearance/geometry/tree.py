@@ -58,9 +58,8 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
         owned_vertices=stacked("owned_vertices", "vertices"),
         edge_starts=starts("edge_starts", "owned_edges"),
         owned_edges=stacked("owned_edges", "vertices"),
-        axes=stacked("axes"),
         centres=stacked("centres"),
-        halves=stacked("halves"),
+        boxes=stacked("boxes"),
         children=_joined_children(parts, n_before["centres"], n_before["normals"]),
         roots=stacked("roots", "centres"),
         probe_starts=starts("probe_starts", "probes"),
@@ -85,7 +84,7 @@ def _joined_children(
     rows = []
     for part, node_shift, face_shift in zip(parts, node_shifts, face_shifts, strict=True):
         leaf = part.children[:, 1] < 0
-        children = part.children + node_shift
+        children = (part.children + node_shift).astype(np.int32)
         children[leaf, 0] = part.children[leaf, 0] + face_shift
         children[leaf, 1] = -1
         rows.append(children)
@@ -103,7 +102,7 @@ def _build(shape: Polyhedron) -> Surface:
     owned_vertices, vertex_starts = _owned(corners, ring.face, shape.n_faces)
     edges = np.stack([corners, corners[ring.ahead]], axis=1)
     owned_edges, edge_starts = _owned(np.sort(edges, axis=1), ring.face, shape.n_faces)
-    axes, centres, halves, children = _tree(vertices[corners], starts)
+    centres, boxes, children = _tree(vertices[corners], starts)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
     solid_faces = np.flatnonzero(shape.component_closed[shape.face_component])
@@ -121,9 +120,8 @@ def _build(shape: Polyhedron) -> Surface:
         owned_vertices=owned_vertices,
         edge_starts=edge_starts,
         owned_edges=owned_edges,
-        axes=axes,
         centres=centres,
-        halves=halves,
+        boxes=boxes,
         children=children,
         roots=np.zeros(1, dtype=np.int64),
         probe_starts=np.array([0, len(probes)]),
@@ -157,13 +155,12 @@ def _owned(
 
 
 def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Axes, centres, half sizes and children of the tree's nodes."""
+    """Centres, boxes and children of the tree's nodes."""
     n_nodes = 2 * len(starts) - 3
     nodes = (
-        np.empty((n_nodes, 3, 3)),
         np.empty((n_nodes, 3)),
-        np.empty((n_nodes, 3)),
-        np.empty((n_nodes, 2), dtype=np.int64),
+        np.empty((n_nodes, 12), dtype=np.float32),
+        np.empty((n_nodes, 2), dtype=np.int32),
     )
     build_tree(corner_points, starts, *nodes)
     return nodes

@@ -9,8 +9,8 @@ from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.containment import contained
 from clearance.kernels.descent import Tally, descend, margin_of, new_scratch, nothing_yet
 from clearance.kernels.double_double import Wide3, frames_of, plus3, root, rounded, wide
-from clearance.kernels.front import no_fronts
 from clearance.kernels.face_pair import Hit, nearest_of_faces
+from clearance.kernels.front import no_fronts
 from clearance.kernels.refine import common_points, error_of
 from clearance.kernels.vec3 import move, rigid
 

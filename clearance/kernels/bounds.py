@@ -4,10 +4,14 @@ import math
 from typing import NamedTuple
 
 from clearance.jit import merged
+from clearance.kernels.surface import box_of, corner_of
 from clearance.kernels.vec3 import Rigid, Vec3, dot, row, sub, turn, turn_back
 
 SLACK = 128.0 * 2.0**-53
 """Rounding of a box bound, relative to the sum of the coordinates' magnitudes: 40 operations, doubled."""
+
+LEAN = 2.0**-20
+"""Four times what rounding to single precision can turn the axes of a box, relative to 1."""
 
 
 @merged
@@ -17,17 +21,13 @@ def _axis_gap(centre, half_a, half_b, slack):
 
 
 @merged
-def _between_boxes(a, node_a, b, node_b, m):
-    """The rotation from the axes of box b to those of box a; its `t` is b's centre in the frame of box a."""
-    p = a.axes[node_a]
-    q = b.axes[node_b]
-    u = turn(m, Vec3(q[0, 0], q[0, 1], q[0, 2]))
-    v = turn(m, Vec3(q[1, 0], q[1, 1], q[1, 2]))
-    w = turn(m, Vec3(q[2, 0], q[2, 1], q[2, 2]))
-    x = Vec3(p[0, 0], p[0, 1], p[0, 2])
-    y = Vec3(p[1, 0], p[1, 1], p[1, 2])
-    z = Vec3(p[2, 0], p[2, 1], p[2, 2])
-    d = sub(turn(m, row(b.centres, node_b)), sub(row(a.centres, node_a), m.t))
+def _between_boxes(p, q, m):
+    """The rotation from the axes of box q to those of box p; its `t` is q's centre in the frame of box p."""
+    u = turn(m, q.x)
+    v = turn(m, q.y)
+    w = turn(m, q.z)
+    x, y, z = p.x, p.y, p.z
+    d = sub(turn(m, q.centre), sub(p.centre, m.t))
     return Rigid(
         dot(x, u), dot(x, v), dot(x, w),
         dot(y, u), dot(y, v), dot(y, w),
@@ -37,34 +37,34 @@ def _between_boxes(a, node_a, b, node_b, m):
 
 
 @merged
-def lower_bound_boxes_sq(a, node_a, b, node_b, m, slack):
-    """A lower bound on the squared distance of two node boxes.
+def lower_bound_boxes(p, q, m, slack):
+    """[m] a lower bound on the distance of two boxes, p in the frame of a and q in that of b.
 
     The greatest of three: in the frame of either box the other one fits in an axis-parallel box of half
     sizes |R| h, and the distance of two axis-parallel boxes is known; along the line of the centres both
-    boxes reach no farther than the sum of their half sizes' shares.
+    boxes reach no farther than the sum of their half sizes' shares. The axes are orthonormal to `LEAN` / 4
+    only, which each of the three can lengthen by that share of the centres' distance.
     """
-    n = _between_boxes(a, node_a, b, node_b, m)
-    h = row(a.halves, node_a)
-    k = row(b.halves, node_b)
+    n = _between_boxes(p, q, m)
+    h, k = p.half, q.half
     d = n.t
+    slack += LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
     x = _axis_gap(d.x, h.x, abs(n.xx) * k.x + abs(n.xy) * k.y + abs(n.xz) * k.z, slack)
     y = _axis_gap(d.y, h.y, abs(n.yx) * k.x + abs(n.yy) * k.y + abs(n.yz) * k.z, slack)
     z = _axis_gap(d.z, h.z, abs(n.zx) * k.x + abs(n.zy) * k.y + abs(n.zz) * k.z, slack)
-    in_a = x * x + y * y + z * z
+    in_p = x * x + y * y + z * z
     e = turn_back(n, d)
     x = _axis_gap(e.x, k.x, abs(n.xx) * h.x + abs(n.yx) * h.y + abs(n.zx) * h.z, slack)
     y = _axis_gap(e.y, k.y, abs(n.xy) * h.x + abs(n.yy) * h.y + abs(n.zy) * h.z, slack)
     z = _axis_gap(e.z, k.z, abs(n.xz) * h.x + abs(n.yz) * h.y + abs(n.zz) * h.z, slack)
-    in_b = x * x + y * y + z * z
+    in_q = x * x + y * y + z * z
     gap_sq = dot(d, d)
     reach = abs(d.x) * h.x + abs(d.y) * h.y + abs(d.z) * h.z
     reach += abs(e.x) * k.x + abs(e.y) * k.y + abs(e.z) * k.z
-    between_centres_sq = 0.0
+    between_centres = 0.0
     if gap_sq > reach:
-        between = (gap_sq - reach) / math.sqrt(gap_sq) - slack
-        between_centres_sq = between * between if between > 0.0 else 0.0
-    return max(in_a, max(in_b, between_centres_sq))
+        between_centres = (gap_sq - reach) / math.sqrt(gap_sq) - slack
+    return max(math.sqrt(max(in_p, in_q)), between_centres)
 
 
 class Sight(NamedTuple):
@@ -89,22 +89,19 @@ def sight_along(p, q, m):
 
 
 @merged
-def _box_reach(surface, node, direction):
-    """[m] how far a node's box reaches from its centre along a direction."""
-    axes = surface.axes[node]
-    half = surface.halves[node]
-    reach = 0.0
-    for i in range(3):
-        share = axes[i, 0] * direction.x + axes[i, 1] * direction.y + axes[i, 2] * direction.z
-        reach += half[i] * abs(share)
-    return reach
+def box_reach(box, direction):
+    """[m] how far a box reaches from its centre along a direction."""
+    h = box.half
+    return (
+        h.x * abs(dot(box.x, direction)) + h.y * abs(dot(box.y, direction)) + h.z * abs(dot(box.z, direction))
+    )
 
 
 @merged
-def lower_bound_boxes_in_sight(a, node_a, b, node_b, sight):
-    """[m] a lower bound on the distance of two node boxes, without their rounding slack; may be negative."""
-    far_of_a = dot(sight.u, row(a.centres, node_a)) + _box_reach(a, node_a, sight.u)
-    near_of_b = dot(sight.v, row(b.centres, node_b)) - _box_reach(b, node_b, sight.v)
+def lower_bound_boxes_in_sight(p, q, sight):
+    """[m] a lower bound on the distance of two boxes, without their rounding slack; may be negative."""
+    far_of_a = dot(sight.u, p.centre) + box_reach(p, sight.u)
+    near_of_b = dot(sight.v, q.centre) - box_reach(q, sight.v)
     return near_of_b + sight.offset - far_of_a
 
 
@@ -123,10 +120,9 @@ def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
 @merged
 def _reach(surface, root):
     """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
-    reach = 0.0
-    for axis in range(3):
-        reach += abs(surface.centres[root, axis]) + 2.0 * surface.halves[root, axis]
-    return reach
+    c = row(surface.centres, root)
+    h = box_of(surface, root).half
+    return abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
 
 
 @merged
@@ -145,15 +141,9 @@ def displacement(surface, root, before, after):
     attained at a corner. `before` and `after` are (4, 4) poses.
     """
     most_sq = 0.0
-    axes = surface.axes[root]
-    half = surface.halves[root]
+    box = box_of(surface, root)
     for corner in range(8):
-        sx = half[0] if corner & 1 else -half[0]
-        sy = half[1] if corner & 2 else -half[1]
-        sz = half[2] if corner & 4 else -half[2]
-        x = surface.centres[root, 0] + sx * axes[0, 0] + sy * axes[1, 0] + sz * axes[2, 0]
-        y = surface.centres[root, 1] + sx * axes[0, 1] + sy * axes[1, 1] + sz * axes[2, 1]
-        z = surface.centres[root, 2] + sx * axes[0, 2] + sy * axes[1, 2] + sz * axes[2, 2]
+        x, y, z = corner_of(box, corner)
         moved_sq = 0.0
         for i in range(3):
             moved = (

@@ -13,8 +13,8 @@ import numpy as np
 
 from clearance.jit import inlined, kernel
 from clearance.kernels.bounds import (
+    lower_bound_boxes,
     lower_bound_boxes_in_sight,
-    lower_bound_boxes_sq,
     lower_bound_faces_in_sight,
     rounding_slack,
     sight_along,
@@ -30,6 +30,7 @@ from clearance.kernels.drift import (
 from clearance.kernels.face_pair import may_meet, nearest_of_faces
 from clearance.kernels.kinematics import forward
 from clearance.kernels.predicates import faces_meet
+from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
 DEPTH = 64
@@ -90,14 +91,14 @@ class Held(NamedTuple):
 
 
 @inlined
-def _node_floor(a, node_a, b, node_b, m, sight, slack, drift, target):
+def _node_floor(p, q, m, sight, slack, drift, target):
     """[m] a lower bound on the distance of two boxes over the interval."""
-    in_sight = lower_bound_boxes_in_sight(a, node_a, b, node_b, sight) - slack
-    in_sight -= drift_of_box_along(a, node_a, sight.u, drift)
+    in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack
+    in_sight -= drift_of_box_along(p, sight.u, drift)
     if in_sight >= target:
         return in_sight
-    apart = math.sqrt(lower_bound_boxes_sq(a, node_a, b, node_b, m, slack)) - slack
-    return max(in_sight, apart - drift_of_box(a, node_a, drift))
+    apart = lower_bound_boxes(p, q, m, slack) - slack
+    return max(in_sight, apart - drift_of_box(p, drift))
 
 
 @inlined
@@ -120,7 +121,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = CHAIN_SLACK * rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
-    moved = drift_of_box(a, root_a, drift)
+    moved = drift_of_box(box_of(a, root_a), drift)
     near_a, near_b = seed_a, seed_b
     best = nothing_yet(math.inf)
     if seed_a >= 0:
@@ -132,7 +133,8 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
     sight = sight_along(best.p, best.q, m)
     floor = math.inf
     scratch.nodes[0, 0], scratch.nodes[0, 1] = root_a, root_b
-    scratch.bounds[0] = _node_floor(a, root_a, b, root_b, m, sight, slack, drift, target)
+    scratch.bounds[0] = _node_floor(
+        box_of(a, root_a), box_of(b, root_b), m, sight, slack, drift, target)
     n_waiting = 1
     while n_waiting > 0:
         n_waiting -= 1
@@ -143,7 +145,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             continue
         leaf_a, leaf_b = a.children[node_a, 1] < 0, b.children[node_b, 1] < 0
         if leaf_a and leaf_b:
-            face_a, face_b = a.children[node_a, 0], b.children[node_b, 0]
+            face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             bound = max(bound, _face_floor(a, face_a, b, face_b, sight, slack, drift))
             if bound < target:
                 tally[3] += 1
@@ -164,12 +166,12 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             if bound < target and moved >= STILL * allowed:
                 return Held(0.0, least, False, near_a, near_b)
             continue
-        if leaf_b or (not leaf_a and breadth(a, node_a) >= breadth(b, node_b)):
+        if leaf_b or (not leaf_a and breadth(box_of(a, node_a)) >= breadth(box_of(b, node_b))):
             a0, a1, b0, b1 = a.children[node_a, 0], a.children[node_a, 1], node_b, node_b
         else:
             a0, a1, b0, b1 = node_a, node_a, b.children[node_b, 0], b.children[node_b, 1]
-        first = _node_floor(a, a0, b, b0, m, sight, slack, drift, target)
-        second = _node_floor(a, a1, b, b1, m, sight, slack, drift, target)
+        first = _node_floor(box_of(a, a0), box_of(b, b0), m, sight, slack, drift, target)
+        second = _node_floor(box_of(a, a1), box_of(b, b1), m, sight, slack, drift, target)
         tally[2] += 2
         if first < second:
             a0, a1, b0, b1, first, second = a1, a0, b1, b0, second, first

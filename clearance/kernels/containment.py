@@ -8,6 +8,8 @@ Oosterom & Strackee 1983 for the solid angle of a triangle.
 import math
 
 from clearance.jit import inlined, kernel
+from clearance.kernels.bounds import LEAN
+from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import cross, dot, move, move_back, row, sub
 
 
@@ -25,11 +27,12 @@ def _solid_angle(x, y, z):
 
 @inlined
 def _in_box(surface, node, x):
-    d = sub(x, row(surface.centres, node))
-    for axis in range(3):
-        if abs(dot(row(surface.axes[node], axis), d)) > surface.halves[node, axis]:
-            return False
-    return True
+    box = box_of(surface, node)
+    d = sub(x, box.centre)
+    lean = LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
+    if abs(dot(box.x, d)) > box.half.x + lean or abs(dot(box.y, d)) > box.half.y + lean:
+        return False
+    return abs(dot(box.z, d)) <= box.half.z + lean
 
 
 @inlined

@@ -10,8 +10,8 @@ import numpy as np
 
 from clearance.jit import inlined, merged
 from clearance.kernels.bounds import (
+    lower_bound_boxes,
     lower_bound_boxes_in_sight,
-    lower_bound_boxes_sq,
     lower_bound_faces_in_sight,
     sight_along,
 )
@@ -19,6 +19,7 @@ from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_face
 from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, keep
 from clearance.kernels.predicates import Exact, faces_meet, room_for_exact
 from clearance.kernels.refine import Refined, nothing_refined, settle, shed
+from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import Vec3
 
 STACK_DEPTH = 8192
@@ -74,20 +75,20 @@ def nothing_yet(limit_sq):
     return Hit(limit_sq, 2**62, 2**62, nowhere, nowhere)
 
 
-@inlined
-def breadth(surface, node):
+@merged
+def breadth(box):
     """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
-    x, y, z = surface.halves[node, 0], surface.halves[node, 1], surface.halves[node, 2]
-    return x + y + z - max(x, max(y, z))
+    half = box.half
+    return half.x + half.y + half.z - max(half.x, max(half.y, half.z))
 
 
 @merged
-def _bound(a, node_a, b, node_b, m, sight, slack, cut):
-    """[m] a lower bound on the distance of two nodes: the cheap one in sight if that excludes them."""
-    in_sight = lower_bound_boxes_in_sight(a, node_a, b, node_b, sight) - slack
+def _bound(p, q, m, sight, slack, cut):
+    """[m] a lower bound on the distance of two boxes: the cheap one in sight if that excludes them."""
+    in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack
     if in_sight > cut:
         return in_sight
-    return math.sqrt(lower_bound_boxes_sq(a, node_a, b, node_b, m, slack))
+    return lower_bound_boxes(p, q, m, slack)
 
 
 @inlined
@@ -123,7 +124,7 @@ def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
         node_a, node_b = fronts.nodes[i, 0], fronts.nodes[i, 1]
         carried = fronts.floors[i]
         if carried - moved <= cut:
-            bound = _bound(a, node_a, b, node_b, m, sight, slack, cut)
+            bound = _bound(box_of(a, node_a), box_of(b, node_b), m, sight, slack, cut)
             if bound <= cut:
                 scratch.bounds[n_waiting] = bound
                 scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = node_a, node_b
@@ -182,7 +183,7 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
         n_kept, n_waiting, floor = 0, 1, math.inf
         scratch.nodes[0, 0] = root_a
         scratch.nodes[0, 1] = root_b
-        scratch.bounds[0] = math.sqrt(lower_bound_boxes_sq(a, root_a, b, root_b, m, slack))
+        scratch.bounds[0] = lower_bound_boxes(box_of(a, root_a), box_of(b, root_b), m, slack)
     while n_waiting > 0:
         n_waiting -= 1
         node_a = scratch.nodes[n_waiting, 0]
@@ -193,7 +194,7 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
         is_left = bound > cut
         if not is_left and leaf_a and leaf_b:
             is_left = True
-            face_a, face_b = a.children[node_a, 0], b.children[node_b, 0]
+            face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
             if in_sight <= cut:
                 n_faces += 1
@@ -234,14 +235,13 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
             scratch.floors[n_left] = (bound + moved) * KEPT_DOWN
             n_left += n_left <= LONGEST  # one too many says that not all are there
             continue
-        if leaf_b or (not leaf_a and breadth(a, node_a) >= breadth(b, node_b)):
+        a0, a1, b0, b1 = node_a, node_a, node_b, node_b
+        if leaf_b or (not leaf_a and breadth(box_of(a, node_a)) >= breadth(box_of(b, node_b))):
             a0, a1 = a.children[node_a, 0], a.children[node_a, 1]
-            b0, b1 = np.int64(node_b), np.int64(node_b)
         else:
-            a0, a1 = np.int64(node_a), np.int64(node_a)
             b0, b1 = b.children[node_b, 0], b.children[node_b, 1]
-        first = _bound(a, a0, b, b0, m, sight, slack, cut)
-        second = _bound(a, a1, b, b1, m, sight, slack, cut)
+        first = _bound(box_of(a, a0), box_of(b, b0), m, sight, slack, cut)
+        second = _bound(box_of(a, a1), box_of(b, b1), m, sight, slack, cut)
         n_nodes += 2
         if first < second:
             a0, a1 = a1, a0

@@ -11,7 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined
+from clearance.kernels.bounds import LEAN, box_reach
 from clearance.kernels.kinematics import SLIDING, TURNING
+from clearance.kernels.surface import box_of, corner_of
 from clearance.kernels.vec3 import Vec3, add, along, cross, dot, row, sub, turn_back
 
 
@@ -42,12 +44,9 @@ class Drift(NamedTuple):
 def _farthest_from_axis(surface, root, pose, origin, axis):
     """[m] an upper bound on the distance of the body's points from a line, by the corners of its box."""
     far_sq = 0.0
-    half = surface.halves[root]
+    box = box_of(surface, root)
     for corner in range(8):
-        x = row(surface.centres, root)
-        for i in range(3):
-            sign = 1.0 if corner & (1 << i) else -1.0
-            x = along(x, sign * half[i], row(surface.axes[root], i))
+        x = corner_of(box, corner)
         world = Vec3(
             pose[0, 0] * x.x + pose[0, 1] * x.y + pose[0, 2] * x.z + pose[0, 3],
             pose[1, 0] * x.x + pose[1, 1] * x.y + pose[1, 2] * x.z + pose[1, 3],
@@ -119,22 +118,19 @@ def velocity_at(drift, x):
 
 
 @inlined
-def drift_of_box(surface, node, drift):
-    """[m] an upper bound on how far any point of a node's box moves from the middle."""
-    half = row(surface.halves, node)
-    v = velocity_at(drift, row(surface.centres, node))
-    turning = math.sqrt(dot(drift.spin, drift.spin) * dot(half, half))
+def drift_of_box(box, drift):
+    """[m] an upper bound on how far any point of a box moves from the middle."""
+    v = velocity_at(drift, box.centre)
+    radius = math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN)
+    turning = math.sqrt(dot(drift.spin, drift.spin)) * radius
     return math.sqrt(dot(v, v)) + turning + drift.rest
 
 
 @inlined
-def drift_of_box_along(surface, node, direction, drift):
-    """[m] an upper bound on how far any point of a node's box moves along a unit direction, either way."""
-    first = abs(dot(direction, velocity_at(drift, row(surface.centres, node))))
-    lever = cross(direction, drift.spin)
-    for i in range(3):
-        first += surface.halves[node, i] * abs(dot(row(surface.axes[node], i), lever))
-    return first + drift.rest
+def drift_of_box_along(box, direction, drift):
+    """[m] an upper bound on how far any point of a box moves along a unit direction, either way."""
+    first = abs(dot(direction, velocity_at(drift, box.centre)))
+    return first + box_reach(box, cross(direction, drift.spin)) + drift.rest
 
 
 @inlined

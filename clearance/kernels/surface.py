@@ -9,6 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.jit import merged
+from clearance.kernels.vec3 import Vec3, along, row
+
 
 class Surface(NamedTuple):
     """Bodies as flat arrays; all indices are into these arrays.
@@ -24,8 +27,8 @@ class Surface(NamedTuple):
         corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
         vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
         edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns.
-        axes, centres, halves: (n, 3, 3) unit axes as rows, (n, 3) [m], (n, 3) [m]: boxes of the tree's
-            nodes in the body frame.
+        centres: (n, 3) [m] of the boxes of the tree's nodes, in the body frame.
+        boxes: (n, 12) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
         children: (n, 2) node indices; for a leaf (face, -1).
         roots: (bodies,) root nodes.
         probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
@@ -45,12 +48,42 @@ class Surface(NamedTuple):
     owned_vertices: np.ndarray
     edge_starts: np.ndarray
     owned_edges: np.ndarray
-    axes: np.ndarray
     centres: np.ndarray
-    halves: np.ndarray
+    boxes: np.ndarray
     children: np.ndarray
     roots: np.ndarray
     probe_starts: np.ndarray
     probes: np.ndarray
     solid_starts: np.ndarray
     solid_faces: np.ndarray
+
+
+class Box(NamedTuple):
+    """All points centre + r x + s y + t z, |r|, |s|, |t| at most the half sizes; x, y, z almost orthonormal."""
+
+    x: Vec3
+    y: Vec3
+    z: Vec3
+    centre: Vec3
+    half: Vec3
+
+
+@merged
+def box_of(surface, node):
+    """The box of a node of the tree."""
+    boxes = surface.boxes
+    return Box(
+        Vec3(float(boxes[node, 0]), float(boxes[node, 1]), float(boxes[node, 2])),
+        Vec3(float(boxes[node, 3]), float(boxes[node, 4]), float(boxes[node, 5])),
+        Vec3(float(boxes[node, 6]), float(boxes[node, 7]), float(boxes[node, 8])),
+        row(surface.centres, node),
+        Vec3(float(boxes[node, 9]), float(boxes[node, 10]), float(boxes[node, 11])),
+    )
+
+
+@merged
+def corner_of(box, i):
+    """Corner `i` (0 to 7) of a box."""
+    x = along(box.centre, box.half.x if i & 1 else -box.half.x, box.x)
+    x = along(x, box.half.y if i & 2 else -box.half.y, box.y)
+    return along(x, box.half.z if i & 4 else -box.half.z, box.z)

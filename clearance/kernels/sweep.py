@@ -11,10 +11,11 @@ import numpy as np
 
 from clearance.jit import inlined, kernel
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
-from clearance.kernels.bounds import displacement, lower_bound_boxes_sq, rounding_slack
+from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_slack
 from clearance.kernels.descent import new_scratch, nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import KEPT_DOWN, POOL, no_fronts
+from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
 GROWTH = 1.0 + 1e-9
@@ -73,8 +74,8 @@ def root_bound(surface, world, pair, step):
     root_a = surface.roots[world.pairs[pair, 0]]
     root_b = surface.roots[world.pairs[pair, 1]]
     slack = rounding_slack(surface, root_a, surface, root_b, frames)
-    bound_sq = lower_bound_boxes_sq(surface, root_a, surface, root_b, frames.m, slack)
-    return max(0.0, np.sqrt(bound_sq) - slack)
+    bound = lower_bound_boxes(box_of(surface, root_a), box_of(surface, root_b), frames.m, slack)
+    return max(0.0, bound - slack)
 
 
 @inlined

@@ -13,6 +13,12 @@ from clearance.jit import inlined, kernel
 OUTWARD = 1.0 + 1e-15
 """Half sizes are stretched by this, and by as much of the coordinates' magnitude: rounding stays inside."""
 
+TURNED = 2.0**-21
+"""Eight times the rounding of a number to single precision, relative to it."""
+
+LEAST_HALF = 2.0**-125
+"""[m] half sizes are no less, so that none is lost below the least normal number in single precision."""
+
 
 @inlined
 def _rotate(c, v, i, j):
@@ -77,18 +83,25 @@ def _fit(points, starts, order, first, last, v, low, high):
 
 
 @inlined
-def _store(v, low, high, axes, centre, half):
-    """Writes one box: axes as rows, centre in the body frame, half sizes rounded outward."""
+def _store(v, low, high, centre, box):
+    """Writes one box: axes as rows, then half sizes rounded outward; centre in the body frame.
+
+    An axis is turned by rounding by at most 2^-24, so that a coordinate along it changes by that share of
+    the others; sixteen times as much is given.
+    """
     reach = 0.0
     for axis in range(3):
         reach = max(reach, max(abs(low[axis]), abs(high[axis])))
     for row in range(3):
         centre[row] = 0.0
         for axis in range(3):
-            axes[axis, row] = v[row, axis]
+            box[3 * axis + row] = v[row, axis]
             centre[row] += v[row, axis] * 0.5 * (low[axis] + high[axis])
+    room = reach * (OUTWARD - 1.0) + LEAST_HALF
     for axis in range(3):
-        half[axis] = 0.5 * (high[axis] - low[axis]) * OUTWARD + reach * (OUTWARD - 1.0)
+        room += TURNED * (high[axis] - low[axis])
+    for axis in range(3):
+        box[9 + axis] = (0.5 * (high[axis] - low[axis]) * OUTWARD + room) * (1.0 + TURNED)
 
 
 @inlined
@@ -125,11 +138,10 @@ def _split(points, starts, order, first, last, v, low, high, middles):
 
 
 @kernel
-def build_tree(points, starts, axes, centres, halves, children):
+def build_tree(points, starts, centres, boxes, children):
     """Fills the (2 f - 1) nodes of a tree over f faces with corners `points[starts[i]:starts[i + 1]]`.
 
-    `axes` (n, 3, 3) has unit box axes as rows; `children[i]` is (left, right), or (face, -1) for a leaf;
-    node 0 is the root.
+    `centres` (n, 3), `boxes` (n, 12) and `children` (n, 2) are those of `Surface`; node 0 is the root.
     """
     n_faces = len(starts) - 1
     order = np.arange(n_faces)
@@ -147,7 +159,7 @@ def build_tree(points, starts, axes, centres, halves, children):
         area = _fit(points, starts, order, first, last, v, low, high)
         if _fit(points, starts, order, first, last, body, low_body, high_body) <= area:
             v[:], low[:], high[:] = body, low_body, high_body
-        _store(v, low, high, axes[node], centres[node], halves[node])
+        _store(v, low, high, centres[node], boxes[node])
         if last - first == 1:
             children[node, 0] = order[first]
             children[node, 1] = -1
