@@ -1,8 +1,8 @@
-"""The least clearance of every step: one best over all pairs, bounds carried from step to step.
+"""The least clearance of every step, of every pair, or of all: bounds carried from step to step.
 
 Between steps no point of a body moves farther than `displacement` says, so that a bound on a pair's
-distance, less what both bodies have moved since, still holds; pairs whose carried bound exceeds the best of
-the step are not asked.
+distance, less what both bodies have moved since, still holds; pairs whose carried bound exceeds the best
+are not asked.
 """
 
 from typing import NamedTuple
@@ -26,13 +26,17 @@ LOOK_AHEAD = 4.0
 """Steps of mean travel beyond the best within which a pair is still measured, so that its bound lasts."""
 
 
+NOT_LESS = 1.0 + 2.0**-50
+"""Makes room for what is equally near after its square was rounded."""
+
+
 class World(NamedTuple):
     """What moves where.
 
     Attributes:
         frames: (bodies,) column of `poses` that carries the body, or -1 for one that stands.
         standing: (bodies, 4, 4) poses of the bodies that stand [m].
-        poses: (steps, frames, 4, 4) `world_from_frame` [m].
+        poses: (k, frames, 4, 4) `world_from_frame` [m] at the steps of the rows.
         pairs: (p, 2) bodies to measure against each other.
     """
 
@@ -42,35 +46,73 @@ class World(NamedTuple):
     pairs: np.ndarray
 
 
+class Goal(NamedTuple):
+    """What is asked of a sweep.
+
+    Attributes:
+        within: (p,) [m] each pair is measured only where it is not farther apart; the same for all pairs
+            unless `each`.
+        each: every pair has a best of its own; else all pairs of a step share one.
+        lasting: a best holds for the later steps too: only what is nearer than all before is measured.
+    """
+
+    within: np.ndarray
+    each: bool
+    lasting: bool
+
+
 class StepRows(NamedTuple):
-    """Results, one row a step: clearance [m], pair index, joined face indices, world witness points [m]."""
+    """Results, one row a step.
+
+    Attributes:
+        clearance: (k,) [m] of the nearest pair, infinite where none is within what was asked.
+        floor: (k,) [m] a proven lower bound on the distance of all pairs.
+        pair: (k,) the nearest pair, or -1.
+        faces: (k, 2) joined face indices. points: (k, 2, 3) witness points in the world [m].
+    """
 
     clearance: np.ndarray
+    floor: np.ndarray
     pair: np.ndarray
     faces: np.ndarray
-    points: np.ndarray  # (n, 2, 3)
+    points: np.ndarray
+
+
+class PairRows(NamedTuple):
+    """Results of every pair, where each has its own best.
+
+    Attributes:
+        every: (k, p) [m] clearance at each step, or (0, p) if only the least are wanted.
+        clearance, step, points: (p,), (p,), (p, 2, 3) the least of each pair, infinite and -1 if there is
+            none, and the first step that has it.
+    """
+
+    every: np.ndarray
+    clearance: np.ndarray
+    step: np.ndarray
+    points: np.ndarray
 
 
 @inlined
-def pose_of(world, body, step):
-    """The (4, 4) pose of a body at a step."""
+def pose_of(world, body, row):
+    """The (4, 4) pose of a body at a row."""
     if world.frames[body] < 0:
         return world.standing[body]
-    return world.poses[step, world.frames[body]]
+    return world.poses[row, world.frames[body]]
 
 
 @inlined
-def pair_frames(world, pair, step):
-    """Where both bodies of a pair are at a step."""
-    a = rigid(pose_of(world, world.pairs[pair, 0], step))
-    b = rigid(pose_of(world, world.pairs[pair, 1], step))
+def pair_frames(world, pair, row):
+    """Where both bodies of a pair are at a row."""
+    a = rigid(pose_of(world, world.pairs[pair, 0], row))
+    b = rigid(pose_of(world, world.pairs[pair, 1], row))
     return frames_of(a, b)
 
 
 @inlined
-def root_bound(surface, world, pair, step):
+def root_bound(surface, world, pair, row):
     """[m] a lower bound on the distance of the boxes of a pair."""
-    frames = pair_frames(world, pair, step)
+    frames = pair_frames(world, pair, row)
     root_a = surface.roots[world.pairs[pair, 0]]
     root_b = surface.roots[world.pairs[pair, 1]]
     slack = rounding_slack(surface, root_a, surface, root_b, frames)
@@ -79,47 +121,67 @@ def root_bound(surface, world, pair, step):
 
 
 @inlined
-def add_travel(surface, world, step, travel):
-    """Adds to `travel` (bodies,) [m] what each body moves between `step - 1` and `step`."""
+def _add_travel(surface, world, row, travel):
+    """Adds to `travel` (bodies,) [m] what each body moves from the row before to this one."""
     for body in range(len(world.frames)):
         frame = world.frames[body]
         if frame >= 0:
-            before = world.poses[step - 1, frame]
-            after = world.poses[step, frame]
-            travel[body] += displacement(surface, surface.roots[body], before, after) * GROWTH
+            start, end = world.poses[row - 1, frame], world.poses[row, frame]
+            travel[body] += displacement(surface, surface.roots[body], start, end) * GROWTH
 
 
 @inlined
-def _write(step, pair, hit, rows):
-    rows.clearance[step] = np.sqrt(hit.gap_sq)
-    rows.pair[step] = pair
-    rows.faces[step, 0] = hit.face_a
-    rows.faces[step, 1] = hit.face_b
+def _write_points(hit, points):
     for axis in range(3):
-        rows.points[step, 0, axis] = hit.p[axis]
-        rows.points[step, 1, axis] = hit.q[axis]
+        points[0, axis] = hit.p[axis]
+        points[1, axis] = hit.q[axis]
+
+
+@inlined
+def _write(row, pair, hit, floor, rows):
+    rows.pair[row] = pair
+    rows.clearance[row] = np.sqrt(hit.gap_sq) if pair >= 0 else np.inf
+    rows.floor[row] = min(floor, rows.clearance[row])
+    rows.faces[row, 0] = hit.face_a
+    rows.faces[row, 1] = hit.face_b
+    _write_points(hit, rows.points[row])
+
+
+@inlined
+def _write_pair(row, step, pair, hit, pair_rows):
+    gap = np.sqrt(hit.gap_sq)
+    if len(pair_rows.every) > 0:
+        pair_rows.every[row, pair] = gap
+    if gap < pair_rows.clearance[pair]:
+        pair_rows.clearance[pair] = gap
+        pair_rows.step[pair] = step
+        _write_points(hit, pair_rows.points[pair])
 
 
 @kernel
-def sweep(surface, world, first, last, rows, tally):
-    """Fills `rows` for the steps `first` to `last` - 1 and adds to `tally`: skipped, queries, nodes, faces.
+def sweep(surface, world, steps, goal, rows, pair_rows, tally):
+    """Fills `rows` for `steps` (k,) and adds to `tally`: pairs skipped, queries, nodes, faces.
 
-    Ties go to the least pair. The rows do not depend on where a sweep starts.
+    Ties go to the least pair. What is exact in the rows does not depend on where a sweep starts. Without
+    `goal.each`, `pair_rows` is not touched.
     """
     n_pairs = len(world.pairs)
     travel = np.zeros(len(world.frames))
+    within = goal.within.copy()
     floors = np.empty(n_pairs)  # carried bound plus the travel of both bodies when it was found
     seeds = np.full((n_pairs, 2), NO_FACE)
     for pair in range(n_pairs):
-        floors[pair] = root_bound(surface, world, pair, first)
+        floors[pair] = root_bound(surface, world, pair, 0)
     winner = np.argmin(floors)
     scratch = new_scratch()
     fronts = no_fronts(n_pairs, POOL)
-    for step in range(first, last):
-        if step > first:
-            add_travel(surface, world, step, travel)
-        best_pair = -1
+    for row in range(len(steps)):
+        if row > 0:
+            _add_travel(surface, world, row, travel)
         best = nothing_yet(np.inf)
+        best_pair = -1
+        lowest = np.inf
+        gap = within[0]
         for turn in range(-1, n_pairs):
             pair = winner if turn < 0 else turn
             if turn == winner:
@@ -127,25 +189,38 @@ def sweep(surface, world, first, last, rows, tally):
             body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
             moved = travel[body_a] + travel[body_b]
             floor = floors[pair] - moved
-            best_gap = np.sqrt(best.gap_sq)
-            if floor > best_gap:
+            if goal.each:
+                gap = within[pair]
+            if floor > gap:
+                lowest = min(lowest, floor)
                 tally[0] += 1
                 continue
-            limit = best_gap + LOOK_AHEAD * (travel[body_a] + travel[body_b]) / max(1, step - first)
-            asked = Asked(limit, best_gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
+            limit = gap + LOOK_AHEAD * moved / max(1, row)
+            asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
             measured = measure_pair(
-                surface, body_a, surface, body_b, pair_frames(world, pair, step), asked,
+                surface, body_a, surface, body_b, pair_frames(world, pair, row), asked,
                 fronts, pair, moved, scratch,
             )  # fmt: skip
+            lowest = min(lowest, measured.lower_bound)
             floors[pair] = (measured.lower_bound + moved) * KEPT_DOWN
             seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
             tally[1] += 1
             tally[2] += measured.tally.nodes
             tally[3] += measured.tally.faces
             hit = measured.hit
-            if hit.face_a < 2**62:
-                if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
-                    best = hit
-                    best_pair = pair
-        winner = best_pair
-        _write(step, best_pair, best, rows)
+            if hit.face_a == 2**62:
+                continue
+            if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
+                best = hit
+                best_pair = pair
+                if not goal.each:
+                    gap = min(gap, np.sqrt(hit.gap_sq))
+            if goal.each:
+                _write_pair(row, steps[row], pair, hit, pair_rows)
+                if goal.lasting:
+                    within[pair] = min(gap, np.sqrt(hit.gap_sq) * NOT_LESS)
+        if best_pair >= 0:
+            winner = best_pair
+            if goal.lasting and not goal.each:
+                within[0] = min(within[0], np.sqrt(best.gap_sq) * NOT_LESS)
+        _write(row, best_pair, best, lowest, rows)

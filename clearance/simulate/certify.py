@@ -14,7 +14,9 @@ from clearance.geometry.edges import rings_of
 from clearance.kernels.certify import Asked, certify
 from clearance.kernels.drift import Chain
 from clearance.kernels.surface import Surface
-from clearance.simulate.measure import CHUNK, COUNTERS, Measurement, Progress, lay_out
+from clearance.simulate.layout import lay_out
+from clearance.simulate.measure import COUNTERS, Measurement, Progress
+from clearance.simulate.parts import in_order, parts, usable_cores
 from clearance.simulate.record import Certificate
 from clearance.world.case import Case
 from clearance.world.kinematics import chain_arrays, positions_by_link
@@ -28,9 +30,14 @@ def certify_motion(
     pairs: Sequence[Pair],
     found: Measurement,
     gap: float,
+    *,
+    jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Certificate:
     """Lower bounds that are within `gap` [m] of a distance that really occurs.
+
+    Args:
+        jobs: threads; as many as the machine has to offer by default.
 
     Raises:
         BadDimension: `gap` is not a positive length.
@@ -43,34 +50,40 @@ def certify_motion(
     tally = np.zeros(len(COUNTERS), dtype=np.int64)
     for i_robot, motion in enumerate(motions):
         chosen = [i for i, pair in enumerate(pairs) if pair.i_robot == i_robot]
-        surface, chain, asked = _lay_out(case, motions, [pairs[i] for i in chosen])
+        surface, chain, asked = _lay_out(case, [pairs[i] for i in chosen])
         order = np.maximum(np.searchsorted(chosen, found.pair), 0) % len(chosen)
         positions = positions_by_link(motion.placed.robot, motion.positions)
         robot_lower, robot_upper = lower.copy(), upper.copy()
-        for first in range(0, n_steps - 1, CHUNK):
-            last = min(first + CHUNK, n_steps - 1)
+
+        def run_part(
+            span: slice, surface=surface, chain=chain, asked=asked, positions=positions, order=order,
+            lower=robot_lower, upper=robot_upper,
+        ) -> tuple[int, np.ndarray]:  # fmt: skip
+            counts = np.zeros(len(COUNTERS), dtype=np.int64)
             certify(
-                surface, chain, asked, positions, order, first, last, found.clearance, gap,
-                case.limits.fail, robot_lower, robot_upper, tally,
+                surface, chain, asked, positions, order, span.start, span.stop, found.clearance,
+                gap, case.limits.fail, lower, upper, counts,
             )  # fmt: skip
+            return span.stop, counts
+
+        for done, counts in in_order(run_part, parts(n_steps - 1), jobs or usable_cores()):
+            tally += counts
             if progress:
-                progress(last + 1, n_steps)
+                progress(done + 1, n_steps)
         lower, upper = np.minimum(lower, robot_lower), np.minimum(upper, robot_upper)
     return Certificate(lower, upper, gap, dict(zip(COUNTERS, tally.tolist(), strict=True)))
 
 
-def _lay_out(
-    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]
-) -> tuple[Surface, Chain, Asked]:
+def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, Chain, Asked]:
     """The surface with whole faces, the robot's chain, and the pairs; all of one robot."""
-    surface, world = lay_out(case, motions, pairs)
+    layout = lay_out(case, pairs)
     placed = case.robots[pairs[0].i_robot]
     robot = placed.robot
     links = [robot.link_names.index(robot.bodies[pair.i_body].name) for pair in pairs]
     return (
-        _with_whole_faces(surface),
+        _with_whole_faces(layout.surface),
         Chain(np.ascontiguousarray(placed.world_from_base, dtype=np.float64), *chain_arrays(robot)),
-        Asked(world.pairs, np.array(links, dtype=np.int64), world.standing),
+        Asked(layout.pairs, np.array(links, dtype=np.int64), layout.standing),
     )
 
 

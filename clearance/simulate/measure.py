@@ -1,21 +1,21 @@
-"""Measures a motion exactly: the least clearance of every step and of every pair.
+"""Measures a motion exactly, as far as is asked: every step, every pair, what is near, or the minimum.
 
-Lays all bodies into one searchable surface and lets the compiled sweep run over chunks of steps, so that
-progress can be shown and a run interrupted. Not for: where the motion comes from (`kinematic`, `bullet`).
+The compiled sweep runs over parts of the steps, on several threads, so that progress can be shown and a run
+interrupted; how the steps are parted depends on their number alone, and so does every result. Not for: where
+the motion comes from (`kinematic`, `bullet`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.geometry.tree import join
-from clearance.kernels.minima import pair_minima, travelled
-from clearance.kernels.surface import Surface
-from clearance.kernels.sweep import StepRows, World, sweep
+from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
+from clearance.simulate.layout import Layout, lay_out
+from clearance.simulate.parts import in_order, parts, usable_cores
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -23,8 +23,12 @@ from clearance.world.pairs import Pair
 Progress = Callable[[int, int], None]
 """Called with the number of steps done and of all steps."""
 
-CHUNK = 256
-"""Steps a compiled call; fixed, so that counters do not depend on the machine."""
+NEEDS = ("steps", "pairs", "limit", "minimum")
+"""What can be asked: the clearance of every step; of every pair as well; of the steps below the warn limit,
+with a lower bound for the others; the least of all steps only."""
+
+FIRST_LOOK = 24
+"""Steps that are looked at first, evenly spread, where only the least of many is asked for."""
 
 COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
 
@@ -39,99 +43,192 @@ class Minima(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """The least clearances of a motion.
+    """The least clearances of a motion, one row a step that was asked for.
 
     Attributes:
-        clearance: (n,) [m].
-        pair: (n,) index of the pair that attains it.
-        points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
+        steps: (k,) the steps of the rows.
+        clearance: (k,) [m], NaN where only a bound was asked for.
+        lower_bound: (k,) [m] proven for the step; equal to the clearance within rounding where that is known.
+        pair: (k,) index of the pair that attains it, or -1.
+        points: (k, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
         tally: counters by name.
-        find_minima: measures the least clearance of each pair; not done until it is called.
+        find_minima: the least clearance of each pair; not measured until it is called. None if it was not
+            asked for.
+        every: (k, p) [m] the clearance of each pair at each step, if that was asked for.
         may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).
     """
 
+    steps: np.ndarray
     clearance: np.ndarray
+    lower_bound: np.ndarray
     pair: np.ndarray
     points: np.ndarray
     tally: dict[str, int]
-    find_minima: Callable[[], Minima]
+    find_minima: Callable[[], Minima] | None
+    every: np.ndarray | None = None
     may_cut_pairs: bool = False
 
 
+@dataclass(frozen=True, eq=False)
+class _Sweep:
+    """What all parts of one measurement share."""
+
+    layout: Layout
+    motions: Sequence[Motion]
+    jobs: int
+    progress: Progress | None = None
+    tally: np.ndarray = field(default_factory=lambda: np.zeros(len(COUNTERS), dtype=np.int64))
+
+    @property
+    def n_steps(self) -> int:
+        return self.motions[0].n_steps
+
+    @property
+    def n_pairs(self) -> int:
+        return len(self.layout.pairs)
+
+    def step_rows(
+        self, steps: np.ndarray, within: float = np.inf, *, lasting: bool = False
+    ) -> StepRows:
+        """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
+        goal = Goal(np.full(self.n_pairs, within), False, lasting)
+        return self._run(steps, goal, keep_every=False)[0]
+
+    def pair_rows(
+        self, steps: np.ndarray, within: np.ndarray, *, keep_every: bool
+    ) -> tuple[StepRows, PairRows]:
+        """Every pair by itself, within (p,) [m]: at every step, or only the least of each."""
+        return self._run(steps, Goal(within, True, not keep_every), keep_every=keep_every)
+
+    def _run(
+        self, steps: np.ndarray, goal: Goal, *, keep_every: bool
+    ) -> tuple[StepRows, PairRows]:
+        n_rows = len(steps)
+        rows = StepRows(
+            np.empty(n_rows),
+            np.empty(n_rows),
+            np.empty(n_rows, dtype=np.int64),
+            np.empty((n_rows, 2), dtype=np.int64),
+            np.empty((n_rows, 2, 3)),
+        )
+        every = np.empty((n_rows if keep_every else 0, self.n_pairs))
+        least = _no_minima(self.n_pairs)
+
+        def run_part(span: slice) -> tuple[int, PairRows, np.ndarray]:
+            world = self.layout.world(self.motions, steps[span])
+            found = PairRows(every[span] if keep_every else every, *_no_minima(self.n_pairs))
+            tally = np.zeros(len(COUNTERS), dtype=np.int64)
+            part = StepRows(*(column[span] for column in rows))
+            sweep(self.layout.surface, world, steps[span], goal, part, found, tally)
+            return span.stop, found, tally
+
+        for done, found, tally in in_order(run_part, parts(n_rows), self.jobs):
+            _take_lesser(least, found)
+            self.tally[:] += tally
+            if self.progress:
+                self.progress(done, n_rows)
+        return rows, PairRows(every, *least)
+
+
 def measure(
-    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], progress: Progress | None = None
+    case: Case,
+    motions: Sequence[Motion],
+    pairs: Sequence[Pair],
+    need: str = "steps",
+    *,
+    jobs: int | None = None,
+    progress: Progress | None = None,
 ) -> Measurement:
-    """The exact clearances of `pairs` over `motions` (one for each robot, with the same steps)."""
-    surface, world = lay_out(case, motions, pairs)
-    n_steps = len(world.poses)
-    tally = np.zeros(4, dtype=np.int64)
-    rows = StepRows(
-        np.empty(n_steps),
-        np.empty(n_steps, dtype=np.int64),
-        np.empty((n_steps, 2), dtype=np.int64),
-        np.empty((n_steps, 2, 3)),
-    )
-    for first in range(0, n_steps, CHUNK):
-        last = min(first + CHUNK, n_steps)
-        sweep(surface, world, first, last, rows, tally)
-        if progress:
-            progress(last, n_steps)
-    counts = dict(zip(COUNTERS, tally.tolist(), strict=True))
+    """The exact clearances of `pairs` over `motions` (one for each robot, with the same steps).
+
+    Args:
+        need: one of `NEEDS`.
+        jobs: threads; as many as the machine has to offer by default.
+    """
+    work = _Sweep(lay_out(case, pairs), motions, jobs or usable_cores(), progress)
+    if need == "pairs":
+        return _every_pair(work)
+    if need == "minimum":
+        return _minimum(work)
+    if need == "limit":
+        return _within_limit(work, case.limits.warn)
+    rows = work.step_rows(np.arange(work.n_steps))
+    return _measurement(work, np.arange(work.n_steps), rows, lambda: _pair_minima(work))
+
+
+def _every_pair(work: _Sweep) -> Measurement:
+    steps = np.arange(work.n_steps)
+    rows, found = work.pair_rows(steps, np.full(work.n_pairs, np.inf), keep_every=True)
+    minima = Minima(found.clearance, found.step, found.points)
+    return _measurement(work, steps, rows, lambda: minima, every=found.every)
+
+
+def _minimum(work: _Sweep) -> Measurement:
+    rows = work.step_rows(np.arange(work.n_steps), _first_least(work), lasting=True)
+    step = int(np.argmin(rows.clearance))
+    least = StepRows(*(column[step : step + 1] for column in rows))
+    return _measurement(work, np.array([step]), least, None)
+
+
+def _within_limit(work: _Sweep, limit: float) -> Measurement:
+    steps = np.arange(work.n_steps)
+    rows = work.step_rows(steps, limit * NOT_LESS)
+    if np.isinf(rows.clearance).all():
+        least = _minimum(work)
+        for column, value in zip(rows[:3], (least.clearance, least.lower_bound, least.pair), strict=True):
+            column[least.steps] = value
+        rows.points[least.steps] = least.points
+    return _measurement(work, steps, rows, None)
+
+
+def _pair_minima(work: _Sweep) -> Minima:
+    """The least of each pair: a first look at few steps, then only what could be nearer."""
+    first = _first_steps(work.n_steps)
+    infinite = np.full(work.n_pairs, np.inf)
+    _, seen = work.pair_rows(first, infinite, keep_every=False)
+    _, found = work.pair_rows(np.arange(work.n_steps), seen.clearance * NOT_LESS, keep_every=False)
+    return Minima(found.clearance, found.step, found.points)
+
+
+def _first_least(work: _Sweep) -> float:
+    """[m] a clearance that some step has, or a little more."""
+    rows = work.step_rows(_first_steps(work.n_steps), lasting=True)
+    return float(rows.clearance.min()) * NOT_LESS
+
+
+def _first_steps(n_steps: int) -> np.ndarray:
+    return np.unique(np.linspace(0, n_steps - 1, FIRST_LOOK).round().astype(np.int64))
+
+
+def _measurement(
+    work: _Sweep,
+    steps: np.ndarray,
+    rows: StepRows,
+    find_minima: Callable[[], Minima] | None,
+    every: np.ndarray | None = None,
+) -> Measurement:
+    unknown = rows.pair < 0
+    rows.clearance[unknown] = np.nan
+    rows.points[unknown] = np.nan
     return Measurement(
-        rows.clearance, rows.pair, rows.points, counts, lambda: _pair_minima(surface, world)
+        steps,
+        rows.clearance,
+        rows.floor,
+        rows.pair,
+        rows.points,
+        dict(zip(COUNTERS, work.tally.tolist(), strict=True)),
+        find_minima,
+        every,
     )
 
 
-def _pair_minima(surface: Surface, world: World) -> Minima:
-    n_pairs = len(world.pairs)
-    found = Minima(np.empty(n_pairs), np.empty(n_pairs, dtype=np.int64), np.empty((n_pairs, 2, 3)))
-    faces = np.empty((n_pairs, 2), dtype=np.int64)
-    tally = np.zeros(len(COUNTERS), dtype=np.int64)
-    travel = travelled(surface, world)
-    pair_minima(surface, world, travel, found.clearance, found.step, faces, found.points, tally)
-    return found
-
-
-def lay_out(
-    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]
-) -> tuple[Surface, World]:
-    """One surface of all measured bodies, and where they are: links move, obstacles stand."""
-    links = sorted({(pair.i_robot, pair.i_body) for pair in pairs})
-    obstacles = sorted({pair.i_obstacle for pair in pairs})
-    shapes = [case.robots[i].robot.bodies[j].shape for i, j in links]
-    shapes += [case.obstacles[k].body.shape for k in obstacles]
-    place_of_link = {link: place for place, link in enumerate(links)}
-    place_of_obstacle = {k: len(links) + place for place, k in enumerate(obstacles)}
-    world = World(
-        frames=np.array([*range(len(links)), *[-1] * len(obstacles)], dtype=np.int64),
-        standing=_standing(case, len(links), obstacles),
-        poses=_moving(case, motions, links),
-        pairs=np.array(
-            [
-                (place_of_link[pair.i_robot, pair.i_body], place_of_obstacle[pair.i_obstacle])
-                for pair in pairs
-            ],
-            dtype=np.int64,
-        ),
+def _no_minima(n_pairs: int) -> Minima:
+    return Minima(
+        np.full(n_pairs, np.inf), np.full(n_pairs, -1, dtype=np.int64), np.full((n_pairs, 2, 3), np.nan)
     )
-    return join(shapes), world
 
 
-def _standing(case: Case, n_links: int, obstacles: Sequence[int]) -> np.ndarray:
-    standing = np.tile(np.eye(4), (n_links + len(obstacles), 1, 1))
-    for place, k in enumerate(obstacles, start=n_links):
-        standing[place] = case.obstacles[k].world_from_body
-    return standing
-
-
-def _moving(
-    case: Case, motions: Sequence[Motion], links: Sequence[tuple[int, int]]
-) -> np.ndarray:
-    """(steps, links, 4, 4) `world_from_link` of the measured links."""
-    columns = []
-    for i_robot, motion in enumerate(motions):
-        robot = case.robots[i_robot].robot
-        index = {name: i for i, name in enumerate(robot.link_names)}
-        chosen = [index[robot.bodies[j].name] for i, j in links if i == i_robot]
-        columns.append(motion.poses()[:, chosen])
-    return np.ascontiguousarray(np.concatenate(columns, axis=1))
+def _take_lesser(least: Minima, found: PairRows) -> None:
+    nearer = found.clearance < least.clearance
+    for mine, theirs in zip(least, found[1:], strict=True):
+        mine[nearer] = theirs[nearer]

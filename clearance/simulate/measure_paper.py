@@ -53,7 +53,16 @@ def measure_paper(
         _require_measured(clearance, step)
         if progress:
             progress(step + 1, n_steps)
-    return Measurement(clearance, winner, points, dict(tally), lambda: minima, may_cut_pairs=True)
+    return Measurement(
+        np.arange(n_steps),
+        clearance,
+        np.zeros(n_steps),
+        winner,
+        points,
+        dict(tally),
+        lambda: minima,
+        may_cut_pairs=True,
+    )
 
 
 def _require_measured(clearance: np.ndarray, step: int) -> None:
