@@ -9,9 +9,15 @@ from typing import TYPE_CHECKING
 from clearance.errors import BadInput
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.kinematic import kinematic_motion
-from clearance.simulate.measure import Progress, measure
+from clearance.simulate.measure import NEEDS, Progress, measure
 from clearance.simulate.record import CrossCheck, Record
-from clearance.simulate.steps import STATUSES, PairMinima, cut_throughout, step_table
+from clearance.simulate.steps import (
+    STATUSES,
+    PairMinima,
+    cut_throughout,
+    every_pair_table,
+    step_table,
+)
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
@@ -37,6 +43,11 @@ class Run:
         return self.record.steps
 
     @property
+    def pairs(self) -> pa.Table | None:
+        """One row a step and pair: step, link, obstacle, clearance [m]; None unless that was asked for."""
+        return self.record.every_pair
+
+    @property
     def worst(self) -> dict:
         """The row of the first step of least clearance."""
         return self.steps.slice(self.record.worst_step, 1).to_pylist()[0]
@@ -49,7 +60,7 @@ class Run:
     @property
     def status(self) -> str:
         """The worst status of any step: "clear", "near", "violated" or "contact"."""
-        occurring = set(self.steps["status"].unique().to_pylist())
+        occurring = self.steps["status"].drop_null().unique().to_pylist()
         return str([status for status in STATUSES if status in occurring][-1])
 
     @property
@@ -71,17 +82,22 @@ class Run:
 def check(
     case: Case,
     *,
+    need: str = "steps",
     method: str = "exact",
     motion: str = "kinematic",
     limits: Limits | None = None,
     certify: bool = False,
     certify_gap: float = CERTIFY_GAP,
     cross_check: bool = False,
+    jobs: int | None = None,
     progress: Progress | None = None,
 ) -> Run:
     """The least clearance of every step of a case.
 
     Args:
+        need: "steps" for the clearance of every step; "pairs" for that of every pair at every step as well;
+            "limit" for the steps below the warn limit, with a proven lower bound for the others;
+            "minimum" for the least of all steps. The worst step is exact in each.
         method: "exact", or "paper" for the first paper's algorithm as published (no guarantee).
         motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
             controlled robot makes of it.
@@ -90,15 +106,25 @@ def check(
             verdict then rests on it.
         certify_gap: [m] how far that bound may be below a distance that occurs.
         cross_check: also ask FCL at every step.
+        jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.
         progress: called with steps done and all steps.
 
     Raises:
-        BadInput: an unknown method or motion. NothingToMeasure: no pair is left.
+        BadInput: an unknown method, motion or need, or some that do not go together.
+        NothingToMeasure: no pair is left.
     """
     _require(method, METHODS, "method")
     _require(motion, MOTIONS, "motion")
+    _require(need, NEEDS, "need")
     if certify and method != "exact":
         raise BadInput(f"method {method!r} proves nothing to certify with", valid="method 'exact'")
+    if need != "steps" and method != "exact":
+        raise BadInput(f"method {method!r} measures every step", valid="need 'steps', or method 'exact'")
+    if need in ("limit", "minimum") and (certify or cross_check):
+        other = "certify" if certify else "cross-check"
+        raise BadInput(f"{other} needs every step, not {need!r}", valid="need 'steps' or 'pairs'")
+    if jobs is not None and jobs < 1:
+        raise BadInput(f"{jobs} jobs", valid="1 or more")
     if limits is not None:
         case = replace(case, limits=limits)
     pairs, unmeasured = measured_pairs(case)
@@ -109,10 +135,12 @@ def check(
 
         found = measure_paper(case, motions, pairs, progress)
     else:
-        found = measure(case, motions, pairs, progress)
+        found = measure(case, motions, pairs, need, jobs=jobs, progress=progress)
     certificate = None
     if certify:
-        certificate = certify_motion(case, motions, pairs, found, certify_gap, progress)
+        certificate = certify_motion(
+            case, motions, pairs, found, certify_gap, jobs=jobs, progress=progress
+        )
     record = Record(
         case=case,
         motions=motions,
@@ -124,6 +152,8 @@ def check(
         tally=found.tally,
         method=method,
         motion_kind=motion,
+        need=need,
+        every_pair=every_pair_table(case, pairs, found),
         certificate=certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes)),
     )

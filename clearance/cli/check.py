@@ -42,6 +42,17 @@ class Millimetres(click.ParamType):
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the case's.")
 @click.option("--certify", is_flag=True, help="Prove a bound for the motion between the steps too.")
 @click.option("--certify-mm", type=Millimetres(), help="How tight that bound is.  [default: 0.1]")
+@click.option(
+    "--need",
+    type=click.Choice(["steps", "pairs", "limit", "minimum"]),
+    default="steps",
+    show_default=True,
+    help="steps: every step. pairs: every pair at every step too (pairs.parquet). limit: steps below "
+    "the warn limit, a proven bound for the rest. minimum: the worst moment only.",
+)
+@click.option(
+    "--jobs", type=click.IntRange(min=1), help="Threads.  [default: all cores; same bytes]"
+)
 @click.option("--cross-check", is_flag=True, help="Hold every step against FCL.")
 @click.option(
     "--method",
@@ -67,6 +78,8 @@ def check(
     warn_mm: float | None,
     certify: bool,
     certify_mm: float | None,
+    need: str,
+    jobs: int | None,
     cross_check: bool,
     method: str,
     motion: str,
@@ -95,6 +108,8 @@ def check(
     with shown_progress(quiet or as_json, passes) as progress:
         run = answer(
             case,
+            need=need,
+            jobs=jobs,
             method=method,
             motion=motion,
             limits=limits,

@@ -43,8 +43,10 @@ def _stdout() -> Console:
 def _lines(run: Run, out: Path | None) -> list[Text | Table]:
     record = run.record
     lines: list[Text | Table] = [_headline(run), *_worst(run)]
-    lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
-    lines.append(_pair_table(record))
+    if record.need != "minimum":
+        lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
+    if record.pair_minima:
+        lines.append(_pair_table(record))
     if record.certificate is not None:
         lines.append(_row("certified", certified_text(summary_of(record)["certified"])))
     if run.cross_check is not None:

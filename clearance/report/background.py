@@ -50,8 +50,16 @@ def _tessellation(bound: float) -> str:
     )
 
 
+_MEASURED = {
+    "steps": "measured at",
+    "pairs": "measured for every pair at",
+    "limit": "measured where it is below the warn limit, and at its least, of",
+    "minimum": "measured only as far as it takes to find the least of",
+}
+
+
 def _sampling(summary: dict[str, Any]) -> list[object]:
-    steps = f"Clearance is measured at {count(summary['n_steps'], 'step')}; "
+    steps = f"Clearance is {_MEASURED[summary['need']]} {count(summary['n_steps'], 'step')}; "
     if summary["certified"] is None:
         parts: list[object] = [steps, "nothing is said about the motion between two steps."]
     else:

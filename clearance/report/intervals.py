@@ -3,6 +3,7 @@ step."""
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,9 +54,9 @@ class Event:
     step: int
     time: float  # [s]
     what: str
-    clearance: float  # [m]
-    link: str
-    obstacle: str
+    clearance: float | None  # [m]; unknown, and so are the names, where a bound decides
+    link: str | None
+    obstacle: str | None
 
 
 def verdict(record: Record) -> str:
@@ -64,7 +65,9 @@ def verdict(record: Record) -> str:
 
 
 def intervals(record: Record) -> dict[str, list[Interval]]:
-    """For each of `LEVELS` its intervals in order of time."""
+    """For each of `LEVELS` its intervals in order of time; none where only the least step is known."""
+    if record.need == "minimum":
+        return {level: [] for level in LEVELS}
     codes = codes_of(record.steps)
     return {
         level: [_interval(record, a, b) for a, b in _runs(codes >= least)]
@@ -74,7 +77,9 @@ def intervals(record: Record) -> dict[str, list[Interval]]:
 
 def events(record: Record) -> list[Event]:
     """Every entering and leaving of a level in order of time; on one step, entering the wider level
-    first."""
+    first. None where only the least step is known."""
+    if record.need == "minimum":
+        return []
     found: list[tuple[int, int, Event]] = []
     codes = codes_of(record.steps)
     for level, least in LEVELS.items():
@@ -92,8 +97,8 @@ def time_at(record: Record, level: str) -> float:
 
 def status_counts(record: Record) -> dict[str, int]:
     """How many steps have each status."""
-    counts = np.bincount(codes_of(record.steps), minlength=len(STATUSES))
-    return {str(name): int(count) for name, count in zip(STATUSES, counts, strict=True)}
+    counts = Counter(record.steps["status"].to_pylist())
+    return {str(name): counts[str(name)] for name in STATUSES}
 
 
 def _runs(inside: np.ndarray) -> list[tuple[int, int]]:

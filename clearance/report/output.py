@@ -29,6 +29,8 @@ def write(record: Record, folder: str | Path) -> None:
     def fill(place: Path) -> None:
         write_parquet(record.steps, place / "steps.parquet")
         write_csv(record.steps, place / "steps.csv")
+        if record.every_pair is not None:
+            write_parquet(record.every_pair, place / "pairs.parquet")
         replay.save(place / FILE_NAME)
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")

@@ -19,7 +19,8 @@
     return (scaled / 10 ** decimals).toFixed(decimals);
   }
 
-  const between = (i) => data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
+  const measured = (i) => `${data.known[i] ? "" : "at least "}${mm(clearances[i])} mm`;
+  const between = (i) => !data.known[i] ? "not measured further" : data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
   const word = (i) => ({clear: "clear", near: "near miss", violated: "violated", contact: "contact"})[data.statuses[data.status[i]]];
 
   function frameOfStep(step) {
@@ -34,10 +35,10 @@
   function showFrame(i) {
     frame = Math.max(0, Math.min(n - 1, i));
     byId("scrub").value = frame;
-    byId("scrub").setAttribute("aria-valuetext", `${times[frame].toFixed(3)} s, ${mm(clearances[frame])} mm`);
+    byId("scrub").setAttribute("aria-valuetext", `${times[frame].toFixed(3)} s, ${measured(frame)}`);
     byId("readout").textContent = "";
     const strong = document.createElement("strong");
-    strong.textContent = `${mm(clearances[frame])} mm`;
+    strong.textContent = measured(frame);
     strong.style.color = colours[data.status[frame]];
     byId("readout").append(strong, ` ${word(frame)}`, document.createElement("br"), between(frame),
       document.createElement("br"), `${times[frame].toFixed(3)} s, step ${data.steps[frame].toLocaleString("en")}`);
@@ -64,7 +65,7 @@
     return {
       x: Array.from(times), y: Array.from(clearances, toPlot), mode: "lines", line: {width: 0}, opacity: 0, cliponaxis: false,
       text: Array.from(times, (t, i) =>
-        `<b>${mm(clearances[i])} mm</b> ${word(i)}<br>${between(i).replace(/</g, "&lt;")}<br>${t.toFixed(3)} s, step ${data.steps[i].toLocaleString("en")}`),
+        `<b>${measured(i)}</b> ${word(i)}<br>${between(i).replace(/</g, "&lt;")}<br>${t.toFixed(3)} s, step ${data.steps[i].toLocaleString("en")}`),
       hovertemplate: "%{text}<extra></extra>", hoverlabel: {bgcolor: "#ffffff", bordercolor: css("--rule"), font: {color: css("--ink")}, align: "left"},
     };
   }

@@ -76,6 +76,7 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
         "steps": replay.steps.tolist(),
         "times": _floats(replay.times, "<f8"),
         "clearances": _floats(replay.clearances, "<f8"),
+        "known": replay.known.tolist(),
         "lines": _floats(replay.lines, "<f8"),
         "status": replay.status.tolist(),
         "nearest": replay.nearest.tolist(),

@@ -32,8 +32,7 @@ def header(summary: dict[str, Any]) -> Html:
         ),
         (
             "Measured",
-            f"{count(summary['n_steps'], 'step')}, {count(len(summary['pairs']), 'pair')}, "
-            f"{summary['motion']} motion",
+            f"{_extent(summary)}, {summary['motion']} motion",
         ),
         ("Cross-check", _cross_check_word(summary["cross_check"])),
     ]
@@ -47,6 +46,19 @@ def header(summary: dict[str, Any]) -> Html:
         element("p", _TITLES[summary["verdict"]], class_=f"verdict {kind}"),
         class_="title",
     ) + element("dl", *items, class_="facts")
+
+
+_EXTENTS = {
+    "steps": "",
+    "pairs": ", each pair at each step",
+    "limit": ", exactly below the warn limit, elsewhere a proven bound",
+    "minimum": ", for their minimum only",
+}
+
+
+def _extent(summary: dict[str, Any]) -> str:
+    pairs = f", {count(len(summary['pairs']), 'pair')}" if summary["pairs"] else ""
+    return count(summary["n_steps"], "step") + pairs + _EXTENTS[summary["need"]]
 
 
 def _cross_check_word(check: dict[str, Any] | None) -> str:
@@ -137,8 +149,7 @@ def events(summary: dict[str, Any]) -> Html:
             element("td", seconds(event["time"]), class_="number"),
             element("td", f"{event['step']:,}", class_="number"),
             element("td", event["what"]),
-            element("td", mm(event["clearance"]), class_="number"),
-            element("td", f"{event['link']} - {event['obstacle']}"),
+            *_event_cells(event),
             data_step=event["step"],
             tabindex=0,
         )
@@ -150,8 +161,19 @@ def events(summary: dict[str, Any]) -> Html:
     return section("Events", table(heads, rows, class_="clickable"), note)
 
 
+def _event_cells(event: dict[str, Any]) -> tuple[Html, Html]:
+    if event["clearance"] is None:
+        return element("td", "", class_="number"), element("td", "not measured further")
+    return (
+        element("td", mm(event["clearance"]), class_="number"),
+        element("td", f"{event['link']} - {event['obstacle']}"),
+    )
+
+
 def matrix(summary: dict[str, Any]) -> Html:
-    """Least clearance of each link and obstacle in mm, coloured by the limits."""
+    """Least clearance of each link and obstacle in mm, coloured by the limits; nothing if not asked for."""
+    if not summary["pairs"]:
+        return Html("")
     cells = {(pair["link"], pair["obstacle"]): pair for pair in summary["pairs"]}
     links = [body["name"] for robot in summary["robots"] for body in robot["links"]]
     links = [name for name in dict.fromkeys(links) if any(name == link for link, _ in cells)]

@@ -33,6 +33,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "limits": asdict(case.limits),
         "method": record.method,
         "motion": record.motion_kind,
+        "need": record.need,
         "n_steps": record.steps.num_rows,
         "start": float(times[0]),
         "end": float(times[-1]),

@@ -8,7 +8,7 @@ the motion comes from (`kinematic`, `bullet`).
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -43,22 +43,20 @@ class Minima(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """The least clearances of a motion, one row a step that was asked for.
+    """The least clearances of a motion, one row a step.
 
     Attributes:
-        steps: (k,) the steps of the rows.
-        clearance: (k,) [m], NaN where only a bound was asked for.
-        lower_bound: (k,) [m] proven for the step; equal to the clearance within rounding where that is known.
-        pair: (k,) index of the pair that attains it, or -1.
-        points: (k, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
+        clearance: (n,) [m], NaN where only a bound was asked for.
+        lower_bound: (n,) [m] proven for the step; equal to the clearance within rounding where that is known.
+        pair: (n,) index of the pair that attains it, or -1.
+        points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
         tally: counters by name.
         find_minima: the least clearance of each pair; not measured until it is called. None if it was not
             asked for.
-        every: (k, p) [m] the clearance of each pair at each step, if that was asked for.
+        every: (n, p) [m] the clearance of each pair at each step, if that was asked for.
         may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).
     """
 
-    steps: np.ndarray
     clearance: np.ndarray
     lower_bound: np.ndarray
     pair: np.ndarray
@@ -153,32 +151,31 @@ def measure(
     if need == "limit":
         return _within_limit(work, case.limits.warn)
     rows = work.step_rows(np.arange(work.n_steps))
-    return _measurement(work, np.arange(work.n_steps), rows, lambda: _pair_minima(work))
+    return _measurement(work, rows, lambda: _pair_minima(work))
 
 
 def _every_pair(work: _Sweep) -> Measurement:
-    steps = np.arange(work.n_steps)
-    rows, found = work.pair_rows(steps, np.full(work.n_pairs, np.inf), keep_every=True)
+    all_steps, infinite = np.arange(work.n_steps), np.full(work.n_pairs, np.inf)
+    rows, found = work.pair_rows(all_steps, infinite, keep_every=True)
     minima = Minima(found.clearance, found.step, found.points)
-    return _measurement(work, steps, rows, lambda: minima, every=found.every)
+    return _measurement(work, rows, lambda: minima, every=found.every)
 
 
 def _minimum(work: _Sweep) -> Measurement:
     rows = work.step_rows(np.arange(work.n_steps), _first_least(work), lasting=True)
-    step = int(np.argmin(rows.clearance))
-    least = StepRows(*(column[step : step + 1] for column in rows))
-    return _measurement(work, np.array([step]), least, None)
+    rows.pair[np.arange(work.n_steps) != np.argmin(rows.clearance)] = -1  # met on the way to the least
+    return _measurement(work, rows, None)
 
 
 def _within_limit(work: _Sweep, limit: float) -> Measurement:
-    steps = np.arange(work.n_steps)
-    rows = work.step_rows(steps, limit * NOT_LESS)
-    if np.isinf(rows.clearance).all():
-        least = _minimum(work)
-        for column, value in zip(rows[:3], (least.clearance, least.lower_bound, least.pair), strict=True):
-            column[least.steps] = value
-        rows.points[least.steps] = least.points
-    return _measurement(work, steps, rows, None)
+    """The least of all is always known, so that a run has a worst step."""
+    rows = work.step_rows(np.arange(work.n_steps), limit * NOT_LESS)
+    far = rows.pair < 0
+    rows.floor[far] = np.maximum(rows.floor[far], limit)  # all that could be within it was sought
+    if (rows.pair >= 0).any():
+        return _measurement(work, rows, None)
+    least = _minimum(work)
+    return replace(least, lower_bound=np.maximum(least.lower_bound, rows.floor))
 
 
 def _pair_minima(work: _Sweep) -> Minima:
@@ -202,7 +199,6 @@ def _first_steps(n_steps: int) -> np.ndarray:
 
 def _measurement(
     work: _Sweep,
-    steps: np.ndarray,
     rows: StepRows,
     find_minima: Callable[[], Minima] | None,
     every: np.ndarray | None = None,
@@ -211,7 +207,6 @@ def _measurement(
     rows.clearance[unknown] = np.nan
     rows.points[unknown] = np.nan
     return Measurement(
-        steps,
         rows.clearance,
         rows.floor,
         rows.pair,

@@ -54,7 +54,6 @@ def measure_paper(
         if progress:
             progress(step + 1, n_steps)
     return Measurement(
-        np.arange(n_steps),
         clearance,
         np.zeros(n_steps),
         winner,

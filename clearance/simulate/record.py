@@ -93,9 +93,13 @@ class Record:
     Attributes:
         motions: one for each of `case.robots`.
         steps: one row a step: step, time, clearance, link, obstacle, link_x … obstacle_z, status
-            ("clear" | "near" | "violated" | "contact"), tracking_error when simulated, lower_bound when
-            certified (then the status is that of the motion from the step to the next).
-        pair_minima: one entry a measured pair, least clearance first.
+            ("clear" | "near" | "violated" | "contact", null where a bound does not decide),
+            tracking_error when simulated, lower_bound when certified (then the status is that of the motion
+            from the step to the next) or where `need` leaves clearances unknown (null; then it is proven for
+            the step).
+        pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
+        need: what was asked for, "steps", "pairs", "limit" or "minimum".
+        every_pair: one row a step and pair (step, link, obstacle, clearance), if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
     """
@@ -110,14 +114,16 @@ class Record:
     motion_kind: str = "kinematic"
     cross_check: CrossCheck | None = None
     certificate: Certificate | None = None
+    need: str = "steps"
+    every_pair: pa.Table | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
 
     @property
     def clearances(self) -> np.ndarray:
-        """(n,) [m]."""
+        """(n,) [m], NaN where only a bound was asked for."""
         return self.steps["clearance"].to_numpy()
 
     @property
     def worst_step(self) -> int:
         """The first step of least clearance."""
-        return int(np.argmin(self.clearances))
+        return int(np.nanargmin(self.clearances))

@@ -49,6 +49,8 @@ class Replay:
         poses: for each body (frames, 7) or, where it stands still, (1, 7) float32: xyz [m] and
             quat_xyzw, in the world frame.
         steps, times, clearances: (frames,) step index, [s], [m].
+        known: (frames,) uint8, 0 where the clearance is only a proven lower bound; then the line has no
+            length and nothing is nearest.
         status: (frames,) uint8 indices into `STATUSES`.
         lines: (frames, 6) [m] witness points on link and obstacle in the world frame.
         nearest: (frames, 2) int32 indices into `bodies` of link and obstacle; -1: there is none.
@@ -63,14 +65,15 @@ class Replay:
     steps: np.ndarray
     times: np.ndarray
     clearances: np.ndarray
+    known: np.ndarray
     status: np.ndarray
     lines: np.ndarray
     nearest: np.ndarray
 
     @property
     def i_worst(self) -> int:
-        """The first frame of least clearance."""
-        return int(np.argmin(self.clearances))
+        """The first frame of least known clearance."""
+        return int(np.argmin(np.where(self.known, self.clearances, np.inf)))
 
     def save(self, path: Path) -> None:
         """Writes everything into one compressed file; the same replay gives the same bytes."""
@@ -91,7 +94,7 @@ class Replay:
         np.savez_compressed(path, head=np.frombuffer(text, dtype=np.uint8), **arrays)
 
 
-_FRAME_ARRAYS = ("steps", "times", "clearances", "status", "lines", "nearest")
+_FRAME_ARRAYS = ("steps", "times", "clearances", "known", "status", "lines", "nearest")
 
 
 def load_replay(path: Path) -> Replay:
@@ -151,9 +154,10 @@ def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
         poses=poses,
         steps=kept,
         times=table["time"].to_numpy().astype(np.float64),
-        clearances=table["clearance"].to_numpy().astype(np.float64),
+        clearances=_least(table),
+        known=table["clearance"].is_valid().to_numpy().astype(np.uint8),
         status=codes_of(table),
-        lines=np.column_stack([table[name].to_numpy() for name in _LINE]).astype(np.float64),
+        lines=_lines(record, table),
         nearest=np.array(nearest, dtype=np.int32).reshape(-1, 2),
     )
 
@@ -161,15 +165,30 @@ def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
 _LINE = ("link_x", "link_y", "link_z", "obstacle_x", "obstacle_y", "obstacle_z")
 
 
+def _least(steps: pa.Table) -> np.ndarray:
+    """(n,) [m] the clearance of each step, or what it is at least."""
+    clearances = steps["clearance"].to_numpy().astype(np.float64)
+    if steps["clearance"].null_count == 0:
+        return clearances
+    return np.where(np.isnan(clearances), steps["lower_bound"].to_numpy(), clearances)
+
+
+def _lines(record: Record, steps: pa.Table) -> np.ndarray:
+    """(n, 6) [m] the witness points; where they are unknown, twice that of the worst step's link."""
+    lines = np.column_stack([steps[name].to_numpy() for name in _LINE]).astype(np.float64)
+    worst = [record.steps[name][record.worst_step].as_py() for name in _LINE[:3]]
+    return np.where(np.isnan(lines), np.tile(worst, 2), lines)
+
+
 def codes_of(steps: pa.Table) -> np.ndarray:
-    """(n,) uint8 the statuses of a steps table as indices into `STATUSES`."""
+    """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
     code = {str(status): i for i, status in enumerate(STATUSES)}
-    return np.array([code[status] for status in steps["status"].to_pylist()], dtype=np.uint8)
+    return np.array([code.get(status, 0) for status in steps["status"].to_pylist()], dtype=np.uint8)
 
 
 def kept_steps(record: Record, max_frames: int) -> np.ndarray:
     """(frames,) int64 increasing step indices: all, or the choice that `replay_of` describes."""
-    clearances = record.clearances
+    clearances = _least(record.steps)
     n_steps = len(clearances)
     if n_steps <= max_frames:
         return np.arange(n_steps)

@@ -51,22 +51,27 @@ def step_table(
     certificate: Certificate | None = None,
     with_error: bool = False,
 ) -> pa.Table:
-    """One row a step; columns as in `Record.steps`."""
+    """One row a step; columns as in `Record.steps`, null where only a bound is known."""
     links, obstacles = pair_names(case, pairs)
     columns = {
         "step": pa.array(np.arange(len(found.clearance))),
         "time": pa.array(motions[0].times),
-        "clearance": pa.array(found.clearance),
+        "clearance": pa.array(found.clearance, from_pandas=True),
         "link": _names(links, found.pair),
         "obstacle": _names(obstacles, found.pair),
     }
     for i_side, side in enumerate(("link", "obstacle")):
         for i_axis, axis in enumerate("xyz"):
-            columns[f"{side}_{axis}"] = pa.array(found.points[:, i_side, i_axis])
+            columns[f"{side}_{axis}"] = pa.array(
+                found.points[:, i_side, i_axis], from_pandas=True
+            )
     codes = status_codes(found.clearance, case.limits, certificate)
-    columns["status"] = _names([str(status) for status in STATUSES], codes)
+    undecided = (found.pair < 0) & (found.lower_bound < case.limits.warn)
+    columns["status"] = _names([str(status) for status in STATUSES], np.where(undecided, -1, codes))
     if certificate is not None:
         columns["lower_bound"] = pa.array(certificate.lower_bound)
+    elif (found.pair < 0).any():
+        columns["lower_bound"] = pa.array(found.lower_bound)
     if with_error:
         columns["tracking_error"] = pa.array(np.max([m.tracking_error for m in motions], axis=0))
     return pa.table(columns)
@@ -75,7 +80,7 @@ def step_table(
 class PairMinima(Sequence[PairMinimum]):
     """The least clearance of every pair over the run, least first, found when first looked at.
 
-    Ties are in the order of the pairs.
+    Empty if less was asked for. Ties are in the order of the pairs.
     """
 
     def __init__(
@@ -93,6 +98,8 @@ class PairMinima(Sequence[PairMinimum]):
 
     @cached_property
     def _rows(self) -> tuple[PairMinimum, ...]:
+        if self._find is None:
+            return ()
         links, obstacles = self._names
         found = self._find()
         return tuple(
@@ -108,6 +115,23 @@ class PairMinima(Sequence[PairMinimum]):
             for i in np.argsort(found.clearance, kind="stable")
             if np.isfinite(found.clearance[i])  # the paper's rules can cut a pair at every step
         )
+
+
+def every_pair_table(case: Case, pairs: Sequence[Pair], found: Measurement) -> pa.Table | None:
+    """One row a step and pair: step, link, obstacle, clearance [m]; None if that was not asked for."""
+    if found.every is None:
+        return None
+    n_steps, n_pairs = found.every.shape
+    i_pair = pa.array(np.tile(np.arange(n_pairs, dtype=np.int32), n_steps))
+    links, obstacles = pair_names(case, pairs)
+    return pa.table(
+        {
+            "step": pa.array(np.repeat(np.arange(n_steps), n_pairs)),
+            "link": pa.DictionaryArray.from_arrays(i_pair, links),
+            "obstacle": pa.DictionaryArray.from_arrays(i_pair, obstacles),
+            "clearance": pa.array(found.every.reshape(-1)),
+        }
+    )
 
 
 def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Unmeasured]:
@@ -132,4 +156,4 @@ def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]
 
 
 def _names(names: Sequence[str], codes: np.ndarray) -> pa.Array:
-    return pa.array(names, type=pa.string()).take(pa.array(codes))
+    return pa.array(names, type=pa.string()).take(pa.array(codes, mask=codes < 0))

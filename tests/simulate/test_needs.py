@@ -1,0 +1,122 @@
+"""What is asked for changes the work, not the answer: all needs agree, and each does less than more would."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput
+from clearance.simulate import parts
+
+SCENES = Path(__file__).parents[2] / "scenes"
+
+
+@pytest.fixture(scope="module", params=["box_pipe", "panda_shelf", "hot_cell"])
+def runs(request: pytest.FixtureRequest) -> dict[str, cl.Run]:
+    case = cl.load_case(SCENES / request.param / "case.yaml")
+    return {need: cl.check(case, need=need) for need in ("steps", "pairs", "limit", "minimum")}
+
+
+def test_pairs_have_the_same_steps_and_their_least_is_the_step(runs: dict[str, cl.Run]) -> None:
+    steps, pairs = runs["steps"].steps, runs["pairs"].steps
+    assert steps.equals(pairs)
+    every = runs["pairs"].pairs
+    matrix = every["clearance"].to_numpy().reshape(steps.num_rows, -1)
+    assert (matrix.min(axis=1) == steps["clearance"].to_numpy()).all()
+
+
+def test_pair_minima_are_the_least_of_the_matrix(runs: dict[str, cl.Run]) -> None:
+    lazy, known = runs["steps"].record.pair_minima, runs["pairs"].record.pair_minima
+    assert list(lazy) == list(known)
+    every = runs["pairs"].pairs.to_pydict()
+    least: dict[tuple[str, str], float] = {}
+    for link, obstacle, clearance in zip(
+        every["link"], every["obstacle"], every["clearance"], strict=True
+    ):
+        least[link, obstacle] = min(clearance, least.get((link, obstacle), np.inf))
+    assert {(m.link, m.obstacle): m.clearance for m in lazy} == least
+
+
+def test_the_minimum_is_that_of_all_steps(runs: dict[str, cl.Run]) -> None:
+    assert runs["minimum"].worst == {**runs["steps"].worst, "lower_bound": pytest.approx(0, abs=9)}
+    assert runs["minimum"].steps["clearance"].null_count == runs["steps"].steps.num_rows - 1
+
+
+def test_below_the_limit_all_is_known_and_elsewhere_the_bound_holds(runs: dict[str, cl.Run]) -> None:
+    truth = runs["steps"].steps["clearance"].to_numpy()
+    table = runs["limit"].steps
+    found = table["clearance"].to_numpy()
+    warn = runs["limit"].record.case.limits.warn
+    known = ~np.isnan(found)
+    assert known[truth < warn].all()
+    assert (found[known] == truth[known]).all()
+    assert table["status"].equals(runs["steps"].steps["status"])
+    assert runs["limit"].worst["step"] == runs["steps"].worst["step"]
+
+
+@pytest.mark.parametrize("need", ["limit", "minimum"])
+def test_bounds_of_unknown_steps_are_never_above_the_truth(runs: dict[str, cl.Run], need: str) -> None:
+    truth = runs["steps"].steps["clearance"].to_numpy()
+    bound = runs[need].steps["lower_bound"].to_numpy()
+    assert (bound <= truth).all()
+    assert bound.max() > 0.0
+
+
+def test_less_asked_is_less_done(runs: dict[str, cl.Run]) -> None:
+    tests = {need: run.record.tally["polygon_tests"] for need, run in runs.items()}
+    assert tests["limit"] < tests["steps"] <= tests["pairs"]
+    queries = {need: run.record.tally["queries"] for need, run in runs.items()}
+    assert queries["minimum"] < queries["steps"] <= queries["pairs"]
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
+def test_threads_change_nothing(need: str) -> None:
+    case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
+    one, two, four = (cl.check(case, need=need, jobs=jobs) for jobs in (1, 2, 4))
+    for other in (two, four):
+        assert one.steps.equals(other.steps)
+        assert one.record.tally == other.record.tally
+        assert list(one.record.pair_minima) == list(other.record.pair_minima)
+
+
+@pytest.mark.parametrize("longest", [2, 7, 50, 1000])
+def test_how_steps_are_parted_changes_no_clearance(
+    longest: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
+    whole = cl.check(case)
+    monkeypatch.setattr(parts, "LONGEST_PART", longest)
+    assert cl.check(case).steps.equals(whole.steps)
+
+
+def test_parts_hold_every_row_once() -> None:
+    for n_rows in (1, 2, 63, 64, 65, 127, 128, 129, 256, 257, 1000, 12345):
+        spans = parts.parts(n_rows)
+        assert [i for span in spans for i in range(span.start, span.stop)] == list(range(n_rows))
+        assert max(span.stop - span.start for span in spans) <= parts.LONGEST_PART
+
+
+def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:
+    case = cl.load_case(SCENES / "box_pipe" / "case.yaml")
+    case = replace(case, limits=cl.Limits(fail=0.0, warn=1e-6))
+    limit, steps = cl.check(case, need="limit"), cl.check(case)
+    assert limit.worst["clearance"] == steps.worst["clearance"]
+    assert limit.worst["step"] == steps.worst["step"]
+    assert limit.status == "clear"
+
+
+def test_needs_that_do_not_go_together_are_refused() -> None:
+    case = cl.load_case(SCENES / "box_box" / "case.yaml")
+    for asked, told in [
+        ({"need": "all"}, "unknown need 'all'"),
+        ({"need": "minimum", "certify": True}, "certify needs every step"),
+        ({"need": "limit", "cross_check": True}, "cross-check needs every step"),
+        ({"need": "pairs", "method": "paper"}, "method 'paper' measures every step"),
+        ({"jobs": 0}, "0 jobs"),
+    ]:
+        with pytest.raises(BadInput, match=told):
+            cl.check(case, **asked)
