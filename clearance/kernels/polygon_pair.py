@@ -52,7 +52,7 @@ def _empty_surface(n):
     return Surface(
         np.empty((n, 3)), np.empty((n, 3)), ends, around, np.empty((1, 3)), np.empty(1), np.empty(1),
         np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, ends, edges,
-        np.empty((0, 3, 3)), nodes, nodes, np.empty((0, 2), dtype=np.int64),
+        nodes, np.empty((0, 12), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
         none, none, none, none, none,
     )  # fmt: skip
 

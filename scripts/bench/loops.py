@@ -51,7 +51,7 @@ class OurSteps:
     def run(self, steps: np.ndarray) -> np.ndarray:
         """All steps."""
         scene = self._scene
-        found = measure(scene.case, scene.motions, scene.pairs)
+        found = measure(scene.case, scene.motions, scene.pairs, jobs=1)
         self.counters = found.tally
         return found.clearance[steps]
 
@@ -64,7 +64,7 @@ class OurPairs(OurSteps):
     def run(self, steps: np.ndarray) -> np.ndarray:
         """All steps."""
         scene = self._scene
-        found = measure(scene.case, scene.motions, scene.pairs)
+        found = measure(scene.case, scene.motions, scene.pairs, jobs=1)
         minima = found.find_minima()
         self.counters = {**found.tally, "pairs": len(minima.clearance)}
         return found.clearance[steps]

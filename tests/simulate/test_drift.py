@@ -9,6 +9,7 @@ from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
 from clearance.jit import kernel
 from clearance.kernels.drift import Chain, drift_of, drift_of_box, drift_of_box_along
+from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import Vec3, rigid
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import chain_arrays, link_poses, positions_by_link
@@ -22,8 +23,8 @@ SHAPE = box((0.3, 0.1, 0.2))
 def drifts(surface, chain, link, poses, swing, direction):
     pose = rigid(poses[link])
     drift = drift_of(surface, surface.roots[0], chain, link, poses, swing, pose)
-    along = drift_of_box_along(surface, 0, Vec3(direction[0], direction[1], direction[2]), drift)
-    return drift_of_box(surface, 0, drift), along
+    along = drift_of_box_along(box_of(surface, 0), Vec3(direction[0], direction[1], direction[2]), drift)
+    return drift_of_box(box_of(surface, 0), drift), along
 
 
 def random_robot(rng, n_joints):
