@@ -12,7 +12,8 @@ from clearance.jit import inlined, kernel
 from clearance.kernels.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve_bezier import hypotenuse, jet
 from clearance.kernels.distance_map import draw, lower_bound_of_map
-from clearance.kernels.hausdorff_exact import (
+from clearance.kernels.hausdorff_exact import consider, search_leaf
+from clearance.kernels.hausdorff_state import (
     ARCS,
     AT_A,
     AT_B,
@@ -24,8 +25,6 @@ from clearance.kernels.hausdorff_exact import (
     PIXELS,
     STATE,
     UPPER,
-    consider,
-    search_leaf,
 )
 from clearance.kernels.hausdorff_trim import trim, trim_nodes
 

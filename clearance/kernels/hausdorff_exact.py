@@ -28,10 +28,21 @@ from clearance.kernels.arc import (
 from clearance.kernels.curve_bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_nearest import nearest, slide_to_foot
+from clearance.kernels.hausdorff_state import (
+    AT_A,
+    AT_B,
+    BISECTORS,
+    CUTS,
+    DISTANCE,
+    ENDS,
+    GIVEN_UP,
+    LOWER,
+    NORMALS,
+    PIECE_A,
+    PIECE_B,
+    UPPER,
+)
 
-LOWER, DISTANCE, PIECE_A, AT_A, PIECE_B, AT_B, UPPER = 0, 1, 2, 3, 4, 5, 6
-ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP, RUNNER_UP = range(7, 17)
-STATE = 17
 STACK = 90
 MANY = 512  # arcs of B from which on a straight part of A is first held against runs of them
 LONGEST_RUN = 2000

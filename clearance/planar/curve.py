@@ -25,6 +25,7 @@ from clearance.kernels.curve_bezier import (
     points_on,
     rough_joints,
 )
+from clearance.kernels.hausdorff_polyline import segment_boxes
 from clearance.planar.entries import (
     BadCurve,
     checked_knots,
@@ -33,17 +34,15 @@ from clearance.planar.entries import (
     checked_weights,
     sweep_of,
 )
-
-SMALLEST, LARGEST = 1e-100, 1e100
-"""Sizes between which no square of a length leaves the range of floats."""
-
-LEAF = 2e-3
-"""How far the biarcs that guide the search on a curve may stray from it, relative to the curve's size:
-measured as the fastest; any value gives the same answer."""
-
-TANGENT = 1e-9
-"""Sine of the angle between two pieces from which on their joint is a corner: knots and control points that
-are meant smooth meet within 1e-12, corners that are meant differ by far more."""
+from clearance.tolerance import (
+    BIARC,
+    CLOSED,
+    CURVE_SIZES,
+    MEETING,
+    PARAMETER,
+    TANGENT,
+    UNIT_ROUNDOFF,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,11 +81,16 @@ class Curve:
         points = checked_points(points, "points", least=2)
         if closed and np.any(points[0] != points[-1]):
             points = np.concatenate([points, points[:1]])
-        n = len(points) - 1
-        control = np.empty((2 * n, 3))
-        control[0::2, :2], control[1::2, :2], control[:, 2] = points[:-1], points[1:], 1.0
-        low = np.arange(n, dtype=float)
-        return _assembled(control, np.arange(n + 1) * 2, np.stack([low, low + 1.0], axis=1))
+        low, high = points.min(axis=0), points.max(axis=0)
+        _check_size(high - low)
+        origin = _origin_of(np.stack([low, high]))
+        step = np.flatnonzero((points[1:] != points[:-1]).any(axis=1))
+        n, own = len(step), points - origin
+        control = np.ones((n, 2, 3))
+        control[:, 0, :2], control[:, 1, :2] = own[step], own[step + 1]
+        pieces = Pieces(control.reshape(-1, 3), 2 * np.arange(n + 1), np.zeros(n, bool))
+        limits = step[:, None] + np.array([0.0, 1.0])
+        return cls(pieces, origin, limits, np.zeros(n, np.int64))
 
     @classmethod
     def bspline(
@@ -134,7 +138,7 @@ class Curve:
         Raises: BadShape, NotFinite, BadCurve (radius not positive, sweep 0 or beyond a full turn).
         """
         center, radius, sweep = sweep_of(center, radius, start, end)
-        n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - 1e-12))
+        n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - PARAMETER))
         half = 0.5 * sweep / n
         angles = start + half * np.arange(2 * n + 1)
         turn = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -210,6 +214,11 @@ class Curve:
         return int(np.diff(self.pieces.first).max()) - 1
 
     @cached_property
+    def is_polyline(self) -> bool:
+        """Whether every piece is a straight segment."""
+        return self.highest_degree == 1 and not bool(self.pieces.rational.any())
+
+    @cached_property
     def rounding(self) -> float:
         """A bound of the rounding error of any point computed on the curve, in its unit.
 
@@ -219,18 +228,23 @@ class Curve:
         passes = (
             4.0 * (3.0 * self.highest_degree + 1.0) * (2.0 if self.pieces.rational.any() else 1.0)
         )
-        return passes * math.sqrt(0.5) * 2.0**-53 * self.reach
+        return passes * math.sqrt(0.5) * UNIT_ROUNDOFF * self.reach
 
     @cached_property
     def leaves(self) -> Leaves:
-        """Biarcs of the curve within LEAF of its size, and their tree; made once, when first needed."""
-        arcs, owner = fit_leaves(self.pieces, LEAF * self.size, 14)
+        """Biarcs of the curve within BIARC of its size, and their tree; made once, when first needed."""
+        arcs, owner = fit_leaves(self.pieces, BIARC * self.size, 14)
         return Leaves(arcs, owner, box_tree(arcs))
+
+    @cached_property
+    def segment_boxes(self) -> np.ndarray:
+        """The tree of boxes over the segments of a polyline; made once, when first needed."""
+        return segment_boxes(self.pieces.control)
 
     @cached_property
     def is_end(self) -> np.ndarray:
         """(n, 2) whether each piece's start and end is an end of a contour or a corner."""
-        return rough_joints(self.pieces, self.contour, TANGENT, 1e-9 * self.size)
+        return rough_joints(self.pieces, self.contour, TANGENT, MEETING * self.size)
 
     @property
     def is_closed(self) -> bool:
@@ -239,7 +253,7 @@ class Curve:
         stops = np.append(starts[1:], self.n_pieces) - 1
         first, last = self.pieces.first[starts], self.pieces.first[stops + 1] - 1
         rows = self.pieces.control[:, :2] / self.pieces.control[:, 2:]
-        return bool(np.all(np.abs(rows[first] - rows[last]) <= 1e-12 * self.size))
+        return bool(np.all(np.abs(rows[first] - rows[last]) <= CLOSED * self.size))
 
     @cached_property
     def length(self) -> float:
@@ -328,19 +342,24 @@ def _origin_of(points: np.ndarray) -> np.ndarray:
     return np.round((0.5 * low + 0.5 * high) / unit) * unit
 
 
+def _check_size(extent: np.ndarray) -> float:
+    """The diagonal of a curve's box (2,), refused where it is 0 or leaves the range of floats."""
+    size = math.hypot(*extent)
+    if size == 0.0:
+        raise BadCurve("a curve of zero length", valid="at least two points that differ")
+    least, most = CURVE_SIZES
+    if not least < size < most:
+        raise BadCurve(f"a curve of size {size:g}", valid=f"a size between {least:g} and {most:g}")
+    return size
+
+
 def _assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> Curve:
     """The curve of Cartesian control points about `base` with weights, `rows` (m, 3); pieces of no extent go."""
     first = np.ascontiguousarray(first, np.int64)
     contour = np.zeros(len(limits), np.int64) if contour is None else np.asarray(contour, np.int64)
     low, high = piece_spans(rows, first)
     extent = (high[:, :2] > low[:, :2]).any(axis=1)
-    size = float(np.hypot(*(high.max(axis=0) - low.min(axis=0))[:2]))
-    if not extent.any():
-        raise BadCurve("a curve of zero length", valid="at least two points that differ")
-    if not SMALLEST < size < LARGEST:
-        raise BadCurve(
-            f"a curve of size {size:g}", valid=f"a size between {SMALLEST:g} and {LARGEST:g}"
-        )
+    size = _check_size((high.max(axis=0) - low.min(axis=0))[:2])
     degree = np.diff(first)
     if not extent.all():
         rows, limits, contour = rows[np.repeat(extent, degree)], limits[extent], contour[extent]
@@ -384,4 +403,4 @@ def _joined(parts: Sequence[Curve], *, together: bool) -> Curve:
 
 
 def _meets(end: np.ndarray, start: np.ndarray, size: float) -> bool:
-    return bool(np.hypot(*(end - start)[:2]) <= 1e-9 * size)
+    return bool(np.hypot(*(end - start)[:2]) <= MEETING * size)
