@@ -56,7 +56,7 @@ def gap_coefficients(p, n, q, m, rational, shift_x, shift_y, gap, out):
             gap[k, 0] = (p[k, 0] + shift_x) - q[k, 0]
             gap[k, 1] = (p[k, 1] + shift_y) - q[k, 1]
         if n == 3:
-            return _cubic_square(gap, out)
+            return cubic_square(gap, out)
         for k in range(n + 1):
             gap[k, 0] *= CHOOSE[n, k]
             gap[k, 1] *= CHOOSE[n, k]
@@ -95,7 +95,7 @@ def _dot(gap, i, j):
 
 
 @inlined
-def _cubic_square(gap, out):
+def cubic_square(gap, out):
     """The seven coefficients for cubics, written out: half the time of the loop."""
     out[0, 0] = _dot(gap, 0, 0)
     out[1, 0] = _dot(gap, 0, 1)

@@ -80,10 +80,27 @@ def component(control, start, n, column, t):
 
 
 @inlined
+def _cubic_jet(control, k, t):
+    """The `Jet` of a polynomial cubic from row `k` on, by de Casteljau: both coordinates side by side."""
+    s = 1.0 - t
+    ax, ay, bx, by = control[k, 0], control[k, 1], control[k + 1, 0], control[k + 1, 1]
+    cx, cy, dx, dy = control[k + 2, 0], control[k + 2, 1], control[k + 3, 0], control[k + 3, 1]
+    turn_x = s * ((cx - bx) - (bx - ax)) + t * ((dx - cx) - (cx - bx))
+    turn_y = s * ((cy - by) - (by - ay)) + t * ((dy - cy) - (cy - by))
+    ax, ay, bx, by = s * ax + t * bx, s * ay + t * by, s * bx + t * cx, s * by + t * cy
+    cx, cy = s * cx + t * dx, s * cy + t * dy
+    ax, ay, bx, by = s * ax + t * bx, s * ay + t * by, s * bx + t * cx, s * by + t * cy
+    x, y = s * ax + t * bx, s * ay + t * by
+    return Jet(x, y, 3.0 * (bx - ax), 3.0 * (by - ay), 6.0 * turn_x, 6.0 * turn_y)
+
+
+@inlined
 def jet(pieces, i, t):
     """The `Jet` of piece `i` at the local parameter `t` in [0, 1]."""
     start = pieces.first[i]
     n = pieces.first[i + 1] - start - 1
+    if n == 3 and not pieces.rational[i]:
+        return _cubic_jet(pieces.control, start, t)
     x, dx, ddx = component(pieces.control, start, n, 0, t)
     y, dy, ddy = component(pieces.control, start, n, 1, t)
     if not pieces.rational[i]:

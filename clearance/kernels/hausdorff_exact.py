@@ -72,7 +72,10 @@ def slide_from(pa, pb, i, t, j, s, shift_x, shift_y):
 
 @kernel
 def common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y):
-    """A root (t, s) of system (12) near the given one, held to [t0, t1] and [0, 1]: Newton's method."""
+    """A root (t, s) of system (12) near the given one, held to [t0, t1] and [0, 1]: Newton's method.
+
+    Where the foot stands at an end of B's piece, s stays and the root is that of (11): the end's normal to A.
+    """
     for _ in range(10):
         a, b = jet(pa, i, t), jet(pb, j, s)
         ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
@@ -80,6 +83,8 @@ def common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y):
         f_t = a.dx * a.dx + a.dy * a.dy + ex * a.ddx + ey * a.ddy
         cross = a.dx * b.dx + a.dy * b.dy
         g_s = ex * b.ddx + ey * b.ddy - b.dx * b.dx - b.dy * b.dy
+        if (s == 0.0 and g <= 0.0) or (s == 1.0 and g >= 0.0):
+            g, cross, g_s = 0.0, 0.0, 1.0
         determinant = f_t * g_s + cross * cross
         if determinant == 0.0:
             break

@@ -81,15 +81,19 @@ class Curve:
         points = checked_points(points, "points", least=2)
         if closed and np.any(points[0] != points[-1]):
             points = np.concatenate([points, points[:1]])
-        low, high = points.min(axis=0), points.max(axis=0)
-        _check_size(high - low)
-        origin = _origin_of(np.stack([low, high]))
-        step = np.flatnonzero((points[1:] != points[:-1]).any(axis=1))
-        n, own = len(step), points - origin
-        control = np.ones((n, 2, 3))
-        control[:, 0, :2], control[:, 1, :2] = own[step], own[step + 1]
+        x, y = points.T
+        box = np.array([[x.min(), y.min()], [x.max(), y.max()]])
+        _check_size(box[1] - box[0])
+        origin = _origin_of(box)
+        step = np.flatnonzero((x[1:] != x[:-1]) | (y[1:] != y[:-1]))
+        n = len(step)
+        control, limits = np.empty((n, 2, 3)), np.empty((n, 2))
+        for end in range(2):
+            control[:, end, 0] = x[step + end] - origin[0]
+            control[:, end, 1] = y[step + end] - origin[1]
+            limits[:, end] = step + end
+        control[:, :, 2] = 1.0
         pieces = Pieces(control.reshape(-1, 3), 2 * np.arange(n + 1), np.zeros(n, bool))
-        limits = step[:, None] + np.array([0.0, 1.0])
         return cls(pieces, origin, limits, np.zeros(n, np.int64))
 
     @classmethod
@@ -211,7 +215,8 @@ class Curve:
 
     @cached_property
     def highest_degree(self) -> int:
-        return int(np.diff(self.pieces.first).max()) - 1
+        first = self.pieces.first
+        return int((first[1:] - first[:-1]).max()) - 1
 
     @cached_property
     def is_polyline(self) -> bool:
