@@ -69,20 +69,16 @@ def rising_slope(points, n, rational, work):
 
 
 @inlined
-def _turn(points, i, j):
-    """The inner product of control point `i` and the step from `j` to the next."""
-    dx, dy = points[j + 1, 0] - points[j, 0], points[j + 1, 1] - points[j, 1]
-    return points[i, 0] * dx + points[i, 1] * dy
-
-
-@inlined
 def _cubic_slope(points):
     """`rising_slope` of a polynomial cubic, written out."""
-    a, f = 3.0 * _turn(points, 0, 0), 3.0 * _turn(points, 3, 2)
-    b = 1.2 * _turn(points, 0, 1) + 1.8 * _turn(points, 1, 0)
-    c = 0.3 * _turn(points, 0, 2) + 1.8 * _turn(points, 1, 1) + 0.9 * _turn(points, 2, 0)
-    d = 0.9 * _turn(points, 1, 2) + 1.8 * _turn(points, 2, 1) + 0.3 * _turn(points, 3, 0)
-    e = 1.8 * _turn(points, 2, 2) + 1.2 * _turn(points, 3, 1)
+    ax, ay, bx, by = points[0, 0], points[0, 1], points[1, 0], points[1, 1]
+    cx, cy, dx, dy = points[2, 0], points[2, 1], points[3, 0], points[3, 1]
+    ux, uy, vx, vy, wx, wy = bx - ax, by - ay, cx - bx, cy - by, dx - cx, dy - cy
+    a, f = 3.0 * (ax * ux + ay * uy), 3.0 * (dx * wx + dy * wy)
+    b = 1.2 * (ax * vx + ay * vy) + 1.8 * (bx * ux + by * uy)
+    c = 0.3 * (ax * wx + ay * wy) + 1.8 * (bx * vx + by * vy) + 0.9 * (cx * ux + cy * uy)
+    d = 0.9 * (bx * wx + by * wy) + 1.8 * (cx * vx + cy * vy) + 0.3 * (dx * ux + dy * uy)
+    e = 1.8 * (cx * wx + cy * wy) + 1.2 * (dx * vx + dy * vy)
     rise = min(min(b - a, c - b), min(d - c, min(e - d, f - e)))
     least = min(min(a, b), min(min(c, d), min(e, f)))
     most = max(max(a, b), max(max(c, d), max(e, f)))

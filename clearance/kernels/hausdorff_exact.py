@@ -15,8 +15,6 @@ from clearance.jit import inlined, kernel
 from clearance.kernels.arc import (
     EPS,
     RADIUS,
-    S0,
-    S1,
     X0,
     X1,
     Y0,
@@ -191,8 +189,8 @@ def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_
     dx, dy = there.x - here.x, there.y - here.y
     length = hypotenuse(dx, dy)
     most = max(off_first, off_last)
-    if length == 0.0 or most > enough:
-        return np.inf if length == 0.0 else most
+    if length == 0.0 or most > enough or abs(first - last) > LONGEST_RUN:
+        return np.inf
     dx, dy = dx / length, dy / length
     low, high = min(first, last), max(first, last)
     for k in range(low, high + 1):
@@ -212,21 +210,6 @@ def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_
         if most > enough:
             break
     return most
-
-
-@inlined
-def _covered_by_run(pa, pb, lb, i, t0, t1, hint, shift_x, shift_y, state, work):
-    """The `_chain_bound` of a straight part of A between the feet of its ends; inf where it proves nothing."""
-    if state[DISTANCE] == 0.0:
-        return np.inf
-    one = consider(pa, pb, lb, i, t0, shift_x, shift_y, hint, state, work)
-    two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
-    if abs(one.leaf - two.leaf) > LONGEST_RUN:
-        return np.inf
-    return _chain_bound(
-        pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
-        state[DISTANCE],
-    )  # fmt: skip
 
 
 @kernel
@@ -257,7 +240,12 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
         state[CUTS] += 1.0
         if straight and many and bound > 1.5 * state[DISTANCE]:
-            run = _covered_by_run(pa, pb, lb, i, t0, t1, foot.leaf, shift_x, shift_y, state, work)
+            one = consider(pa, pb, lb, i, t0, shift_x, shift_y, foot.leaf, state, work)
+            two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
+            run = _chain_bound(
+                pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
+                state[DISTANCE],
+            )  # fmt: skip
             bound = min(bound, max(run, foot.distance))
         if bound > state[DISTANCE] + gap:
             other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
@@ -317,25 +305,3 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         top += 2
         hint = foot.leaf
     return hint
-
-
-@kernel
-def search_leaf(pa, la, pb, lb, leaf, hint, shift_x, shift_y, gap, limit, budget, state, work):
-    """`search` on the interval of one leaf of A."""
-    row = la.arcs[leaf]
-    return search(
-        pa,
-        pb,
-        lb,
-        la.piece[leaf],
-        row[S0],
-        row[S1],
-        hint,
-        shift_x,
-        shift_y,
-        gap,
-        limit,
-        budget,
-        state,
-        work,
-    )

@@ -176,7 +176,7 @@ def kept_arcs(pa, la, lb, shift_x, shift_y, lower_bound, pixel):
 def field(leaves, xs, ys, depth, which):
     """Fills `depth` and `which` (len(ys), len(xs)) with the distance map of a curve over a whole page."""
     stack = np.empty((96, 2))
-    hint = 0
+    hint = leaves.arcs.shape[0] // 2
     for r in range(ys.shape[0]):
         for c in range(xs.shape[0]):
             depth[r, c], hint = nearest_arc(leaves, xs[c], ys[r], hint, -1.0, stack)

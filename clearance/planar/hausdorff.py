@@ -134,7 +134,7 @@ def _solve(a, b, shift, gap, limit):
     if a.is_polyline and b.is_polyline:
         return solve_polylines(a, b, shift, gap, limit, BUDGET)
     return both_directions(
-        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], True, gap, limit,
+        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], gap, limit,
         BUDGET,
     )  # fmt: skip
 
