@@ -53,10 +53,13 @@ def length_of_arcs(arcs):
 
 @inlined
 def _search_kept(
-    pa, la, pb, lb, drawn, step, shift_x, shift_y, gap, limit, budget, kept, state, work
+    pa, la, pb, lb, drawn, sparing, shift_x, shift_y, gap, limit, budget, kept, state, work
 ):
-    """Solves every `step`-th of the arcs kept exactly, and takes it off the list."""
-    seen, hint = 0, -1
+    """Solves the arcs kept exactly and takes them off the list; where `sparing`, only some of many."""
+    n_kept, seen, hint = 0, 0, -1
+    for k in range(la.arcs.shape[0]):
+        n_kept += kept[k]
+    step = 1 + n_kept // SAMPLES if sparing and n_kept > MANY else 1
     for k in range(la.arcs.shape[0]):
         seen += kept[k]
         if not kept[k] or seen % step > 0:
@@ -119,23 +122,20 @@ def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, gap, limit
         drawn = draw(pa, la, lb, shift_x, shift_y, pixel, work[0])
         state[ARCS], state[PIXELS] = n_arcs, drawn.depth.shape[0]
         state[MAP_BOUND] = lower_bound_of_map(drawn, la, lb, pixel)
-        kept, step = np.zeros(n_arcs, np.bool_), 1
+        kept = np.zeros(n_arcs, np.bool_)
         kept[drawn.deepest_leaf] = True
-        for stage in range(
-            3
-        ):  # the deepest arc; what trimming leaves, some first where it is much; the rest
+        # the deepest arc; then what trimming leaves, some of it first where it is much; then the rest
+        for stage in range(3):
             _search_kept(
-                pa, la, pb, lb, drawn, step, shift_x, shift_y, gap, limit, budget, kept, state, work
-            )
+                pa, la, pb, lb, drawn, stage == 1, shift_x, shift_y, gap, limit, budget, kept, state, work
+            )  # fmt: skip
             bound = max(state[LOWER], state[MAP_BOUND])
             if stage == 0:
                 kept[:] = True
                 kept[drawn.deepest_leaf] = False
                 if n_arcs >= MANY:
                     trim_nodes(la, lb, drawn, shift_x, shift_y, bound, kept, work[0])
-            if stage == 0 or step > 1:
-                n_kept = trim(la, lb, drawn, shift_x, shift_y, bound, kept)
-                step = 1 + n_kept // SAMPLES if stage == 0 and n_kept > MANY else 1
+            trim(la, lb, drawn, shift_x, shift_y, bound, kept)
         if state[LOWER] > limit:
             out[1 - turn, LOWER] = state[LOWER]
             break

@@ -285,7 +285,7 @@ def directed_polyline(pc, p_boxes, qc, q_boxes, shift_x, shift_y, gap, limit, bu
     state[PIECE_A], state[ARCS] = -1.0, n
     stack, todo = np.empty((STACK, 6)), np.empty(128, np.int64)
     work = (np.empty(128, np.int64), np.empty(128))
-    hint = 0
+    hint = qc.shape[0] // 4
     for k in range(0, n, max(1, n // SEEDS)):
         x, y = _at(pc, k, 0.5)
         d, hint = nearest_segment(qc, q_boxes, x + shift_x, y + shift_y, hint, work[0], work[1])
