@@ -296,9 +296,15 @@ class Curve:
         return which, np.clip((parameter - low) / (high - low), 0.0, 1.0)
 
     def parameter_of(self, piece: int, local: float) -> float:
-        """The curve's parameter at the local parameter of a piece."""
+        """The curve's parameter at the local parameter of a piece.
+
+        At the end of a contour it is the last float before: the joint itself is the next contour's start.
+        """
         low, high = self.limits[piece]
-        return float(high if local == 1.0 else low + local * (high - low))
+        if local < 1.0:
+            return float(low + local * (high - low))
+        last = piece + 1 == self.n_pieces or self.contour[piece] == self.contour[piece + 1]
+        return float(high if last else np.nextafter(high, low))
 
     def transformed(self, matrix: np.ndarray) -> Curve:
         """The curve under the affine map `matrix` (2, 3) or (3, 3): x -> matrix[:2, :2] x + matrix[:2, 2].
