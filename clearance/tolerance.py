@@ -74,3 +74,7 @@ LAST_BITS = 2.0**-50
 LEAST_GAP = 2.0**-44
 """[-] Relative to the size of two curves: how near the bounds of their least distance come; above the rounding of
 projections, or cells would never end."""
+
+EXCURSION = 1e-5
+"""[-] Relative to the size of two curves: how far a deviation may pass its limit between samples unseen; finer
+than any drawing is made, and coarse enough that a curve that runs at its limit takes 1e5 samples."""
