@@ -300,9 +300,9 @@ class Curve:
 
         At the end of a contour it is the last float before: the joint itself is the next contour's start.
         """
-        low, high = self.limits[piece]
+        low, high = self.limits.item(piece, 0), self.limits.item(piece, 1)
         if local < 1.0:
-            return float(low + local * (high - low))
+            return low + local * (high - low)
         last = piece + 1 == self.n_pieces or self.contour[piece] == self.contour[piece + 1]
         return float(high if last else np.nextafter(high, low))
 

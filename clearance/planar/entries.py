@@ -109,6 +109,8 @@ def checked_transform(matrix: np.ndarray) -> np.ndarray:
 
 def checked_number(value: float, where: str, *, least: float = -math.inf) -> float:
     """`value` as a finite float of at least `least`."""
+    if type(value) is float and least <= value < math.inf:
+        return value
     array = _numbers(value, where, "a number")
     if array.shape != ():
         raise BadShape(f"an array of shape {array.shape}", where=where, valid="one number")
