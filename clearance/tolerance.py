@@ -33,3 +33,48 @@ LARGEST = 1e150
 REACH = 1e6
 """[m] No body of a case may get farther from the origin: nothing that a robot works on does, and a value in the
 wrong unit, or a typing error in an exponent, does at once."""
+
+CURVE_SIZES = 1e-100, 1e100
+"""[-] A curve is larger than the first and smaller than the second: no square of a length leaves floats' range."""
+
+MEETING = 1e-9
+"""[-] Parts of a chain meet where their ends are this near, relative to the curve's size: drawings are written
+with nine digits or more, and a gap that is meant is far larger."""
+
+CLOSED = 1e-12
+"""[-] A contour is closed where its ends are this near, relative to the curve's size: above what rounding does
+to the ends of arcs and splines that are meant to close."""
+
+TANGENT = 1e-9
+"""[-] Sine of the angle between two pieces of a curve from which on their joint is a corner: knots and control
+points that are meant smooth meet within 1e-12, corners that are meant differ by far more."""
+
+NORMAL = 1e-6
+"""[-] Cosine of the angle between a curve and the line of its distance up to which that line is a normal: it
+names the kind of a solution and decides no distance."""
+
+PARAMETER = 1e-12
+"""[-] Local parameters this near to 0 or 1 are the end of a piece, angles this near to a quarter or full turn
+are that turn: what rounding does to them, several times over."""
+
+BIARC = 2e-3
+"""[-] How far the biarcs that guide the search on a curve may stray from it, relative to the curve's size:
+measured as the fastest; any value gives the same answer."""
+
+FINEST_BIARC = 1e-12
+"""[-] No finer biarcs than this, relative to the curve's size, can be proven in floats."""
+
+SHARPER = 2.0**-10
+"""[-] A search of a Hausdorff distance aims this much below the tolerance asked for, so that coincident curves
+come out to rounding."""
+
+LAST_BITS = 2.0**-50
+"""[-] Relative to the size of two curves: the rounding of a few operations beyond those that bounds count."""
+
+LEAST_GAP = 2.0**-44
+"""[-] Relative to the size of two curves: how near the bounds of their least distance come; above the rounding of
+projections, or cells would never end."""
+
+EXCURSION = 1e-5
+"""[-] Relative to the size of two curves: how far a deviation may pass its limit between samples unseen; finer
+than any drawing is made, and coarse enough that a curve that runs at its limit takes 1e5 samples."""

@@ -48,13 +48,10 @@ def component(control, start, n, column, t):
     if n == 1:
         a, b = control[start, column], control[start + 1, column]
         return s * a + t * b, b - a, 0.0
-    if n == 3:
-        a, b = control[start, column], control[start + 1, column]
-        c, d = control[start + 2, column], control[start + 3, column]
-        ab, bc, cd = s * a + t * b, s * b + t * c, s * c + t * d
-        abc, bcd = s * ab + t * bc, s * bc + t * cd
-        second = 6.0 * (s * ((c - b) - (b - a)) + t * ((d - c) - (c - b)))
-        return s * abc + t * bcd, 3.0 * (bcd - abc), second
+    if n == 2:
+        a, b, c = control[start, column], control[start + 1, column], control[start + 2, column]
+        ab, bc = s * a + t * b, s * b + t * c
+        return s * ab + t * bc, 2.0 * (bc - ab), 2.0 * ((c - b) - (b - a))
     value, slope, bend = control[start, column] * s, 0.0, 0.0
     power, choose = 1.0, 1.0
     for i in range(1, n):
@@ -80,15 +77,40 @@ def component(control, start, n, column, t):
 
 
 @inlined
+def _cubic_jet(control, k, t):
+    """The `Jet` of a polynomial cubic from row `k` on, by de Casteljau: both coordinates side by side."""
+    s = 1.0 - t
+    ax, ay, bx, by = control[k, 0], control[k, 1], control[k + 1, 0], control[k + 1, 1]
+    cx, cy, dx, dy = control[k + 2, 0], control[k + 2, 1], control[k + 3, 0], control[k + 3, 1]
+    turn_x = s * ((cx - bx) - (bx - ax)) + t * ((dx - cx) - (cx - bx))
+    turn_y = s * ((cy - by) - (by - ay)) + t * ((dy - cy) - (cy - by))
+    ax, ay, bx, by = s * ax + t * bx, s * ay + t * by, s * bx + t * cx, s * by + t * cy
+    cx, cy = s * cx + t * dx, s * cy + t * dy
+    ax, ay, bx, by = s * ax + t * bx, s * ay + t * by, s * bx + t * cx, s * by + t * cy
+    x, y = s * ax + t * bx, s * ay + t * by
+    return Jet(x, y, 3.0 * (bx - ax), 3.0 * (by - ay), 6.0 * turn_x, 6.0 * turn_y)
+
+
+@inlined
 def jet(pieces, i, t):
     """The `Jet` of piece `i` at the local parameter `t` in [0, 1]."""
     start = pieces.first[i]
     n = pieces.first[i + 1] - start - 1
-    x, dx, ddx = component(pieces.control, start, n, 0, t)
-    y, dy, ddy = component(pieces.control, start, n, 1, t)
+    if n == 3 and not pieces.rational[i]:
+        return _cubic_jet(pieces.control, start, t)
+    x, y, w, dx, dy, dw, ddx, ddy, ddw = 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for column in range(
+        3 if pieces.rational[i] else 2
+    ):  # a loop, or three columns compile three times
+        value, slope, bend = component(pieces.control, start, n, column, t)
+        if column == 0:
+            x, dx, ddx = value, slope, bend
+        elif column == 1:
+            y, dy, ddy = value, slope, bend
+        else:
+            w, dw, ddw = value, slope, bend
     if not pieces.rational[i]:
         return Jet(x, y, dx, dy, ddx, ddy)
-    w, dw, ddw = component(pieces.control, start, n, 2, t)
     x, y = x / w, y / w
     dx, dy = (dx - x * dw) / w, (dy - y * dw) / w
     ddx = (ddx - 2.0 * dx * dw - x * ddw) / w
@@ -185,7 +207,8 @@ def points_on(pieces, which, local, out):
 @kernel
 def control_box(control):
     """The least box (x0, y0, x1, y1) around the Cartesian control points of homogeneous `control`."""
-    box = np.array([np.inf, np.inf, -np.inf, -np.inf])
+    box = np.empty(4)
+    box[:2], box[2:] = np.inf, -np.inf
     for k in range(control.shape[0]):
         x, y = control[k, 0] / control[k, 2], control[k, 1] / control[k, 2]
         box[0], box[1] = min(box[0], x), min(box[1], y)

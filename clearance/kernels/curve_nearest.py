@@ -14,10 +14,14 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.arc import EPS, S0, S1, arc_distance
 from clearance.kernels.arc_fit import BUCKET, box_gap_sq
+from clearance.kernels.curve_bernstein import cubic_square
 from clearance.kernels.curve_bezier import CHOOSE, cut, hypotenuse, jet
 
 ROUNDOFF = 2.0**-53
 DEEPEST = 60
+SETTLED = (
+    1e-9  # a Newton step so short that the next, of the order of its square, would be rounding
+)
 
 
 class Foot(NamedTuple):
@@ -37,6 +41,8 @@ def rising_slope(points, n, rational, work):
     `points` are homogeneous about the query point. For rational pieces the slope is taken times w^3, which
     has the same sign and root. Returns (slope at 0, slope at 1, least slope, greatest slope, least rise).
     """
+    if n == 3 and not rational:
+        return _cubic_slope(points)
     q, d, g = work[0], work[1], work[2]
     for k in range(n + 1):
         for c in range(3):
@@ -63,6 +69,23 @@ def rising_slope(points, n, rational, work):
 
 
 @inlined
+def _cubic_slope(points):
+    """`rising_slope` of a polynomial cubic, written out."""
+    ax, ay, bx, by = points[0, 0], points[0, 1], points[1, 0], points[1, 1]
+    cx, cy, dx, dy = points[2, 0], points[2, 1], points[3, 0], points[3, 1]
+    ux, uy, vx, vy, wx, wy = bx - ax, by - ay, cx - bx, cy - by, dx - cx, dy - cy
+    a, f = 3.0 * (ax * ux + ay * uy), 3.0 * (dx * wx + dy * wy)
+    b = 1.2 * (ax * vx + ay * vy) + 1.8 * (bx * ux + by * uy)
+    c = 0.3 * (ax * wx + ay * wy) + 1.8 * (bx * vx + by * vy) + 0.9 * (cx * ux + cy * uy)
+    d = 0.9 * (bx * wx + by * wy) + 1.8 * (cx * vx + cy * vy) + 0.3 * (dx * ux + dy * uy)
+    e = 1.8 * (cx * wx + cy * wy) + 1.2 * (dx * vx + dy * vy)
+    rise = min(min(b - a, c - b), min(d - c, min(e - d, f - e)))
+    least = min(min(a, b), min(min(c, d), min(e, f)))
+    most = max(max(a, b), max(max(c, d), max(e, f)))
+    return a, f, least, most, 5.0 * rise
+
+
+@inlined
 def _rational_slope(q, d, g, n):
     """Turns <q, q'> in column 0 of `g` into <q, q'> w - <q, q> w', scaled; returns its degree."""
     for k in range(2 * n + 1):
@@ -84,9 +107,16 @@ def _rational_slope(q, d, g, n):
 
 
 @inlined
-def least_square(points, n, rational):
+def least_square(points, n, rational, out):
     """The least Bernstein coefficient of the squared distance from the origin, and the largest |point|^2."""
     least, reach = np.inf, 0.0
+    if n == 3 and not rational:
+        degree = cubic_square(points, out)
+        for k in range(degree + 1):
+            least = min(least, out[k, 0])
+        for k in range(4):
+            reach = max(reach, points[k, 0] ** 2 + points[k, 1] ** 2)
+        return least, reach
     for k in range(2 * n + 1):
         value, weight = 0.0, 0.0
         for i in range(max(0, k - n), min(n, k) + 1):
@@ -114,15 +144,37 @@ def slide_to_foot(pieces, i, x, y, t, low, high):
         slope = ex * here.dx + ey * here.dy
         speed_sq = here.dx * here.dx + here.dy * here.dy
         bend = speed_sq + ex * here.ddx + ey * here.ddy
-        if bend < 0.25 * speed_sq:
+        if bend < 0.02 * speed_sq:
             bend = max(speed_sq, -bend)
         if bend == 0.0:
             break
         moved = min(high, max(low, t - slope / bend))
-        if abs(moved - t) <= 1e-15:
-            t = moved
-            break
+        done = abs(moved - t) <= SETTLED
         t = moved
+        if done:
+            break
+    return t
+
+
+@inlined
+def _foot_between(pieces, i, x, y, t, low, high):
+    """The root of the slope on [low, high], where it rises from negative to positive: Newton in a bracket."""
+    for _ in range(60):
+        here = jet(pieces, i, t)
+        ex, ey = here.x - x, here.y - y
+        slope = ex * here.dx + ey * here.dy
+        bend = here.dx * here.dx + here.dy * here.dy + ex * here.ddx + ey * here.ddy
+        if slope > 0.0:
+            high = t
+        else:
+            low = t
+        moved = t - slope / bend
+        if not (bend > 0.0 and low <= moved <= high):
+            moved = 0.5 * (low + high)
+        done = abs(moved - t) <= SETTLED
+        t = moved
+        if done:
+            break
     return t
 
 
@@ -146,7 +198,7 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
         for k in range(n + 1):
             points[k, 0] -= x * points[k, 2]
             points[k, 1] -= y * points[k, 2]
-        least, reach = least_square(points, n, rational)
+        least, reach = least_square(points, n, rational, work[2])
         slack = (n + 8.0) * ROUNDOFF * reach  # of 2 n + 1 sums of products, each term below `reach`
         if least - slack > found * found:
             continue
@@ -162,7 +214,7 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
         if rise > 0.0:
             t = a if at_a >= 0.0 else b
             if at_a < 0.0 < at_b:
-                t = slide_to_foot(pieces, i, x, y, a + (b - a) * at_a / (at_a - at_b), a, b)
+                t = _foot_between(pieces, i, x, y, a + (b - a) * at_a / (at_a - at_b), a, b)
             here = jet(pieces, i, t)
             distance = hypotenuse(here.x - x, here.y - y)
             defect = _newton_defect_sq(here, x, y, t, a, b, rise, points, n)

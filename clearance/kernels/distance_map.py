@@ -79,7 +79,7 @@ def draw(pieces, leaves, other, shift_x, shift_y, pixel, stack):
         most += _samples(arcs[k], pixel)
     depth, arc = np.empty(most), np.empty(most, np.int64)
     first = np.empty(n_arcs + 1, np.int64)
-    used, hint, column, line = 0, 0, -(2**62), -(2**62)
+    used, hint, column, line = 0, other.arcs.shape[0] // 2, -(2**62), -(2**62)
     deepest, deepest_leaf, deepest_at = 0, 0, 0.0
     for k in range(n_arcs):
         row = arcs[k]

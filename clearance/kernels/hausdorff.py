@@ -12,7 +12,8 @@ from clearance.jit import inlined, kernel
 from clearance.kernels.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve_bezier import hypotenuse, jet
 from clearance.kernels.distance_map import draw, lower_bound_of_map
-from clearance.kernels.hausdorff_exact import (
+from clearance.kernels.hausdorff_exact import search
+from clearance.kernels.hausdorff_state import (
     ARCS,
     AT_A,
     AT_B,
@@ -24,8 +25,6 @@ from clearance.kernels.hausdorff_exact import (
     PIXELS,
     STATE,
     UPPER,
-    consider,
-    search_leaf,
 )
 from clearance.kernels.hausdorff_trim import trim, trim_nodes
 
@@ -53,70 +52,28 @@ def length_of_arcs(arcs):
 
 
 @inlined
-def _sample_kept(pa, la, pb, lb, kept, drawn, shift_x, shift_y, state, work):
-    """Raises the lower bound by the true distances at the middles of some arcs that trimming left."""
-    step = max(1, int(state[KEPT]) // SAMPLES)
-    seen, hint = 0, 0
+def _search_kept(
+    pa, la, pb, lb, drawn, sparing, shift_x, shift_y, gap, limit, budget, kept, state, work
+):
+    """Solves the arcs kept exactly and takes them off the list; where `sparing`, only some of many."""
+    n_kept, seen, hint = 0, 0, -1
     for k in range(la.arcs.shape[0]):
-        if not kept[k]:
-            continue
-        seen += 1
-        if seen % step == 0:
-            middle = 0.5 * (la.arcs[k, S0] + la.arcs[k, S1])
-            hint = drawn.arc[drawn.first[k]]
-            consider(pa, pb, lb, la.piece[k], middle, shift_x, shift_y, hint, state, work)
-
-
-@kernel
-def directed(pa, la, pb, lb, shift_x, shift_y, trimming, gap, limit, budget, state, work):
-    """Fills `state` with the directed distance from A to B; stops once it passes `limit`."""
-    n_arcs = la.arcs.shape[0]
-    state[:] = 0.0
-    state[PIECE_A] = -1.0
-    state[ARCS] = n_arcs
-    n_pixels = min(PIXELS_AT_MOST, max(PIXELS_AT_LEAST, 2.0 * n_arcs))
-    pixel = length_of_arcs(la.arcs) / n_pixels
-    drawn = draw(pa, la, lb, shift_x, shift_y, pixel, work[0])
-    state[PIXELS] = drawn.depth.shape[0]
-    state[MAP_BOUND] = lower_bound_of_map(drawn, la, lb, pixel)
-    best = drawn.deepest_leaf
-    search_leaf(
-        pa,
-        la,
-        pb,
-        lb,
-        best,
-        drawn.arc[drawn.deepest],
-        shift_x,
-        shift_y,
-        gap,
-        limit,
-        budget,
-        state,
-        work,
-    )
-    kept = np.ones(n_arcs, np.bool_)
-    state[KEPT] = n_arcs
-    if trimming:
-        bound = max(state[LOWER], state[MAP_BOUND])
-        if n_arcs >= MANY:
-            trim_nodes(la, lb, drawn, shift_x, shift_y, bound, kept, work[0])
-        state[KEPT] = trim(la, lb, drawn, shift_x, shift_y, bound, kept)
-        if (
-            state[KEPT] > MANY
-        ):  # the map was too coarse for these curves: a better bound, and once more
-            _sample_kept(pa, la, pb, lb, kept, drawn, shift_x, shift_y, state, work)
-            state[KEPT] = trim(la, lb, drawn, shift_x, shift_y, state[LOWER], kept)
-    hint = -1
-    for k in range(n_arcs):
-        if kept[k] and k != best and state[LOWER] <= limit:
-            hint = drawn.arc[drawn.first[k]] if hint < 0 else hint
-            hint = search_leaf(
-                pa, la, pb, lb, k, hint, shift_x, shift_y, gap, limit, budget, state, work
-            )
-        else:
+        n_kept += kept[k]
+    step = 1 + n_kept // SAMPLES if sparing and n_kept > MANY else 1
+    for k in range(la.arcs.shape[0]):
+        seen += kept[k]
+        if not kept[k] or seen % step > 0:
             hint = -1
-    state[UPPER] = max(state[UPPER], state[LOWER])
+            continue
+        if state[LOWER] > limit:
+            break
+        kept[k] = False
+        state[KEPT] += 1.0
+        hint = drawn.arc[drawn.first[k]] if hint < 0 else hint
+        hint = search(
+            pa, pb, lb, la.piece[k], la.arcs[k, S0], la.arcs[k, S1], hint, shift_x, shift_y, gap, limit,
+            budget, state, work,
+        )  # fmt: skip
 
 
 @inlined
@@ -148,21 +105,42 @@ def witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, out):
 
 
 @kernel
-def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, trimming, gap, limit, budget):
+def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, gap, limit, budget):
     """The directed distances from A to B and from B to A: (2, STATE) numbers, and witnesses (2, 5).
 
     A witness is the point of the curve searched, the point of the other, each in its own frame, and the kind:
-    0 end, 1 common normal, 2 self-bisector. `ends_*` (n, 2) flag the pieces' ends that are not smooth.
+    0 end, 1 common normal, 2 self-bisector. `ends_*` (n, 2) flag the pieces' ends that are not smooth. Stops
+    once a lower bound passes `limit`. One function, not two: a second level would be compiled all over again.
     """
-    out = np.empty((2, STATE))
-    points = np.empty((2, 5))
-    rows = max(96, 4 * max(widest(pa), widest(pb)) + 4)
-    work = np.empty((11, rows, 4))
-    directed(pa, la, pb, lb, shift_x, shift_y, trimming, gap, limit, budget, out[0], work)
-    if out[0, LOWER] > limit:
-        out[1, :] = math.nan
-        return out, points
-    directed(pb, lb, pa, la, -shift_x, -shift_y, trimming, gap, limit, budget, out[1], work)
-    witness(pa, ends_a, pb, ends_b, shift_x, shift_y, out[0], points[0])
-    witness(pb, ends_b, pa, ends_a, -shift_x, -shift_y, out[1], points[1])
+    out, points = np.zeros((2, STATE)), np.empty((2, 5))
+    out[:, PIECE_A] = -1.0
+    points[:] = math.nan
+    work = np.empty((11, max(96, 4 * max(widest(pa), widest(pb)) + 4), 4))
+    for turn in range(2):
+        state, n_arcs = out[turn], la.arcs.shape[0]
+        pixel = length_of_arcs(la.arcs) / min(PIXELS_AT_MOST, max(PIXELS_AT_LEAST, 2.0 * n_arcs))
+        drawn = draw(pa, la, lb, shift_x, shift_y, pixel, work[0])
+        state[ARCS], state[PIXELS] = n_arcs, drawn.depth.shape[0]
+        state[MAP_BOUND] = lower_bound_of_map(drawn, la, lb, pixel)
+        kept = np.zeros(n_arcs, np.bool_)
+        kept[drawn.deepest_leaf] = True
+        # the deepest arc; then what trimming leaves, some of it first where it is much; then the rest
+        for stage in range(3):
+            _search_kept(
+                pa, la, pb, lb, drawn, stage == 1, shift_x, shift_y, gap, limit, budget, kept, state, work
+            )  # fmt: skip
+            bound = max(state[LOWER], state[MAP_BOUND])
+            if stage == 0:
+                kept[:] = True
+                kept[drawn.deepest_leaf] = False
+                if n_arcs >= MANY:
+                    trim_nodes(la, lb, drawn, shift_x, shift_y, bound, kept, work[0])
+            trim(la, lb, drawn, shift_x, shift_y, bound, kept)
+        if state[LOWER] > limit:
+            out[1 - turn, LOWER] = state[LOWER]
+            break
+        state[UPPER] = max(state[UPPER], state[LOWER])
+        witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, points[turn])
+        pa, la, ends_a, pb, lb, ends_b = pb, lb, ends_b, pa, la, ends_a
+        shift_x, shift_y = -shift_x, -shift_y
     return out, points

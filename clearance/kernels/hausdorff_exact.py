@@ -15,8 +15,6 @@ from clearance.jit import inlined, kernel
 from clearance.kernels.arc import (
     EPS,
     RADIUS,
-    S0,
-    S1,
     X0,
     X1,
     Y0,
@@ -28,10 +26,21 @@ from clearance.kernels.arc import (
 from clearance.kernels.curve_bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_nearest import nearest, slide_to_foot
+from clearance.kernels.hausdorff_state import (
+    AT_A,
+    AT_B,
+    BISECTORS,
+    CUTS,
+    DISTANCE,
+    ENDS,
+    GIVEN_UP,
+    LOWER,
+    NORMALS,
+    PIECE_A,
+    PIECE_B,
+    UPPER,
+)
 
-LOWER, DISTANCE, PIECE_A, AT_A, PIECE_B, AT_B, UPPER = 0, 1, 2, 3, 4, 5, 6
-ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP, RUNNER_UP = range(7, 17)
-STATE = 17
 STACK = 90
 MANY = 512  # arcs of B from which on a straight part of A is first held against runs of them
 LONGEST_RUN = 2000
@@ -61,7 +70,10 @@ def slide_from(pa, pb, i, t, j, s, shift_x, shift_y):
 
 @kernel
 def common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y):
-    """A root (t, s) of system (12) near the given one, held to [t0, t1] and [0, 1]: Newton's method."""
+    """A root (t, s) of system (12) near the given one, held to [t0, t1] and [0, 1]: Newton's method.
+
+    Where the foot stands at an end of B's piece, s stays and the root is that of (11): the end's normal to A.
+    """
     for _ in range(10):
         a, b = jet(pa, i, t), jet(pb, j, s)
         ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
@@ -69,6 +81,8 @@ def common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y):
         f_t = a.dx * a.dx + a.dy * a.dy + ex * a.ddx + ey * a.ddy
         cross = a.dx * b.dx + a.dy * b.dy
         g_s = ex * b.ddx + ey * b.ddy - b.dx * b.dx - b.dy * b.dy
+        if (s == 0.0 and g <= 0.0) or (s == 1.0 and g >= 0.0):
+            g, cross, g_s = 0.0, 0.0, 1.0
         determinant = f_t * g_s + cross * cross
         if determinant == 0.0:
             break
@@ -175,8 +189,8 @@ def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_
     dx, dy = there.x - here.x, there.y - here.y
     length = hypotenuse(dx, dy)
     most = max(off_first, off_last)
-    if length == 0.0 or most > enough:
-        return np.inf if length == 0.0 else most
+    if length == 0.0 or most > enough or abs(first - last) > LONGEST_RUN:
+        return np.inf
     dx, dy = dx / length, dy / length
     low, high = min(first, last), max(first, last)
     for k in range(low, high + 1):
@@ -196,21 +210,6 @@ def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_
         if most > enough:
             break
     return most
-
-
-@inlined
-def _covered_by_run(pa, pb, lb, i, t0, t1, hint, shift_x, shift_y, state, work):
-    """The `_chain_bound` of a straight part of A between the feet of its ends; inf where it proves nothing."""
-    if state[DISTANCE] == 0.0:
-        return np.inf
-    one = consider(pa, pb, lb, i, t0, shift_x, shift_y, hint, state, work)
-    two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
-    if abs(one.leaf - two.leaf) > LONGEST_RUN:
-        return np.inf
-    return _chain_bound(
-        pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
-        state[DISTANCE],
-    )  # fmt: skip
 
 
 @kernel
@@ -241,7 +240,12 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
         state[CUTS] += 1.0
         if straight and many and bound > 1.5 * state[DISTANCE]:
-            run = _covered_by_run(pa, pb, lb, i, t0, t1, foot.leaf, shift_x, shift_y, state, work)
+            one = consider(pa, pb, lb, i, t0, shift_x, shift_y, foot.leaf, state, work)
+            two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
+            run = _chain_bound(
+                pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
+                state[DISTANCE],
+            )  # fmt: skip
             bound = min(bound, max(run, foot.distance))
         if bound > state[DISTANCE] + gap:
             other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
@@ -301,25 +305,3 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
         top += 2
         hint = foot.leaf
     return hint
-
-
-@kernel
-def search_leaf(pa, la, pb, lb, leaf, hint, shift_x, shift_y, gap, limit, budget, state, work):
-    """`search` on the interval of one leaf of A."""
-    row = la.arcs[leaf]
-    return search(
-        pa,
-        pb,
-        lb,
-        la.piece[leaf],
-        row[S0],
-        row[S1],
-        hint,
-        shift_x,
-        shift_y,
-        gap,
-        limit,
-        budget,
-        state,
-        work,
-    )

@@ -17,7 +17,8 @@ from clearance.kernels.curve_bezier import jet
 from clearance.kernels.curve_interval import derived, dot, enclose, times
 from clearance.kernels.curve_nearest import closest_on
 from clearance.kernels.hausdorff import widest, witness
-from clearance.kernels.hausdorff_exact import (
+from clearance.kernels.hausdorff_exact import common_normal, consider
+from clearance.kernels.hausdorff_state import (
     BISECTORS,
     CUTS,
     ENDS,
@@ -25,8 +26,6 @@ from clearance.kernels.hausdorff_exact import (
     NORMALS,
     PIECE_A,
     UPPER,
-    common_normal,
-    consider,
 )
 
 DEEPEST = 34

@@ -20,6 +20,7 @@ from clearance.kernels.arc import (
     X1,
     Y0,
     Y1,
+    arc_distance,
     arc_middle,
     segment_distance,
 )
@@ -176,8 +177,14 @@ def kept_arcs(pa, la, lb, shift_x, shift_y, lower_bound, pixel):
 def field(leaves, xs, ys, depth, which):
     """Fills `depth` and `which` (len(ys), len(xs)) with the distance map of a curve over a whole page."""
     stack = np.empty((96, 2))
-    hint = 0
+    hint = leaves.arcs.shape[0] // 2
     for r in range(ys.shape[0]):
         for c in range(xs.shape[0]):
             depth[r, c], hint = nearest_arc(leaves, xs[c], ys[r], hint, -1.0, stack)
+            # where the common end of two arcs is nearest both are; the earlier one, or rounding would decide
+            enough = depth[r, c] * (1.0 + 1e-12)
+            while hint > 0 and arc_distance(leaves.arcs[hint - 1], xs[c], ys[r]) <= enough:
+                hint -= 1
+            if arc_distance(leaves.arcs[0], xs[c], ys[r]) <= enough:
+                hint = 0
             which[r, c] = hint

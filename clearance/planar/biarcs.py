@@ -13,6 +13,7 @@ from clearance.kernels.arc import CX, EPS, RADIUS, S0, SENSE, X0, X1, distances_
 from clearance.kernels.arc_fit import fit_leaves
 from clearance.planar.curve import Curve
 from clearance.planar.entries import BadCurve, checked_number
+from clearance.tolerance import FINEST_BIARC
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ def biarcs(curve: Curve, tolerance: float) -> Biarcs:
     Source: Šír, Feichtinger, Jüttler (2006), section 3.
     """
     tolerance = checked_number(tolerance, "tolerance")
-    least = 1e-12 * curve.size
+    least = FINEST_BIARC * curve.size
     if not tolerance >= least:
         raise BadCurve(
             f"a tolerance of {tolerance:g}", where="tolerance", valid=f"at least {least:.1g}"

@@ -25,6 +25,7 @@ from clearance.kernels.curve_bezier import (
     points_on,
     rough_joints,
 )
+from clearance.kernels.hausdorff_polyline import segment_boxes
 from clearance.planar.entries import (
     BadCurve,
     checked_knots,
@@ -33,17 +34,15 @@ from clearance.planar.entries import (
     checked_weights,
     sweep_of,
 )
-
-SMALLEST, LARGEST = 1e-100, 1e100
-"""Sizes between which no square of a length leaves the range of floats."""
-
-LEAF = 2e-3
-"""How far the biarcs that guide the search on a curve may stray from it, relative to the curve's size:
-measured as the fastest; any value gives the same answer."""
-
-TANGENT = 1e-9
-"""Sine of the angle between two pieces from which on their joint is a corner: knots and control points that
-are meant smooth meet within 1e-12, corners that are meant differ by far more."""
+from clearance.tolerance import (
+    BIARC,
+    CLOSED,
+    CURVE_SIZES,
+    MEETING,
+    PARAMETER,
+    TANGENT,
+    UNIT_ROUNDOFF,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,11 +81,20 @@ class Curve:
         points = checked_points(points, "points", least=2)
         if closed and np.any(points[0] != points[-1]):
             points = np.concatenate([points, points[:1]])
-        n = len(points) - 1
-        control = np.empty((2 * n, 3))
-        control[0::2, :2], control[1::2, :2], control[:, 2] = points[:-1], points[1:], 1.0
-        low = np.arange(n, dtype=float)
-        return _assembled(control, np.arange(n + 1) * 2, np.stack([low, low + 1.0], axis=1))
+        x, y = points.T
+        box = np.array([[x.min(), y.min()], [x.max(), y.max()]])
+        _check_size(box[1] - box[0])
+        origin = _origin_of(box)
+        step = np.flatnonzero((x[1:] != x[:-1]) | (y[1:] != y[:-1]))
+        n = len(step)
+        control, limits = np.empty((n, 2, 3)), np.empty((n, 2))
+        for end in range(2):
+            control[:, end, 0] = x[step + end] - origin[0]
+            control[:, end, 1] = y[step + end] - origin[1]
+            limits[:, end] = step + end
+        control[:, :, 2] = 1.0
+        pieces = Pieces(control.reshape(-1, 3), 2 * np.arange(n + 1), np.zeros(n, bool))
+        return cls(pieces, origin, limits, np.zeros(n, np.int64))
 
     @classmethod
     def bspline(
@@ -134,7 +142,7 @@ class Curve:
         Raises: BadShape, NotFinite, BadCurve (radius not positive, sweep 0 or beyond a full turn).
         """
         center, radius, sweep = sweep_of(center, radius, start, end)
-        n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - 1e-12))
+        n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - PARAMETER))
         half = 0.5 * sweep / n
         angles = start + half * np.arange(2 * n + 1)
         turn = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -207,7 +215,13 @@ class Curve:
 
     @cached_property
     def highest_degree(self) -> int:
-        return int(np.diff(self.pieces.first).max()) - 1
+        first = self.pieces.first
+        return int((first[1:] - first[:-1]).max()) - 1
+
+    @cached_property
+    def is_polyline(self) -> bool:
+        """Whether every piece is a straight segment."""
+        return self.highest_degree == 1 and not bool(self.pieces.rational.any())
 
     @cached_property
     def rounding(self) -> float:
@@ -219,18 +233,23 @@ class Curve:
         passes = (
             4.0 * (3.0 * self.highest_degree + 1.0) * (2.0 if self.pieces.rational.any() else 1.0)
         )
-        return passes * math.sqrt(0.5) * 2.0**-53 * self.reach
+        return passes * math.sqrt(0.5) * UNIT_ROUNDOFF * self.reach
 
     @cached_property
     def leaves(self) -> Leaves:
-        """Biarcs of the curve within LEAF of its size, and their tree; made once, when first needed."""
-        arcs, owner = fit_leaves(self.pieces, LEAF * self.size, 14)
+        """Biarcs of the curve within BIARC of its size, and their tree; made once, when first needed."""
+        arcs, owner = fit_leaves(self.pieces, BIARC * self.size, 14)
         return Leaves(arcs, owner, box_tree(arcs))
+
+    @cached_property
+    def segment_boxes(self) -> np.ndarray:
+        """The tree of boxes over the segments of a polyline; made once, when first needed."""
+        return segment_boxes(self.pieces.control)
 
     @cached_property
     def is_end(self) -> np.ndarray:
         """(n, 2) whether each piece's start and end is an end of a contour or a corner."""
-        return rough_joints(self.pieces, self.contour, TANGENT, 1e-9 * self.size)
+        return rough_joints(self.pieces, self.contour, TANGENT, MEETING * self.size)
 
     @property
     def is_closed(self) -> bool:
@@ -239,7 +258,7 @@ class Curve:
         stops = np.append(starts[1:], self.n_pieces) - 1
         first, last = self.pieces.first[starts], self.pieces.first[stops + 1] - 1
         rows = self.pieces.control[:, :2] / self.pieces.control[:, 2:]
-        return bool(np.all(np.abs(rows[first] - rows[last]) <= 1e-12 * self.size))
+        return bool(np.all(np.abs(rows[first] - rows[last]) <= CLOSED * self.size))
 
     @cached_property
     def length(self) -> float:
@@ -277,9 +296,15 @@ class Curve:
         return which, np.clip((parameter - low) / (high - low), 0.0, 1.0)
 
     def parameter_of(self, piece: int, local: float) -> float:
-        """The curve's parameter at the local parameter of a piece."""
-        low, high = self.limits[piece]
-        return float(high if local == 1.0 else low + local * (high - low))
+        """The curve's parameter at the local parameter of a piece.
+
+        At the end of a contour it is the last float before: the joint itself is the next contour's start.
+        """
+        low, high = self.limits.item(piece, 0), self.limits.item(piece, 1)
+        if local < 1.0:
+            return low + local * (high - low)
+        last = piece + 1 == self.n_pieces or self.contour[piece] == self.contour[piece + 1]
+        return float(high if last else np.nextafter(high, low))
 
     def transformed(self, matrix: np.ndarray) -> Curve:
         """The curve under the affine map `matrix` (2, 3) or (3, 3): x -> matrix[:2, :2] x + matrix[:2, 2].
@@ -328,19 +353,24 @@ def _origin_of(points: np.ndarray) -> np.ndarray:
     return np.round((0.5 * low + 0.5 * high) / unit) * unit
 
 
+def _check_size(extent: np.ndarray) -> float:
+    """The diagonal of a curve's box (2,), refused where it is 0 or leaves the range of floats."""
+    size = math.hypot(*extent)
+    if size == 0.0:
+        raise BadCurve("a curve of zero length", valid="at least two points that differ")
+    least, most = CURVE_SIZES
+    if not least < size < most:
+        raise BadCurve(f"a curve of size {size:g}", valid=f"a size between {least:g} and {most:g}")
+    return size
+
+
 def _assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> Curve:
     """The curve of Cartesian control points about `base` with weights, `rows` (m, 3); pieces of no extent go."""
     first = np.ascontiguousarray(first, np.int64)
     contour = np.zeros(len(limits), np.int64) if contour is None else np.asarray(contour, np.int64)
     low, high = piece_spans(rows, first)
     extent = (high[:, :2] > low[:, :2]).any(axis=1)
-    size = float(np.hypot(*(high.max(axis=0) - low.min(axis=0))[:2]))
-    if not extent.any():
-        raise BadCurve("a curve of zero length", valid="at least two points that differ")
-    if not SMALLEST < size < LARGEST:
-        raise BadCurve(
-            f"a curve of size {size:g}", valid=f"a size between {SMALLEST:g} and {LARGEST:g}"
-        )
+    size = _check_size((high.max(axis=0) - low.min(axis=0))[:2])
     degree = np.diff(first)
     if not extent.all():
         rows, limits, contour = rows[np.repeat(extent, degree)], limits[extent], contour[extent]
@@ -384,4 +414,4 @@ def _joined(parts: Sequence[Curve], *, together: bool) -> Curve:
 
 
 def _meets(end: np.ndarray, start: np.ndarray, size: float) -> bool:
-    return bool(np.hypot(*(end - start)[:2]) <= 1e-9 * size)
+    return bool(np.hypot(*(end - start)[:2]) <= MEETING * size)

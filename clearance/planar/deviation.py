@@ -14,7 +14,8 @@ import numpy as np
 from clearance.kernels.curve_gap import feet
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
-from clearance.planar.entries import checked_number
+from clearance.planar.entries import BadCurve, checked_number
+from clearance.tolerance import EXCURSION, LAST_BITS
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,9 @@ class Deviation:
         point, foot: (n, 2) the points and their nearest points on b.
         contour: (n,) contour of a that each point lies on.
         beyond: (k, 2) parameter intervals of a, one contour each, where the distance exceeds `limit`; their
-            ends are refined to 1e-12 of the parameter.
+            ends are bisected to the last bit. Neither an excursion nor a dip that passes
+            the limit by more than `tolerance.EXCURSION` of both curves' size is missed, however few the samples;
+            what is above by rounding alone does not count.
         limit: the limit, or None.
     """
 
@@ -57,7 +60,13 @@ class Deviation:
         return float((self._share @ self.distance) / self._share.sum())
 
     def percentile(self, share: float) -> float:
-        """The distance that `share` percent of a's length stays within, 0 to 100."""
+        """The distance that `share` percent of a's length stays within.
+
+        Raises: BadCurve, NotFinite (a share that is not from 0 to 100).
+        """
+        share = checked_number(share, "share", least=0.0)
+        if share > 100.0:
+            raise BadCurve(f"{share:g}", where="share", valid="0 to 100 percent")
         order = np.argsort(self.distance, kind="stable")
         reached = np.cumsum(self._share[order])
         k = np.searchsorted(reached, 0.01 * share * reached[-1])
@@ -80,7 +89,8 @@ def deviation(a: Curve, b: Curve, *, limit: float | None = None, samples: int = 
     step[np.diff(contour) != 0] = 0.0
     beyond = np.empty((0, 2))
     if limit is not None:
-        beyond = _beyond(a, b, which, local, distance, limit)
+        passed = limit + a.rounding + b.rounding + LAST_BITS * placed(a, b)[1]
+        beyond = _beyond(a, b, *_refined(a, b, which, local, distance, passed), passed)
     length = np.concatenate([[0.0], np.cumsum(step)])
     return Deviation(parameter, length, distance, point, foot, contour, beyond, limit)
 
@@ -107,6 +117,38 @@ def _measured(a: Curve, b: Curve, which: np.ndarray, local: np.ndarray):
         b._jets(found[:, 2].astype(np.int64), np.ascontiguousarray(found[:, 3]))[:, :2] + b.origin
     )
     return own + a.origin, found[:, 0], foot
+
+
+def _refined(a: Curve, b: Curve, which, local, distance, limit: float):
+    """The samples, with more of them wherever an excursion beyond `limit`, or back, could hide between two.
+
+    The distance changes by no more than the length run through, at most `_fastest` times the parameter.
+    """
+    enough = EXCURSION * placed(a, b)[1]
+    fastest, halve = _fastest(a), np.ones(len(which) - 1, bool)
+    while halve.any():
+        width = np.where(np.diff(which) == 0, np.diff(local), 1.0 - local[:-1])
+        middle = 0.5 * (distance[:-1] + distance[1:]) - limit
+        same = (distance[:-1] > limit) == (distance[1:] > limit)
+        halve = same & (0.5 * fastest[which[:-1]] * width - np.abs(middle) > enough)
+        k = np.flatnonzero(halve)
+        middle = local[k] + 0.5 * width[k]
+        _, between, _ = _measured(a, b, which[k], middle)
+        which = np.insert(which, k + 1, which[k])
+        local, distance = np.insert(local, k + 1, middle), np.insert(distance, k + 1, between)
+    return which, local, distance
+
+
+def _fastest(curve: Curve) -> np.ndarray:
+    """(n,) a bound of each piece's speed by its local parameter (Floater 1992: the weights' ratio squared)."""
+    control, first = curve.pieces.control, curve.pieces.first
+    step = np.hypot(*np.diff(control[:, :2] / control[:, 2:], axis=0).T)
+    inside = np.ones(len(step), bool)
+    inside[first[1:-1] - 1] = False
+    longest = np.maximum.reduceat(np.where(inside, step, 0.0), first[:-1])
+    weight = control[:, 2]
+    ratio = np.maximum.reduceat(weight, first[:-1]) / np.minimum.reduceat(weight, first[:-1])
+    return np.diff(first - np.arange(len(first))) * longest * ratio**2
 
 
 def _beyond(a, b, which, local, distance, limit) -> np.ndarray:

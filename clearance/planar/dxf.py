@@ -14,6 +14,7 @@ import numpy as np
 from clearance.errors import BadInput, BadSyntax, MissingFile, at
 from clearance.planar.curve import Curve
 from clearance.planar.entries import BadCurve
+from clearance.tolerance import MEETING, PARAMETER
 
 KINDS = "LINE, ARC, CIRCLE, LWPOLYLINE, POLYLINE, SPLINE"
 
@@ -55,7 +56,7 @@ def _curve_of(entity) -> Curve:
     if kind not in readers:
         raise BadCurve(f"an entity {kind} (handle {entity.dxf.handle})", valid=f"only {KINDS}")
     normal = entity.dxf.get("extrusion", (0.0, 0.0, 1.0))
-    if not np.allclose(tuple(normal), (0.0, 0.0, 1.0), atol=1e-12):
+    if not np.allclose(tuple(normal), (0.0, 0.0, 1.0), atol=PARAMETER):
         problem = f"entity {kind} (handle {entity.dxf.handle}) with extrusion {tuple(normal)}"
         raise BadCurve(problem, valid="entities in the plane, extrusion (0, 0, 1)")
     with at(f"{kind} (handle {entity.dxf.handle})"):
@@ -113,7 +114,7 @@ def _bulged(rows: list[tuple[float, float, float]], closed: bool) -> Curve:
 def _bulge_arc(x0: float, y0: float, x1: float, y1: float, bulge: float) -> Curve:
     """The arc as rational quadratics whose ends are the vertices to the last bit."""
     sweep = 4.0 * math.atan(bulge)
-    n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - 1e-12))
+    n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - PARAMETER))
     start, end = np.array([x0, y0]), np.array([x1, y1])
     left = np.array([y0 - y1, x1 - x0])
     center = 0.5 * (start + end) + left * (1.0 - bulge * bulge) / (4.0 * bulge)
@@ -169,4 +170,4 @@ def _end(curve: Curve) -> np.ndarray:
 
 
 def _same(one: np.ndarray, two: np.ndarray, size: float) -> bool:
-    return bool(np.hypot(*(one - two)) <= 1e-9 * size)
+    return bool(np.hypot(*(one - two)) <= MEETING * size)

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, NotFinite
+from clearance.tolerance import PARAMETER
 
 
 class BadCurve(BadInput):
@@ -87,7 +88,7 @@ def sweep_of(center: Sequence[float], radius: float, start: float, end: float):
     sweep = float(numbers[2] - numbers[1])
     if not numbers[0] > 0.0:
         raise BadCurve(f"radius {numbers[0]:g}", where="radius", valid="a positive number")
-    if not 0.0 < abs(sweep) <= 2.0 * math.pi * (1.0 + 1e-12):
+    if not 0.0 < abs(sweep) <= 2.0 * math.pi * (1.0 + PARAMETER):
         valid = "more than 0 and at most a full turn, 2 pi"
         raise BadCurve(f"a sweep of {sweep:g} rad", where="start, end", valid=valid)
     return center, float(numbers[0]), math.copysign(min(abs(sweep), 2.0 * math.pi), sweep)
@@ -108,6 +109,8 @@ def checked_transform(matrix: np.ndarray) -> np.ndarray:
 
 def checked_number(value: float, where: str, *, least: float = -math.inf) -> float:
     """`value` as a finite float of at least `least`."""
+    if type(value) is float and least <= value < math.inf:
+        return value
     array = _numbers(value, where, "a number")
     if array.shape != ():
         raise BadShape(f"an array of shape {array.shape}", where=where, valid="one number")

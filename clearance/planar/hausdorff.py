@@ -13,13 +13,12 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.kernels.hausdorff import both_directions
-from clearance.kernels.hausdorff_exact import LOWER
+from clearance.kernels.hausdorff_state import LOWER
 from clearance.planar.curve import Curve
 from clearance.planar.directed import Directed, Tally, directed_of, placed
 from clearance.planar.entries import checked_number
-
-SHARPER = 2.0**-10
-"""The search aims this much below the tolerance asked for, so that coincident curves come out to rounding."""
+from clearance.planar.polylines import solve_polylines
+from clearance.tolerance import LAST_BITS, SHARPER
 
 BUDGET = 200_000.0
 """Intervals after which a search gives the rest up with their bounds; only the error bound suffers."""
@@ -93,8 +92,8 @@ def within(a: Curve, b: Curve, distance: float) -> bool:
     """
     distance = checked_number(distance, "distance", least=0.0)
     shift, size = placed(a, b)
-    slack = a.rounding + b.rounding + 2.0**-50 * size
-    gap = max(2.0**-50 * size, 0.0)
+    slack = a.rounding + b.rounding + LAST_BITS * size
+    gap = LAST_BITS * size
     found, _ = _solve(a, b, shift, gap, distance + slack)
     return not bool(found[0, LOWER] > distance + slack or found[1, LOWER] > distance + slack)
 
@@ -132,16 +131,18 @@ def _sum_of(one: Tally, two: Tally) -> Tally:
 
 
 def _solve(a, b, shift, gap, limit):
+    if a.is_polyline and b.is_polyline:
+        return solve_polylines(a, b, shift, gap, limit, BUDGET)
     return both_directions(
-        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], True, gap, limit,
+        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], gap, limit,
         BUDGET,
     )  # fmt: skip
 
 
 def _trimmed(a: Curve, b: Curve, tolerance: float, limit: float) -> tuple[Directed, Directed]:
     shift, size = placed(a, b)
-    gap = max(tolerance * SHARPER, 2.0**-50) * size
+    gap = max(tolerance * SHARPER, LAST_BITS) * size
     found, points = _solve(a, b, shift, gap, limit)
-    margin = a.rounding + b.rounding + 2.0**-50 * size
+    margin = a.rounding + b.rounding + LAST_BITS * size
     forth = directed_of(a, b, found[0].tolist(), points[0], margin, True)
     return forth, directed_of(b, a, found[1].tolist(), points[1], margin, False)

@@ -9,6 +9,7 @@ import numpy as np
 from clearance.kernels.curve_gap import least_distance
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
+from clearance.tolerance import LEAST_GAP
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ def minimum_distance(a: Curve, b: Curve) -> Minimum:
     Ties: the first found.
     """
     shift, size = placed(a, b)
-    gap = 2.0**-44 * size  # above the rounding of the projections, or cells would never end
+    gap = LEAST_GAP * size
     best = least_distance(a.pieces, a.leaves, b.pieces, b.leaves, shift[0], shift[1], gap).tolist()
     margin = a.rounding + b.rounding + gap
     at_a = a.parameter_of(int(best[2]), best[3])

@@ -13,7 +13,7 @@ import numpy as np
 from clearance.errors import BadInput, Unavailable, Unwritable
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import Hausdorff
-from clearance.planar.trimming import distance_field, kept_intervals
+from clearance.planar.trimming import distance_field, kept_parts
 
 COLOR_A, COLOR_B, COLOR_LINE = "#c99700", "#1f5fbf", "#d62728"
 
@@ -99,16 +99,11 @@ def _draw_field(axes, b: Curve, low: np.ndarray, high: np.ndarray) -> None:
 def _draw_curve(axes, one: Curve, two: Curve, bound: float, color: str, name: str) -> None:
     """The whole curve thin, and bold what trimming left at the proven lower bound."""
     label = f"{name}, trimmed away"
-    for line in _lines(one):
-        axes.plot(*line.T, color=color, linewidth=1.1, label=label, zorder=3)
-        label = None
+    axes.plot(*_line(one).T, color=color, linewidth=1.1, label=label, zorder=3)
+    kept = _points(one, *kept_parts(one, two, max(0.0, bound)))
+    width = 5.0 if name == "a" else 3.0  # where both are bold, one shows beside the other
     label = f"{name}, left to solve"
-    for start, end in kept_intervals(one, two, max(0.0, bound)):
-        part = one.point(np.linspace(start, end, 24))
-        axes.plot(
-            *part.T, color=color, linewidth=4.0, solid_capstyle="round", label=label, zorder=4
-        )
-        label = None
+    axes.plot(*kept.T, color=color, linewidth=width, solid_capstyle="round", label=label, zorder=4)
 
 
 def _draw_distance(axes, found: Hausdorff) -> None:
@@ -117,11 +112,19 @@ def _draw_distance(axes, found: Hausdorff) -> None:
     axes.plot(*ends.T, "o-", color=COLOR_LINE, label="distance", zorder=5, **style)
 
 
-def _lines(curve: Curve) -> list[np.ndarray]:
-    """Each contour as points dense enough for a picture."""
+def _line(curve: Curve) -> np.ndarray:
+    """The whole curve as points dense enough for a picture, broken (nan) between contours."""
     rows, owner = curve.leaves.arcs, curve.leaves.piece
-    count = 2 if curve.highest_degree == 1 else 12
-    local = rows[:, :1] + (rows[:, 1:2] - rows[:, :1]) * np.linspace(0.0, 1.0, count)
-    points = curve._jets(np.repeat(owner, count), local.ravel())[:, :2] + curve.origin
-    cuts = np.flatnonzero(np.diff(np.repeat(curve.contour[owner], count))) + 1
-    return np.split(points, cuts)
+    points = _points(curve, owner, rows[:, :2])
+    breaks = np.isnan(points[:, 0])
+    breaks[breaks] = np.diff(curve.contour[owner], append=-1) == 0
+    return points[~breaks]
+
+
+def _points(curve: Curve, piece: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """Points along parts of pieces, given by local parameters (n, 2), with a nan after each part."""
+    count = 2 if curve.highest_degree == 1 else 24
+    inner = local[:, :1] + (local[:, 1:] - local[:, :1]) * np.linspace(0.0, 1.0, count)
+    points = curve._jets(np.repeat(piece, count), inner.ravel())[:, :2] + curve.origin
+    points = points.reshape(len(piece), count, 2)
+    return np.pad(points, ((0, 0), (0, 1), (0, 0)), constant_values=np.nan).reshape(-1, 2)

@@ -9,10 +9,11 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.kernels.hausdorff_exact import STATE
+from clearance.kernels.hausdorff_state import STATE
 from clearance.kernels.hausdorff_systems import solve_directed
 from clearance.planar.curve import Curve
 from clearance.planar.directed import Directed, directed_of, placed
+from clearance.tolerance import LAST_BITS
 
 BUDGET = 150_000.0
 """Intervals of one direction after which the systems count as having no end of solutions."""
@@ -28,7 +29,7 @@ def untrimmed(a: Curve, b: Curve) -> tuple[Directed, Directed]:
     Raises: Unresolved where a root could not be isolated, e.g. on overlapping curves.
     """
     shift, size = placed(a, b)
-    margin = a.rounding + b.rounding + 2.0**-50 * size
+    margin = a.rounding + b.rounding + LAST_BITS * size
     forth = _one_way(a, b, shift, margin, True)
     return forth, _one_way(b, a, -shift, margin, False)
 

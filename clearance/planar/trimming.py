@@ -14,12 +14,18 @@ def kept_intervals(a: Curve, b: Curve, lower_bound: float) -> np.ndarray:
 
     Every point of a outside them is proven to be nearer. Equations (3) to (10) of Kim, Oh, Kim (2010).
     """
+    piece, local = kept_parts(a, b, lower_bound)
+    low, high = a.limits[piece].T[:, :, None]
+    return low + local * (high - low)
+
+
+def kept_parts(a: Curve, b: Curve, lower_bound: float) -> tuple[np.ndarray, np.ndarray]:
+    """As `kept_intervals`, by piece (n,) and local parameters (n, 2): clear also where a contour ends."""
     shift, _ = placed(a, b)
     rows, owner = a.leaves.arcs, a.leaves.piece
     pixel = a.length / max(64, 2 * len(rows))
     kept = kept_arcs(a.pieces, a.leaves, b.leaves, shift[0], shift[1], lower_bound, pixel)
-    low, high = a.limits[owner[kept]].T[:, :, None]
-    return low + rows[kept, :2] * (high - low)
+    return owner[kept], rows[kept, :2]
 
 
 def distance_field(curve: Curve, xs: np.ndarray, ys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -53,7 +53,8 @@ def _inserted(points, knots, degree, u):
             out.append(points[i - 1])
         else:
             share = (u - knots[i]) / (knots[i + degree] - knots[i])
-            out.append((1 - share) * points[i - 1] + share * points[i])
+            # at the right end of an unclamped domain the share is 0 and there is no next point
+            out.append((1 - share) * points[i - 1] + share * points[min(i, len(points) - 1)])
     return out, knots[: k + 1] + [u] + knots[k + 1 :]
 
 

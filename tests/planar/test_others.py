@@ -76,6 +76,18 @@ def test_deviation_profile():
     assert np.allclose(profile_of.distance, np.abs(profile_of.point[:, 1]), atol=1e-14)
     assert len(profile_of.beyond) == 2
     assert np.allclose(np.abs(WAVE.point(profile_of.beyond.ravel())[:, 1]), 0.5, atol=1e-12)
+    for samples in (2, 3, 50):  # no excursion hides between samples, however few
+        few = deviation(WAVE, base, limit=0.5, samples=samples)
+        assert np.allclose(few.beyond, profile_of.beyond, atol=1e-12)
+    weights = np.array([1, 5, 0.2, 1.0])
+    bent = Curve.contours([Curve.bezier([[0, 0], [1, 9], [2, -9], [3, 0]], weights), WAVE])
+    assert np.allclose(
+        deviation(bent, base, limit=1.0, samples=2).beyond,
+        deviation(bent, base, limit=1.0, samples=3000).beyond,
+        atol=1e-12,
+    )
+    with pytest.raises(ClearanceError, match="share: 101; 0 to 100"):
+        profile_of.percentile(101)
     tent = deviation(Curve.line([0, 0], [1, 1]), Curve.line([0, 0], [1, 0]), samples=1000)
     assert tent.mean == pytest.approx(0.5, abs=1e-9)
     assert tent.percentile(90) == pytest.approx(0.9, abs=2e-3)

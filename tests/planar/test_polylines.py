@@ -1,0 +1,129 @@
+"""Polylines: against the oracle, against the general way, and on outlines of a hundred thousand vertices."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance.errors import ClearanceError
+from clearance.planar.curve import Curve
+from clearance.planar.hausdorff import hausdorff, within
+from tests.oracle import planar_hausdorff as oracle
+
+precise = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
+
+
+def walk(n, seed):
+    return np.cumsum(np.random.default_rng(seed).normal(size=(n, 2)), axis=0)
+
+
+def curved(points):
+    """The same polyline with every segment raised to degree 2, which takes the general way."""
+    points = np.asarray(points, float)
+    parts = [
+        Curve.bezier([p, 0.5 * (p + q), q])
+        for p, q in zip(points[:-1], points[1:], strict=True)
+        if np.any(p != q)
+    ]
+    return Curve.chain(parts)
+
+
+@precise
+@pytest.mark.parametrize("n", [*range(2, 21), 25, 31, 37, 43])
+def test_vertex_count_sweep_against_the_oracle(n):
+    """Every count of vertices, those that are 1 mod 6 among them, whichever side they are on."""
+    many, few = walk(n, n), walk(5, 1000 + n)
+    low, high = oracle.hausdorff(oracle.line_parts(many), oracle.line_parts(few))
+    for p, q in ((many, few), (few, many)):
+        found = hausdorff(Curve.polyline(p), Curve.polyline(q))
+        assert low - found.error_bound <= found.distance <= high + found.error_bound
+    raised = hausdorff(curved(many), Curve.polyline(few))
+    assert low - raised.error_bound <= raised.distance <= high + raised.error_bound
+
+
+@pytest.mark.parametrize("n", [*range(2, 75), 97, 103, 721, 727, 4099])
+def test_vertex_count_sweep_by_hand(n):
+    """A zigzag over its base line, and a spike in the last segment that no count may lose."""
+    x = np.arange(n, dtype=float)
+    base = Curve.line([0, 0], [n - 1.0, 0])
+    zigzag = Curve.polyline(np.stack([x, (x % 2) * 0.75 + 0.25], axis=1))
+    found = hausdorff(zigzag, base)
+    assert found.directed["a_to_b"].distance == 1.0 and found.distance == 1.0
+    spike = Curve.polyline(np.stack([x, 5.0 * (x == n - 1)], axis=1))
+    assert hausdorff(spike, base).directed["a_to_b"].distance == 5.0
+    assert hausdorff(base, spike).directed["b_to_a"].distance == 5.0
+
+
+vertices = st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=2, max_size=12)
+
+
+@settings(max_examples=150, deadline=None)
+@given(vertices, vertices, st.booleans())
+def test_the_quick_way_agrees_with_the_general_one(one, two, near):
+    if near:  # the same vertices almost: bisectors, overlap and ties
+        two = [(x + 1e-7 * y, y) for x, y in one[::-1]]
+    try:
+        a, b, c = Curve.polyline(one), Curve.polyline(two), curved(one)
+    except ClearanceError:
+        return
+    quick, general = hausdorff(a, b), hausdorff(c, b)
+    for direction in ("a_to_b", "b_to_a"):
+        p, q = quick.directed[direction], general.directed[direction]
+        assert abs(p.distance - q.distance) <= p.error_bound + q.error_bound
+        apart = math.dist(p.point_a, p.point_b)
+        assert apart == pytest.approx(p.distance, abs=1e-14 * a.size)
+    assert quick.error_bound <= 1e-14 * max(a.size, b.size) and quick.tally.given_up == 0
+
+
+def test_kinds_of_polylines():
+    roof = Curve.polyline([[0, 0], [1, 1], [2, 0]])
+    ends = hausdorff(roof, Curve.line([0, 0], [2, 0]))
+    assert ends.kind == "end" and ends.distance == 1.0
+    chord = hausdorff(Curve.line([0, 0], [2, 0]), roof).directed["a_to_b"]
+    assert chord.kind == "self_bisector" and chord.distance == pytest.approx(math.sqrt(0.5))
+    assert chord.parameter_a == pytest.approx(0.5)
+    split = Curve.polyline([[0, 0], [1, 0], [2, 0]])  # its middle vertex is no corner
+    assert hausdorff(split, roof).directed["a_to_b"].kind == "self_bisector"
+    tee = Curve.contours([Curve.line([-3, 0], [3, 0]), Curve.line([0, 0], [0, 2])])
+    assert hausdorff(tee, Curve.line([-3, 0], [3, 0])).point_a == pytest.approx([0, 2])
+
+
+def outline(n, noise):
+    random = np.random.default_rng(2)
+    angle = np.linspace(0.0, 2.0 * math.pi, n + 1)[:-1]
+    radius = 1.0 + 0.05 * sum(math.exp(-0.4 * k) * np.sin(k * angle + k * k) for k in range(2, 40))
+    radius += noise * random.normal(size=n)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-6, 2e-3])
+def test_outlines_of_108_594_vertices(noise):
+    many = outline(108_594, noise)
+    few = many[np.linspace(0, len(many) - 1, 720).astype(int)]
+    a, b = Curve.polyline(many), Curve.polyline(few)
+    found = hausdorff(a, b)
+    assert found.tally.given_up == 0 and found.error_bound <= 1e-14 * a.size
+    # the distance at each vertex, by brute force over the 61 segments about its place
+    index = np.linspace(0, len(many) - 1, 720).astype(int)
+    own = np.searchsorted(index, np.arange(len(many)), side="right") - 1
+    best = np.full(len(many), np.inf)
+    for step in range(-30, 31):
+        k = np.clip(own + step, 0, 718)
+        start, along = few[k], few[k + 1] - few[k]
+        t = np.clip(((many - start) * along).sum(1) / (along**2).sum(1), 0, 1)[:, None]
+        best = np.minimum(best, np.hypot(*(many - start - t * along).T))
+    assert found.directed["a_to_b"].kind == "end"
+    assert found.directed["a_to_b"].distance == pytest.approx(best.max(), abs=1e-15)
+    assert within(a, b, found.distance) and not within(a, b, 0.999 * found.distance)
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_long_polylines_that_coincide(turn):
+    many = outline(20_011, 2e-3)
+    a, b = Curve.polyline(many), Curve.polyline(many[::turn])
+    found = hausdorff(a, b)
+    assert found.distance <= 1e-15 * a.size and found.tally.intervals < 100
+    moved = hausdorff(a, Curve.polyline(many[::turn] + [1e-9, 0.0]))
+    assert 0.0 < moved.distance <= 1e-9 + moved.error_bound and moved.tally.given_up == 0
