@@ -37,6 +37,20 @@ def columns(s, vertices, body_of, first):
 
 
 @inlined
+def freedoms(s, vertices, body_of):
+    """How many unknowns a cluster has; a body's members are listed together."""
+    count, last = 0, -1
+    for v in vertices:
+        b = body_of[v]
+        if b < 0:
+            count += 2 if s.kind[v] == POINT else 1
+        elif b != last:
+            count += 3
+        last = b
+    return count
+
+
+@inlined
 def total_of(s, rows, x, gradient):
     """The sum of squared residuals."""
     total = 0.0

@@ -1,9 +1,8 @@
-"""The construction plan: which vertices are placed from which equations, in which order, and its
-execution.
+"""The construction plan: which vertices are placed from which equations, in which order.
 
 Peeled vertices come last; before them the core: rigid bodies in their own frame, then the clusters
-in the order of placing. A step is closed (one vertex, a line or a circle) or numeric (a block). A
-step whose equations already hold is left alone, which makes a second solve after one change cheap.
+in the order of placing. A step is closed (one vertex, a line or a circle) or numeric (a block).
+Not for: running it (`sketch_execute`).
 """
 
 from typing import NamedTuple
@@ -12,12 +11,9 @@ import numpy as np
 
 from clearance.jit import inlined, kernel
 from clearance.kernels.sketch_blocks import bodies, match, ordered_parts
-from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN, lists
-from clearance.kernels.sketch_newton import newton
 from clearance.kernels.sketch_pebble import play
 from clearance.kernels.sketch_peel import peel
-from clearance.kernels.sketch_place import place
 from clearance.kernels.topology import find_root
 
 
@@ -317,80 +313,3 @@ def _rows_by_part(owner, between, node_part, n_clusters):
             out[fill[c]] = row
             fill[c] += 1
     return start, out
-
-
-@inlined
-def _holds(s, edges, x, gradient, tolerance):
-    """Whether every edge (-1 pads) already holds."""
-    for row in edges:
-        if row >= 0:
-            f = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
-            if not abs(f) <= tolerance:
-                return False
-    return True
-
-
-@inlined
-def _pivots(s, body_of, n_bodies, x):
-    """The mean of every body's points (n_bodies, 2)."""
-    out = np.zeros((n_bodies, 2))
-    count = np.zeros(n_bodies)
-    for v in range(body_of.shape[0]):
-        b = body_of[v]
-        if b >= 0 and s.kind[v] == POINT:
-            out[b, 0] += x[s.root[v]]
-            out[b, 1] += x[s.root[v] + 1]
-            count[b] += 1.0
-    for b in range(n_bodies):
-        out[b] /= max(count[b], 1.0)
-    return out
-
-
-@kernel
-def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block, attempts):
-    """Runs the steps in place on x; `failed` (s,) is 0 done, 1 no such place, 2 block too large, 3
-    left alone.
-
-    `active` (v,) leaves out the vertices of parts that need no work. A step is left alone when its
-    equations hold to `settled`; a numeric one aims at `floor` and counts as done at `tolerance`
-    [m].
-    """
-    n_steps = plan.vertex.shape[0]
-    failed = np.zeros(n_steps, np.int64)
-    gradient = np.empty(8)
-    first = np.full(s.kind.shape[0], -1, np.int64)
-    pivot = np.zeros((plan.held.shape[0], 2))
-    alone = np.full(s.kind.shape[0], -1, np.int64)
-    pair = np.empty(2, np.int64)
-    fresh = True
-    for k in range(n_steps):
-        b = plan.block[k]
-        v = plan.vertex[k] if b < 0 else plan.block_vertex[plan.block_vertex_start[b]]
-        if not active[v]:
-            failed[k] = 3
-            continue
-        if b < 0:
-            if _holds(s, plan.edges[k], x, gradient, settled):
-                failed[k] = 3
-            elif s.kind[v] == POINT and plan.partner[k] >= 0:  # a circle from three conditions
-                pair[0], pair[1] = v, plan.partner[k]
-                three = plan.edges[k][plan.edges[k] >= 0]
-                if not newton(s, pair, three, x, alone, pivot, first, floor, tolerance, attempts):
-                    failed[k] = 1
-            elif not place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient):
-                failed[k] = 1
-            continue
-        if fresh:
-            pivot = _pivots(s, plan.body_of, plan.held.shape[0], x)
-            fresh = False
-        vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
-        rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
-        if _holds(s, rows, x, gradient, settled):
-            failed[k] = 3
-        elif rows.shape[0] > largest_block:
-            failed[k] = 2
-        elif not newton(
-            s, vertices, rows, x, plan.body_of, pivot, first, floor, tolerance, attempts
-        ):
-            failed[k] = 1
-    return failed

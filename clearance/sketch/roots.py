@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
-from clearance.kernels.sketch_newton import solve_block
 from clearance.kernels.sketch_place import System
+from clearance.kernels.sketch_search import solve_block
 from clearance.sketch.problem import RESIDUAL, Problem
 
 SMALL = 10

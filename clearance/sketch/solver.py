@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.kernels.sketch_equations import worst
+from clearance.kernels.sketch_execute import execute
 from clearance.kernels.sketch_fit import set_down
 from clearance.kernels.sketch_graph import POINT
-from clearance.kernels.sketch_newton import RESTARTS, solve_block
-from clearance.kernels.sketch_plan import execute
+from clearance.kernels.sketch_search import RESTARTS, solve_block
 from clearance.kernels.sketch_start import agree, unsettled
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem, problem_of, tables_of
