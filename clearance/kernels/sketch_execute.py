@@ -6,6 +6,7 @@ descent gets past a wrong fold.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,22 @@ from clearance.kernels.sketch_motion import freedoms, move
 from clearance.kernels.sketch_newton import newton
 from clearance.kernels.sketch_place import assign, place
 from clearance.kernels.sketch_search import BANDED, find
+
+DONE, FAILED, TOO_LARGE, KEPT = 0, 1, 2, 3
+"""Fates of a step: placed; no such place found; a cluster left untried; its equations held already."""
+
+
+class Limits(NamedTuple):
+    """A step is left alone when its equations hold to `settled`; a numeric one aims at `floor` and
+    counts as done at `tolerance` (all [m]), tries `attempts` times, and not with more equations than
+    `largest_block`."""
+
+    settled: float
+    floor: float
+    tolerance: float
+    largest_block: int
+    attempts: int
+
 
 FREED = 4
 """How many times more unknowns a cluster may have with its bodies' points free than with bodies."""
@@ -170,16 +187,16 @@ def _find_freed(
 
 
 @kernel
-def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block, attempts):
-    """Runs the steps in place on x; `failed` (s,) is 0 done, 1 no such place, 2 block too large, 3
-    left alone.
+def execute(s, plan, x, sketch, turned, active, limits):
+    """Runs the steps in place on x; the fate (s,) of each.
 
-    `active` (v,) leaves out the vertices of parts that need no work. A step is left alone when its
-    equations hold to `settled`; a numeric one aims at `floor` and counts as done at `tolerance`
-    [m].
+    `turned` (s,) is 1 where a closed step takes the sketch's branch, -1 the other; `active` (v,) leaves
+    out the vertices of parts that need no work.
     """
     n_steps = plan.vertex.shape[0]
-    failed = np.zeros(n_steps, np.int64)
+    settled, floor, tolerance = limits.settled, limits.floor, limits.tolerance
+    attempts = limits.attempts
+    fate = np.full(n_steps, DONE, np.int64)
     gradient = np.empty(8)
     first = np.full(s.kind.shape[0], -1, np.int64)
     pivot = np.zeros((plan.held.shape[0], 2))
@@ -190,18 +207,18 @@ def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block
         b = plan.block[k]
         v = plan.vertex[k] if b < 0 else plan.block_vertex[plan.block_vertex_start[b]]
         if not active[v]:
-            failed[k] = 3
+            fate[k] = KEPT
             continue
         if b < 0:
-            if _holds(s, plan.edges[k], x, gradient, settled):
-                failed[k] = 3
+            if turned[k] > 0.0 and _holds(s, plan.edges[k], x, gradient, settled):
+                fate[k] = KEPT
             elif s.kind[v] == POINT and plan.partner[k] >= 0:  # a circle from three conditions
                 pair[0], pair[1] = v, plan.partner[k]
                 three = plan.edges[k][plan.edges[k] >= 0]
                 if not newton(s, pair, three, x, alone, pivot, first, floor, tolerance, attempts):
-                    failed[k] = 1
-            elif not place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient):
-                failed[k] = 1
+                    fate[k] = FAILED
+            elif not place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient, turned[k]):
+                fate[k] = FAILED
             continue
         if fresh:
             pivot = _pivots(s, plan.body_of, plan.held.shape[0], x)
@@ -209,9 +226,9 @@ def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block
         vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
         rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
         if _holds(s, rows, x, gradient, settled):
-            failed[k] = 3
-        elif rows.shape[0] > largest_block:
-            failed[k] = 2
+            fate[k] = KEPT
+        elif rows.shape[0] > limits.largest_block:
+            fate[k] = TOO_LARGE
         else:
             unknowns, done = freedoms(s, vertices, plan.body_of), False
             if BANDED <= unknowns and freedoms(s, vertices, alone) <= FREED * unknowns:
@@ -221,5 +238,5 @@ def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block
             if not done and not find(
                 s, vertices, rows, x, plan.body_of, pivot, first, floor, tolerance, attempts
             ):
-                failed[k] = 1
-    return failed
+                fate[k] = FAILED
+    return fate

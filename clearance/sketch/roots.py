@@ -12,7 +12,9 @@ import numpy as np
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch_place import System
 from clearance.kernels.sketch_search import solve_block
+from clearance.sketch.execution import residual_of, run_after
 from clearance.sketch.problem import RESIDUAL, Problem
+from clearance.sketch.start import sides_hold
 
 SMALL = 10
 """Entities up to which a cluster's other roots are searched."""
@@ -136,21 +138,28 @@ def _set(s: System, v: int, number: float, x: np.ndarray) -> None:
     x[mine] = s.scale[mine] * number + s.shift[mine]
 
 
-def alternatives_of(sketch, problem: Problem, x: np.ndarray) -> list[dict[str, np.ndarray]]:
-    """The other solutions, one small cluster changed at a time, as numbers of every entity by
-    name."""
-    from clearance.sketch.solver import residual_of, run_after
-
+def other_solutions(problem: Problem, x: np.ndarray) -> list[tuple[np.ndarray, float]]:
+    """The other solutions (n,), one small cluster changed at a time, and their residuals; nearest first."""
     found = []
     for b in range(problem.plan.block_row_start.size - 1):
         if not is_small(problem, b):
             continue
         for root in roots_of(problem, b, x)[1:]:
-            complete = run_after(problem, b, root)
-            if residual_of(problem, complete)[0] <= RESIDUAL * problem.size:
-                found.append(complete)
-    found.sort(key=lambda y: float(np.linalg.norm(y - x)))
-    return [_by_name(sketch, problem, y) for y in found]
+            complete = run_after(problem, b, root)[problem.alias]
+            residual, _ = residual_of(problem, complete)
+            if residual <= RESIDUAL * problem.size:
+                found.append((complete, residual))
+    return sorted(found, key=lambda pair: float(np.linalg.norm(pair[0] - x)))
+
+
+def alternatives_of(sketch, problem: Problem, x: np.ndarray) -> list[dict[str, np.ndarray]]:
+    """The other solutions as numbers of every entity by name, those whose `same_side` holds."""
+    sides = sketch.sides()
+    return [
+        _by_name(sketch, problem, y)
+        for y, _ in other_solutions(problem, x)
+        if sides_hold(y, sides, problem.size)
+    ]
 
 
 def _by_name(sketch, problem: Problem, x: np.ndarray) -> dict[str, np.ndarray]:

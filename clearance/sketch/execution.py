@@ -1,0 +1,191 @@
+"""Runs a problem's plan and sets the result down with least movement; falls back on numbers.
+
+Order: numbers that are merged agree; parts that already hold are left bit for bit; the plan places
+the rest; what it could not place is tried numerically; rigid parts are set down where the sketch has
+them; parts with freedom move least as a whole.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.kernels.sketch_equations import worst
+from clearance.kernels.sketch_execute import FAILED, KEPT, Limits, execute
+from clearance.kernels.sketch_fit import set_down
+from clearance.kernels.sketch_graph import CONTRADICTED, IN_GRAPH, POINT
+from clearance.kernels.sketch_search import RESTARTS, solve_block
+from clearance.kernels.sketch_start import unsettled
+from clearance.sketch.movement import least_movement
+from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
+from clearance.sketch.start import Sides, sides_hold, started
+
+LARGEST_BLOCK = 6000
+"""Equations of a numeric cluster up to which it is tried; large ones are solved on a band."""
+
+FLOOR = 2e-16
+"""[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
+
+NEARLY = 1e-5
+"""[-] Error of an implied equation, relative to the size, up to which all equations are solved
+together once more: where the rest is singular (two loci that touch) a rounding of 1e-16 shows as its
+root, 1e-8."""
+
+WRONG_SIDE = -2
+"""In place of the broken equation's row: all equations hold, a `same_side` does not."""
+
+
+class Outcome:
+    """What a run gave: numbers, the steps' fates, the worst row that does not hold (-1: all do)."""
+
+    def __init__(self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float) -> None:
+        self.x = x
+        self.fates = fates
+        self.broken = broken
+        self.residual = residual
+
+
+def limits_of(problem: Problem, attempts: int = RESTARTS) -> Limits:
+    """The limits of a run at the problem's size."""
+    size = problem.size
+    return Limits(SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK, attempts)
+
+
+def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
+    """The largest residual [m] of all equations, and its row."""
+    s = problem.system
+    return worst(s.code, s.var, s.coef, s.value, x, problem.length_scale)
+
+
+def run(
+    problem: Problem,
+    before: np.ndarray,
+    sides: Sides = (),
+    effort: int = 2,
+    turned: np.ndarray | None = None,
+) -> Outcome:
+    """Solves a problem from the numbers `before` (n,).
+
+    Args:
+        effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
+        turned: (steps,) -1 where a closed step takes the branch opposite to the sketch.
+    """
+    size, dependent = problem.size, problem.plan.dependent
+    x, sketch = started(problem, before, sides)
+    loose = _loosened(problem, dependent)
+    active = unsettled(
+        problem.system, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
+    )
+    if turned is not None:
+        active[problem.part[problem.plan.vertex[turned < 0.0]]] = 1
+    fates = np.full(problem.plan.vertex.shape[0], KEPT)
+    if active.any():
+        fates, x = _solve_parts(problem, x, sketch, active, effort, turned)
+    if problem.tables.together:
+        x = x[problem.alias]
+    residual, broken = _verdict(problem, x)
+    if dependent.size and RESIDUAL * size < residual <= NEARLY * size:
+        for p in np.unique(problem.row_part[dependent]):
+            _numeric_part(problem, p, x, x.copy(), effort)
+        x = x[problem.alias]
+        residual, broken = _verdict(problem, x)
+    outcome = Outcome(x, fates, broken, residual)
+    if broken == -1 and sides and not sides_hold(x, sides, size):
+        outcome.broken = WRONG_SIDE
+    return outcome
+
+
+def run_after(problem: Problem, block: int, x: np.ndarray) -> np.ndarray:
+    """The numbers after the steps that follow a numeric cluster are run again from x."""
+    p = problem.plan
+    later = int(np.flatnonzero(p.block == block)[0]) + 1
+    plan = p._replace(
+        vertex=p.vertex[later:], partner=p.partner[later:], edges=p.edges[later:],
+        block=p.block[later:], origin=p.origin[later:],
+    )  # fmt: skip
+    out = x.copy()
+    every = np.ones(problem.system.kind.size, np.uint8)
+    turned = np.ones(plan.vertex.size)
+    execute(problem.system, plan, out, x.copy(), turned, every, limits_of(problem))
+    return out
+
+
+def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
+    """The part of every row, without the rows that others imply."""
+    if not dependent.size:
+        return problem.row_part
+    out = problem.row_part.copy()
+    out[dependent] = -1
+    return out
+
+
+def _solve_parts(
+    problem: Problem,
+    x: np.ndarray,
+    sketch: np.ndarray,
+    active_part: np.ndarray,
+    effort: int,
+    turned: np.ndarray | None,
+):
+    size, s = problem.size, problem.system
+    start = x.copy()
+    active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
+    limits = limits_of(problem, RESTARTS if effort else 4)
+    turned = np.ones(problem.plan.vertex.size) if turned is None else turned
+    fates = execute(s, problem.plan, x, start, turned, active, limits)
+    if effort == 0 and (fates == FAILED).any():
+        return fates, x
+    loose = _loosened(problem, problem.plan.dependent)
+    broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
+    for p in np.flatnonzero(broken & active_part):
+        _numeric_part(problem, p, x, start, effort)
+    if effort < 2:
+        return fates, x
+    return fates, _nearest(problem, x, sketch, start, active_part)
+
+
+def _nearest(
+    problem: Problem, x: np.ndarray, sketch: np.ndarray, start: np.ndarray, active: np.ndarray
+) -> np.ndarray:
+    """Sets rigid parts down nearest to the sketch, and moves those with freedom least."""
+    s, rigid = problem.system, problem.is_rigid
+    settle = np.where(rigid & (active > 0) & (problem.hold < 2), 3 - problem.hold, 0)
+    if settle.any():
+        weight = np.ones(s.kind.shape[0])
+        weight[s.kind == POINT] = problem.weight[s.root[s.kind == POINT]]
+        set_down(s, problem.part, settle, x, sketch, weight)
+    for p in np.flatnonzero(~rigid & (active > 0) & (problem.free > 0)):
+        moved = least_movement(problem, p, x, sketch, problem.weight, start)
+        if moved is not None:
+            x = moved
+    return x
+
+
+def _numeric_part(
+    problem: Problem, part: int, x: np.ndarray, start: np.ndarray, effort: int
+) -> bool:
+    """Solves one whole part at once, from the start and from where the plan came; True when it holds."""
+    s = problem.system
+    vertices = np.flatnonzero(problem.part == part)
+    rows = np.flatnonzero((problem.row_part == part) & (problem.fate == IN_GRAPH))
+    if rows.size > 4 * LARGEST_BLOCK:
+        return False
+    alone, pivot = np.full(s.kind.shape[0], -1), np.zeros((0, 2))
+    limits = limits_of(problem, 6 if rows.size < 60 and effort == 2 else effort)
+    for origin in (start, x):
+        tried = origin.copy()
+        if solve_block(
+            s, vertices, rows, tried, alone, pivot, limits.floor, limits.tolerance, limits.attempts
+        ):
+            x[:] = tried
+            return True
+    return False
+
+
+def _verdict(problem: Problem, x: np.ndarray) -> tuple[float, int]:
+    """(residual, row that does not hold or -1)."""
+    residual, row = residual_of(problem, x)
+    contradicted = np.flatnonzero(problem.fate == CONTRADICTED)
+    if contradicted.size:
+        return residual, int(contradicted[0])
+    allowed = DEPENDENT if problem.plan.dependent.size else RESIDUAL
+    return residual, -1 if residual <= allowed * problem.size else int(row)
