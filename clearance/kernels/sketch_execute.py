@@ -13,10 +13,9 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT
-from clearance.kernels.sketch_motion import freedoms, move
-from clearance.kernels.sketch_newton import newton
+from clearance.kernels.sketch_motion import freedoms, move, pivots_of
 from clearance.kernels.sketch_place import assign, place
-from clearance.kernels.sketch_search import BANDED, find
+from clearance.kernels.sketch_search import BANDED, solve_block
 
 DONE, FAILED, TOO_LARGE, KEPT = 0, 1, 2, 3
 """Fates of a step: placed; no such place found; a cluster left untried; its equations held already."""
@@ -47,22 +46,6 @@ def _holds(s, edges, x, gradient, tolerance):
             if not abs(f) <= tolerance:
                 return False
     return True
-
-
-@inlined
-def _pivots(s, body_of, n_bodies, x):
-    """The mean of every body's points (n_bodies, 2)."""
-    out = np.zeros((n_bodies, 2))
-    count = np.zeros(n_bodies)
-    for v in range(body_of.shape[0]):
-        b = body_of[v]
-        if b >= 0 and s.kind[v] == POINT:
-            out[b, 0] += x[s.root[v]]
-            out[b, 1] += x[s.root[v] + 1]
-            count[b] += 1.0
-    for b in range(n_bodies):
-        out[b] /= max(count[b], 1.0)
-    return out
 
 
 @inlined
@@ -176,7 +159,7 @@ def _find_freed(
             x[s.root[v]], x[s.root[v] + 1] = sketch[s.root[v]], sketch[s.root[v] + 1]
         else:
             assign(s, v, sketch[s.root[v]], x)
-    if not find(s, vertices, rows, x, alone, pivot, first, floor, tolerance, attempts):
+    if not solve_block(s, vertices, rows, x, alone, pivot, floor, tolerance, attempts):
         x[:] = before
         return False
     off = _put_back(s, plan, base, vertices, x, before, first) if base >= 0 else 0.0
@@ -215,13 +198,13 @@ def execute(s, plan, x, sketch, turned, active, limits):
             elif s.kind[v] == POINT and plan.partner[k] >= 0:  # a circle from three conditions
                 pair[0], pair[1] = v, plan.partner[k]
                 three = plan.edges[k][plan.edges[k] >= 0]
-                if not newton(s, pair, three, x, alone, pivot, first, floor, tolerance, attempts):
+                if not solve_block(s, pair, three, x, alone, pivot, floor, tolerance, attempts):
                     fate[k] = FAILED
             elif not place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient, turned[k]):
                 fate[k] = FAILED
             continue
         if fresh:
-            pivot = _pivots(s, plan.body_of, plan.held.shape[0], x)
+            pivot = pivots_of(s, plan.body_of, plan.held.shape[0], x)
             fresh = False
         vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
         rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
@@ -235,8 +218,8 @@ def execute(s, plan, x, sketch, turned, active, limits):
                 done = _find_freed(
                     s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, b == 0
                 )
-            if not done and not find(
-                s, vertices, rows, x, plan.body_of, pivot, first, floor, tolerance, attempts
+            if not done and not solve_block(
+                s, vertices, rows, x, plan.body_of, pivot, floor, tolerance, attempts
             ):
                 fate[k] = FAILED
     return fate

@@ -43,7 +43,7 @@ WORSE = 1.5
 
 
 @inlined
-def _next(state):
+def next_share(state):
     """(state, uniform number in [0, 1)) of a linear congruential sequence."""
     state = (state * 6364136223846793005 + 1442695040888963407) & 0x7FFFFFFFFFFFFFFF
     return state, (state >> 22) / 2199023255552.0
@@ -55,14 +55,14 @@ def _violated(s, rows, x, of_row, state, gradient):
     whole = 0.0
     for row in rows:
         whole += abs(evaluate(s.code, s.var, s.coef, s.value, x, row, gradient))
-    state, share = _next(state)
+    state, share = next_share(state)
     left, a = share * whole, 0
     while a < rows.shape[0] - 1:
         left -= abs(evaluate(s.code, s.var, s.coef, s.value, x, rows[a], gradient))
         if left < 0.0:
             break
         a += 1
-    state, share = _next(state)
+    state, share = next_share(state)
     count = 0
     for k in range(8):
         count += of_row[a, k] >= 0
@@ -106,7 +106,7 @@ def _kick(node, ring, of_row, start, mine, reach, amount, column, width, is_turn
         u = queue[head]
         head += 1
         for k in range(width[u]):
-            state, share = _next(state)
+            state, share = next_share(state)
             turning = k == 2 or is_turn[u]
             step[column[u] + k] = amount * (2.0 * share - 1.0) * (1.0 if turning else reach)
         if depth[u] == ring:
@@ -161,8 +161,8 @@ def search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks)
         keep(s, vertices, x, kept, False)
         kept_pivots[:] = pivot
         state, node = _violated(s, rows, x, of_row, state, gradient)
-        state, which = _next(state)
-        state, share = _next(state)
+        state, which = next_share(state)
+        state, share = next_share(state)
         ring = int(3.0 * which)
         amount = (2.0 if ring == 0 else (1.0 if ring == 1 else 0.5)) * (0.3 + 0.7 * share)
         reach = _reach(s, rows, x, node, of_row, start, mine, spacing)
@@ -192,16 +192,14 @@ def search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks)
     return True
 
 
-@inlined
-def find(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts):
-    """Moves the vertices until their equations hold, by the method for their number; True when they do."""
-    if freedoms(s, vertices, body_of) < BANDED:
-        return newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts)
-    return search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, KICKS * attempts)
-
-
 @kernel
 def solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance, attempts):
-    """`find` for one call from outside."""
+    """Moves the vertices until their equations hold, by the method for their number; True when they do.
+
+    `vertices` lists a body's members together; on failure x is as it was.
+    """
     first = np.full(s.kind.shape[0], -1, np.int64)
-    return find(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts)
+    if freedoms(s, vertices, body_of) < BANDED:
+        return newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts)
+    kicks = KICKS * attempts
+    return search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks)

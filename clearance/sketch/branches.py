@@ -20,10 +20,11 @@ from clearance.kernels.sketch_equations import (
 )
 from clearance.kernels.sketch_execute import FAILED, execute
 from clearance.kernels.sketch_graph import POINT, TURN
-from clearance.sketch.execution import WRONG_SIDE, Outcome, limits_of, residual_of, run
+from clearance.sketch.execution import WRONG_SIDE, Outcome, run
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.roots import other_solutions
 from clearance.sketch.start import Sides, sides_hold, started
+from clearance.sketch.steps import limits_of, residual_of
 
 MOST = 10
 """Choices up to which all their combinations are tried: 1024 runs of a plan."""

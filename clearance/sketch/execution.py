@@ -9,21 +9,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import worst
-from clearance.kernels.sketch_execute import FAILED, KEPT, Limits, execute
+from clearance.kernels.sketch_execute import FAILED, KEPT, execute
 from clearance.kernels.sketch_fit import set_down
 from clearance.kernels.sketch_graph import CONTRADICTED, IN_GRAPH, POINT
 from clearance.kernels.sketch_search import RESTARTS, solve_block
 from clearance.kernels.sketch_start import unsettled
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
+from clearance.sketch.roots import nearest_roots
 from clearance.sketch.start import Sides, sides_hold, started
-
-LARGEST_BLOCK = 6000
-"""Equations of a numeric cluster up to which it is tried; large ones are solved on a band."""
-
-FLOOR = 2e-16
-"""[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
+from clearance.sketch.steps import LARGEST_BLOCK, limits_of, residual_of
 
 NEARLY = 1e-5
 """[-] Error of an implied equation, relative to the size, up to which all equations are solved
@@ -42,18 +37,6 @@ class Outcome:
         self.fates = fates
         self.broken = broken
         self.residual = residual
-
-
-def limits_of(problem: Problem, attempts: int = RESTARTS) -> Limits:
-    """The limits of a run at the problem's size."""
-    size = problem.size
-    return Limits(SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK, attempts)
-
-
-def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
-    """The largest residual [m] of all equations, and its row."""
-    s = problem.system
-    return worst(s.code, s.var, s.coef, s.value, x, problem.length_scale)
 
 
 def run(
@@ -94,21 +77,6 @@ def run(
     return outcome
 
 
-def run_after(problem: Problem, block: int, x: np.ndarray) -> np.ndarray:
-    """The numbers after the steps that follow a numeric cluster are run again from x."""
-    p = problem.plan
-    later = int(np.flatnonzero(p.block == block)[0]) + 1
-    plan = p._replace(
-        vertex=p.vertex[later:], partner=p.partner[later:], edges=p.edges[later:],
-        block=p.block[later:], origin=p.origin[later:],
-    )  # fmt: skip
-    out = x.copy()
-    every = np.ones(problem.system.kind.size, np.uint8)
-    turned = np.ones(plan.vertex.size)
-    execute(problem.system, plan, out, x.copy(), turned, every, limits_of(problem))
-    return out
-
-
 def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
     """The part of every row, without the rows that others imply."""
     if not dependent.size:
@@ -140,6 +108,7 @@ def _solve_parts(
         _numeric_part(problem, p, x, start, effort)
     if effort < 2:
         return fates, x
+    x = nearest_roots(problem, x, start, fates)
     return fates, _nearest(problem, x, sketch, start, active_part)
 
 

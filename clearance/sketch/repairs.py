@@ -48,7 +48,7 @@ def repairs_of(trial: Trials, conflict: list[int]) -> list[Repair]:
             number = measured(ordered[i], outcome.x.tolist())
             found.append(_repair(ordered, size, {i: number}))
     shared = _shared(trial, conflict, dimensions)
-    if shared is not None:
+    if shared is not None and len(dimensions) > 1:
         found.append(_repair(ordered, size, shared))
     return sorted(found, key=lambda r: (r.size, len(r.changes)))
 
@@ -84,10 +84,10 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     )
     x = trial.before.copy()
     x[free] = fitted.x
-    x = x[alias]
-    if np.abs(violation(x[free])[~soft]).max(initial=0.0) > 1e-3 * trial.problem.size:
+    exact = trial.run_from(x[alias], [k for k in np.unique(tables.owner) if k not in dimensions])
+    if exact.broken != -1:
         return None
-    return {i: measured(trial.sketch._ordered[i], x.tolist()) for i in dimensions}
+    return {i: measured(trial.sketch._ordered[i], exact.x.tolist()) for i in dimensions}
 
 
 def _smallest(trial: Trials, conflict: list[int]) -> Tables | None:

@@ -106,7 +106,9 @@ class SketchResult:
         """Other solutions of the small numeric clusters: the numbers of every entity, by name."""
         from clearance.sketch.roots import alternatives_of
 
-        return alternatives_of(self.sketch, self._problem, self._outcome.x) if self.solved else []
+        sides = self.sketch.sides()
+        x = self._outcome.x
+        return alternatives_of(self.sketch, self._problem, x, sides) if self.solved else []
 
     @cached_property
     def _diagnosis(self):

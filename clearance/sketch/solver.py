@@ -11,10 +11,11 @@ import numpy as np
 
 from clearance.sketch.branches import run_with_sides
 from clearance.sketch.degenerate import check_degenerate
-from clearance.sketch.execution import Outcome, residual_of
+from clearance.sketch.execution import Outcome
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import Problem, problem_of, tables_of
 from clearance.sketch.start import sides_hold
+from clearance.sketch.steps import residual_of
 
 if TYPE_CHECKING:
     from clearance.sketch.constraints import Constraint

@@ -13,9 +13,9 @@ import numpy as np
 from clearance.kernels.sketch_graph import IN_GRAPH, RADIUS, REPEATED
 from clearance.kernels.sketch_search import solve_block
 from clearance.sketch.branches import run_with_sides
-from clearance.sketch.execution import FLOOR
 from clearance.sketch.problem import RESIDUAL, Problem, Tables, problem_of
 from clearance.sketch.start import sides_hold
+from clearance.sketch.steps import FLOOR
 
 AT_ONCE = 64
 """Constraints up to which each is left out in turn before halving: circuits mostly are minimal already."""
@@ -48,6 +48,10 @@ class Trials:
         sides = self.sketch.sides(set(chosen))
         effort = self.effort if effort is None else effort
         return run_with_sides(self.part(chosen), self.before, sides, effort)
+
+    def run_from(self, x: np.ndarray, chosen: list[int]):
+        """The outcome of these constraints alone, nearest to the numbers x (n,)."""
+        return run_with_sides(self.part(chosen), x, self.sketch.sides(set(chosen)))
 
     def solvable(self, chosen: list[int]) -> bool:
         """Whether a trial finds a place where these constraints hold together."""
