@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.kernels.sketch_core import components
 from clearance.kernels.sketch_graph import (
     DIRECTION,
     IN_GRAPH,
@@ -24,7 +25,7 @@ from clearance.kernels.sketch_graph import (
     vertices,
 )
 from clearance.kernels.sketch_place import System
-from clearance.kernels.sketch_plan import Plan, components, make_plan
+from clearance.kernels.sketch_plan import Plan, make_plan
 from clearance.kernels.sketch_start import counts, row_parts
 
 RESIDUAL = 1e-12
