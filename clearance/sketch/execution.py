@@ -7,11 +7,14 @@ them; parts with freedom move least as a whole.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from clearance.kernels.sketch_equations import LENGTHS, RATIO
 from clearance.kernels.sketch_execute import FAILED, KEPT, execute
 from clearance.kernels.sketch_fit import set_down
-from clearance.kernels.sketch_graph import CONTRADICTED, IN_GRAPH, POINT
+from clearance.kernels.sketch_graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
 from clearance.kernels.sketch_search import RESTARTS, solve_block
 from clearance.kernels.sketch_start import unsettled
 from clearance.sketch.movement import least_movement
@@ -48,10 +51,40 @@ def run(
 ) -> Outcome:
     """Solves a problem from the numbers `before` (n,).
 
+    Lengths are divided by a power of two near the size first: a sketch that is drawn twice as large has
+    the same solution twice as large, bit for bit.
+
     Args:
         effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
         turned: (steps,) -1 where a closed step takes the branch opposite to the sketch.
     """
+    unit = 2.0 ** math.frexp(problem.size)[1]
+    lengths = np.where(problem.tables.role == DIRECTION, 1.0, unit)
+    outcome = _run_at_unit(_in_units(problem, unit), before / lengths, sides, effort, turned)
+    outcome.x *= lengths
+    outcome.residual *= unit
+    return outcome
+
+
+def _in_units(problem: Problem, unit: float) -> Problem:
+    """The same problem with lengths divided by `unit`."""
+    s, tables = problem.system, problem.tables
+    angular = (problem.length_scale != 1.0) | (s.code == LENGTHS) | (s.code == RATIO)
+    turning = np.append(tables.role == DIRECTION, False)
+    system = s._replace(
+        value=np.where(angular, s.value, s.value / unit),
+        shift=np.where(turning, s.shift, s.shift / unit),
+    )
+    out = Problem(**{**vars(problem), "system": system})
+    out.size = problem.size / unit
+    out.length_scale = np.where(problem.length_scale != 1.0, problem.length_scale / unit, 1.0)
+    return out
+
+
+def _run_at_unit(
+    problem: Problem, before: np.ndarray, sides: Sides, effort: int, turned: np.ndarray | None
+) -> Outcome:
+    """`run` for a problem of a size near 1."""
     size, dependent = problem.size, problem.plan.dependent
     x, sketch = started(problem, before, sides)
     loose = _loosened(problem, dependent)
