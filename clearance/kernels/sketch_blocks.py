@@ -198,12 +198,11 @@ def _move_payment(e, before, node, paid):
 
 
 @kernel
-def match(kind, ends, live, hold, capacity):
-    """Assigns every live edge to a node with freedom left; `capacity` (nodes,) becomes what is
-    unused.
+def match(order, ends, live, hold, capacity):
+    """Assigns the live edges, in `order`, each to the first of its nodes with freedom left.
 
-    `hold` (v,) is the node of every vertex (-1: held fast). Returns the node (m,) of every edge, -1
-    where there was none.
+    `capacity` (nodes,) becomes what is unused. `hold` (v,) is the node of every vertex (-1: held fast).
+    Returns the node (m,) of every edge, -1 where there was none.
     """
     m = ends.shape[0]
     owner = np.full(m, -1, np.int64)
@@ -211,7 +210,7 @@ def match(kind, ends, live, hold, capacity):
     seen = np.full(capacity.shape[0], -1, np.int64)
     came = np.empty(m, np.int64)
     queue = np.empty(m + 1, np.int64)
-    for row in range(m):
+    for row in order:
         if live[row]:
             _augment(row, row, hold, ends, owner, capacity, paid, seen, came, queue)
     return owner

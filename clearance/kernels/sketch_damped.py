@@ -15,12 +15,9 @@ from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch_motion import keep, move, room, total_of
 
-FIRST_DAMPING = 1e-2
-"""[-] Of the diagonal."""
-
 
 @inlined
-def _nodes(s, vertices, rows, first, n):
+def nodes_of(s, vertices, rows, first, n):
     """Nodes (vertices or bodies) by first column: (ids by column, widths, nodes (m, 8) of every row)."""
     node_at = np.full(n, -1, np.int64)
     for v in vertices:
@@ -45,7 +42,7 @@ def _nodes(s, vertices, rows, first, n):
 
 
 @inlined
-def _incidence(of_row, count):
+def incidence(of_row, count):
     """The rows of every node as (starts, rows); a row that names a node twice is listed twice."""
     start = np.zeros(count + 1, np.int64)
     for a in range(of_row.shape[0]):
@@ -91,11 +88,12 @@ def _breadth_first(root, of_row, start, mine, order, seen):
 
 
 @inlined
-def narrow(s, vertices, rows, first, n):
-    """Renumbers the columns in `first` so that the normal matrix is a narrow band; its half width."""
-    node_at, width, of_row = _nodes(s, vertices, rows, first, n)
+def narrow(vertices, first, n, node_at, width, of_row, start, mine):
+    """Renumbers the columns in `first` so that the normal matrix is a narrow band; its half width.
+
+    The nodes come from `nodes_of` and `incidence`; returns also the new first column of each.
+    """
     count = width.shape[0]
-    start, mine = _incidence(of_row, count)
     order, seen = np.zeros(count, np.int64), np.zeros(count, np.uint8)
     for _ in range(3):
         _breadth_first(order[count - 1], of_row, start, mine, order, seen)
@@ -117,7 +115,7 @@ def narrow(s, vertices, rows, first, n):
                 low = min(low, column[of_row[a, k]])
                 high = max(high, column[of_row[a, k]] + width[of_row[a, k]])
         half = max(half, high - low)
-    return half
+    return half, column
 
 
 @inlined
@@ -195,21 +193,35 @@ def _solve_band(band, right):
 
 
 @inlined
-def descend_damped(s, vertices, rows, x, body_of, pivot, first, n, least, enough, longest):
-    """Moves the vertices until the sum of squares is at most `least` or falls no more; the sum.
+def descend_damped(
+    s,
+    vertices,
+    rows,
+    x,
+    body_of,
+    pivot,
+    first,
+    n,
+    half,
+    damping,
+    least,
+    enough,
+    longest,
+    patience,
+):
+    """Moves the vertices until the sum of squares is at most `least` or falls too little.
 
-    Below `enough` the first step that gains nothing ends it. `first` (v,) holds the columns by vertex on
-    entry; -1 for all on return.
+    `first` (v,) holds the columns by vertex, `half` the width of their band; `damping` is the first
+    one, in units of the diagonal. The sum must fall by a fifth in `patience` steps; below `enough` the
+    first step that gains nothing ends it.
+    Returns (sum, steps).
     """
-    half = narrow(s, vertices, rows, first, n)
     band, factor = np.empty((n, half)), np.empty((n, half))
     right, step, unit = np.empty(n), np.empty(n), np.empty(n)
     gradient, kept, pivots = np.empty(8), np.empty(room(s, vertices)), pivot.copy()
     total = total_of(s, rows, x, gradient)
-    damping, past, stale = FIRST_DAMPING, total, True
-    for k in range(longest):
-        if not total > least or damping > 1e6:
-            break
+    past, stale, k = total, True, 0
+    while k < longest and total > least and damping <= 1e6:
         if stale:
             _normal(s, rows, x, first, body_of, pivot, band, right, gradient)
             stale = False
@@ -236,10 +248,9 @@ def descend_damped(s, vertices, rows, x, body_of, pivot, first, n, least, enough
             if total <= enough:
                 break
             damping *= 4.0
-        if k % 8 == 7:
+        k += 1
+        if k % patience == 0:
             if total > 0.8 * past:
                 break
             past = total
-    for v in vertices:
-        first[v] = -1
-    return total
+    return total, k

@@ -6,6 +6,8 @@ members are moved rigidly, so that what is already true inside it stays true.
 
 import math
 
+import numpy as np
+
 from clearance.jit import inlined
 from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
@@ -33,6 +35,20 @@ def columns(s, vertices, body_of, first):
             if body_of[u] == b:
                 first[u] = count
         count += 3
+    return count
+
+
+@inlined
+def freedoms(s, vertices, body_of):
+    """How many unknowns a cluster has; a body's members are listed together."""
+    count, last = 0, -1
+    for v in vertices:
+        b = body_of[v]
+        if b < 0:
+            count += 2 if s.kind[v] == POINT else 1
+        elif b != last:
+            count += 3
+        last = b
     return count
 
 
@@ -112,3 +128,19 @@ def room(s, vertices):
     for v in vertices:
         count += 2 if s.kind[v] == POINT else s.member_start[v + 1] - s.member_start[v]
     return count
+
+
+@inlined
+def pivots_of(s, body_of, n_bodies, x):
+    """The mean of every body's points (n_bodies, 2)."""
+    out = np.zeros((n_bodies, 2))
+    count = np.zeros(n_bodies)
+    for v in range(body_of.shape[0]):
+        b = body_of[v]
+        if b >= 0 and s.kind[v] == POINT:
+            out[b, 0] += x[s.root[v]]
+            out[b, 1] += x[s.root[v] + 1]
+            count[b] += 1.0
+    for b in range(n_bodies):
+        out[b] /= max(count[b], 1.0)
+    return out

@@ -9,21 +9,11 @@ import math
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
-from clearance.kernels.sketch_damped import descend_damped
+from clearance.jit import inlined
 from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch_motion import columns, keep, move, room, total_of
 from clearance.kernels.sketch_place import assign
-
-RESTARTS = 60
-"""How often a numeric cluster is tried: 97 of 100 irreducible clusters of 100 points off by 20 % are solved."""
-
-BANDED = 40
-"""Unknowns from which a cluster is solved on a band first."""
-
-DENSE = 600
-"""Unknowns up to which a dense factorisation adds the last digits."""
 
 
 @inlined
@@ -71,7 +61,7 @@ def assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient):
 
 
 @inlined
-def _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
+def descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
     """Moves the vertices until |residual| <= floor or nothing is gained; True when <= tolerance.
 
     `first` (v,) is scratch: -1 on entry and on return. `vertices` lists a body's members together.
@@ -152,34 +142,6 @@ def _shake(s, vertices, x, body_of, pivot, spread, state):
 
 
 @inlined
-def freedoms(s, vertices, body_of):
-    """How many unknowns a cluster has; a body's members are listed together."""
-    count, last = 0, -1
-    for v in vertices:
-        b = body_of[v]
-        if b < 0:
-            count += 2 if s.kind[v] == POINT else 1
-        elif b != last:
-            count += 3
-        last = b
-    return count
-
-
-@inlined
-def _far_descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
-    """Damped descent on a band, Newton where digits are missing; True when |residual| <= tolerance."""
-    n = columns(s, vertices, body_of, first)
-    total = descend_damped(
-        s, vertices, rows, x, body_of, pivot, first, n, floor * floor, tolerance * tolerance, 120
-    )
-    if total <= tolerance * tolerance:
-        return True
-    if n > DENSE or total > (1e7 * tolerance) ** 2:
-        return False
-    return _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, 20)
-
-
-@inlined
 def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts):
     """Moves the vertices until their equations hold; True when they do to `tolerance`.
 
@@ -191,28 +153,16 @@ def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attemp
     keep(s, vertices, x, kept, False)
     pivots = pivot.copy()
     spread = math.sqrt(total_of(s, rows, x, np.empty(8)) / rows.shape[0])
-    large = freedoms(s, vertices, body_of) >= BANDED
     state = 12345
     for attempt in range(attempts):
         if attempt > 0:
             keep(s, vertices, x, kept, True)
             pivot[:] = pivots
-            strength = 0.8 + 0.14 * attempt if large else 0.2 + 1.8 * attempt / attempts
+            strength = 0.2 + 1.8 * attempt / attempts
             state = _shake(s, vertices, x, body_of, pivot, strength * spread, state)
-        if large:
-            if _far_descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance):
-                return True
-            continue
         longest = 40 if attempt == 0 else 20
-        if _descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
+        if descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
             return True
     keep(s, vertices, x, kept, True)
     pivot[:] = pivots
     return False
-
-
-@kernel
-def solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance, attempts):
-    """`newton` for one call from outside."""
-    first = np.full(s.kind.shape[0], -1, np.int64)
-    return newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts)

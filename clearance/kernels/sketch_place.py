@@ -174,8 +174,9 @@ def _side(value, plus, minus):
 
 
 @inlined
-def _meet(k1, a1, b1, c1, k2, a2, b2, c2, sketch1, sketch2, px, py):
-    """The common point of two loci on the sketch's side. p: the point in the sketch."""
+def _meet(k1, a1, b1, c1, k2, a2, b2, c2, sketch1, sketch2, px, py, turned):
+    """The common point of two loci on the sketch's side (`turned` 1) or the other (-1). p: the point
+    in the sketch."""
     if k1 == 1 and k2 == 1:
         det = a1 * b2 - a2 * b1
         if abs(det) < 1e-12:
@@ -209,12 +210,12 @@ def _meet(k1, a1, b1, c1, k2, a2, b2, c2, sketch1, sketch2, px, py):
         return False, 0.0, 0.0
     plus = (fx + h * tx - px) ** 2 + (fy + h * ty - py) ** 2
     minus = (fx - h * tx - px) ** 2 + (fy - h * ty - py) ** 2
-    h *= _side(side, plus, minus)
+    h *= turned * _side(side, plus, minus)
     return True, fx + h * tx, fy + h * ty
 
 
 @inlined
-def _place_point(s, v, rows, count, x, sketch):
+def _place_point(s, v, rows, count, x, sketch, turned):
     i = s.root[v]
     px, py = sketch[i], sketch[i + 1]
     if count == 0:
@@ -231,7 +232,7 @@ def _place_point(s, v, rows, count, x, sketch):
         return False
     first = locus(s, rows[0], i, sketch)
     second = locus(s, rows[1], i, sketch)
-    good, mx, my = _meet(k1, a1, b1, c1, k2, a2, b2, c2, first, second, px, py)
+    good, mx, my = _meet(k1, a1, b1, c1, k2, a2, b2, c2, first, second, px, py, turned)
     if good:
         x[i], x[i + 1] = mx, my
     return good
@@ -290,7 +291,7 @@ def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
 
 
 @inlined
-def _place_line(s, turn, slide, rows, count, x, sketch):
+def _place_line(s, turn, slide, rows, count, x, sketch, turned):
     """Places a line from at most two conditions; `slide` -1 places a direction alone (from one)."""
     own = s.root[slide] - 1 if slide >= 0 else s.root[turn]
     theta = sketch[own]
@@ -334,23 +335,24 @@ def _place_line(s, turn, slide, rows, count, x, sketch):
     ux, uy = dx / length, dy / length
     if (s1 - s2) * ny - (t1 - t2) * nx < 0.0:
         h = -h
+    h *= turned
     nx, ny = along * ux - h * uy, along * uy + h * ux
     _set_line(s, turn, slide, own, nx, ny, nx * p1 + ny * q1 - w1, x, sketch)
     return True
 
 
 @inlined
-def place(s, v, partner, rows, x, sketch, gradient):
+def place(s, v, partner, rows, x, sketch, gradient, turned):
     """Places vertex v, with its partner if any, from `rows` (-1 pads); False when there is no such
-    place."""
+    place. `turned` -1 takes the branch on the other side than the sketch's, 1 the sketch's."""
     count = 0
     while count < 3 and rows[count] >= 0:
         count += 1
     kind = s.kind[v]
     if kind == POINT and partner < 0:
-        return count <= 2 and _place_point(s, v, rows, count, x, sketch)
+        return count <= 2 and _place_point(s, v, rows, count, x, sketch, turned)
     if kind == TURN:
-        return count <= 2 and _place_line(s, v, partner, rows, count, x, sketch)
+        return count <= 2 and _place_line(s, v, partner, rows, count, x, sketch, turned)
     if kind == SLIDE or kind == SIZE:
         if count == 0:
             assign(s, v, sketch[s.root[v]], x)

@@ -1,24 +1,29 @@
-"""The construction plan: which vertices are placed from which equations, in which order, and its
-execution.
+"""The construction plan: which vertices are placed from which equations, in which order.
 
 Peeled vertices come last; before them the core: rigid bodies in their own frame, then the clusters
-in the order of placing. A step is closed (one vertex, a line or a circle) or numeric (a block). A
-step whose equations already hold is left alone, which makes a second solve after one change cheap.
+in the order of placing. A step is closed (one vertex, a line or a circle) or numeric (a block).
+Not for: running it (`sketch_execute`).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
-from clearance.kernels.sketch_blocks import bodies, match, ordered_parts
-from clearance.kernels.sketch_equations import evaluate
-from clearance.kernels.sketch_graph import POINT, SLIDE, TURN, lists
-from clearance.kernels.sketch_newton import newton
+from clearance.jit import kernel
+from clearance.kernels.sketch_blocks import bodies, ordered_parts
+from clearance.kernels.sketch_core import (
+    bases,
+    components,
+    edges_between,
+    matched_by_turn,
+    nodes_of_core,
+    rows_by_part,
+    turns_by_rule,
+    vertices_by_part,
+)
+from clearance.kernels.sketch_graph import SLIDE, TURN, lists
 from clearance.kernels.sketch_pebble import play
 from clearance.kernels.sketch_peel import peel
-from clearance.kernels.sketch_place import place
-from clearance.kernels.topology import find_root
 
 
 class Plan(NamedTuple):
@@ -43,144 +48,6 @@ class Plan(NamedTuple):
     dependent: np.ndarray
     circuit_start: np.ndarray
     circuit: np.ndarray
-
-
-@kernel
-def components(kind, ends, theta_of, absolute):
-    """The connected part of every vertex (the ground's is -1), and how each hangs on the ground.
-
-    Returns (part (v,), number, hold (parts,)): 0 not at all, 1 by directions only, 2 by position.
-    """
-    n = kind.shape[0]
-    group = np.arange(n)
-    for row in range(ends.shape[0]):
-        first = -1
-        for k in range(5):
-            v = ends[row, k]
-            if v > 0:
-                a = find_root(group, v)
-                if first >= 0:
-                    group[max(a, first)] = min(a, first)
-                    a = min(a, first)
-                first = a
-    for v in range(1, n):
-        if kind[v] == SLIDE and theta_of[v] > 0:
-            a, b = find_root(group, v), find_root(group, theta_of[v])
-            group[max(a, b)] = min(a, b)
-    part = np.full(n, -1, np.int64)
-    count = 0
-    for v in range(1, n):
-        r = find_root(group, v)
-        if r == v:
-            part[v] = count
-            count += 1
-        else:
-            part[v] = part[r]
-    hold = np.zeros(count, np.int64)
-    for row in range(ends.shape[0]):
-        grounded = False
-        for k in range(5):
-            grounded = grounded or ends[row, k] == 0
-        if grounded:
-            for k in range(5):
-                if ends[row, k] > 0:
-                    p = part[ends[row, k]]
-                    hold[p] = max(hold[p], 2 if absolute[row] == 1 else 1)
-    for v in range(1, n):
-        if kind[v] == SLIDE and theta_of[v] == 0:
-            hold[part[v]] = max(hold[part[v]], 1)
-    return part, count, hold
-
-
-@inlined
-def _bases(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies):
-    """Chooses the initial cluster of every part of the core: ground, largest body, or an edge's two
-    ends.
-
-    Returns (held (bodies + n_parts + 1,), n_bodies, seed edge of the bodies made here). An edge's
-    ends become a new body; a part held by directions only holds its first point.
-    """
-    held = np.zeros(n_bodies + n_parts + 1, np.uint8)
-    seed = np.full(n_bodies + n_parts + 1, -1, np.int64)
-    weight = np.zeros(n_bodies + 1, np.int64)
-    for v in range(1, kind.shape[0]):
-        if body_of[v] >= 0:
-            weight[body_of[v]] += 1
-    best = np.full(n_parts, -1, np.int64)
-    for v in range(1, kind.shape[0]):
-        b = body_of[v]
-        if b >= 0 and hold[part[v]] == 0:
-            if best[part[v]] < 0 or weight[b] > weight[best[part[v]]]:
-                best[part[v]] = b
-    for p in range(n_parts):
-        if best[p] >= 0:
-            held[best[p]] = 1
-    for row in range(ends.shape[0]):
-        v, u = ends[row, 0], ends[row, 1]
-        if not live[row] or v <= 0 or u <= 0 or kind[v] != POINT or not free[v]:
-            continue
-        p = part[v]
-        if hold[p] == 2 or best[p] >= 0:
-            continue
-        if hold[p] == 1:
-            body_of[v] = n_bodies
-        elif kind[u] == POINT and ends[row, 2] < 0:
-            body_of[v] = body_of[u] = n_bodies
-            seed[n_bodies] = row
-        elif kind[u] == TURN and ends[row, 3] < 0 and kind[ends[row, 2]] == SLIDE:
-            body_of[v] = body_of[u] = body_of[ends[row, 2]] = n_bodies
-            seed[n_bodies] = row
-        else:
-            continue
-        best[p] = n_bodies
-        held[n_bodies] = 1
-        n_bodies += 1
-    return held[:n_bodies], n_bodies, seed
-
-
-@inlined
-def _nodes(kind, free, body_of, held, n_bodies):
-    """Contracted nodes: (hold (v,), capacity (nodes,)); bodies first, then single vertices."""
-    n = kind.shape[0]
-    hold = np.full(n, -1, np.int64)
-    capacity = np.zeros(n_bodies + n, np.int64)
-    for b in range(n_bodies):
-        capacity[b] = 0 if held[b] else 3
-    count = n_bodies
-    for v in range(1, n):
-        if not free[v]:
-            continue
-        b = body_of[v]
-        if b >= 0:
-            hold[v] = -1 if held[b] else b
-        else:
-            hold[v] = count
-            capacity[count] = 2 if kind[v] == POINT else 1
-            count += 1
-    return hold, capacity[:count]
-
-
-@inlined
-def _between(ends, live, hold, body_of):
-    """The live edges that are not inside one body or inside what is held."""
-    out = np.zeros(ends.shape[0], np.uint8)
-    for row in range(ends.shape[0]):
-        if not live[row]:
-            continue
-        common, first = True, -2
-        for k in range(5):
-            v = ends[row, k]
-            if v < 0:
-                continue
-            h = hold[v]
-            if h >= 0 and body_of[v] < 0:
-                common = False
-            if first == -2:
-                first = h
-            elif h != first:
-                common = False
-        out[row] = not common
-    return out
 
 
 @kernel
@@ -225,8 +92,12 @@ def make_plan(kind, ends, absolute, theta_of):
             if not live[row]:
                 core_ends[row, :] = -1
         part, n_parts, hold_kind = components(kind, core_ends, theta_of, absolute)
-        held, n_bodies, seed = _bases(
-            kind, ends, live, free, part, n_parts, hold_kind, body_of, log_start.shape[0] - 1
+        n_bodies = log_start.shape[0] - 1
+        turn, lack = turns_by_rule(
+            kind, ends, live, free, part, n_parts, hold_kind, body_of, n_bodies, absolute
+        )
+        held, n_bodies, seed = bases(
+            kind, ends, live, free, part, n_parts, hold_kind, body_of, n_bodies, turn
         )
         for at in range(log.shape[0]):
             vertex[steps], partner[steps] = log[at, 0], log[at, 1]
@@ -237,9 +108,9 @@ def make_plan(kind, ends, absolute, theta_of):
             if seed[b] >= 0:
                 vertex[steps], edges[steps, 0], origin[steps] = ends[seed[b], 0], seed[b], 1
                 steps += 1
-        hold, capacity = _nodes(kind, free, body_of, held, n_bodies)
-        between = _between(ends, live, hold, body_of)
-        owner = match(kind, ends, between, hold, capacity)
+        hold, capacity = nodes_of_core(kind, free, body_of, held, n_bodies)
+        between = edges_between(ends, live, hold, body_of)
+        owner = matched_by_turn(ends, between, hold, capacity, turn, lack)
         present = np.zeros(capacity.shape[0], np.uint8)
         for v in range(n):
             if hold[v] >= 0:
@@ -247,8 +118,8 @@ def make_plan(kind, ends, absolute, theta_of):
         node_part, n_clusters = ordered_parts(
             ends, between, hold, owner, capacity.shape[0], present
         )
-        vs, vl = _by_part(hold, node_part, body_of, n_clusters)
-        es, el = _rows_by_part(owner, between, node_part, n_clusters)
+        vs, vl = vertices_by_part(hold, node_part, body_of, n_clusters)
+        es, el = rows_by_part(owner, between, node_part, n_clusters)
         for c in range(n_clusters):
             chosen, mine = vl[vs[c] : vs[c + 1]], el[es[c] : es[c + 1]]
             origin[steps] = 2
@@ -280,117 +151,3 @@ def make_plan(kind, ends, absolute, theta_of):
         + 1], bv[: bvs[blocks]], brs[: blocks + 1], br[: brs[blocks]], body_of, held, dependent,
         circuit_start, circuit,
     )  # fmt: skip
-
-
-@inlined
-def _by_part(hold, node_part, body_of, n_clusters):
-    """The vertices of every cluster, bodies' members together, as (starts, vertices)."""
-    start = np.zeros(n_clusters + 1, np.int64)
-    for v in range(hold.shape[0]):
-        if hold[v] >= 0:
-            start[node_part[hold[v]] + 1] += 1
-    start = np.cumsum(start)
-    out = np.empty(start[-1], np.int64)
-    fill = start[:-1].copy()
-    order = np.argsort(body_of, kind="mergesort")
-    for v in order:
-        if hold[v] >= 0:
-            c = node_part[hold[v]]
-            out[fill[c]] = v
-            fill[c] += 1
-    return start, out
-
-
-@inlined
-def _rows_by_part(owner, between, node_part, n_clusters):
-    """The rows that place every cluster as (starts, rows)."""
-    start = np.zeros(n_clusters + 1, np.int64)
-    for row in range(owner.shape[0]):
-        if between[row] and owner[row] >= 0:
-            start[node_part[owner[row]] + 1] += 1
-    start = np.cumsum(start)
-    out = np.empty(start[-1], np.int64)
-    fill = start[:-1].copy()
-    for row in range(owner.shape[0]):
-        if between[row] and owner[row] >= 0:
-            c = node_part[owner[row]]
-            out[fill[c]] = row
-            fill[c] += 1
-    return start, out
-
-
-@inlined
-def _holds(s, edges, x, gradient, tolerance):
-    """Whether every edge (-1 pads) already holds."""
-    for row in edges:
-        if row >= 0:
-            f = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
-            if not abs(f) <= tolerance:
-                return False
-    return True
-
-
-@inlined
-def _pivots(s, body_of, n_bodies, x):
-    """The mean of every body's points (n_bodies, 2)."""
-    out = np.zeros((n_bodies, 2))
-    count = np.zeros(n_bodies)
-    for v in range(body_of.shape[0]):
-        b = body_of[v]
-        if b >= 0 and s.kind[v] == POINT:
-            out[b, 0] += x[s.root[v]]
-            out[b, 1] += x[s.root[v] + 1]
-            count[b] += 1.0
-    for b in range(n_bodies):
-        out[b] /= max(count[b], 1.0)
-    return out
-
-
-@kernel
-def execute(s, plan, x, sketch, active, settled, floor, tolerance, largest_block, attempts):
-    """Runs the steps in place on x; `failed` (s,) is 0 done, 1 no such place, 2 block too large, 3
-    left alone.
-
-    `active` (v,) leaves out the vertices of parts that need no work. A step is left alone when its
-    equations hold to `settled`; a numeric one aims at `floor` and counts as done at `tolerance`
-    [m].
-    """
-    n_steps = plan.vertex.shape[0]
-    failed = np.zeros(n_steps, np.int64)
-    gradient = np.empty(8)
-    first = np.full(s.kind.shape[0], -1, np.int64)
-    pivot = np.zeros((plan.held.shape[0], 2))
-    alone = np.full(s.kind.shape[0], -1, np.int64)
-    pair = np.empty(2, np.int64)
-    fresh = True
-    for k in range(n_steps):
-        b = plan.block[k]
-        v = plan.vertex[k] if b < 0 else plan.block_vertex[plan.block_vertex_start[b]]
-        if not active[v]:
-            failed[k] = 3
-            continue
-        if b < 0:
-            if _holds(s, plan.edges[k], x, gradient, settled):
-                failed[k] = 3
-            elif s.kind[v] == POINT and plan.partner[k] >= 0:  # a circle from three conditions
-                pair[0], pair[1] = v, plan.partner[k]
-                three = plan.edges[k][plan.edges[k] >= 0]
-                if not newton(s, pair, three, x, alone, pivot, first, floor, tolerance, attempts):
-                    failed[k] = 1
-            elif not place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient):
-                failed[k] = 1
-            continue
-        if fresh:
-            pivot = _pivots(s, plan.body_of, plan.held.shape[0], x)
-            fresh = False
-        vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
-        rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
-        if _holds(s, rows, x, gradient, settled):
-            failed[k] = 3
-        elif rows.shape[0] > largest_block:
-            failed[k] = 2
-        elif not newton(
-            s, vertices, rows, x, plan.body_of, pivot, first, floor, tolerance, attempts
-        ):
-            failed[k] = 1
-    return failed

@@ -54,7 +54,8 @@ class Constraint:
         number: the dimension's value [m], [rad] or [-]; NaN without one.
         driven: measured only; it constrains nothing.
         built_in: part of how an entity was drawn (a line through its points).
-        first_row, n_rows: its equations.
+        index: its place among the sketch's constraints.
+        n_rows: how many equations it has.
     """
 
     name: str
@@ -64,7 +65,7 @@ class Constraint:
     number: float
     driven: bool
     built_in: bool
-    first_row: int
+    index: int
     n_rows: int
     options: dict
 

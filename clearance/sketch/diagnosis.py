@@ -1,107 +1,171 @@
-"""Conflicts: a minimal set of constraints that cannot hold together, and the least changes that
-repair it.
+"""Conflicts: a minimal set of constraints that cannot hold together, and the proof of it.
 
-The first suspects are the circuit that the graph (or the merging of directions) closes around the
-broken equation; otherwise the broken part as a whole. The set is then thinned by trying: a
-constraint stays only if the rest can be solved without it (QuickXplain's halving, Junker 2004), so
-minimality is checked by machine.
+The first suspects are a chain of distances too short for another, then the circuit that the graph (or the
+merging of directions) closes around the broken equation; otherwise the broken part as a whole. The set
+is thinned by trials. A conflict is proved by the sum of a chain, by contradicting directions or radii, by
+the count of freedoms, or by trying every branch of a ruler-and-compass construction; without a proof the
+verdict is only that nothing was found.
 """
 
 from __future__ import annotations
 
 import heapq
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import POINT_POINT
-from clearance.sketch.constraints import measured
-from clearance.sketch.problem import Problem, Tables, problem_of
+from clearance.kernels.sketch_equations import POINT_POINT, residuals
+from clearance.kernels.sketch_graph import CONTRADICTED, MERGED
+from clearance.kernels.sketch_search import BANDED
+from clearance.sketch.branches import exhausted
+from clearance.sketch.problem import DEPENDENT, Problem
+from clearance.sketch.repairs import Repair, repairs_of
+from clearance.sketch.trials import Trials
 
-
-@dataclass(frozen=True)
-class Repair:
-    """Dimensions to change so that the conflict can be solved.
-
-    Attributes:
-        changes: new value by constraint name, in the constraint's own unit ([m], [rad] or [-]).
-        size: root of the summed squares of the changes, angles as arcs at the sketch's size.
-    """
-
-    changes: dict[str, float]
-    size: float
+CHAIN = "one distance is longer than the others together"
+LINEAR = "their directions, offsets or radii contradict each other"
+COUNT = "they take more freedom than there is, and do not agree"
+BRANCHES = "every branch of their construction was tried"
 
 
 class Diagnosis:
-    """A minimal conflict; its repairs, the least first, are worked out when asked for."""
+    """A minimal conflict; its repairs, the least first, are worked out when asked for.
 
-    def __init__(self, trial: _Trials, conflict: list[int]) -> None:
+    `proof` says why it is one; empty when a search only failed. `searched` are the constraints of the
+    clusters in which it failed.
+    """
+
+    def __init__(
+        self, trial: Trials, conflict: list[int], proof: str, searched: list[int] | None = None
+    ) -> None:
         self._trial = trial
         self._conflict = conflict
+        self.proof = proof
         self.names = [trial.sketch._ordered[i].name for i in conflict]
+        self.searched = [trial.sketch._ordered[i].name for i in searched or conflict]
 
     @cached_property
     def repairs(self) -> list[Repair]:
         """See `Repair`."""
-        return _repairs(self._trial, self._conflict)
+        return repairs_of(self._trial, self._conflict)
 
 
 def diagnose(sketch, problem: Problem, before: np.ndarray, outcome) -> Diagnosis:
     """Why a problem has no solution; the sketch is not changed."""
-    suspects = _suspects(problem, outcome.broken)
-    chain = _too_short(problem, suspects or [], outcome.broken)
-    if chain:
-        trial = _Trials(sketch, problem, before, 1)
-        if trial.is_minimal(chain):
-            return Diagnosis(trial, chain)
+    trial = Trials(sketch, problem, before, outcome.x)
+    for row in _first_broken(problem, outcome):
+        chain = _too_short(problem, row)
+        if chain and trial.is_minimal(chain):
+            return Diagnosis(trial, chain, CHAIN)
+    suspects = _suspects(problem, outcome.broken) if _rest_holds(problem, outcome.x) else None
+    if suspects is None:
+        searched = _large_failures(problem, outcome.fates)
+        if searched:
+            return Diagnosis(trial, [], "", searched)
+    elif not trial.solvable(suspects):
+        return Diagnosis(trial, trial.thinned(suspects), COUNT)
+    return _thinned(trial, suspects, outcome.broken)
+
+
+def _rest_holds(problem: Problem, x: np.ndarray) -> bool:
+    """Whether all equations hold that no others imply by the count."""
+    s = problem.system
+    error = np.abs(residuals(s.code, s.var, s.coef, s.value, x)) * problem.length_scale
+    error[problem.plan.dependent] = 0.0
+    return bool((error <= DEPENDENT * problem.size).all())
+
+
+def _thinned(trial: Trials, suspects: list[int] | None, broken: int) -> Diagnosis:
+    conflict: list[int] = []
     for effort in (0, 1):  # quick trials first; their answer counts only when full ones confirm it
-        trial = _Trials(sketch, problem, before, effort)
+        trial.effort = effort
         chosen = suspects
         if chosen is None or trial.solvable(chosen):
-            chosen = trial.everything(outcome.broken)
+            chosen = trial.everything(broken)
         if trial.solvable(chosen):
             continue
         conflict = trial.minimal(chosen)
         trial.effort = 1
         if trial.is_minimal(conflict):
             break
-    else:
-        return Diagnosis(trial, conflict if not trial.solvable(chosen) else [])
-    return Diagnosis(trial, conflict)
+    trial.effort = 1
+    return Diagnosis(trial, conflict, _proof(trial, conflict) if conflict else "")
+
+
+def _proof(trial: Trials, conflict: list[int]) -> str:
+    """Why these constraints cannot hold together; empty without a proof."""
+    part = trial.part(conflict)
+    if (part.fate == CONTRADICTED).any():
+        return LINEAR
+    if part.plan.dependent.size or part.repeated:
+        return COUNT
+    sides = trial.sketch.sides(set(conflict))
+    return BRANCHES if exhausted(part, trial.before, sides) else ""
+
+
+def _first_broken(problem: Problem, outcome) -> list[int]:
+    """The worst equation, and those of the first closed step that found no place."""
+    failed = np.flatnonzero((outcome.fates == 1) & (problem.plan.block < 0))
+    rows = [int(r) for r in problem.plan.edges[failed[0]] if r >= 0] if failed.size else []
+    return [r for r in (*rows, outcome.broken) if r >= 0]
+
+
+def _large_failures(problem: Problem, fates: np.ndarray) -> list[int]:
+    """The constraints of the large clusters whose search failed: too large to be thinned by trials."""
+    plan, out = problem.plan, set()
+    for k in np.flatnonzero(((fates == 1) | (fates == 2)) & (plan.block >= 0)):
+        b = plan.block[k]
+        rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
+        if rows.size >= BANDED:
+            out |= {int(o) for o in problem.tables.owner[rows]}
+    return sorted(out)
 
 
 def _suspects(problem: Problem, broken: int) -> list[int] | None:
     """The constraints (by index) of the circuit around a broken equation, if there is one."""
-    owner, plan = problem.tables.owner, problem.plan
-    for k in range(plan.dependent.size):
+    owner, plan, var = problem.tables.owner, problem.plan, problem.system.var
+    for k in np.flatnonzero(plan.dependent == broken):
         rows = plan.circuit[plan.circuit_start[k] : plan.circuit_start[k + 1]]
-        if plan.dependent[k] == broken:
-            merged = np.flatnonzero(problem.fate == 1)
-            touched = set(problem.system.var[rows][problem.system.var[rows] >= 0])
-            near = [r for r in merged if touched & set(problem.system.var[r])]
-            together = [i for i, _ in problem.tables.together]
-            return sorted(
-                {int(o) for o in owner[rows]} | {int(owner[r]) for r in near} | set(together)
-            )
+        touched = np.unique(var[rows][var[rows] >= 0])
+        merged = np.flatnonzero(problem.fate == MERGED)
+        near = merged[np.isin(var[merged], touched).any(axis=1)]
+        together = {i for i, row in problem.tables.together if var[row, 0] in touched}
+        return sorted({int(o) for o in owner[rows]} | {int(o) for o in owner[near]} | together)
     return None
 
 
-def _too_short(problem: Problem, suspects: list[int], broken: int) -> list[int]:
+def _too_short(problem: Problem, broken: int) -> list[int]:
     """A distance and a chain of other distances that cannot span it, if there is one (else empty).
 
     The shortest chain between the broken distance's ends, by Dijkstra's method.
     """
     tables, var = problem.tables, problem.system.var
-    if broken < 0 or tables.code[broken] != POINT_POINT:
+    if tables.code[broken] != POINT_POINT:
         return []
-    value, near = tables.value, {}
-    for row in np.flatnonzero((tables.code == POINT_POINT) & np.isin(tables.owner, suspects)):
-        if row != broken:
-            a, b = int(var[row, 0]), int(var[row, 2])
-            near.setdefault(a, []).append((b, float(value[row]), int(row)))
-            near.setdefault(b, []).append((a, float(value[row]), int(row)))
-    start, goal = int(var[broken, 0]), int(var[broken, 2])
+    value = tables.value
+    rows = np.flatnonzero(
+        (tables.code == POINT_POINT) & (problem.row_part == problem.row_part[broken])
+    )
+    near: dict[int, list[tuple[int, float, int]]] = {}
+    for row in rows:
+        a, b = int(var[row, 0]), int(var[row, 2])
+        near.setdefault(a, []).append((b, float(value[row]), int(row)))
+        near.setdefault(b, []).append((a, float(value[row]), int(row)))
+    for longest in (broken, *_heaviest(near, broken, var)):
+        chain = _spanned(near, longest, int(var[longest, 0]), int(var[longest, 2]))
+        if chain and sum(value[r] for r in chain) < value[longest]:
+            return sorted({int(o) for o in tables.owner[[longest, *chain]]})
+    return []
+
+
+def _heaviest(near: dict, broken: int, var: np.ndarray) -> list[int]:
+    """The other distances at the broken one's ends, the longest first: one of them may be too long."""
+    at = [e for end in (int(var[broken, 0]), int(var[broken, 2])) for e in near[end]]
+    return [row for _, _, row in sorted(at, key=lambda e: -e[1]) if row != broken][:4]
+
+
+def _spanned(near: dict, without: int, start: int, goal: int) -> list[int]:
+    """The equations of the shortest chain from start to goal that does not use one of them."""
     came, waiting, done = {}, [(0.0, start, -1, -1)], set()
     while waiting:
         length, at, before, row = heapq.heappop(waiting)
@@ -112,163 +176,13 @@ def _too_short(problem: Problem, suspects: list[int], broken: int) -> list[int]:
         if at == goal:
             break
         for other, step, by in near.get(at, []):
-            heapq.heappush(waiting, (length + step, other, at, by))
-    if goal not in came or length >= value[broken]:
-        return []
-    chain = [broken]
-    while goal != start:
+            if by != without:
+                heapq.heappush(waiting, (length + step, other, at, by))
+    chain = []
+    while goal != start and goal in came:
         goal, row = came[goal]
         chain.append(row)
-    return sorted(int(o) for o in tables.owner[chain])
+    return chain if goal == start else []
 
 
-class _Trials:
-    """Solves of parts of the constraints from the sketch as it was."""
-
-    def __init__(self, sketch, problem: Problem, before: np.ndarray, effort: int) -> None:
-        self.effort = effort
-        self.sketch = sketch
-        self.tables: Tables = problem.tables
-        self.problem = problem
-        self.before = before
-        self.count = 0
-
-    def run(self, chosen: list[int], effort: int | None = None):
-        from clearance.sketch.solver import run
-
-        self.count += 1
-        marks = np.zeros(len(self.sketch._ordered), bool)
-        marks[chosen] = True
-        part = problem_of(self.tables.only(marks), self.before)
-        sides = [
-            tuple(e.variable for e in c.entities)
-            for i, c in enumerate(self.sketch._ordered)
-            if marks[i] and c.kind == "same_side" and not c.driven
-        ]
-        return run(part, self.before, sides, effort=self.effort if effort is None else effort)
-
-    def solvable(self, chosen: list[int]) -> bool:
-        """Whether these constraints (by index) can hold together."""
-        if not chosen or self.run(chosen, 0).broken == -1:
-            return True
-        return self.effort > 0 and self.run(chosen).broken == -1
-
-    def everything(self, broken: int) -> list[int]:
-        """All constraints of the broken part of the sketch (of the whole when it cannot be
-        told)."""
-        owner = self.tables.owner
-        part = self.problem.row_part[broken] if broken >= 0 else -1
-        if part < 0 or not (self.problem.fate == 0).any():
-            extra = [
-                i
-                for i, c in enumerate(self.sketch._ordered)
-                if c.kind == "same_side" and not c.driven
-            ]
-            return sorted({int(o) for o in owner} | set(extra))
-        return sorted({int(o) for o in owner[self.problem.row_part == part]} | {int(o) for o in
-        owner[
-            (self.problem.row_part < 0)]})  # fmt: skip
-
-    def is_minimal(self, conflict: list[int]) -> bool:
-        """Whether the set cannot be solved, and can without any one of its members."""
-        return not self.solvable(conflict) and all(
-            self.solvable([i for i in conflict if i != drop]) for drop in conflict
-        )
-
-    def minimal(self, suspects: list[int]) -> list[int]:
-        """A subset that cannot be solved while every smaller one can. Built-in incidences are tried
-        last."""
-        ordered = self.sketch._ordered
-        background = [i for i in suspects if ordered[i].built_in]
-        changeable = [i for i in suspects if not ordered[i].built_in]
-        if not self.solvable(background):
-            return self._explain([], background, False)
-        core = self._explain(background, changeable, False)
-        return sorted(core + self._explain(core, background, False))
-
-    def _explain(self, fixed: list[int], rest: list[int], grew: bool) -> list[int]:
-        """Junker's QuickXplain: the part of `rest` that conflicts together with `fixed`,
-        minimal."""
-        if grew and not self.solvable(fixed):
-            return []
-        if not self.solvable(fixed) or not rest:
-            return []
-        if len(rest) == 1:
-            return rest
-        if len(rest) <= 64 and self._each_needed(fixed, rest):
-            return rest
-        half = len(rest) // 2
-        first, second = rest[:half], rest[half:]
-        right = self._explain(fixed + first, second, True)
-        left = self._explain(fixed + right, first, bool(right))
-        return left + right
-
-    def _each_needed(self, fixed: list[int], rest: list[int]) -> bool:
-        """Whether leaving out any one makes it solvable: circuits mostly are minimal already."""
-        return all(self.solvable(fixed + [i for i in rest if i != drop]) for drop in rest)
-
-
-def _repairs(trial: _Trials, conflict: list[int]) -> list[Repair]:
-    """One dimension changed at a time, and all together by least squares; the least change
-    first."""
-    ordered, size = trial.sketch._ordered, trial.problem.size
-    dimensions = [i for i in conflict if ordered[i].given is not None]
-    found = []
-    whole = [int(k) for k in np.unique(trial.tables.owner)]
-    for i in dimensions:
-        outcome = trial.run(
-            [k for k in whole if k != i]
-        )  # so that the repair suits all other constraints
-        if outcome.broken != -1:  # there are more conflicts than this one
-            outcome = trial.run([k for k in conflict if k != i])
-        if outcome.broken == -1:
-            number = measured(ordered[i], outcome.x.tolist())
-            found.append(_repair(ordered, size, {i: number}))
-    shared = _shared(trial, conflict, dimensions)
-    if shared is not None:
-        found.append(_repair(ordered, size, shared))
-    return sorted(found, key=lambda r: (r.size, len(r.changes)))
-
-
-def _repair(ordered, size: float, numbers: dict[int, float]) -> Repair:
-    scale = {i: size if ordered[i].kind == "angle" else 1.0 for i in numbers}
-    total = sum((scale[i] * (v - ordered[i].number)) ** 2 for i, v in numbers.items())
-    return Repair({ordered[i].name: float(v) for i, v in numbers.items()}, float(np.sqrt(total)))
-
-
-def _shared(trial: _Trials, conflict: list[int], dimensions: list[int]) -> dict[int, float] | None:
-    """The least-squares change of all dimensions at once, the other constraints kept; None if not
-    found."""
-    from scipy.optimize import least_squares
-
-    from clearance.kernels.sketch_equations import residuals
-
-    tables = trial.tables
-    if tables.code.size > 300:
-        marks = np.zeros(len(trial.sketch._ordered), bool)
-        marks[conflict] = True
-        tables = trial.tables.only(marks)
-    if tables.code.size == 0 or tables.code.size > 300:
-        return None
-    soft = np.isin(tables.owner, dimensions) & (tables.scale != 0.0)
-    free = np.unique(tables.var[tables.var >= 0])
-    weight = np.where(soft, 1.0, 1e3)
-    from clearance.sketch.problem import joined
-
-    alias, _, _ = joined(tables)
-    var = np.where(tables.var >= 0, alias[tables.var], -1)
-
-    def violation(numbers: np.ndarray) -> np.ndarray:
-        x = trial.before.copy()
-        x[free] = numbers
-        return weight * residuals(tables.code, var, tables.coef, tables.value, x[alias])
-
-    fitted = least_squares(
-        violation, trial.before[free], xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=300
-    )
-    x = trial.before.copy()
-    x[free] = fitted.x
-    x = x[alias]
-    if np.abs(violation(x[free])[~soft]).max(initial=0.0) > 1e-3 * trial.problem.size:
-        return None
-    return {i: measured(trial.sketch._ordered[i], x.tolist()) for i in dimensions}
+__all__ = ["BRANCHES", "CHAIN", "COUNT", "LINEAR", "Diagnosis", "Repair", "diagnose"]

@@ -11,6 +11,7 @@ import numpy as np
 
 from clearance.kernels.sketch_columns import spread
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
+from clearance.kernels.sketch_rank import singular_steps
 from clearance.sketch.problem import Problem
 
 FACTORED = 1500
@@ -73,15 +74,24 @@ def rank_of(matrix: np.ndarray) -> int:
 
 def freedom_of(problem: Problem, x: np.ndarray) -> int:
     """Degrees of freedom left beyond placing the whole."""
-    total = sum(_part_freedom(problem, x, p) for p in range(problem.n_parts))
+    suspicious = suspicious_parts(problem, x)
+    total = sum(_part_freedom(problem, x, p, suspicious[p]) for p in range(problem.n_parts))
     return max(total - whole_placement(problem, x), 0)
 
 
-def _part_freedom(problem: Problem, x: np.ndarray, part: int) -> int:
-    """Freedoms of one part including its placement; the matrix decides where the plan had to
-    compute."""
-    suspicious = bool((problem.plan.block >= 0).any()) or problem.plan.dependent.size > 0
-    vertices = np.flatnonzero(problem.part == part)
+def suspicious_parts(problem: Problem, x: np.ndarray) -> np.ndarray:
+    """(parts,) whether the count alone may err: numeric clusters, implied equations, singular steps."""
+    plan, out = problem.plan, np.zeros(problem.n_parts, bool)
+    out[problem.part[plan.block_vertex]] = True
+    out[problem.row_part[plan.dependent]] = True
+    singular = singular_steps(problem.system, plan, x, problem.size) > 0
+    out[problem.part[plan.vertex[singular]]] = True
+    return out
+
+
+def _part_freedom(problem: Problem, x: np.ndarray, part: int, suspicious: bool) -> int:
+    """Freedoms of one part including its placement; the matrix decides where the count may err."""
+    vertices = np.flatnonzero(problem.part == part) if suspicious else np.zeros(0)
     if not suspicious or vertices.size > FACTORED // 2:
         return int(problem.free[part])
     matrix, _, _ = derivative(problem, x, part, rows_of(problem, part, independent=False))
@@ -122,19 +132,14 @@ def redundant_rows(problem: Problem, x: np.ndarray, solved: bool) -> list[int]:
     """Equations that follow from the others: by merges, by the graph's count, or at the
     solution."""
     rows = [*problem.repeated, *np.flatnonzero(problem.fate >= 2), *problem.plan.dependent]
-    if not solved or not (problem.plan.block >= 0).any():
-        return sorted(int(r) for r in rows)
-    for part in range(problem.n_parts):
+    suspicious = suspicious_parts(problem, x) if solved else np.zeros(problem.n_parts, bool)
+    for part in np.flatnonzero(suspicious):
         mine = rows_of(problem, part, independent=True)
-        if mine.size == 0 or mine.size > FACTORED or not _has_block(problem, part):
+        if mine.size == 0 or mine.size > FACTORED:
             continue
         matrix, _, _ = derivative(problem, x, part, mine)
         rows += [mine[k] for k in _dependent_rows(matrix)]
     return sorted(int(r) for r in rows)
-
-
-def _has_block(problem: Problem, part: int) -> bool:
-    return bool((problem.part[problem.plan.block_vertex] == part).any())
 
 
 def _dependent_rows(matrix: np.ndarray) -> list[int]:

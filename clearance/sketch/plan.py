@@ -1,8 +1,9 @@
 """The construction plan in words, step by step as the paper's figures name them.
 
 Clusters: (a) three entities, an initial cluster; (b) an entity on a cluster by two edges; (c) two
-bodies by three edges; (d) three bodies; extended, four or more; and the same with edges missing
-(Fig. 13), whose assumptions are counted. Not for: making the plan
+bodies by three edges; (d) three bodies; extended, four or more; and the same with edges missing,
+whose assumptions are counted: Fig. 13 (a) and (b) lack one edge, (c) is two bodies that lack two,
+(d) two bodies that lack one. Not for: making the plan
 (`clearance.kernels.sketch_plan`).
 """
 
@@ -39,12 +40,31 @@ class Step:
     assumptions: int = 0
     outcome: str = field(default="done", compare=False)
 
+    @property
+    def figure(self) -> str:
+        """The figure of Kwon, Lee and Lee 2001 that shows this kind of cluster; empty for none."""
+        if self.kind == "preprocess":
+            return "Fig. 9 (0)"
+        if self.kind == "extended":
+            return "Fig. 11"
+        if self.kind == "initial":
+            return ""
+        if not self.assumptions:
+            return f"Fig. 8 ({self.kind})"
+        letter = {("c", 1): "d", ("c", 2): "c", ("b", 1): "b", ("a", 1): "a"}
+        found = letter.get((self.kind, self.assumptions))
+        return f"Fig. 13 ({found})" if found else ""
+
     def __str__(self) -> str:
         under = f", {self.assumptions} assumed" if self.assumptions else ""
         by = f" by {', '.join(self.uses)}" if self.uses else ""
         return (
             f"({self.kind}) {self.method}{under}: {', '.join(self.places)}{by} -> R{self.cluster}"
         )
+
+
+OUTCOMES = ("done", "failed", "failed", "kept")
+"""By the fates of `clearance.kernels.sketch_execute`."""
 
 
 class _Names:
@@ -71,45 +91,67 @@ class _Names:
 def readable(sketch, problem, fates: np.ndarray) -> list[Step]:
     """The steps of a problem's plan."""
     names = _Names(sketch, problem)
-    plan, kind = problem.plan, problem.system.kind
+    reading = _Closed(names, problem)
     out = _preprocessing(names, problem)
-    base = {int(b) for b in np.flatnonzero(plan.held)}
-    spare = {p: [3, 2, 0][problem.hold[p]] for p in range(problem.n_parts)}
-    begun: set[int] = set()
-    size: dict[int, int] = {}
-    for k in range(plan.vertex.size):
-        b = plan.block[k]
-        outcome = ("done", "failed", "failed", "kept")[fates[k]]
+    for k, b in enumerate(problem.plan.block):
+        outcome = OUTCOMES[fates[k]]
         if b >= 0:
             out.append(_block_step(names, problem, int(b), outcome))
-            continue
-        vertices = [v for v in (plan.vertex[k], plan.partner[k]) if v >= 0]
-        rows = [r for r in plan.edges[k] if r >= 0]
-        missing = sum(2 if kind[v] == POINT else 1 for v in vertices) - len(rows)
-        inside = plan.origin[k] == 1
-        body = int(plan.body_of[vertices[0]])
-        cluster = body + 1 if inside and body not in base else 0
-        places = names.vertices(vertices) or tuple(f"direction {int(v)}" for v in vertices)
-        part = int(problem.part[vertices[0]])
-        if inside:
-            initial, assumed = missing > 0, 0
         else:
-            assumed = max(missing - spare[part], 0)
-            initial = missing > 0 and assumed < missing
-            spare[part] -= missing - assumed
-        key = body if inside else -1 - part
-        size[key] = size.get(key, 0) + 1
-        word = "initial" if initial and key not in begun else "b"
-        if initial or word == "b":
-            word = (
-                "initial"
-                if initial
-                else ("a" if size[key] == 3 and problem.hold[part] < 2 else "b")
-            )
-        method = "assumed" if not rows else "algebraic"
-        out.append(Step(word, places, names.rows(rows), cluster, method, assumed, outcome))
-        begun.add(key)
+            out.append(reading.step(k, outcome))
     return out
+
+
+class _Closed:
+    """Closed steps in order: which begin a cluster, and what they assume beyond its placement."""
+
+    def __init__(self, names: _Names, problem) -> None:
+        self.names = names
+        self.problem = problem
+        self.plan = problem.plan
+        self.base = {int(b) for b in np.flatnonzero(self.plan.held)}
+        self.placed = {
+            int(v)
+            for v in (*self.plan.vertex, *self.plan.partner, *self.plan.block_vertex)
+            if v >= 0
+        }
+        self.spare = {p: [3, 2, 0][problem.hold[p]] for p in range(problem.n_parts)}
+        for v in np.flatnonzero(np.isin(self.plan.body_of, list(self.base))):
+            self.spare[int(problem.part[v])] = 0  # its base places the part
+        self.size: dict[int, int] = {}
+
+    def step(self, k: int, outcome: str) -> Step:
+        plan = self.plan
+        vertices = [int(v) for v in (plan.vertex[k], plan.partner[k]) if v >= 0]
+        rows = [int(r) for r in plan.edges[k] if r >= 0]
+        inside, body = plan.origin[k] == 1, int(plan.body_of[vertices[0]])
+        kind, assumed = self._kind(vertices, rows, inside, body)
+        if inside and len(rows) == 1:  # an edge whose other end is held without a step of its own
+            ends = [int(v) for v in self.problem.system.ends[rows[0]] if v > 0]
+            vertices = [*(v for v in ends if v not in self.placed), *vertices]
+        places = self.names.vertices(vertices) or tuple(f"direction {v}" for v in vertices)
+        cluster = body + 1 if inside and body not in self.base else 0
+        method = "algebraic" if rows else "assumed"
+        return Step(kind, places, self.names.rows(rows), cluster, method, assumed, outcome)
+
+    def _kind(self, vertices, rows, inside: bool, body: int) -> tuple[str, int]:
+        """("initial", "a" or "b", conditions assumed) of a step; placement is no assumption."""
+        part = int(self.problem.part[vertices[0]])
+        freedom = sum(2 if self.problem.system.kind[v] == POINT else 1 for v in vertices)
+        missing = freedom - len(rows)
+        granted = missing if inside else min(missing, self.spare[part])
+        if not inside:
+            self.spare[part] -= granted
+        key = body if inside else -1 - part
+        fresh = inside or (self.problem.hold[part] < 2 and not self._has_base(part))
+        self.size[key] = self.size.get(key, 0) + 1
+        if granted:
+            return "initial", missing - granted
+        return ("a" if fresh and self.size[key] == 3 else "b"), missing
+
+    def _has_base(self, part: int) -> bool:
+        mine = self.plan.body_of[self.problem.part == part]
+        return any(int(b) in self.base for b in mine)
 
 
 def _preprocessing(names: _Names, problem) -> list[Step]:

@@ -8,10 +8,10 @@ which is how conflicts are searched.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clearance.kernels.sketch_core import components
 from clearance.kernels.sketch_graph import (
     DIRECTION,
     IN_GRAPH,
@@ -25,11 +25,8 @@ from clearance.kernels.sketch_graph import (
     vertices,
 )
 from clearance.kernels.sketch_place import System
-from clearance.kernels.sketch_plan import Plan, components, make_plan
+from clearance.kernels.sketch_plan import Plan, make_plan
 from clearance.kernels.sketch_start import counts, row_parts
-
-if TYPE_CHECKING:
-    from clearance.sketch.constraints import Constraint
 
 RESIDUAL = 1e-12
 """[-] Largest residual of a solved sketch relative to its size: some hundred roundings of a
@@ -82,13 +79,6 @@ class Tables:
 
 def tables_of(sketch) -> Tables:
     """The tables of a sketch."""
-    ordered: list[Constraint] = sketch._ordered
-    together = []
-    for i, c in enumerate(ordered):
-        if c.n_rows and (
-            c.kind == "concentric" or (c.kind == "coincident" and c.entities[0].what == "point")
-        ):
-            together.append((i, c.first_row))
     return Tables(
         np.array(sketch._roles, np.int64),
         np.array(sketch._codes, np.int64),
@@ -99,8 +89,8 @@ def tables_of(sketch) -> Tables:
         np.array(sketch._grounds, np.int64),
         np.array(sketch._owners, np.int64),
         np.array(sketch._line_ends, np.int64).reshape(-1, 3),
-        together,
-        np.array([c.number if c.given is not None else 0.0 for c in ordered], float),
+        list(sketch._together),
+        np.array(sketch._dimensions()),
     )
 
 

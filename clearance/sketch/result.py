@@ -39,14 +39,13 @@ class SketchResult:
 
     @cached_property
     def status(self) -> str:
-        """The verdict: one of "well", "under", "over" and "inconsistent".
+        """The verdict: one of "well", "under", "over", "inconsistent" and "unsolved".
 
-        "over": some constraints follow from others. "inconsistent": no solution was found; for a
-        large numeric cluster that is a failed search, not a proof, and `conflicts` names what the
-        search could not solve together.
+        "over": some constraints follow from others. "inconsistent": no solution exists, and `reason`
+        says by what proof. "unsolved": a search found none; that is no proof that there is none.
         """
         if not self.solved:
-            return "inconsistent"
+            return "inconsistent" if self._diagnosis.proof else "unsolved"
         if self.redundant:
             return "over"
         return "under" if self.freedom > 0 else "well"
@@ -107,7 +106,9 @@ class SketchResult:
         """Other solutions of the small numeric clusters: the numbers of every entity, by name."""
         from clearance.sketch.roots import alternatives_of
 
-        return alternatives_of(self.sketch, self._problem, self._outcome.x) if self.solved else []
+        sides = self.sketch.sides()
+        x = self._outcome.x
+        return alternatives_of(self.sketch, self._problem, x, sides) if self.solved else []
 
     @cached_property
     def _diagnosis(self):
@@ -117,8 +118,28 @@ class SketchResult:
 
     @property
     def conflicts(self) -> list[str]:
-        """A minimal set of constraints that cannot hold together; empty when all hold."""
+        """A minimal set of constraints that cannot hold together; empty when all hold.
+
+        Of an "unsolved" sketch it is the least set that the search could not solve, and empty where a
+        cluster is too large to tell: then `searched` lists the cluster's constraints.
+        """
         return [] if self.solved else self._diagnosis.names
+
+    @property
+    def searched(self) -> list[str]:
+        """The constraints among which no solution was found; empty when all hold."""
+        return [] if self.solved else self._diagnosis.searched
+
+    @cached_property
+    def reason(self) -> str:
+        """One line that says why there is no solution, or that none was found; empty when all hold."""
+        if self.solved:
+            return ""
+        names = self.conflicts or self.searched
+        shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+        if self._diagnosis.proof:
+            return f"{shown} cannot hold together: {self._diagnosis.proof}"
+        return f"no place found where {shown} hold; a failed search is no proof that there is none"
 
     @property
     def repairs(self) -> list[Repair]:

@@ -309,6 +309,23 @@ def under_constrained() -> Sketch:
     return s
 
 
+def under_constrained_prism() -> Sketch:
+    """The counts of Fig. 12 without a body to begin with: two rings of nine, spokes and three chords."""
+    s, n = Sketch(), 9
+    random = np.random.default_rng(0)
+    turn = 2.0 * np.pi * np.arange(n) / n
+    ring = np.column_stack([np.cos(turn), np.sin(turn)])
+    place = np.concatenate([3.0 * ring, 4.5 * ring]) + random.uniform(-0.2, 0.2, (2 * n, 2))
+    point = [s.point(*q, name=f"P{i}") for i, q in enumerate(place, 1)]
+    edges = [(k, (k + 1) % n) for k in range(n)] + [(n + k, n + (k + 1) % n) for k in range(n)]
+    edges += [(k, n + k) for k in range(n)] + [(0, 4), (2, 6), (12, 16)]
+    for a, b in edges:
+        span = float(np.linalg.norm(place[a] - place[b]))
+        s.distance(point[a], point[b], span, name=f"d{a + 1}_{b + 1}")
+    jitter(s, 0.1)
+    return s
+
+
 def main() -> None:
     for stage in "bcde":
         sketch = midship(stage)
@@ -318,6 +335,7 @@ def main() -> None:
     bar_in_box(length_known=False).save(HERE / "bar_length.yaml")
     extended_cluster().save(HERE / "extended_cluster.yaml")
     under_constrained().save(HERE / "under_constrained.yaml")
+    under_constrained_prism().save(HERE / "under_constrained_prism.yaml")
 
 
 if __name__ == "__main__":

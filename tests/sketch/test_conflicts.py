@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from clearance.sketch import Sketch
-
-from .test_solver import truth
+from tests.sketch.patterns import distances, irreducible, truth
 
 
 def rebuilt(s, leave_out=(), changes=None):
@@ -34,7 +33,11 @@ def test_one_wrong_dimension(seed):
     for name in result.conflicts:
         assert rebuilt(s, [*others, name]).solve().solved, name
     assert result.repairs[0].size <= min(r.size for r in result.repairs)
-    assert rebuilt(s, changes=result.repairs[-1].changes).solve().solved
+    for repair in result.repairs:
+        assert rebuilt(s, changes=repair.changes).solve().solved, repair
+    single = [r for r in result.repairs if list(r.changes) == ["wrong"]]
+    right = float(np.linalg.norm(points[a] - points[b]))
+    assert single and single[0].changes["wrong"] == pytest.approx(right, abs=1e-9)
 
 
 def test_triangle_inequality():
@@ -67,3 +70,75 @@ def test_redundant_is_told_from_inconsistent():
     s.parallel(lines[0], lines[2], name="implied")
     result = s.solve()
     assert result.status == "over" and result.redundant == ["implied"]
+
+
+def test_a_wrong_dimension_that_is_too_short_for_no_chain():
+    s, p, points, _ = truth(60, 3, off=0.02)
+    a, b = 20, 32
+    s.distance(p[a], p[b], 0.93 * float(np.linalg.norm(points[a] - points[b])), name="wrong")
+    result = s.solve()
+    assert result.status == "inconsistent" and "freedom" in result.reason
+    assert "wrong" in result.conflicts and len(result.conflicts) < 40
+    others = [n for n in s.constraints if n not in result.conflicts]
+    assert not rebuilt(s, others).solve().solved
+    for name in result.conflicts:
+        left = [s.constraints[n].index for n in result.conflicts if n != name]
+        assert result._diagnosis._trial.solvable(left), name
+
+
+def test_a_failed_search_is_not_called_inconsistent():
+    """K(3,3) that no place fits, though no chain is too short: P3 and P4 must be 1.9 apart, so that
+    P0 and P1 are within 0.63, but P5 needs them 0.7 apart."""
+    s = Sketch()
+    points = [(0, 0), (3, 0), (1.5, 2.5), (0.5, 1), (2.5, 1.2), (1.4, -1)]
+    p = [s.point(*q, name=f"P{k}") for k, q in enumerate(points)]
+    for a, spans in enumerate(((1, 1, 1), (1, 1, 0.3), (1, 2.9, 1.7))):
+        for b, span in enumerate(spans):
+            s.distance(p[a], p[3 + b], span, name=f"d{a}{b}")
+    drawn = list(s._numbers)
+    result = s.solve()
+    assert not result.solved and result.status == "unsolved" and s._numbers == drawn
+    assert "no proof" in result.reason and "\n" not in result.reason
+    assert set(result.searched) <= set(s.constraints) and result.searched
+
+
+def test_a_large_failed_search_names_its_cluster_and_no_conflict():
+    points, edges = irreducible(36, 1)
+    s, _ = distances(points, points, edges)
+    random = np.random.default_rng(5)
+    for c in list(s.constraints.values()):
+        s.set(c.name, c.number * random.uniform(0.75, 1.25))
+    result = s.solve()
+    if result.solved:
+        pytest.skip("this start finds a place")
+    if result.status == "unsolved":
+        assert result.conflicts == [] and len(result.searched) >= 20
+        assert "no proof" in result.reason
+    else:
+        assert result.conflicts and "longer" in result.reason
+
+
+def test_a_construction_without_place_is_proved_by_its_branches():
+    s = Sketch()
+    a, b, c = s.point(0, 0, name="a"), s.point(4, 0, name="b"), s.point(1, 3, name="c")
+    line, q = s.line(a, b, name="line"), s.point(1, 1, name="q")
+    for p in (a, b, c):
+        s.fix(p, name=f"fix_{p.name}")
+    s.incident(q, line, name="on"), s.distance(q, c, 1.0, name="short")
+    result = s.solve()
+    assert result.status == "inconsistent" and "branch" in result.reason
+    assert {"on", "short"} <= set(result.conflicts)
+    assert result.repairs[0].changes == {"short": pytest.approx(3.0, abs=1e-9)}
+    s.set("short", result.repairs[0].changes["short"])
+    assert s.solve().solved
+
+
+def test_sides_that_no_branch_satisfies_are_a_conflict():
+    s = Sketch()
+    a, b = s.point(0, 0, name="a"), s.point(4, 0, name="b")
+    line = s.line(a, b, name="line")
+    p, q = s.point(1, 1, name="p"), s.point(3, -1, name="q")
+    s.fix(a), s.fix(b), s.fix(p, name="p_fixed"), s.fix(q, name="q_fixed")
+    s.same_side(p, q, line, name="side")
+    result = s.solve()
+    assert not result.solved and "side" in result.conflicts

@@ -23,7 +23,9 @@ def test_bar_in_the_box_plan_of_figures_7_and_9():
     assert [step.kind for step in numeric] == ["c"]
     assert set(numeric[0].uses) == {"P0_on_bottom", "P1_on_right", "P3_on_left"}
     before = steps[: steps.index(numeric[0])]
-    assert {step.kind for step in before} == {"preprocess", "initial", "b"}
+    assert [step.kind for step in before] == ["preprocess", "initial", "initial", "a", "b"]
+    assert before[2].places == ("P0",) and before[3].places == ("P3",)  # P0, G0, P3: the body R0
+    assert numeric[0].figure == "Fig. 8 (c)"
     assert all(step.cluster == 1 for step in before if step.kind != "preprocess")
 
 
@@ -63,7 +65,8 @@ def test_extended_cluster_of_figure_11():
     result = load("extended_cluster").solve()
     assert result.status == "well"
     numeric = [step for step in result.plan if step.method == "numeric"]
-    assert [step.kind for step in numeric] == ["extended"]
+    assert [step.kind for step in numeric] == ["extended"] and numeric[0].figure == "Fig. 11"
+    assert numeric[0] is result.plan[-1]  # the bodies first, then the line and they at once
     assert len(numeric[0].uses) == 8 and "L6" in numeric[0].places
     assert sum(step.kind == "a" for step in result.plan) == 3
 
@@ -76,6 +79,49 @@ def test_under_constrained_sketch_of_figures_12_to_16():
     assumed = [step.assumptions for step in result.plan if step.assumptions]
     assert assumed == [1, 1, 1]
     assert result.residual <= 1e-12 * 5.0
+    merged = [step for step in result.plan if step.method == "numeric"]
+    assert [step.figure for step in merged] == ["Fig. 13 (d)"] * 3 + ["Fig. 8 (d)"]
+
+
+def test_rule_b_begins_a_body_in_a_cycle_without_one():
+    """As in Fig. 16: three assumptions, each followed by what it makes rigid, the rest well-constrained."""
+    sketch = load("under_constrained_prism")
+    result = sketch.solve()
+    assert len(sketch.entities) == 18 and len(sketch.constraints) == 30
+    assert result.status == "under" and result.freedom == 3 and result.residual <= 1e-12 * 5.0
+    steps = result.plan
+    assert [step.kind for step in steps] == ["initial", "b", "b", "b", "b", "b", "b", "extended"]
+    assert [step.assumptions for step in steps] == [0, 1, 0, 1, 0, 1, 0, 0]
+    assert steps[1].figure == "Fig. 13 (b)" and steps[2].figure == "Fig. 8 (b)"
+    cycle = {*steps[0].places, *steps[1].places, *steps[2].places}
+    spans = [c for c in sketch.constraints.values() if {e.name for e in c.entities} <= cycle]
+    assert len(cycle) == 4 and len(spans) == 4  # the least cycle: 8 - 4 freedoms
+
+
+def test_rule_b_takes_the_cycle_of_least_freedom_and_most_vertices():
+    from clearance.kernels.sketch_rules import merge_order
+
+    ring = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (4, 5), (5, 6), (6, 4)]
+    rows = np.full((len(ring), 5), -1)
+    rows[:, :2] = ring
+    turn, lacking = merge_order(rows, np.array([2, 2, 2, 2, 2, 2, 2]))
+    assert set(np.argsort(turn)[:3]) == {
+        4,
+        5,
+        6,
+    }  # three freedoms are left in it, five in the other
+    assert lacking.sum() == 2 * 7 - len(ring) - 3
+
+
+def test_rule_a_takes_in_a_tree_from_one_body():
+    from clearance.kernels.sketch_rules import merge_order
+
+    tree = [(0, 1), (1, 2), (1, 3), (3, 4)]
+    rows = np.full((len(tree), 5), -1)
+    rows[:, :2] = tree
+    turn, lacking = merge_order(rows, np.array([2, 3, 2, 2, 2]))
+    assert turn[1] == 0 and lacking.sum() == 2 * 4 + 3 - 4 - 3
+    assert (turn >= 0).all()
 
 
 @pytest.mark.parametrize(("stage", "freedom"), [("b", 2), ("c", 2), ("d", 3), ("e", 0)])

@@ -9,35 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from clearance.sketch import Sketch
+from tests.sketch.patterns import shape, truth
 
 QUICK = settings(max_examples=25, deadline=None)
-
-
-def truth(n, seed, extra=0, missing=0, off=0.03, place=(0.0, 0.0), scale=1.0, turn=0.0):
-    """A sketch of n points: a triangulated strip, with some edges more or fewer; (sketch, points,
-    truth)."""
-    random = np.random.default_rng(seed)
-    points = np.array([(0.5 * k, 0.9 * (k % 2)) for k in range(n)]) + random.uniform(
-        -0.1, 0.1, (n, 2)
-    )
-    edges = [(0, 1)] + [(k - j, k) for k in range(2, n) for j in (1, 2)]
-    chosen = list(random.permutation(len(edges)))
-    edges = [edges[k] for k in sorted(chosen[missing:])]
-    far = [(a, b) for a in range(n) for b in range(a + 3, n)]
-    edges += [far[k] for k in random.permutation(len(far))[:extra]]
-    drawn = points + random.uniform(-off, off, points.shape)
-    c, s_ = math.cos(turn), math.sin(turn)
-    drawn = scale * drawn @ np.array([[c, s_], [-s_, c]]) + np.array(place)
-    s = Sketch()
-    p = [s.point(*q) for q in drawn]
-    for a, b in edges:
-        s.distance(p[a], p[b], scale * float(np.linalg.norm(points[a] - points[b])))
-    return s, p, points, edges
-
-
-def shape(p):
-    x = np.array([q.position for q in p])
-    return np.linalg.norm(x[:, None] - x[None], axis=2)
 
 
 @QUICK

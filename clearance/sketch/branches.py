@@ -1,0 +1,118 @@
+"""The branches of ruler-and-compass steps: every closed step that takes one of two points has another.
+
+Tried where the sketch's own branch does not do: to satisfy a `same_side`, and to prove that a small
+construction has no place at all. Not for: numeric clusters (`roots`).
+"""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+
+from clearance.kernels.sketch_equations import (
+    ACROSS,
+    LENGTHS,
+    LINE_CIRCLE,
+    LINEAR,
+    MIDDLE_ON,
+    POINT_LINE,
+)
+from clearance.kernels.sketch_execute import FAILED, execute
+from clearance.kernels.sketch_graph import POINT, TURN
+from clearance.sketch.execution import WRONG_SIDE, Outcome, run
+from clearance.sketch.problem import RESIDUAL, Problem
+from clearance.sketch.roots import other_solutions
+from clearance.sketch.start import Sides, sides_hold, started
+from clearance.sketch.steps import limits_of, residual_of
+
+MOST = 10
+"""Choices up to which all their combinations are tried: 1024 runs of a plan."""
+
+STRAIGHT = (LINEAR, POINT_LINE, LINE_CIRCLE, MIDDLE_ON, ACROSS)
+"""Equations that keep a point on a straight line: two of them meet in one point."""
+
+
+def choices(problem: Problem) -> np.ndarray:
+    """The closed steps (indices) that choose one of two places."""
+    plan, s = problem.plan, problem.system
+    two = (plan.block < 0) & (plan.edges[:, 1] >= 0) & (plan.edges[:, 2] < 0)
+    first, second = s.code[plan.edges[:, 0]], s.code[plan.edges[:, 1]]
+    points = two & (s.kind[plan.vertex] == POINT) & (plan.partner < 0)
+    points &= ~(np.isin(first, STRAIGHT) & np.isin(second, STRAIGHT))
+    lines = two & (s.kind[plan.vertex] == TURN) & (first != ACROSS) & (second != ACROSS)
+    return np.flatnonzero(points | lines)
+
+
+def run_with_sides(problem: Problem, before: np.ndarray, sides: Sides, effort: int = 2) -> Outcome:
+    """The outcome of a problem; where a `same_side` does not hold, the nearest one in which all do."""
+    outcome = run(problem, before, sides, effort)
+    if outcome.broken != WRONG_SIDE or effort == 0:
+        return outcome
+    found = [o for o in _turned(problem, before, sides, outcome) if o.broken == -1]
+    if not found:
+        found = _by_roots(problem, sides, outcome)
+    return min(found, key=lambda o: float(np.linalg.norm(o.x - before)), default=outcome)
+
+
+def _turned(problem: Problem, before: np.ndarray, sides: Sides, outcome):
+    """Outcomes with steps turned, the fewest first; those before a side's points, its points first."""
+    steps = _nearest_choices(problem, sides)
+    for count in range(1, len(steps) + 1):
+        best = []
+        for chosen in combinations(steps, count):
+            turned = np.ones(problem.plan.vertex.size)
+            turned[list(chosen)] = -1.0
+            best.append(run(problem, before, sides, turned=turned))
+        yield from best
+        if any(o.broken == -1 for o in best):
+            return
+
+
+def _nearest_choices(problem: Problem, sides: Sides) -> list[int]:
+    """Up to `MOST` choices in the parts of the sides: the steps of their points and lines, then the last."""
+    s = problem.system
+    concerned = {int(s.vertex_of[problem.alias[i]]) for side in sides for i in side}
+    parts = {int(problem.part[v]) for v in concerned if v > 0}
+    steps = [int(k) for k in choices(problem) if int(problem.part[problem.plan.vertex[k]]) in parts]
+    own = [k for k in steps if int(problem.plan.vertex[k]) in concerned]
+    return (own + [k for k in reversed(steps) if k not in own])[:MOST]
+
+
+def _by_roots(problem: Problem, sides: Sides, outcome) -> list:
+    """Outcomes at other roots of the small numeric clusters."""
+    return [
+        Outcome(x, outcome.fates, -1, residual)
+        for x, residual in other_solutions(problem, outcome.x)
+        if sides_hold(x, sides, problem.size)
+    ]
+
+
+def exhausted(problem: Problem, before: np.ndarray, sides: Sides) -> bool:
+    """Whether the problem is a ruler-and-compass construction of which no branch is a solution.
+
+    False when that cannot be told: freedom is left, a cluster is numeric, or there are too many branches.
+    """
+    steps = choices(problem)
+    circles = (problem.system.kind[problem.plan.vertex] == POINT) & (problem.plan.partner >= 0)
+    lengths = np.any(problem.system.code == LENGTHS)
+    if steps.size > MOST or (problem.plan.block >= 0).any() or circles.any() or lengths:
+        return False
+    return bool(problem.is_rigid.all()) and not _any_branch(problem, before, sides, steps)
+
+
+def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: np.ndarray) -> bool:
+    start, _ = started(problem, before, ())
+    every = np.ones(problem.system.kind.size, np.uint8)
+    for mask in range(2**steps.size):
+        turned = np.ones(problem.plan.vertex.size)
+        turned[steps[(mask >> np.arange(steps.size)) & 1 == 1]] = -1.0
+        x = start.copy()
+        fates = execute(problem.system, problem.plan, x, start, turned, every, limits_of(problem))
+        if (fates == FAILED).any():
+            continue
+        x = x[problem.alias]
+        if residual_of(problem, x)[0] <= RESIDUAL * problem.size:
+            if sides_hold(x, sides, problem.size):
+                return True
+    return False

@@ -1,0 +1,193 @@
+"""Runs a problem's plan and sets the result down with least movement; falls back on numbers.
+
+Order: numbers that are merged agree; parts that already hold are left bit for bit; the plan places
+the rest; what it could not place is tried numerically; rigid parts are set down where the sketch has
+them; parts with freedom move least as a whole.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from clearance.kernels.sketch_equations import LENGTHS, RATIO
+from clearance.kernels.sketch_execute import FAILED, KEPT, execute
+from clearance.kernels.sketch_fit import set_down
+from clearance.kernels.sketch_graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
+from clearance.kernels.sketch_search import RESTARTS, solve_block
+from clearance.kernels.sketch_start import unsettled
+from clearance.sketch.movement import least_movement
+from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
+from clearance.sketch.roots import nearest_roots
+from clearance.sketch.start import Sides, sides_hold, started
+from clearance.sketch.steps import LARGEST_BLOCK, limits_of, residual_of
+
+NEARLY = 1e-5
+"""[-] Error of an implied equation, relative to the size, up to which all equations are solved
+together once more: where the rest is singular (two loci that touch) a rounding of 1e-16 shows as its
+root, 1e-8."""
+
+WRONG_SIDE = -2
+"""In place of the broken equation's row: all equations hold, a `same_side` does not."""
+
+
+class Outcome:
+    """What a run gave: numbers, the steps' fates, the worst row that does not hold (-1: all do)."""
+
+    def __init__(self, x: np.ndarray, fates: np.ndarray, broken: int, residual: float) -> None:
+        self.x = x
+        self.fates = fates
+        self.broken = broken
+        self.residual = residual
+
+
+def run(
+    problem: Problem,
+    before: np.ndarray,
+    sides: Sides = (),
+    effort: int = 2,
+    turned: np.ndarray | None = None,
+) -> Outcome:
+    """Solves a problem from the numbers `before` (n,).
+
+    Lengths are divided by a power of two near the size first: a sketch that is drawn twice as large has
+    the same solution twice as large, bit for bit.
+
+    Args:
+        effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
+        turned: (steps,) -1 where a closed step takes the branch opposite to the sketch.
+    """
+    unit = 2.0 ** math.frexp(problem.size)[1]
+    lengths = np.where(problem.tables.role == DIRECTION, 1.0, unit)
+    outcome = _run_at_unit(_in_units(problem, unit), before / lengths, sides, effort, turned)
+    outcome.x *= lengths
+    outcome.residual *= unit
+    return outcome
+
+
+def _in_units(problem: Problem, unit: float) -> Problem:
+    """The same problem with lengths divided by `unit`."""
+    s, tables = problem.system, problem.tables
+    angular = (problem.length_scale != 1.0) | (s.code == LENGTHS) | (s.code == RATIO)
+    turning = np.append(tables.role == DIRECTION, False)
+    system = s._replace(
+        value=np.where(angular, s.value, s.value / unit),
+        shift=np.where(turning, s.shift, s.shift / unit),
+    )
+    out = Problem(**{**vars(problem), "system": system})
+    out.size = problem.size / unit
+    out.length_scale = np.where(problem.length_scale != 1.0, problem.length_scale / unit, 1.0)
+    return out
+
+
+def _run_at_unit(
+    problem: Problem, before: np.ndarray, sides: Sides, effort: int, turned: np.ndarray | None
+) -> Outcome:
+    """`run` for a problem of a size near 1."""
+    size, dependent = problem.size, problem.plan.dependent
+    x, sketch = started(problem, before, sides)
+    loose = _loosened(problem, dependent)
+    active = unsettled(
+        problem.system, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
+    )
+    if turned is not None:
+        active[problem.part[problem.plan.vertex[turned < 0.0]]] = 1
+    fates = np.full(problem.plan.vertex.shape[0], KEPT)
+    if active.any():
+        fates, x = _solve_parts(problem, x, sketch, active, effort, turned)
+    if problem.tables.together:
+        x = x[problem.alias]
+    residual, broken = _verdict(problem, x)
+    if dependent.size and RESIDUAL * size < residual <= NEARLY * size:
+        for p in np.unique(problem.row_part[dependent]):
+            _numeric_part(problem, p, x, x.copy(), effort)
+        x = x[problem.alias]
+        residual, broken = _verdict(problem, x)
+    outcome = Outcome(x, fates, broken, residual)
+    if broken == -1 and sides and not sides_hold(x, sides, size):
+        outcome.broken = WRONG_SIDE
+    return outcome
+
+
+def _loosened(problem: Problem, dependent: np.ndarray) -> np.ndarray:
+    """The part of every row, without the rows that others imply."""
+    if not dependent.size:
+        return problem.row_part
+    out = problem.row_part.copy()
+    out[dependent] = -1
+    return out
+
+
+def _solve_parts(
+    problem: Problem,
+    x: np.ndarray,
+    sketch: np.ndarray,
+    active_part: np.ndarray,
+    effort: int,
+    turned: np.ndarray | None,
+):
+    size, s = problem.size, problem.system
+    start = x.copy()
+    active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
+    limits = limits_of(problem, RESTARTS if effort else 4)
+    turned = np.ones(problem.plan.vertex.size) if turned is None else turned
+    fates = execute(s, problem.plan, x, start, turned, active, limits)
+    if effort == 0 and (fates == FAILED).any():
+        return fates, x
+    loose = _loosened(problem, problem.plan.dependent)
+    broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
+    for p in np.flatnonzero(broken & active_part):
+        _numeric_part(problem, p, x, start, effort)
+    if effort < 2:
+        return fates, x
+    x = nearest_roots(problem, x, start, fates)
+    return fates, _nearest(problem, x, sketch, start, active_part)
+
+
+def _nearest(
+    problem: Problem, x: np.ndarray, sketch: np.ndarray, start: np.ndarray, active: np.ndarray
+) -> np.ndarray:
+    """Sets rigid parts down nearest to the sketch, and moves those with freedom least."""
+    s, rigid = problem.system, problem.is_rigid
+    settle = np.where(rigid & (active > 0) & (problem.hold < 2), 3 - problem.hold, 0)
+    if settle.any():
+        weight = np.ones(s.kind.shape[0])
+        weight[s.kind == POINT] = problem.weight[s.root[s.kind == POINT]]
+        set_down(s, problem.part, settle, x, sketch, weight)
+    for p in np.flatnonzero(~rigid & (active > 0) & (problem.free > 0)):
+        moved = least_movement(problem, p, x, sketch, problem.weight, start)
+        if moved is not None:
+            x = moved
+    return x
+
+
+def _numeric_part(
+    problem: Problem, part: int, x: np.ndarray, start: np.ndarray, effort: int
+) -> bool:
+    """Solves one whole part at once, from the start and from where the plan came; True when it holds."""
+    s = problem.system
+    vertices = np.flatnonzero(problem.part == part)
+    rows = np.flatnonzero((problem.row_part == part) & (problem.fate == IN_GRAPH))
+    if rows.size > 4 * LARGEST_BLOCK:
+        return False
+    alone, pivot = np.full(s.kind.shape[0], -1), np.zeros((0, 2))
+    limits = limits_of(problem, 6 if rows.size < 60 and effort == 2 else effort)
+    for origin in (start, x):
+        tried = origin.copy()
+        if solve_block(
+            s, vertices, rows, tried, alone, pivot, limits.floor, limits.tolerance, limits.attempts
+        ):
+            x[:] = tried
+            return True
+    return False
+
+
+def _verdict(problem: Problem, x: np.ndarray) -> tuple[float, int]:
+    """(residual, row that does not hold or -1)."""
+    residual, row = residual_of(problem, x)
+    contradicted = np.flatnonzero(problem.fate == CONTRADICTED)
+    if contradicted.size:
+        return residual, int(contradicted[0])
+    allowed = DEPENDENT if problem.plan.dependent.size else RESIDUAL
+    return residual, -1 if residual <= allowed * problem.size else int(row)

@@ -1,0 +1,58 @@
+"""The flat lists behind a sketch: numbers of entities, rows of equations, ends of lines.
+
+Typed arrays, so that a solve starts without walking over objects. Not for: names and checks.
+"""
+
+from __future__ import annotations
+
+import math
+from array import array
+from collections.abc import Iterable
+
+from clearance.sketch.constraints import Constraint, Row
+
+
+class FlatLists:
+    """What the solver reads: one entry a variable, a line, a row or a constraint."""
+
+    def __init__(self) -> None:
+        self._numbers: list[float] = []
+        self._roles = array("q")
+        self._line_ends = array("q")
+        self._codes = array("q")
+        self._vars = array("q")
+        self._coefs = array("d")
+        self._scales = array("d")
+        self._offsets = array("d")
+        self._grounds = array("q")
+        self._owners = array("q")
+        self._ordered: list[Constraint] = []
+        self._together: list[tuple[int, int]] = []
+
+    def _grow(self, *pairs: tuple[float, int]) -> int:
+        """Takes in numbers with their roles; the first one's place."""
+        first = len(self._numbers)
+        for number, role in pairs:
+            self._numbers.append(number)
+            self._roles.append(role)
+        return first
+
+    def _append(self, constraint: Constraint, rows: Iterable[Row]) -> None:
+        """Takes in a constraint's equations; coincident points are listed apart."""
+        first = len(self._codes)
+        for row in rows:
+            self._codes.append(row.code)
+            self._vars.extend(row.var + (-1,) * (8 - len(row.var)))
+            self._coefs.extend(row.coef + (0.0,) * (4 - len(row.coef)))
+            self._scales.append(row.scale)
+            self._offsets.append(row.offset)
+            self._grounds.append(row.ground)
+            self._owners.append(constraint.index)
+        constraint.n_rows = len(self._codes) - first
+        points = constraint.kind == "coincident" and constraint.entities[0].what == "point"
+        if constraint.n_rows and (points or constraint.kind == "concentric"):
+            self._together.append((constraint.index, first))
+
+    def _dimensions(self) -> list[float]:
+        """The dimension of every constraint; 0 for those without."""
+        return [0.0 if math.isnan(c.number) else c.number for c in self._ordered]

@@ -1,0 +1,98 @@
+"""Repairs of a conflict: which dimensions to change, to what, so that all constraints can hold.
+
+One dimension at a time is left out, everything else solved, and the dimension measured; or all dimensions
+of the conflict share the change by least squares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.sketch.constraints import measured
+from clearance.sketch.problem import Tables, joined
+from clearance.sketch.trials import Trials
+
+SHARED = 300
+"""Equations up to which a change shared by all dimensions is worked out (a dense least-squares problem)."""
+
+FIRM = 1e3
+"""[-] Weight of the equations that may not give way against those of the conflict's dimensions."""
+
+
+@dataclass(frozen=True)
+class Repair:
+    """Dimensions to change so that the conflict can be solved.
+
+    Attributes:
+        changes: new value by constraint name, in the constraint's own unit ([m], [rad] or [-]).
+        size: root of the summed squares of the changes, angles as arcs at the sketch's size.
+    """
+
+    changes: dict[str, float]
+    size: float
+
+
+def repairs_of(trial: Trials, conflict: list[int]) -> list[Repair]:
+    """One dimension changed at a time, and all together; the least change first."""
+    ordered, size = trial.sketch._ordered, trial.problem.size
+    dimensions = [i for i in conflict if ordered[i].given is not None]
+    whole = [int(k) for k in np.unique(trial.tables.owner)]
+    found = []
+    for i in dimensions:
+        outcome = trial.run([k for k in whole if k != i])
+        if outcome.broken != -1:  # there are more conflicts than this one
+            outcome = trial.run([k for k in conflict if k != i])
+        if outcome.broken == -1:
+            number = measured(ordered[i], outcome.x.tolist())
+            found.append(_repair(ordered, size, {i: number}))
+    shared = _shared(trial, conflict, dimensions)
+    if shared is not None and len(dimensions) > 1:
+        found.append(_repair(ordered, size, shared))
+    return sorted(found, key=lambda r: (r.size, len(r.changes)))
+
+
+def _repair(ordered, size: float, numbers: dict[int, float]) -> Repair:
+    scale = {i: size if ordered[i].kind == "angle" else 1.0 for i in numbers}
+    total = sum((scale[i] * (v - ordered[i].number)) ** 2 for i, v in numbers.items())
+    return Repair({ordered[i].name: float(v) for i, v in numbers.items()}, float(np.sqrt(total)))
+
+
+def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[int, float] | None:
+    """The least change of all dimensions at once, the other constraints kept; None if not found."""
+    from scipy.optimize import least_squares
+
+    from clearance.kernels.sketch_equations import residuals
+
+    tables = _smallest(trial, conflict)
+    if tables is None:
+        return None
+    soft = np.isin(tables.owner, dimensions) & (tables.scale != 0.0)
+    free = np.unique(tables.var[tables.var >= 0])
+    weight = np.where(soft, 1.0, FIRM)
+    alias, _, _ = joined(tables)
+    var = np.where(tables.var >= 0, alias[tables.var], -1)
+
+    def violation(numbers: np.ndarray) -> np.ndarray:
+        x = trial.before.copy()
+        x[free] = numbers
+        return weight * residuals(tables.code, var, tables.coef, tables.value, x[alias])
+
+    fitted = least_squares(
+        violation, trial.before[free], xtol=1e-12, ftol=1e-12, gtol=1e-12, max_nfev=300
+    )
+    x = trial.before.copy()
+    x[free] = fitted.x
+    exact = trial.run_from(x[alias], [k for k in np.unique(tables.owner) if k not in dimensions])
+    if exact.broken != -1:
+        return None
+    return {i: measured(trial.sketch._ordered[i], exact.x.tolist()) for i in dimensions}
+
+
+def _smallest(trial: Trials, conflict: list[int]) -> Tables | None:
+    """The tables of the whole sketch, of the conflict alone, or None, by their number of equations."""
+    for tables in (trial.tables, trial.tables.only(trial.marks(conflict))):
+        if 0 < tables.code.size <= SHARED:
+            return tables
+    return None

@@ -1,0 +1,46 @@
+"""The limits of a run at a problem's size, its error, and the part of a plan after one cluster."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.kernels.sketch_equations import worst
+from clearance.kernels.sketch_execute import FAILED, TOO_LARGE, Limits, execute
+from clearance.kernels.sketch_search import RESTARTS
+from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
+
+LARGEST_BLOCK = 6000
+"""Equations of a numeric cluster up to which it is tried; large ones are solved on a band."""
+
+FLOOR = 2e-16
+"""[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
+
+
+def limits_of(problem: Problem, attempts: int = RESTARTS) -> Limits:
+    """The limits of a run at the problem's size."""
+    size = problem.size
+    return Limits(SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK, attempts)
+
+
+def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
+    """The largest residual [m] of all equations, and its row."""
+    s = problem.system
+    return worst(s.code, s.var, s.coef, s.value, x, problem.length_scale)
+
+
+def run_after(
+    problem: Problem, block: int, x: np.ndarray, sketch: np.ndarray
+) -> tuple[np.ndarray, bool]:
+    """The numbers after the steps that follow a numeric cluster are run again from x, on the branches
+    of `sketch`; and whether every step found its place."""
+    p = problem.plan
+    later = int(np.flatnonzero(p.block == block)[0]) + 1
+    plan = p._replace(
+        vertex=p.vertex[later:], partner=p.partner[later:], edges=p.edges[later:],
+        block=p.block[later:], origin=p.origin[later:],
+    )  # fmt: skip
+    out = x.copy()
+    every = np.ones(problem.system.kind.size, np.uint8)
+    turned = np.ones(plan.vertex.size)
+    fates = execute(problem.system, plan, out, sketch, turned, every, limits_of(problem))
+    return out, not ((fates == FAILED) | (fates == TOO_LARGE)).any()

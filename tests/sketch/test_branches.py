@@ -1,0 +1,135 @@
+"""Sides, other roots, the nearest root, degenerate outcomes by name."""
+
+import numpy as np
+import pytest
+
+from clearance.sketch import DegenerateSketch, Sketch
+
+
+def base():
+    s = Sketch()
+    a, b = s.point(0, 0, name="a"), s.point(4, 0, name="b")
+    s.fix(a), s.fix(b)
+    return s, a, b, s.line(a, b, name="line")
+
+
+def test_same_side_takes_the_other_branch_of_a_chain():
+    """q hangs on m; the drawing's own branch would put q below the line."""
+    s, a, b, line = base()
+    p, m, q = s.point(1, 1), s.point(2, 2), s.point(3.1, -0.4)
+    s.distance(p, a, 1.5), s.distance(p, b, 3.5)
+    s.distance(m, a, 3.0), s.distance(m, b, 3.0)
+    s.distance(q, m, 2.6), s.distance(q, b, 1.3)
+    side = s.same_side(p, q, line)
+    result = s.solve()
+    assert result.solved and p.position[1] > 0.0 and q.position[1] > 0.0
+    assert np.linalg.norm(q.position - m.position) == pytest.approx(2.6, abs=1e-12)
+    assert side.valency == 0
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_same_side_holds_from_any_drawing(seed):
+    random = np.random.default_rng(seed)
+    s, a, b, line = base()
+    p, q = (s.point(*random.uniform(-3, 3, 2)) for _ in range(2))
+    s.distance(p, a, 2.0), s.distance(p, b, 3.0)
+    s.distance(q, p, 2.5), s.distance(q, b, 2.2)
+    s.same_side(p, q, line)
+    result = s.solve()
+    assert result.solved and p.position[1] * q.position[1] > 0.0
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_same_side_takes_another_root_of_a_numeric_cluster(seed):
+    """K(3,3) with two points fixed, and a side on which only other roots have their last point."""
+    s, p = k33(seed, fixed=True)
+    here, others = p[1].position, s.solve().alternatives
+    there = max((other[p[1].name] for other in others), key=lambda q: np.linalg.norm(q - here))
+    middle, away = 0.5 * (here + there), there - here
+    s, p = k33(seed, fixed=True)
+    line = s.line(middle, middle + np.array([-away[1], away[0]]), name="line")
+    flag = s.point(*(there + away), name="flag")
+    s.fix(line), s.fix(flag), s.same_side(flag, p[1], line)
+    result = s.solve()
+    assert result.solved and result.residual <= 1e-11
+    assert (p[1].position - middle) @ away > 0.0
+    for c in s.constraints.values():
+        if c.kind == "distance":
+            span = np.linalg.norm(c.entities[0].position - c.entities[1].position)
+            assert span == pytest.approx(c.number, abs=1e-11)
+
+
+def _file(name):
+    from pathlib import Path
+
+    return Path(__file__).parents[2] / "scenes" / "sketches" / f"{name}.yaml"
+
+
+def k33(seed, fixed=False):
+    random = np.random.default_rng(seed)
+    points = random.uniform(0, 3, (6, 2))
+    s = Sketch()
+    p = [s.point(*q) for q in points]
+    for q in (p[0], p[3]) if fixed else ():
+        s.fix(q)
+    for a in range(3):
+        for b in range(3 + (fixed and a == 0), 6):
+            s.distance(p[a], p[b], float(np.linalg.norm(points[a] - points[b])))
+    return s, p
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_alternatives_hold_differ_and_include_every_way_back(seed):
+    s, p = k33(seed)
+    result = s.solve()
+    names = [q.name for q in p]
+    here = np.array([q.position for q in p])
+    for other in result.alternatives:
+        x = np.array([other[n] for n in names])
+        for c in s.constraints.values():
+            i, j = (names.index(e.name) for e in c.entities)
+            assert np.linalg.norm(x[i] - x[j]) == pytest.approx(c.number, abs=1e-11)
+        gaps, mine = (np.linalg.norm(y[:, None] - y[None], axis=2) for y in (x, here))
+        assert np.abs(x - here).max() > 1e-6 and gaps.shape == mine.shape
+    moves = [np.linalg.norm(np.array([o[n] for n in names]) - here) for o in result.alternatives]
+    assert moves == sorted(moves)
+
+
+def test_the_nearest_root_is_taken():
+    """From a drawing near either root of the bar's length, that one comes out, though both are far."""
+    s = Sketch.load(_file("bar_length"))
+    s.solve()
+    found = {round(s.value("length"), 4)}
+    other = s.solve().alternatives[0]
+    t = Sketch.load(_file("bar_length"))
+    for k in range(4):
+        at = t.entity(f"P{k}").variable
+        t._numbers[at : at + 2] = [float(v) for v in other[f"P{k}"]]
+    for k in range(4):
+        line = t.entity(f"bar{k}")
+        t._numbers[line.variable : line.variable + 2] = [float(v) for v in other[f"bar{k}"]]
+    assert t.solve().solved
+    found.add(round(t.value("length"), 4))
+    assert found == {10.8149, 12.5679}
+
+
+def test_a_circle_that_shrinks_to_nothing_is_named():
+    s = Sketch()
+    c = s.circle((1.0, 0.5), 0.4, name="wheel")
+    end = s.point(2.0, 0.1, name="end")
+    s.fix(c.center), s.coincident(c.center, end), s.incident(end, c, name="rim")
+    with pytest.raises(DegenerateSketch, match="wheel"):
+        s.solve()
+
+
+def test_a_line_that_shrinks_to_nothing_is_named():
+    s = Sketch()
+    a, b, c = s.point(0, 0), s.point(1, 0), s.point(3, 0)
+    edge = s.segment(a, b, name="edge")
+    for p, x in ((a, 0.0), (c, 3.0)):
+        s.fix(p, name=f"at{x}")
+    s.horizontal(edge), s.distance(b, c, 3.0)
+    drawn = list(s._numbers)
+    with pytest.raises(DegenerateSketch, match="edge"):
+        s.solve()
+    assert s._numbers == drawn

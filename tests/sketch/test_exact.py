@@ -1,0 +1,91 @@
+"""Bit-exact properties: twice the sketch, twice the solution; what is solved stays; nothing flips."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from clearance.kernels.sketch_graph import DIRECTION
+from clearance.sketch import Sketch
+from scripts.bench.sketch import flipped, patch
+from tests.sketch.patterns import distances, irreducible, prism, shaken, truth
+
+SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
+FILES = (
+    "bar_in_box",
+    "extended_cluster",
+    "under_constrained",
+    "under_constrained_prism",
+    "midship_d",
+)
+
+
+def scaled(s, factor):
+    """Multiplies every length of a sketch, drawn or dimension."""
+    for k, role in enumerate(s._roles):
+        s._numbers[k] *= 1.0 if role == DIRECTION else factor
+    for c in s._ordered:
+        if c.given is not None and c.kind not in ("angle", "ratio"):
+            c.given = c.number = c.number * factor
+    for k, (code, var) in enumerate(zip(s._codes, s._vars[::8], strict=True)):
+        if not (code == 6 and s._roles[var] == DIRECTION):
+            s._offsets[k] *= 1.0 if code == 7 else factor
+    s._solver = None
+    return s
+
+
+@pytest.mark.parametrize("power", [-20, -3, 1, 17])
+@pytest.mark.parametrize("name", FILES)
+def test_scaling_by_a_power_of_two_is_exact(name, power):
+    s, t = (Sketch.load(SKETCHES / f"{name}.yaml") for _ in range(2))
+    scaled(t, 2.0**power)
+    assert s.solve().solved and t.solve().solved
+    factor = np.where(np.array(s._roles) == DIRECTION, 1.0, 2.0**power)
+    assert (np.array(t._numbers) == factor * np.array(s._numbers)).all()
+
+
+@pytest.mark.parametrize("power", [-9, 6])
+def test_scaling_of_patterns_is_exact(power):
+    points, edges = irreducible(36, 2)
+    for maker in (lambda k: distances(k * points, k * shaken(points, 0.1, 5), edges)[0],
+                  lambda k: truth(40, 3, missing=2, scale=k)[0]):  # fmt: skip
+        s, t = maker(1.0), maker(2.0**power)
+        assert s.solve().solved and t.solve().solved
+        assert (np.array(t._numbers) == 2.0**power * np.array(s._numbers)).all()
+
+
+@pytest.mark.parametrize("name", [*FILES, "bar_length", "midship_b", "midship_c", "midship_e"])
+def test_solved_files_solve_to_themselves_bit_for_bit(name):
+    s = Sketch.load(SKETCHES / f"{name}.yaml")
+    assert s.solve().solved
+    before = list(s._numbers)
+    assert s.solve().solved and s._numbers == before
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_off_by_20_percent_all_are_solved_and_none_flips(seed):
+    s, points, edges = patch(100, 0.2, seed)
+    assert s.solve().solved
+    assert flipped(s, points, edges) == 0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_irreducible_clusters_off_by_20_percent(seed):
+    points, edges = irreducible(36, seed)
+    s, p = distances(points, shaken(points, 0.2, seed), edges)
+    result = s.solve()
+    assert result.solved and result.residual <= 1e-12 * 6.0
+    x = np.array([q.position for q in p])
+    for a, b in edges:
+        span = np.linalg.norm(points[a] - points[b])
+        assert np.linalg.norm(x[a] - x[b]) == pytest.approx(span, abs=1e-11)
+    before = list(s._numbers)
+    assert s.solve().solved and s._numbers == before
+
+
+def test_a_large_prism_is_solved_on_a_band():
+    points, edges = prism(60, 1)
+    s, _ = distances(points, shaken(points, 0.1, 2), edges)
+    result = s.solve()
+    assert result.solved and result.residual <= 1e-12 * 20.0
+    assert any(step.method == "numeric" for step in result.plan)
