@@ -70,20 +70,3 @@ def _across(planes: np.ndarray, n_faces: int) -> np.ndarray:
     across[order[:, 0]] = order[:, 1] // 3
     across[order[:, 1]] = order[:, 0] // 3
     return across.reshape(-1, 3)
-
-
-def scattered_order(starts: np.ndarray, neighbours: np.ndarray, n_rounds: int = 8) -> np.ndarray:
-    """(f,) the faces in rounds of doubling size, each a walk over the surface.
-
-    Random rounds keep the cuts small, walks keep the climbs short (Amenta, Choi, Rote 2003, "biased
-    randomized insertion order"); the seed is fixed.
-    """
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import depth_first_order
-
-    n = len(starts) - 1
-    graph = csr_array((np.ones(len(neighbours), np.int8), neighbours, starts), shape=(n, n))
-    walk = depth_first_order(graph, 0, directed=False, return_predecessors=False)
-    draw = np.random.default_rng(20130201).random(n)
-    rounds = np.clip(np.ceil(np.log2(np.maximum(draw, 1e-12))) + n_rounds, 0, n_rounds)
-    return walk[np.argsort(rounds[walk], kind="stable")].astype(np.int64)
