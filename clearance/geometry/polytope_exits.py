@@ -35,6 +35,7 @@ def packed(
     """The arrays of a body with faces `rings` (starts, corners), planes (normals, a corner of each, distance
     from the centroid) and `neighbours`, the face over each edge, as the edges stand in `rings`."""
     normals, anchors, widths = planes
+    size = np.linalg.norm(np.ptp(vertices, axis=0))
     f = len(normals)
     k = int(np.clip(np.ceil(np.sqrt(f / FACES_PER_CELL / 6.0)), 1, 128))
     round_from_body, body_from_round, pad = _rounding_map(vertices - centroid)
@@ -47,7 +48,7 @@ def packed(
     lead_numbers = [f, k, begin, n_edges, kernels.HEAD + kernels.ROW * f + 6 * k * k, 0, 0, 0]
     parts = lead_numbers, starts, faces[order], rings[0] + first, rings[1], neighbours
     indices = np.concatenate(parts).astype(np.int32)
-    head = np.concatenate([centroid, round_from_body.ravel(), [widths.max(), 0.0, 0.0, 0.0]])
+    head = np.concatenate([centroid, round_from_body.ravel(), [widths.max(), size, 0.0, 0.0]])
     rows = np.column_stack([normals, 1.0 / widths, anchors, widths])
     numbers = np.concatenate([head, rows.ravel(), np.zeros(6 * k * k), vertices.ravel()])
     kernels.bound_cells(numbers, indices, body_from_round)

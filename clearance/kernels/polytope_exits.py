@@ -8,7 +8,7 @@ has a bound: the gauge is convex, hence at most its greatest value in the cell's
 If rounding puts another face's plane in front, the listed one falls short of it by no more than the corners
 of the body stand out of its own planes, relatively. Not for: deciding what a body's faces are.
 
-A body is two arrays. `numbers`: centroid (3), the linear map (9), greatest width, three spare; eight a face:
+A body is two arrays. `numbers`: centroid (3), the linear map (9), greatest width, size, two spare; eight a face:
 outward unit normal n, 1/w, a corner, the plane's distance w from the centroid; a bound for each cell; the
 corners, three each. `indices`: number of faces f, k, where the faces' starts begin, how much later than their
 corners their neighbours stand (the neighbour over an edge stands with the corner it leaves), where the corners
