@@ -14,11 +14,17 @@ from clearance.geometry.edges import rings_of
 
 
 class Trivalent(NamedTuple):
-    """A polytope in which each vertex lies on three planes; see `kernels.polytope_clip`."""
+    """A polytope in which each vertex lies on three planes; see `kernels.polytope_clip`.
+
+    Attributes:
+        corner: (t,) which corner each vertex is at. planes, across: (t, 3). mesh: (t, 8) int32, both as the
+            kernels take them.
+    """
 
     corner: np.ndarray
     planes: np.ndarray
     across: np.ndarray
+    mesh: np.ndarray
 
 
 def twins(face_starts: np.ndarray, face_vertices: np.ndarray, n_vertices: int) -> np.ndarray | None:
@@ -43,7 +49,7 @@ def vertex_graph(
 def trivalent_form(
     face_starts: np.ndarray, face_vertices: np.ndarray, twin: np.ndarray, n_vertices: int
 ) -> Trivalent:
-    """Each vertex of d faces as d - 2 vertices of three faces, a fan of its dual polygon."""
+    """Each vertex of d faces as d - 2 vertices of three faces, a fan of its dual polygon; in its order."""
     ring = rings_of(face_starts)
     before = np.empty_like(ring.ahead)
     before[ring.ahead] = np.arange(len(before))
@@ -58,8 +64,12 @@ def trivalent_form(
         i, j = j, turn[j]
         more = j != first[vertex]
         vertex, i, j = vertex[more], i[more], j[more]
-    planes = np.concatenate(fans)
-    return Trivalent(np.concatenate(corners), planes, _across(planes, len(face_starts) - 1))
+    corners = np.concatenate(corners)
+    near = np.argsort(corners, kind="stable")
+    planes = np.concatenate(fans)[near]
+    across = _across(planes, len(face_starts) - 1)
+    mesh = np.column_stack([across, planes, np.zeros((len(near), 2), dtype=np.int64)])
+    return Trivalent(corners[near], planes, across, mesh.astype(np.int32))
 
 
 def _across(planes: np.ndarray, n_faces: int) -> np.ndarray:

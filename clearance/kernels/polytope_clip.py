@@ -12,7 +12,8 @@ is inside the body, to the tolerance, and planes that cut nothing were never tou
 Arrays, a row a vertex: `spots` (c, 4) float64, its place [m] about the origin and its last height over a
 plane; `mesh` (c, 8) int32, columns `ACROSS` + k the vertex at the other end of the edge that leaves plane k
 (-1 first: a free row), `PLANES` + k the planes in order, a stamp, the last body it was held against. A row a
-plane: `table` (p, 3) int32, scratch, a stamp, 1 once it has cut. `state`: free rows, last stamp, rows used.
+plane: `table` (p, 3) int32, scratch, a stamp, 1 once it has cut and 2 if it is `LATENT`, to come in with a
+patch (`polytope_patch`). `state`: free rows, last stamp, rows used.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
 N_FREE, STAMP, N_ROWS = 0, 1, 2
 ACROSS, PLANES, MARK, LOOKED = 0, 3, 6, 7
 FIRST, SEEN, USED = 0, 1, 2
+LATENT = 2
 QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
 
 
@@ -58,7 +60,7 @@ def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp
     i = 0
     while i < n_queue:
         f = work[QUEUE, i]
-        if table[base + f, USED] == 0 and over(spots, v, plane_of(numbers, f, origin)) > tolerance:
+        if table[base + f, USED] != 1 and over(spots, v, plane_of(numbers, f, origin)) > tolerance:
             return f
         for at in range(indices[indices[2] + f], indices[indices[2] + f + 1]):
             g = indices[at + indices[3]]
@@ -287,6 +289,15 @@ def cut_by_plane(
     return CUT, n_rim
 
 
+@inlined
+def is_copy(spots, mesh, v, base):
+    """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
+    u = v - 1
+    if mesh[u, 0] < 0 or (mesh[u, LOOKED] != base + 1 and mesh[u, LOOKED] != -1):
+        return False
+    return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
+
+
 @kernel
 def cut_by_body(
     spots, mesh, state, work, rim, table, numbers, indices, origin, base, tolerance, noise
@@ -321,6 +332,9 @@ def cut_by_body(
                 if mesh[v, 0] < 0 or (turn == 0 and mesh[v, LOOKED] == base + 1):
                     continue
                 mesh[v, LOOKED] = base + 1
+                if turn == 0 and v > 0 and is_copy(spots, mesh, v, base):
+                    mesh[v, LOOKED] = mesh[v - 1, LOOKED]
+                    continue
                 x, y, z = spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
                 cell, bound = cell_of(numbers, indices, x, y, z)
                 if bound < 1.0:
@@ -330,7 +344,7 @@ def cut_by_body(
                     continue
                 plane = plane_of(numbers, face, origin)
                 above = over(spots, v, plane)
-                if table[base + face, USED] != 0 or above <= tolerance:
+                if table[base + face, USED] == 1 or above <= tolerance:
                     state[STAMP] += 2
                     face = other_face(
                         numbers,
@@ -349,6 +363,9 @@ def cut_by_body(
                         continue
                     plane = plane_of(numbers, face, origin)
                     above = over(spots, v, plane)
+                if table[base + face, USED] == LATENT:
+                    mesh[v, LOOKED] = -1
+                    continue
                 if turn == 0 and above <= noise:
                     work[LATER, n_later] = v
                     n_later += 1
