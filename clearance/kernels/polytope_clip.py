@@ -18,7 +18,7 @@ patch (`polytope_patch`). `state`: free rows, last stamp, rows used.
 
 from __future__ import annotations
 
-from clearance.jit import inlined, kernel
+from clearance.jit import inlined, kernel, merged
 from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in
 
 CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
@@ -29,7 +29,7 @@ LATENT = 2
 QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
 
 
-@inlined
+@merged
 def plane_of(numbers, face, origin):
     """(normal, offset [m]) of a face's plane about `origin`."""
     row = HEAD + ROW * face
@@ -40,7 +40,7 @@ def plane_of(numbers, face, origin):
     return x, y, z, offset
 
 
-@inlined
+@merged
 def over(spots, v, plane):
     """[m] How far vertex `v` stands above the plane."""
     return plane[0] * spots[v, 0] + plane[1] * spots[v, 1] + plane[2] * spots[v, 2] - plane[3]
@@ -113,7 +113,7 @@ def climb(spots, mesh, start, plane, noise, state, work):
     return top
 
 
-@inlined
+@merged
 def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     """Number of connected vertices above the plane, from `top`; they are queued and marked `stamp`.
 
@@ -141,7 +141,7 @@ def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     return n_above
 
 
-@inlined
+@merged
 def has_corner(indices, face, corner):
     """True if the face has the corner."""
     for at in range(indices[indices[2] + face], indices[indices[2] + face + 1]):
@@ -150,7 +150,7 @@ def has_corner(indices, face, corner):
     return False
 
 
-@inlined
+@merged
 def own_corner(indices, base, a, b, c):
     """The corner of the body that its planes `a`, `b`, `c` share, or -1 if they are not its or share none."""
     n = indices[0]
@@ -164,7 +164,7 @@ def own_corner(indices, base, a, b, c):
     return -1
 
 
-@inlined
+@merged
 def put_rim(
     spots, mesh, state, n_above, stamp, name, work, rim, table, numbers, indices, base, origin
 ):
@@ -215,7 +215,7 @@ def put_rim(
     return n_rim
 
 
-@inlined
+@merged
 def rim_is_one_ring(rim, n_rim, table, stamp):
     """True if the rim's edges follow each other through their planes in one ring."""
     i = 0
@@ -229,7 +229,7 @@ def rim_is_one_ring(rim, n_rim, table, stamp):
     return False
 
 
-@inlined
+@merged
 def close_rim(mesh, rim, n_rim, table):
     """Links the new vertices to the outside and to each other."""
     for i in range(n_rim):
@@ -242,7 +242,7 @@ def close_rim(mesh, rim, n_rim, table):
         mesh[after, 2] = v
 
 
-@inlined
+@merged
 def swap_rows(state, mesh, n_above, n_rim, work):
     """Takes the rows of the new vertices from the free ones and frees those above the plane."""
     taken = min(n_rim, state[N_FREE])
@@ -289,7 +289,7 @@ def cut_by_plane(
     return CUT, n_rim
 
 
-@inlined
+@merged
 def is_copy(spots, mesh, v, base):
     """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
     u = v - 1

@@ -21,14 +21,14 @@ import math
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
+from clearance.jit import inlined, kernel, merged
 
 HEAD = 16
 ROW = 8
 LEAD = 8
 
 
-@inlined
+@merged
 def cell_at(x, y, z, k):
     """(cell, greatest coordinate's magnitude) of a direction in the round frame."""
     ax = abs(x)
@@ -48,7 +48,7 @@ def cell_at(x, y, z, k):
     return (side * k + i) * k + j, most
 
 
-@inlined
+@merged
 def cell_of(numbers, indices, x, y, z):
     """(cell, upper bound on the gauge) of the point (x, y, z) about the centroid."""
     u = numbers[3] * x + numbers[4] * y + numbers[5] * z
@@ -58,7 +58,7 @@ def cell_of(numbers, indices, x, y, z):
     return cell, most * numbers[HEAD + ROW * indices[0] + cell]
 
 
-@inlined
+@merged
 def exit_in(numbers, indices, cell, x, y, z):
     """(face, gauge): the face of the cell's list with the greatest n.v/w at (x, y, z) about the centroid."""
     best = -math.inf

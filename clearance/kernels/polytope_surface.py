@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
+from clearance.jit import kernel, merged
 from clearance.kernels.expansion import two_sum
 from clearance.kernels.polytope_clip import FIRST, PLANES, SEEN
 
@@ -67,7 +67,7 @@ def ring_moments(places, starts, corners, origin):
     return moments
 
 
-@inlined
+@merged
 def add_to(sums, i, value):
     """Adds to sum `i`, keeping what rounding drops in `sums[4 + i]`."""
     sums[i], rest = two_sum(sums[i], value)
