@@ -76,15 +76,17 @@ def add_to(sums, i, value):
 
 @kernel
 def trivalent_moments(places, mesh, n_rows, table, stamp):
-    """(volume [m^3], volume times centroid [m^4]) of a trivalent polytope about the origin of `places`.
+    """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate, about the origin of `places`.
 
     Each edge of each face makes a tetrahedron with the face's first corner met and the origin. Arrays as in
     `polytope_clip`; `stamp`: a number that `table` does not hold.
     """
     sums = np.zeros(8)
+    moments = np.zeros(5)
     for u in range(n_rows):
         if mesh[u, 0] < 0:
             continue
+        moments[4] = max(moments[4], abs(places[u, 0]), abs(places[u, 1]), abs(places[u, 2]))
         for k in range(3):
             name = mesh[u, PLANES + k]
             if table[name, SEEN] != stamp:
@@ -105,4 +107,6 @@ def trivalent_moments(places, mesh, n_rows, table, stamp):
             add_to(sums, 1, sixth * (ax + bx + cx) * 0.25)
             add_to(sums, 2, sixth * (ay + by + cy) * 0.25)
             add_to(sums, 3, sixth * (az + bz + cz) * 0.25)
-    return sums[:4] + sums[4:]
+    for i in range(4):
+        moments[i] = sums[i] + sums[4 + i]
+    return moments

@@ -151,12 +151,17 @@ class Cutting:
         )  # fmt: skip
         return self.by(i_body)
 
+    def places(self) -> np.ndarray:
+        """(n, 3) [m] its vertices about the origin."""
+        used = self.state[N_ROWS]
+        return self.spots[:used, :3][self.mesh[:used, 0] >= 0]
+
     def rings(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(plane of each face, face starts, corners as rows of `places`)."""
         return face_rings(self.mesh, self.state[N_ROWS])
 
     def moments(self) -> np.ndarray:
-        """(volume [m^3], volume times centroid [m^4]) about the origin."""
+        """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate [m], about the origin."""
         self.state[STAMP] += 2
         return trivalent_moments(
             self.spots, self.mesh, self.state[N_ROWS], self.table, self.state[STAMP]

@@ -22,6 +22,7 @@ from clearance.query.common_point import CommonPoint, checked_bodies, common_poi
 from clearance.query.cutting import Broken, Cutting, Task, cut_down
 from clearance.query.duals import dual_region
 from clearance.query.region import Region
+from clearance.query.thin import is_thin, refined
 from clearance.query.touching import touching_set
 
 HALVED_FROM = 20000
@@ -136,7 +137,13 @@ def _region(task: Task, method: str, threads: int) -> tuple[Region | None, np.nd
             halves = _cut(task, threads)
             if any(half is None for half in halves):
                 return None, np.zeros(4), "cut"
-            return halves, sum(half.moments() for half in halves), "cut"
+            moments = [half.moments() for half in halves]
+            total = sum(moments)
+            if is_thin(task, total[0], max(half[4] for half in moments)):
+                again = refined(task, np.concatenate([half.places() for half in halves]))
+                if again is not None:
+                    return *again, "cut"
+            return halves, total[:4], "cut"
         except Broken:
             if method == "cut":
                 raise AssertionError("the cut has broken the surface") from None
