@@ -32,7 +32,7 @@ _ROOM_OF = {
     "capsule": "geometry.shapes",
     "check": "run",
     "common_point": "query.common_point",
-    "common_point_paper": "query.common_point",
+    "common_point_paper": "query.common_point_paper",
     "cylinder": "geometry.shapes",
     "deviation": "planar.deviation",
     "distance": "query.distance",

@@ -13,10 +13,11 @@ from typing import Self
 import numpy as np
 
 from clearance.errors import BadPolygon
+from clearance.geometry.edges import rings_of
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polytope_exits import Packed, packed
 from clearance.geometry.polytope_graph import (
     Trivalent,
-    scattered_order,
     trivalent_form,
     twins,
     vertex_graph,
@@ -27,7 +28,7 @@ from clearance.geometry.polytope_hull import (
     corners_of_half_spaces,
     hull_faces,
 )
-from clearance.kernels.polytope_clip import ring_moments
+from clearance.kernels.polytope_surface import ring_moments
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -122,8 +123,7 @@ class Polytope:
         off = self.vertices[self.face_vertices] - np.repeat(
             self.vertices[self.face_vertices[firsts]], counts, axis=0
         )
-        ahead = np.arange(1, len(off) + 1)
-        ahead[self.face_starts[1:] - 1] = firsts
+        ahead = rings_of(self.face_starts).ahead
         sums = np.add.reduceat(np.cross(off, off[ahead]), firsts, axis=0)
         return np.ascontiguousarray(sums / np.linalg.norm(sums, axis=1)[:, None])
 
@@ -189,11 +189,15 @@ class Polytope:
         return trivalent_form(self.face_starts, self.face_vertices, self._twin, len(self.vertices))
 
     @cached_property
-    def cutting_order(self) -> np.ndarray:
-        """(f,) the order in which its faces best cut another body."""
-        return scattered_order(*self.face_graph)
+    def packed(self) -> Packed:
+        """The body as the kernels of `query` take it, with its map of directions."""
+        rings, planes = (
+            (self.face_starts, self.face_vertices),
+            (self.normals, self.anchors, self.face_widths),
+        )
+        return packed(self.vertices, rings, self.centroid, planes, self.face_graph[1])
 
     def prepared(self) -> Self:
         """Itself, with all that intersections need made ahead."""
-        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.cutting_order)
+        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.packed)
         return self

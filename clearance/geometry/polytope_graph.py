@@ -14,11 +14,17 @@ from clearance.geometry.edges import rings_of
 
 
 class Trivalent(NamedTuple):
-    """A polytope in which each vertex lies on three planes; see `kernels.polytope_clip`."""
+    """A polytope in which each vertex lies on three planes; see `kernels.polytope_clip`.
+
+    Attributes:
+        corner: (t,) which corner each vertex is at. planes, across: (t, 3). mesh: (t, 8) int32, both as the
+            kernels take them.
+    """
 
     corner: np.ndarray
     planes: np.ndarray
     across: np.ndarray
+    mesh: np.ndarray
 
 
 def twins(face_starts: np.ndarray, face_vertices: np.ndarray, n_vertices: int) -> np.ndarray | None:
@@ -43,7 +49,7 @@ def vertex_graph(
 def trivalent_form(
     face_starts: np.ndarray, face_vertices: np.ndarray, twin: np.ndarray, n_vertices: int
 ) -> Trivalent:
-    """Each vertex of d faces as d - 2 vertices of three faces, a fan of its dual polygon."""
+    """Each vertex of d faces as d - 2 vertices of three faces, a fan of its dual polygon; in its order."""
     ring = rings_of(face_starts)
     before = np.empty_like(ring.ahead)
     before[ring.ahead] = np.arange(len(before))
@@ -58,8 +64,12 @@ def trivalent_form(
         i, j = j, turn[j]
         more = j != first[vertex]
         vertex, i, j = vertex[more], i[more], j[more]
-    planes = np.concatenate(fans)
-    return Trivalent(np.concatenate(corners), planes, _across(planes, len(face_starts) - 1))
+    corners = np.concatenate(corners)
+    near = np.argsort(corners, kind="stable")
+    planes = np.concatenate(fans)[near]
+    across = _across(planes, len(face_starts) - 1)
+    mesh = np.column_stack([across, planes, np.zeros((len(near), 2), dtype=np.int64)])
+    return Trivalent(corners[near], planes, across, mesh.astype(np.int32))
 
 
 def _across(planes: np.ndarray, n_faces: int) -> np.ndarray:
@@ -70,20 +80,3 @@ def _across(planes: np.ndarray, n_faces: int) -> np.ndarray:
     across[order[:, 0]] = order[:, 1] // 3
     across[order[:, 1]] = order[:, 0] // 3
     return across.reshape(-1, 3)
-
-
-def scattered_order(starts: np.ndarray, neighbours: np.ndarray, n_rounds: int = 8) -> np.ndarray:
-    """(f,) the faces in rounds of doubling size, each a walk over the surface.
-
-    Random rounds keep the cuts small, walks keep the climbs short (Amenta, Choi, Rote 2003, "biased
-    randomized insertion order"); the seed is fixed.
-    """
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import depth_first_order
-
-    n = len(starts) - 1
-    graph = csr_array((np.ones(len(neighbours), np.int8), neighbours, starts), shape=(n, n))
-    walk = depth_first_order(graph, 0, directed=False, return_predecessors=False)
-    draw = np.random.default_rng(20130201).random(n)
-    rounds = np.clip(np.ceil(np.log2(np.maximum(draw, 1e-12))) + n_rounds, 0, n_rounds)
-    return walk[np.argsort(rounds[walk], kind="stable")].astype(np.int64)

@@ -42,6 +42,9 @@ def checked_rows(given: np.ndarray, n_columns: int, what: str) -> np.ndarray:
 def hull_faces(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(vertices, face starts, face vertices) of the hull, coplanar triangles merged, outward.
 
+    Vertices are in the order of their coordinates and faces in that of their first vertices, so that what is
+    near in space is near in memory.
+
     Raises:
         NotSolid: the points lie in a plane, to rounding.
     """
@@ -51,7 +54,7 @@ def hull_faces(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         raise NotSolid(f"{len(points)} different points lie in one plane", valid="points in space")
     hull = _qhull((points - low) / size)
     for group in (_groups(hull), np.arange(len(hull.simplices))):
-        rings = _rings(hull, group)
+        rings = sorted(_rings(hull, group), key=min)
         starts = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])])
         flat = np.concatenate(rings)
         if twins(starts, flat, len(points)) is not None:

@@ -1,286 +1,417 @@
-"""Cutting a convex polytope by half-spaces, one after another, on its trivalent form.
+"""Cutting a convex polytope by other bodies, on its trivalent form.
 
-A trivalent vertex lies on three planes; `planes[v]` names them in order and `across[v, k]` is the vertex at
-the other end of the edge that leaves plane k. A corner of more faces is several such vertices at one place,
-joined by edges of length zero. So every cut is one operation: take away the connected vertices above the
-plane, put one new vertex on each edge that leads out of them. This is the dual of inserting a point into a
-convex hull; new places are interpolated on edges and cannot run away. Not for: choosing the order of bodies.
+A trivalent vertex lies on three planes. A corner of more faces is several such vertices at one place, joined
+by edges of length zero. So every cut is one operation: take away the connected vertices above the plane, put
+one new vertex on each edge that leads out of them. This is the dual of inserting a point into a convex hull;
+new places are interpolated on edges and cannot run away.
+
+A body cuts by the planes of the faces through which rays from its centroid to the polytope's vertices leave
+it, found in its map of directions. Each vertex is looked at once; when the last one is inside, the polytope
+is inside the body, to the tolerance, and planes that cut nothing were never touched.
+
+Arrays, a row a vertex: `spots` (c, 4) float64, its place [m] about the origin and its last height over a
+plane; `mesh` (c, 8) int32, columns `ACROSS` + k the vertex at the other end of the edge that leaves plane k
+(-1 first: a free row), `PLANES` + k the planes in order, a stamp, the last body it was held against. A row a
+plane: `table` (p, 3) int32, scratch, a stamp, 1 once it has cut and 2 if it is `LATENT`, to come in with a
+patch (`polytope_patch`). `state`: free rows, last stamp, rows used.
 """
 
 from __future__ import annotations
 
-import numpy as np
+from clearance.jit import inlined, kernel, merged
+from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in
 
-from clearance.jit import inlined, kernel
+CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
+N_FREE, STAMP, N_ROWS = 0, 1, 2
+ACROSS, PLANES, MARK, LOOKED = 0, 3, 6, 7
+FIRST, SEEN, USED = 0, 1, 2
+LATENT = 2
+QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
 
-REDUNDANT, CUT, EMPTY, BROKEN = 0, 1, 2, 3
+
+@merged
+def plane_of(numbers, face, origin):
+    """(normal, offset [m]) of a face's plane about `origin`."""
+    row = HEAD + ROW * face
+    x, y, z = numbers[row], numbers[row + 1], numbers[row + 2]
+    offset = x * (numbers[row + 4] - origin[0])
+    offset += y * (numbers[row + 5] - origin[1])
+    offset += z * (numbers[row + 6] - origin[2])
+    return x, y, z, offset
+
+
+@merged
+def over(spots, v, plane):
+    """[m] How far vertex `v` stands above the plane."""
+    return plane[0] * spots[v, 0] + plane[1] * spots[v, 1] + plane[2] * spots[v, 2] - plane[3]
 
 
 @inlined
-def height(places, v, normal, offset):
-    """[m] How far trivalent vertex `v` stands above the plane."""
-    return normal[0] * places[v, 0] + normal[1] * places[v, 1] + normal[2] * places[v, 2] - offset
+def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp, base, work):
+    """A face that has not cut yet and that `v` is above by more than `tolerance`, near `face`, or -1.
 
-
-@inlined
-def flood_plateau(places, across, start, normal, offset, noise, stamps, stamp, queue):
-    """A vertex above `start` next to the level ground about it, or -1; level means within `noise`."""
-    level = height(places, start, normal, offset)
-    queue[0] = start
-    stamps[start] = stamp
+    In a flat body a face may be little violated in metres and most in parts of its distance. All faces that
+    a point violates are connected over their neighbours: they are the corners of the polar body above a
+    plane.
+    """
+    work[QUEUE, 0] = face
+    table[base + face, SEEN] = stamp
     n_queue = 1
     i = 0
     while i < n_queue:
+        f = work[QUEUE, i]
+        if table[base + f, USED] != 1 and over(spots, v, plane_of(numbers, f, origin)) > tolerance:
+            return f
+        for at in range(indices[indices[2] + f], indices[indices[2] + f + 1]):
+            g = indices[at + indices[3]]
+            if table[base + g, SEEN] != stamp and n_queue < work.shape[1]:
+                if over(spots, v, plane_of(numbers, g, origin)) > 0.0:
+                    table[base + g, SEEN] = stamp
+                    work[QUEUE, n_queue] = g
+                    n_queue += 1
+        i += 1
+    return -1
+
+
+@inlined
+def flood_level(spots, mesh, start, plane, noise, stamp, work):
+    """A vertex above `start` next to the level ground about it, or -1; level means within `noise`."""
+    level = over(spots, start, plane)
+    work[QUEUE, 0] = start
+    mesh[start, MARK] = stamp
+    n_queue = 1
+    i = 0
+    while i < n_queue:
+        u = work[QUEUE, i]
         for k in range(3):
-            w = across[queue[i], k]
-            if stamps[w] == stamp:
+            w = mesh[u, k]
+            if mesh[w, MARK] == stamp:
                 continue
-            value = height(places, w, normal, offset)
+            value = over(spots, w, plane)
             if value > level + noise:
                 return w
             if value >= level - noise:
-                stamps[w] = stamp
-                queue[n_queue] = w
+                mesh[w, MARK] = stamp
+                work[QUEUE, n_queue] = w
                 n_queue += 1
         i += 1
     return -1
 
 
 @inlined
-def climb(places, across, start, normal, offset, noise, stop, stamps, stamp, queue):
-    """The first vertex above `stop` met on the way up from `start`, or the top vertex.
+def climb(spots, mesh, start, plane, noise, state, work):
+    """The top vertex over the plane, uphill from `start`; level ground is searched by flooding.
 
-    Source: hill climbing of Tereshchenko (2013), section 1; level ground is searched by flooding.
+    Source: hill climbing of Tereshchenko (2013), section 1.
     """
     v = start
-    value = height(places, v, normal, offset)
-    while value <= stop:
-        best = v
-        for k in range(3):
-            w = across[v, k]
-            there = height(places, w, normal, offset)
-            if there > value:
-                best = w
-                value = there
-        if best == v:
-            best = flood_plateau(places, across, v, normal, offset, noise, stamps, stamp, queue)
-            if best < 0:
-                return v
-            value = height(places, best, normal, offset)
-        v = best
-    return v
+    top = start
+    while v >= 0:
+        top = v
+        state[STAMP] += 2
+        v = flood_level(spots, mesh, top, plane, noise, state[STAMP], work)
+    return top
 
 
-@inlined
-def gather_above(places, across, top, normal, offset, tolerance, stamps, stamp, queue):
-    """Number of connected vertices above the plane, from `top`; they are `queue[:n]` and stamped."""
-    queue[0] = top
-    stamps[top] = stamp
+@merged
+def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
+    """Number of connected vertices above the plane, from `top`; they are queued and marked `stamp`.
+
+    Vertices next to them are marked `stamp - 1`; the heights of all these are kept.
+    """
+    work[QUEUE, 0] = top
+    mesh[top, MARK] = stamp
+    spots[top, 3] = over(spots, top, plane)
     n_above = 1
     i = 0
     while i < n_above:
+        u = work[QUEUE, i]
         for k in range(3):
-            w = across[queue[i], k]
-            if stamps[w] != stamp and height(places, w, normal, offset) > tolerance:
-                stamps[w] = stamp
-                queue[n_above] = w
+            w = mesh[u, k]
+            if mesh[w, MARK] >= stamp - 1:
+                continue
+            high = over(spots, w, plane)
+            spots[w, 3] = high
+            mesh[w, MARK] = stamp - 1
+            if high > tolerance:
+                mesh[w, MARK] = stamp
+                work[QUEUE, n_above] = w
                 n_above += 1
         i += 1
     return n_above
 
 
-@inlined
-def new_corner(places, u, w, normal, offset, place):
-    """Writes to `place` where the edge from `u` (above) to `w` (not above) meets the plane."""
-    up = height(places, u, normal, offset)
-    down = height(places, w, normal, offset)
-    if down >= 0.0:
-        for i in range(3):
-            place[i] = places[w, i]
-        return
-    share = down / (down - up)
-    for i in range(3):
-        place[i] = places[w, i] + share * (places[u, i] - places[w, i])
+@merged
+def has_corner(indices, face, corner):
+    """True if the face has the corner."""
+    for at in range(indices[indices[2] + face], indices[indices[2] + face + 1]):
+        if indices[at] == corner:
+            return True
+    return False
 
 
-@inlined
-def collect_rim(places, across, planes, queue, n_above, stamps, stamp, normal, offset, rim, rim_at):
-    """Number of edges that leave the stamped region; each is a row (outside, its slot, plane, plane)."""
+@merged
+def own_corner(indices, base, a, b, c):
+    """The corner of the body that its planes `a`, `b`, `c` share, or -1 if they are not its or share none."""
+    n = indices[0]
+    if b < base or c < base or b >= base + n or c >= base + n:
+        return -1
+    for at in range(indices[indices[2] + a - base], indices[indices[2] + a - base + 1]):
+        if has_corner(indices, b - base, indices[at]) and has_corner(
+            indices, c - base, indices[at]
+        ):
+            return indices[at]
+    return -1
+
+
+@merged
+def put_rim(
+    spots, mesh, state, n_above, stamp, name, work, rim, table, numbers, indices, base, origin
+):
+    """Number of new vertices, one on each edge that leaves the marked region, or -1 if two lie on one plane.
+
+    A corner of the body itself, whose planes are `numbers`, `indices` and `base`, gets its given place.
+    Row i of `rim` is (new vertex, its neighbour outside, the neighbour's slot, the plane that follows). The
+    outside is not linked yet.
+    """
     n_rim = 0
     for i in range(n_above):
-        u = queue[i]
+        u = work[QUEUE, i]
         for k in range(3):
-            w = across[u, k]
-            if stamps[w] == stamp:
+            w = mesh[u, k]
+            if mesh[w, MARK] == stamp:
                 continue
-            rim[n_rim, 0] = w
+            a = mesh[u, PLANES + (1 if k == 0 else 2 if k == 1 else 0)]
+            b = mesh[u, PLANES + (2 if k == 0 else 0 if k == 1 else 1)]
+            if table[a, SEEN] == stamp:
+                return -1
+            table[a, SEEN] = stamp
+            table[a, FIRST] = n_rim
+            slot = 0
             for j in range(3):
-                if across[w, j] == u and planes[w, j] != planes[u, (k + 1) % 3]:
-                    if planes[w, j] != planes[u, (k + 2) % 3]:
-                        rim[n_rim, 1] = j
-            rim[n_rim, 2] = planes[u, (k + 1) % 3]
-            rim[n_rim, 3] = planes[u, (k + 2) % 3]
-            new_corner(places, u, w, normal, offset, rim_at[n_rim])
+                if mesh[w, j] == u and mesh[w, PLANES + j] != a and mesh[w, PLANES + j] != b:
+                    slot = j
+            v = state[N_ROWS] + n_rim - state[N_FREE]
+            if n_rim < state[N_FREE]:
+                v = work[FREE, state[N_FREE] - 1 - n_rim]
+            corner = own_corner(indices, base, name, a, b)
+            if corner >= 0:
+                for c in range(3):
+                    spots[v, c] = numbers[indices[4] + 3 * corner + c] - origin[c]
+            else:
+                down = spots[w, 3]
+                share = 0.0 if down >= 0.0 else down / (down - spots[u, 3])
+                for c in range(3):
+                    spots[v, c] = spots[w, c] + share * (spots[u, c] - spots[w, c])
+            mesh[v, 0] = w
+            mesh[v, PLANES] = name
+            mesh[v, PLANES + 1] = a
+            mesh[v, PLANES + 2] = b
+            rim[n_rim, 0] = v
+            rim[n_rim, 1] = w
+            rim[n_rim, 2] = slot
+            rim[n_rim, 3] = b
             n_rim += 1
     return n_rim
 
 
-@inlined
-def rim_is_one_ring(rim, n_rim, first, first_stamp, stamp):
+@merged
+def rim_is_one_ring(rim, n_rim, table, stamp):
     """True if the rim's edges follow each other through their planes in one ring."""
-    for i in range(n_rim):
-        a = rim[i, 2]
-        if first_stamp[a] == stamp:
-            return False
-        first_stamp[a] = stamp
-        first[a] = i
     i = 0
-    for n_seen in range(1, n_rim + 1):
+    for n_met in range(1, n_rim + 1):
         b = rim[i, 3]
-        if first_stamp[b] != stamp:
+        if table[b, SEEN] != stamp:
             return False
-        i = first[b]
+        i = table[b, FIRST]
         if i == 0:
-            return n_seen == n_rim
+            return n_met == n_rim
     return False
 
 
-@inlined
-def close_rim(places, across, planes, plane, rim, rim_at, n_rim, first, slots):
-    """Links the new vertices `slots[:n_rim]` to the outside and to each other."""
+@merged
+def close_rim(mesh, rim, n_rim, table):
+    """Links the new vertices to the outside and to each other."""
     for i in range(n_rim):
-        v = slots[i]
-        for j in range(3):
-            places[v, j] = rim_at[i, j]
-        planes[v, 0] = plane
-        planes[v, 1] = rim[i, 2]
-        planes[v, 2] = rim[i, 3]
-        across[v, 0] = rim[i, 0]
-        across[rim[i, 0], rim[i, 1]] = v
-        after = slots[first[rim[i, 3]]]
-        across[v, 1] = after
-        across[after, 2] = v
+        v = rim[i, 0]
+        mesh[v, MARK] = 0
+        mesh[v, LOOKED] = 0
+        mesh[rim[i, 1], rim[i, 2]] = v
+        after = rim[table[rim[i, 3], FIRST], 0]
+        mesh[v, 1] = after
+        mesh[after, 2] = v
+
+
+@merged
+def swap_rows(state, mesh, n_above, n_rim, work):
+    """Takes the rows of the new vertices from the free ones and frees those above the plane."""
+    taken = min(n_rim, state[N_FREE])
+    state[N_FREE] -= taken
+    state[N_ROWS] += n_rim - taken
+    for i in range(n_above):
+        mesh[work[QUEUE, i], 0] = -1
+        work[FREE, state[N_FREE]] = work[QUEUE, i]
+        state[N_FREE] += 1
+
+
+@inlined
+def cut_by_plane(
+    spots,
+    mesh,
+    state,
+    work,
+    rim,
+    table,
+    top,
+    plane,
+    name,
+    tolerance,
+    numbers,
+    indices,
+    base,
+    origin,
+):
+    """(status, number of new vertices, which are `rim[:n, 0]`) of the cut by a plane that `top` is above."""
+    state[STAMP] += 2
+    stamp = state[STAMP]
+    n_above = gather_above(spots, mesh, top, plane, tolerance, stamp, work)
+    if state[N_ROWS] - state[N_FREE] + n_above + 2 > len(spots):
+        return FULL, 0
+    n_rim = put_rim(
+        spots, mesh, state, n_above, stamp, name, work, rim, table, numbers, indices, base, origin
+    )
+    if n_rim == 0:
+        return EMPTY, 0
+    if n_rim < 0 or not rim_is_one_ring(rim, n_rim, table, stamp):
+        return BROKEN, 0
+    swap_rows(state, mesh, n_above, n_rim, work)
+    close_rim(mesh, rim, n_rim, table)
+    return CUT, n_rim
+
+
+@merged
+def is_copy(spots, mesh, v, base):
+    """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
+    u = v - 1
+    if mesh[u, 0] < 0 or (mesh[u, LOOKED] != base + 1 and mesh[u, LOOKED] != -1):
+        return False
+    return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
 
 
 @kernel
-def cut_by_planes(
-    places, across, planes, state, free, normals, offsets, order, base, tolerance,
-    stamps, first, first_stamp, queue, rim, rim_at, slots,
-):  # fmt: skip
-    """Cuts the polytope by planes `order` of one body; `base` is the number of its first plane.
+def cut_by_body(
+    spots, mesh, state, work, rim, table, numbers, indices, origin, base, tolerance, noise
+):
+    """Cuts the polytope by one body; (status, planes that cut).
+
+    Vertices more than `noise` above a plane are surely connected to its top and cut at once. Where the best
+    plane is nearer, rounding may have left a false top: these are looked at last, and the top is searched.
 
     Args:
-        places: (c, 3) [m]; across, planes: (c, 3); state: (4,) start vertex, number of free rows, stamp,
-            highest row used. free: the free rows.
-        tolerance: [m] what counts as on the plane. The rest is working space.
-
-    Returns: (EMPTY, BROKEN or CUT, planes that cut).
+        spots, mesh, state, table: the polytope, see above. work: (4, c) and rim: (c, 4) scratch, but
+            `work[FREE]` holds the free rows.
+        numbers, indices: the body, see `polytope_exits`; base: the number of its first plane.
+        tolerance: [m] what counts as on a plane; noise: [m] how far rounding may make false tops stand out.
+            FULL asks for more rows; the same call may then go on.
     """
     n_cuts = 0
-    for i_order in range(len(order)):
-        i_plane = order[i_order]
-        normal = normals[i_plane]
-        offset = offsets[i_plane]
-        state[2] += 1
-        # corners slide along edges nearly parallel to a cut, so that false tops stand up to about 1e-13
-        # above their neighbours: level ground is taken far wider (2 eps missed a plane, 4e-7 of a volume)
-        top = climb(
-            places, across, state[0], normal, offset, 1e5 * tolerance, tolerance,
-            stamps, state[2], queue,
-        )  # fmt: skip
-        state[0] = top
-        if height(places, top, normal, offset) <= tolerance:
-            continue
-        state[2] += 1
-        stamp = state[2]
-        n_above = gather_above(places, across, top, normal, offset, tolerance, stamps, stamp, queue)
-        n_rim = collect_rim(
-            places, across, planes, queue, n_above, stamps, stamp, normal, offset, rim, rim_at
-        )
-        if n_rim == 0:
-            return EMPTY, n_cuts
-        if not rim_is_one_ring(rim, n_rim, first, first_stamp, stamp):
-            return BROKEN, n_cuts
-        for i in range(n_above):
-            free[state[1]] = queue[i]
-            state[1] += 1
-        for i in range(n_rim):
-            if state[1] > 0:
-                state[1] -= 1
-                slots[i] = free[state[1]]
-            else:
-                slots[i] = state[3]
-                state[3] += 1
-        close_rim(places, across, planes, base + i_plane, rim, rim_at, n_rim, first, slots)
-        state[0] = slots[0]
-        n_cuts += 1
+    n_later = 0
+    n_rows = state[N_ROWS]
+    shift_x = origin[0] - numbers[0]
+    shift_y = origin[1] - numbers[1]
+    shift_z = origin[2] - numbers[2]
+    for turn in range(2):
+        row = 0
+        while row < (n_rows if turn == 0 else n_later):
+            work[STACK, 0] = row if turn == 0 else work[LATER, row]
+            row += 1
+            n_stack = 1
+            while n_stack > 0:
+                n_stack -= 1
+                v = work[STACK, n_stack]
+                if mesh[v, 0] < 0 or (turn == 0 and mesh[v, LOOKED] == base + 1):
+                    continue
+                mesh[v, LOOKED] = base + 1
+                if turn == 0 and v > 0 and is_copy(spots, mesh, v, base):
+                    mesh[v, LOOKED] = mesh[v - 1, LOOKED]
+                    continue
+                x, y, z = spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
+                cell, bound = cell_of(numbers, indices, x, y, z)
+                if bound < 1.0:
+                    continue
+                face, gauge = exit_in(numbers, indices, cell, x, y, z)
+                if (gauge - 1.0) * numbers[12] <= tolerance:
+                    continue
+                plane = plane_of(numbers, face, origin)
+                above = over(spots, v, plane)
+                if table[base + face, USED] == 1 or above <= tolerance:
+                    state[STAMP] += 2
+                    face = other_face(
+                        numbers,
+                        indices,
+                        face,
+                        origin,
+                        spots,
+                        v,
+                        table,
+                        tolerance,
+                        state[STAMP],
+                        base,
+                        work,
+                    )
+                    if face < 0:
+                        continue
+                    plane = plane_of(numbers, face, origin)
+                    above = over(spots, v, plane)
+                if table[base + face, USED] == LATENT:
+                    mesh[v, LOOKED] = -1
+                    continue
+                if turn == 0 and above <= noise:
+                    work[LATER, n_later] = v
+                    n_later += 1
+                    if n_later == work.shape[1]:
+                        return FULL, n_cuts
+                    continue
+                top = v if turn == 0 else climb(spots, mesh, v, plane, noise, state, work)
+                status, n_new = cut_by_plane(
+                    spots,
+                    mesh,
+                    state,
+                    work,
+                    rim,
+                    table,
+                    top,
+                    plane,
+                    base + face,
+                    tolerance,
+                    numbers,
+                    indices,
+                    base,
+                    origin,
+                )
+                if status != CUT:
+                    return status, n_cuts
+                table[base + face, USED] = 1
+                n_cuts += 1
+                if n_stack + n_new + 1 > work.shape[1]:
+                    return FULL, n_cuts
+                if turn == 1:
+                    work[STACK, n_stack] = v
+                    n_stack += 1
+                for i in range(n_new):
+                    work[STACK, n_stack] = rim[i, 0]
+                    n_stack += 1
     return CUT, n_cuts
 
 
 @kernel
-def face_rings(across, planes, start, n_rows):
-    """The faces of the trivalent polytope: (plane of each ring, ring starts, trivalent vertices in order)."""
-    reached = np.zeros(n_rows, dtype=np.bool_)
-    walked = np.zeros((n_rows, 3), dtype=np.bool_)
-    queue = np.empty(n_rows, dtype=np.int64)
-    queue[0] = start
-    reached[start] = True
-    n_queue = 1
-    i = 0
-    while i < n_queue:
-        for k in range(3):
-            w = across[queue[i], k]
-            if not reached[w]:
-                reached[w] = True
-                queue[n_queue] = w
-                n_queue += 1
-        i += 1
-    names = np.empty(n_queue, dtype=np.int64)
-    starts = np.zeros(n_queue + 1, dtype=np.int64)
-    corners = np.empty(3 * n_queue, dtype=np.int64)
-    n_faces = 0
-    n_corners = 0
-    for i in range(n_queue):
-        for k in range(3):
-            v = queue[i]
-            slot = k
-            if walked[v, slot]:
-                continue
-            name = planes[v, slot]
-            while not walked[v, slot]:
-                walked[v, slot] = True
-                corners[n_corners] = v
-                n_corners += 1
-                v = across[v, (slot + 1) % 3]
-                for j in range(3):
-                    if planes[v, j] == name:
-                        slot = j
-            names[n_faces] = name
-            n_faces += 1
-            starts[n_faces] = n_corners
-    return names[:n_faces], starts[: n_faces + 1], corners[:n_corners]
-
-
-@kernel
-def ring_moments(places, starts, corners, origin):
-    """(volume [m^3], volume times centroid less `origin` [m^4]) inside rings that close a surface."""
-    moments = np.zeros(4)
-    for f in range(len(starts) - 1):
-        ax = places[corners[starts[f]], 0] - origin[0]
-        ay = places[corners[starts[f]], 1] - origin[1]
-        az = places[corners[starts[f]], 2] - origin[2]
-        for e in range(starts[f] + 1, starts[f + 1] - 1):
-            bx = places[corners[e], 0] - origin[0]
-            by = places[corners[e], 1] - origin[1]
-            bz = places[corners[e], 2] - origin[2]
-            cx = places[corners[e + 1], 0] - origin[0]
-            cy = places[corners[e + 1], 1] - origin[1]
-            cz = places[corners[e + 1], 2] - origin[2]
-            sixth = (
-                ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
-            ) / 6.0
-            moments[0] += sixth
-            moments[1] += sixth * (ax + bx + cx) * 0.25
-            moments[2] += sixth * (ay + by + cy) * 0.25
-            moments[3] += sixth * (az + bz + cz) * 0.25
-    return moments
+def cut_by_half_space(spots, mesh, state, work, rim, table, numbers, indices, normal, name):
+    """The status of the cut that takes away all where `normal` leads uphill of the origin; any body will do."""
+    plane = (normal[0], normal[1], normal[2], 0.0)
+    top = 0
+    for v in range(state[N_ROWS]):
+        if mesh[v, 0] >= 0 and over(spots, v, plane) > over(spots, top, plane):
+            top = v
+    return cut_by_plane(
+        spots, mesh, state, work, rim, table, top, plane, name, 0.0, numbers, indices, name, normal
+    )[0]

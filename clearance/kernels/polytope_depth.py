@@ -3,145 +3,205 @@
 Each body k is {x: n_i.(x - c_k) <= w_i} with w_i > 0, c_k inside it. Sought are x and the greatest t with
 n_i.x + w_i t <= n_i.c_k + w_i for all faces of all bodies: t > 0 is strictly inside all, t < 0 proves that
 at most four faces have nothing in common (Helly). The dual simplex basis has four faces; the entering face
-is the worst of one body at x, found by hill climbing over the face graph, since n_i.(x - c)/w_i is linear
-over the polar body. Not for: the region itself.
+is the one through which the ray from c_k to x leaves the body, from its map of directions: none is missed.
+Not for: the region itself.
+
+The basis is one (11, 4) array: rows 0-3 the faces' (n, w), 4 their bounds, 5-8 the inverse, 9 the solution
+(x, t), 10 the multipliers; and four names, (body << 32) + face, below 0 for the walls of the start. All x are
+about a common origin.
 """
 
 from __future__ import annotations
 
-import numpy as np
+import math
 
 from clearance.jit import inlined, kernel
+from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in
 
-INSIDE, DISJOINT, UNSETTLED = 0, 1, 2
-LIMIT = 256
+TURN = 4
+"""Faces of one body at a time: settling one body fully before the next takes 5 times as long for 5000 corners."""
+
+BOUND, INVERSE, POINT, SHARE = 4, 5, 9, 10
+COLD, WARM, ON = 0, 1, 2
 
 
 @inlined
-def invert(matrix, inverse):
-    """True if the (4, 4) matrix could be inverted, by Gauss-Jordan with row pivoting, into `inverse`."""
-    work = matrix.copy()
+def invert(basis):
+    """True if the faces' matrix could be inverted, by Gauss-Jordan with row pivoting."""
+    a = basis[:4].copy()
     for i in range(4):
         for j in range(4):
-            inverse[i, j] = 1.0 if i == j else 0.0
+            basis[INVERSE + i, j] = 1.0 if i == j else 0.0
     for c in range(4):
         p = c
         for r in range(c + 1, 4):
-            if abs(work[r, c]) > abs(work[p, c]):
+            if abs(a[r, c]) > abs(a[p, c]):
                 p = r
-        if work[p, c] == 0.0:
+        if a[p, c] == 0.0:
             return False
+        scale = 1.0 / a[p, c]
         for j in range(4):
-            work[c, j], work[p, j] = work[p, j], work[c, j]
-            inverse[c, j], inverse[p, j] = inverse[p, j], inverse[c, j]
-        scale = 1.0 / work[c, c]
-        for j in range(4):
-            work[c, j] *= scale
-            inverse[c, j] *= scale
+            low = a[c, j]
+            a[c, j] = a[p, j] * scale
+            a[p, j] = low if p != c else a[p, j]
+            low = basis[INVERSE + c, j]
+            basis[INVERSE + c, j] = basis[INVERSE + p, j] * scale
+            basis[INVERSE + p, j] = low if p != c else basis[INVERSE + p, j]
         for r in range(4):
-            if r != c and work[r, c] != 0.0:
-                factor = work[r, c]
+            factor = a[r, c]
+            if r != c and factor != 0.0:
                 for j in range(4):
-                    work[r, j] -= factor * work[c, j]
-                    inverse[r, j] -= factor * inverse[c, j]
+                    a[r, j] -= factor * a[c, j]
+                    basis[INVERSE + r, j] -= factor * basis[INVERSE + c, j]
     return True
 
 
 @inlined
-def worst_face(normals, widths, starts, neighbours, face, x, y, z):
-    """The face with the greatest n.(x - c)/w, climbing from `face`; (x, y, z) is x - c."""
-    best = (normals[face, 0] * x + normals[face, 1] * y + normals[face, 2] * z) / widths[face]
-    while True:
-        here = face
-        for i in range(starts[here], starts[here + 1]):
-            g = neighbours[i]
-            value = (normals[g, 0] * x + normals[g, 1] * y + normals[g, 2] * z) / widths[g]
-            if value > best:
-                best = value
-                face = g
-        if face == here:
-            return face
-
-
-@inlined
-def solve_basis(rows, bounds, inverse, point, shares):
-    """Sets `point` = (x, t) where the four basis planes meet and `shares` = the basis multipliers."""
-    if not invert(rows, inverse):
+def solve(basis):
+    """False if the faces' planes meet in no one point or a multiplier is below 0; else sets both."""
+    if not invert(basis):
         return False
     for i in range(4):
         total = 0.0
         for j in range(4):
-            total += inverse[i, j] * bounds[j]
-        point[i] = total
+            total += basis[INVERSE + i, j] * basis[BOUND, j]
+        basis[POINT, i] = total
+    sound = True
     for j in range(4):
-        shares[j] = max(inverse[3, j], 0.0)
-    return True
+        share = basis[INVERSE + 3, j]
+        sound = sound and share > -1e-9
+        basis[SHARE, j] = max(share, 0.0)
+    return sound
 
 
 @inlined
-def enter(rows, bounds, names, inverse, shares, row, bound, name):
-    """True if the plane took the place that the ratio test gives; False if no plane may leave."""
+def start_around(basis, names, reach):
+    """A tetrahedron far around the origin; t at its middle is 1."""
+    side = 1.0 / math.sqrt(3.0)
+    for j in range(4):
+        names[j] = j - 4
+        basis[j, 0] = side if j < 2 else -side
+        basis[j, 1] = side if j % 2 == 0 else -side
+        basis[j, 2] = side if j == 0 or j == 3 else -side
+        basis[j, 3] = reach
+        basis[BOUND, j] = reach
+    solve(basis)
+
+
+@inlined
+def put_face(basis, names, j, numbers, pose, away, body, face):
+    """Puts a face at place `j` of the basis; `away` is from the origin to the body's centroid."""
+    row = HEAD + ROW * face
+    bound = numbers[row + 7]
+    for i in range(3):
+        n = (
+            pose[i, 0] * numbers[row]
+            + pose[i, 1] * numbers[row + 1]
+            + pose[i, 2] * numbers[row + 2]
+        )
+        basis[j, i] = n
+        bound += n * away[i]
+    basis[j, 3] = numbers[row + 7]
+    basis[BOUND, j] = bound
+    names[j] = (body << 32) + face
+
+
+@inlined
+def leaving(basis, numbers, pose, face):
+    """The place in the basis that the ratio test gives to a face, or -1."""
+    row = HEAD + ROW * face
     leave = -1
-    least = np.inf
+    least = math.inf
     steepest = 0.0
     for j in range(4):
-        slope = 0.0
-        for i in range(4):
-            slope += row[i] * inverse[i, j]
+        slope = numbers[row + 7] * basis[INVERSE + 3, j]
+        for i in range(3):
+            n = (
+                pose[i, 0] * numbers[row]
+                + pose[i, 1] * numbers[row + 1]
+                + pose[i, 2] * numbers[row + 2]
+            )
+            slope += n * basis[INVERSE + i, j]
         if slope <= 1e-12:
             continue
-        ratio = shares[j] / slope
+        ratio = basis[SHARE, j] / slope
         if ratio < least or (ratio == least and slope > steepest):
             least = ratio
             leave = j
             steepest = slope
-    if leave < 0:
-        return False
-    for i in range(4):
-        rows[leave, i] = row[i]
-    bounds[leave] = bound
-    names[leave] = name
-    return True
+    return leave
+
+
+@inlined
+def centre_of(numbers, pose, origin):
+    """From the origin to the body's centroid in the world."""
+    x, y, z = numbers[0], numbers[1], numbers[2]
+    return (
+        (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3]) - origin[0],
+        (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3]) - origin[1],
+        (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3]) - origin[2],
+    )
+
+
+@inlined
+def deepen(numbers, indices, pose, body, origin, basis, names, margin):
+    """(settled, faces brought in): brings in a body's worst faces, `TURN` at most, in widths by `margin` worse."""
+    away = centre_of(numbers, pose, origin)
+    for n_entered in range(TURN):
+        x = basis[POINT, 0] - away[0]
+        y = basis[POINT, 1] - away[1]
+        z = basis[POINT, 2] - away[2]
+        u = pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z
+        v = pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z
+        w = pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z
+        cell, _ = cell_of(numbers, indices, u, v, w)
+        face, gauge = exit_in(numbers, indices, cell, u, v, w)
+        if gauge <= 1.0 - basis[POINT, 3] + margin:
+            return True, n_entered
+        name = (body << 32) + face
+        if name == names[0] or name == names[1] or name == names[2] or name == names[3]:
+            return False, n_entered
+        leave = leaving(basis, numbers, pose, face)
+        if leave < 0:
+            return False, n_entered
+        put_face(basis, names, leave, numbers, pose, away, body, face)
+        solve(basis)
+    return False, TURN
+
+
+@inlined
+def recall(numbers, pose, body, origin, basis, names):
+    """Puts the faces that the basis names of one body where they are now."""
+    away = centre_of(numbers, pose, origin)
+    for j in range(4):
+        if names[j] >= 0 and names[j] >> 32 == body:
+            put_face(basis, names, j, numbers, pose, away, body, names[j] & 0xFFFFFFFF)
 
 
 @kernel
-def deepen(
-    normals, widths, starts, neighbours, centre, body, face, margin,
-    rows, bounds, names, inverse, point, shares,
+def deepen_two(
+    numbers_a, indices_a, pose_a, a, numbers_b, indices_b, pose_b, b, origin, basis, names, margin,
+    begin, passes,
 ):  # fmt: skip
-    """Brings faces of one body into the basis until none is worse than `margin` at the point.
+    """Brings in faces of bodies `a` and `b` by turns until neither has a worse one; (settled, faces, passes).
 
     Args:
-        centre: (3,) the body's inner point; body: its number; face: where to begin.
-        margin: [-] the violation, in parts of the body's width, that is let pass.
-        rows, bounds, names, inverse, point, shares: the basis, changed in place; a name is
-            (body << 32) + face.
-
-    Returns: (status, faces brought in, worst face).
+        numbers, indices: the bodies, see `polytope_exits`; pose: (4, 4) world_from_body of each.
+        origin: (3,) what all x are about; basis, names: see above, changed in place.
+        begin: COLD, WARM (from the faces named, if they still hold) or ON (from the basis as it is).
+        passes: how many rounds at most; stops when four real faces have t < -1e-6.
     """
-    for n_entered in range(LIMIT):
-        x = point[0] - centre[0]
-        y = point[1] - centre[1]
-        z = point[2] - centre[2]
-        face = worst_face(normals, widths, starts, neighbours, face, x, y, z)
-        width = widths[face]
-        reach = normals[face, 0] * x + normals[face, 1] * y + normals[face, 2] * z
-        if reach <= (1.0 - point[3] + margin) * width:
-            return INSIDE, n_entered, face
-        name = (body << 32) + face
-        for j in range(4):
-            if names[j] == name:
-                return UNSETTLED, n_entered, face
-        row = np.empty(4)
-        row[0] = normals[face, 0]
-        row[1] = normals[face, 1]
-        row[2] = normals[face, 2]
-        row[3] = width
-        bound = width
-        for i in range(3):
-            bound += row[i] * centre[i]
-        if not enter(rows, bounds, names, inverse, shares, row, bound, name):
-            return UNSETTLED, n_entered, face
-        if not solve_basis(rows, bounds, inverse, point, shares):
-            return UNSETTLED, n_entered + 1, face
-    return UNSETTLED, LIMIT, face
+    if begin == WARM:
+        recall(numbers_a, pose_a, a, origin, basis, names)
+        recall(numbers_b, pose_b, b, origin, basis, names)
+    if begin == COLD or (begin == WARM and not solve(basis)):
+        start_around(basis, names, 16.0 * (numbers_a[13] + numbers_b[13]))
+    n_entered = 0
+    for i_pass in range(1, passes + 1):
+        one, n_one = deepen(numbers_a, indices_a, pose_a, a, origin, basis, names, margin)
+        other, n_other = deepen(numbers_b, indices_b, pose_b, b, origin, basis, names, margin)
+        n_entered += n_one + n_other
+        far = basis[POINT, 3] < -1e-6 and min(names[0], names[1], names[2], names[3]) >= 0
+        if n_one + n_other == 0 or far:
+            return one and other, n_entered, i_pass
+    return False, n_entered, passes

@@ -1,27 +1,31 @@
 """A point strictly inside several polytopes, or a certificate that there is none.
 
 `common_point` asks for the deepest point: the x with the greatest t such that x keeps t times each face's
-distance from its own centroid. `common_point_paper` is GJK with the paper's step in 26 directions, for two.
-Not for: the shared region (`intersection`).
+distance from its own centroid. Not for: the paper's way (`common_point_paper`), the shared region
+(`intersection`).
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadShape, EmptyMesh
+from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_depth import INSIDE, deepen
-from clearance.kernels.polytope_gjk import COMMON, gjk
+from clearance.kernels.polytope_depth import COLD, ON, POINT, SHARE, WARM, deepen_two
 
 ROUNDING = 16 * 2.0**-53
 """[-] What counts as touching, relative to the bodies' size: a few roundings of the planes' offsets."""
 
-MAX_PASSES = 64
+MARGIN = 1e-13
+"""[-] How far beyond a face, in parts of its distance from the centroid, the deepest point may stay."""
+
+MAX_PASSES = 256
+"""[-] Rounds over all bodies, each of at most eight faces a pair (sixteen where there are more than two)."""
+
+_STILL = np.eye(4)
 
 
 @dataclass(frozen=True)
@@ -49,7 +53,7 @@ class CommonPoint:
         depth: [-] the t reached, 1 at a body's centroid; about 0 when touching, below 0 when apart.
         certificate: the faces that forbid an inner point; None on overlap.
         n_faces: faces (for GJK: support points) looked at; passes: rounds over all bodies.
-        warm: what a next call on moved bodies may begin with.
+        warm: the basis: what a next call on the same bodies, moved, may begin with.
     """
 
     relation: str
@@ -76,124 +80,134 @@ def checked_bodies(polytopes: Sequence[Polytope]) -> list[Polytope]:
     return bodies
 
 
-@dataclass
-class _Basis:
-    rows: np.ndarray
-    bounds: np.ndarray
-    names: np.ndarray
-    inverse: np.ndarray
-    point: np.ndarray
-    shares: np.ndarray
-
-    @classmethod
-    def around(cls, bodies: list[Polytope]) -> _Basis:
-        """A tetrahedron far around the first body; t at its middle is 1."""
-        normals = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]]) / np.sqrt(3.0)
-        reach = 16.0 * max(body.size for body in bodies)
-        centre = bodies[0].centroid
-        rows = np.column_stack([normals, np.full(4, reach)])
-        inverse = np.linalg.inv(rows)
-        bounds = normals @ centre + reach
-        point = np.append(centre, 1.0)
-        return cls(rows, bounds, np.arange(-4, 0), inverse, point, inverse[3].copy())
-
-
-def common_point(polytopes: Sequence[Polytope]) -> CommonPoint:
-    """The deepest point common to all, or the faces that prove there is none.
+def checked_poses(poses: Sequence[np.ndarray], n_bodies: int) -> list[np.ndarray]:
+    """The poses as (4, 4) float64.
 
     Raises:
-        EmptyMesh: no bodies. BadShape: not polytopes.
+        BadShape: another number or shape. NotFinite: NaN or infinity.
+    """
+    frames = np.ascontiguousarray(poses, dtype=np.float64)
+    if frames.shape != (n_bodies, 4, 4):
+        raise BadShape(f"the poses have shape {frames.shape}", valid=f"({n_bodies}, 4, 4)")
+    if not np.isfinite(frames).all():
+        raise NotFinite("a pose is not finite", valid="finite numbers")
+    return list(frames)
+
+
+def common_point(
+    polytopes: Sequence[Polytope], poses: Sequence[np.ndarray] | None = None, warm: tuple = ()
+) -> CommonPoint:
+    """The deepest point common to all, or the faces that prove there is none.
+
+    Args:
+        poses: `world_from_body` (4, 4) of each; all at rest if None. Bodies are not copied: the way to
+            follow a trajectory.
+        warm: the `warm` of an answer for the same bodies in a near pose. The answer is the same without.
+
+    Raises:
+        EmptyMesh: no bodies. BadShape: not polytopes, poses of another shape or number.
+        NotFinite: a pose that is not.
 
     Exactness: "overlap" is never said of bodies whose inner points are fewer than rounding
-        (`ROUNDING` times the size) deep; at most 64 passes of 256 faces each, counted.
+        (`ROUNDING` times the size) deep; each body's faces are looked at through a map that misses none; at
+        most `MAX_PASSES` rounds, counted.
     Source: Tereshchenko (2013), section 2.2 asks for the point; the linear programme in four unknowns with
         faces on demand is the simplex method (Dantzig 1963) on its dual.
     """
     bodies = checked_bodies(polytopes)
-    basis = _Basis.around(bodies)
-    faces = [0] * len(bodies)
-    n_entered, passes, unsettled = 0, 0, False
+    frames = [_STILL] * len(bodies) if poses is None else checked_poses(poses, len(bodies))
+    origin = (
+        bodies[0].centroid if poses is None else frames[0][:3] @ np.append(bodies[0].centroid, 1.0)
+    )
+    known = len(bodies) < 3 and len(warm) == 4 and all(_names_a_face(bodies, name) for name in warm)
+    basis, names = np.empty((11, 4)), np.array(warm if known else (-4, -3, -2, -1))
+    begin = WARM if known else COLD
+    settled, n_faces, passes = _deepened(bodies, frames, origin, basis, names, begin)
+    if not settled and basis[POINT, 3] > 0.0:
+        _keep_what_is_sure(bodies, frames, origin, basis)
+    return _judged(bodies, origin, basis, names.tolist(), n_faces, passes)
+
+
+def _names_a_face(bodies: list[Polytope], name: int) -> bool:
+    return name >= 0 and name >> 32 < len(bodies) and name & 0xFFFFFFFF < bodies[name >> 32].n_faces
+
+
+def _deepened(bodies, frames, origin, basis, names, begin) -> tuple[bool, int, int]:
+    """(settled, faces brought in, passes): two bodies at a time until none has a worse face."""
+    packs, m = [body.packed for body in bodies], len(bodies)
+    if m < 3:
+        b = m - 1
+        return deepen_two(
+            *packs[0],
+            frames[0],
+            0,
+            *packs[b],
+            frames[b],
+            b,
+            origin,
+            basis,
+            names,
+            MARGIN,
+            begin,
+            MAX_PASSES,
+        )
+    total = 0
     for passes in range(1, MAX_PASSES + 1):
-        quiet, unsettled = True, False
-        for k, body in enumerate(bodies):
-            status, n, faces[k] = deepen(
-                body.normals, body.face_widths, *body.face_graph, body.centroid, k, faces[k], 1e-13,
-                basis.rows, basis.bounds, basis.names, basis.inverse, basis.point, basis.shares,
-            )  # fmt: skip
-            n_entered += n
-            quiet = quiet and n == 0
-            unsettled = unsettled or status != INSIDE
-            if basis.point[3] < -1e-6 and basis.names.min() >= 0:
-                return _judged(bodies, basis, n_entered, passes)
-        if quiet:
-            break
-    if (unsettled or not quiet) and basis.point[3] > 0.0:
-        _keep_what_is_sure(bodies, basis)
-    return _judged(bodies, basis, n_entered, passes)
+        before, settled = total, True
+        for a in range(0, m, 2):
+            b = min(a + 1, m - 1)
+            sure, n, _ = deepen_two(
+                *packs[a],
+                frames[a],
+                a,
+                *packs[b],
+                frames[b],
+                b,
+                origin,
+                basis,
+                names,
+                MARGIN,
+                begin,
+                2,
+            )
+            begin, total, settled = ON, total + n, settled and sure
+            if basis[POINT, 3] < -1e-6 and names.min() >= 0:
+                return settled, total, passes
+        if total == before:
+            return settled, total, passes
+    return False, total, MAX_PASSES
 
 
-def _keep_what_is_sure(bodies: list[Polytope], basis: _Basis) -> None:
+def _keep_what_is_sure(bodies, frames, origin, basis) -> None:
     """Sets t to what the point really keeps of every face, where the simplex method came to no end."""
-    kept = [(body.offsets_about(basis.point[:3]) / body.face_widths).min() for body in bodies]
-    basis.point[3] = min(basis.point[3], *kept)
+    point = basis[POINT, :3] + origin
+    for body, frame in zip(bodies, frames, strict=True):
+        there = frame[:3, :3].T @ (point - frame[:3, 3])
+        basis[POINT, 3] = min(basis[POINT, 3], (body.offsets_about(there) / body.face_widths).min())
 
 
-def _judged(bodies: list[Polytope], basis: _Basis, n_entered: int, passes: int) -> CommonPoint:
-    depth = float(basis.point[3])
-    parts, faces = basis.names >> 32, basis.names & 0xFFFFFFFF
-    real = (basis.names >= 0) & (basis.shares > 1e-9 * basis.shares.max())
-    reach = max(bodies[k].size for k in parts[real]) if real.any() else 0.0
-    limit = ROUNDING * reach * float(basis.shares.sum())
+def _judged(bodies, origin, basis, names: list[int], n_faces: int, passes: int) -> CommonPoint:
+    shares, depth = basis[SHARE].tolist(), float(basis[POINT, 3])
+    most = 1e-9 * max(shares)
+    real = [j for j in range(4) if names[j] >= 0 and shares[j] > most]
+    limit = ROUNDING * max((bodies[names[j] >> 32].size for j in real), default=0.0) * sum(shares)
+    point, warm = basis[POINT, :3] + origin, tuple(names) if min(names) >= 0 else ()
     if depth > limit:
-        return CommonPoint("overlap", basis.point[:3].copy(), depth, None, n_entered, passes)
+        return CommonPoint("overlap", point, depth, None, n_faces, passes, warm)
+    proof = _certificate(len(bodies), basis, np.array(names), real)
+    if depth >= -limit:
+        return CommonPoint("touch", point, depth, proof, n_faces, passes, warm)
+    return CommonPoint("apart", None, depth, proof, n_faces, passes, warm)
+
+
+def _certificate(
+    n_bodies: int, basis: np.ndarray, names: np.ndarray, real: list[int]
+) -> Certificate:
+    parts, faces = names >> 32, names & 0xFFFFFFFF
     normal = None
-    if len(bodies) == 2:
-        own = real & (parts == 0)
-        total = basis.shares[own] @ basis.rows[own, :3]
+    if n_bodies == 2:
+        own = [j for j in real if parts[j] == 0]
+        total = basis[SHARE, own] @ basis[own, :3]
         length = np.linalg.norm(total)
         normal = total / length if length > 0.0 else None
-    proof = Certificate(parts[real], faces[real], basis.shares[real].copy(), normal)
-    point = basis.point[:3].copy() if depth >= -limit else None
-    relation = "apart" if point is None else "touch"
-    return CommonPoint(relation, point, depth, proof, n_entered, passes)
-
-
-def common_point_paper(a: Polytope, b: Polytope, warm: tuple = (0, 0)) -> CommonPoint:
-    """A common point of two by GJK, moved inside by a step in one of 26 directions where it must be.
-
-    The barycentric system gives the point on the simplex of either body. If it is not strictly inside both,
-    steps of 1e-3 of the smaller size, halved up to 40 times, are tried in all 26 directions; where none
-    leads inside, the relation is "touch". `warm` are the two vertices to begin with.
-
-    Source: Tereshchenko (2013), sections 2.1-2.2.
-    """
-    limit = ROUNDING * max(a.size, b.size)
-    status, n, k, ia, ib, shares, nearest = gjk(
-        a.vertices, *a.vertex_graph, b.vertices, *b.vertex_graph, *warm, limit
-    )
-    after = (int(ia[0]), int(ib[0]))
-    gap = float(np.linalg.norm(nearest))
-    if status != COMMON and gap > limit:
-        return CommonPoint("apart", None, -gap, Certificate(
-            np.zeros(0, int), np.zeros(0, int), np.zeros(0), -nearest / gap), n, 1, after)  # fmt: skip
-    point = shares[:k] @ a.vertices[ia[:k]]
-    inside = _stepped_inside(a, b, point)
-    relation = "touch" if inside is None else "overlap"
-    return CommonPoint(relation, point if inside is None else inside, 0.0, None, n, 1, after)
-
-
-def _stepped_inside(a: Polytope, b: Polytope, point: np.ndarray) -> np.ndarray | None:
-    """The point, or the first of the paper's 26 neighbours at shrinking steps, strictly inside both."""
-    if _strictly_inside(a, point) and _strictly_inside(b, point):
-        return point
-    directions = np.array([d for d in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
-    step = 1e-3 * min(a.size, b.size)
-    for halving in range(40):
-        for trial in point + step * 0.5**halving * directions:
-            if _strictly_inside(a, trial) and _strictly_inside(b, trial):
-                return trial
-    return None
-
-
-def _strictly_inside(body: Polytope, point: np.ndarray) -> bool:
-    return bool(body.offsets_about(point).min() > ROUNDING / 4 * body.size)
+    return Certificate(parts[real], faces[real], basis[SHARE, real].copy(), normal)

@@ -11,6 +11,7 @@ from clearance.errors import BadPolygon, BadShape, ClearanceError, EmptyMesh, No
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid, Unbounded
+from clearance.kernels.polytope_exits import cell_of, exit_in
 from tests.oracle.polytope_volumes import half_spaces, shared_volume
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
@@ -58,7 +59,6 @@ def test_the_trivalent_form_is_a_closed_surface():
             assert v in form.across[w]
             shared = {form.planes[v, (k + 1) % 3], form.planes[v, (k + 2) % 3]}
             assert shared <= set(form.planes[w])
-    assert np.array_equal(np.sort(body.cutting_order), np.arange(body.n_faces))
 
 
 @pytest.mark.parametrize(
@@ -88,3 +88,22 @@ def test_a_concave_or_open_polyhedron_is_refused():
     two = Polyhedron.merged([cube, Polytope(CUBE + 3.0).polyhedron()])
     with pytest.raises(BadPolygon):
         Polytope.from_polyhedron(two)
+
+
+@pytest.mark.parametrize(
+    "shape", [(1, 1, 1), (1e-6, 1, 1), (1, 1e-6, 1e-6), (1, 30, 0.1), (1e6, 1e6, 1e6)]
+)
+@pytest.mark.parametrize("n", [4, 12, 400])
+def test_the_map_of_directions_finds_the_face_that_looking_at_all_finds(shape, n):
+    rng = np.random.default_rng([n, 5])
+    v = rng.normal(size=(n, 3)) * shape @ np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    body = Polytope(v + [3.0, -2.0, 1.0])
+    x = np.vstack(
+        [rng.normal(size=(500, 3)) @ np.diag(shape), v - v.mean(axis=0), np.eye(3), -np.eye(3)]
+    )
+    gauges = (x @ (body.normals / body.face_widths[:, None]).T).max(axis=1)
+    rounding = 64.0 * 2.0**-53 * np.abs(body.vertices).max() / body.face_widths.min()
+    for point, gauge in zip(x, gauges, strict=True):
+        cell, bound = cell_of(*body.packed, *point)
+        assert exit_in(*body.packed, cell, *point)[1] == pytest.approx(gauge, rel=rounding)
+        assert bound >= gauge * (1.0 - rounding)

@@ -6,11 +6,13 @@ import itertools
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
-from clearance.errors import BadShape, EmptyMesh
+from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope_gjk import LIMIT, gjk, support
-from clearance.query.common_point import common_point, common_point_paper
+from clearance.query.common_point import common_point
+from clearance.query.common_point_paper import common_point_paper
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
 
@@ -96,8 +98,54 @@ def test_gjk_never_runs_on():
             assert n < LIMIT // 4
 
 
+def turned(angle: float, shift) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, :3] = Rotation.from_rotvec([0.3 * angle, -angle, 0.5 * angle]).as_matrix()
+    pose[:3, 3] = shift
+    return pose
+
+
+@pytest.mark.parametrize("m", [2, 3, 5])
+def test_along_a_trajectory_a_warm_start_gives_the_same_answer_with_less_work(m):
+    bodies = [ball(50, i) for i in range(m)]
+    warm, work, seen = (), [0, 0], set()
+    for step in range(120):
+        poses = [turned(0.01 * i * step, [0.02 * step * (i == 1), 0.1 * i, 0.0]) for i in range(m)]
+        cold = common_point(bodies, poses)
+        met = common_point(bodies, poses, warm)
+        moved = [
+            Polytope(b.vertices @ p[:3, :3].T + p[:3, 3])
+            for b, p in zip(bodies, poses, strict=True)
+        ]
+        assert met.relation == cold.relation == common_point(moved).relation
+        if met.relation == "overlap":
+            assert met.depth == pytest.approx(cold.depth, abs=1e-12)
+            assert cold.depth == pytest.approx(common_point(moved).depth, abs=1e-12)
+            assert min(b.offsets_about(met.point).min() for b in moved) > 0.0
+        warm = met.warm
+        work[0] += cold.n_faces
+        work[1] += met.n_faces
+        seen.add(met.relation)
+    assert seen == {"overlap", "apart"}
+    assert m > 2 or work[1] < 0.3 * work[0]
+
+
+def test_a_warm_start_from_elsewhere_changes_nothing():
+    rng = np.random.default_rng(4)
+    a, b = ball(40, 1), ball(60, 2, (0.7, 0.2, 0.0))
+    true = common_point([a, b])
+    for _ in range(50):
+        names = tuple((int(rng.integers(2)) << 32) + int(rng.integers(150)) for _ in range(4))
+        met = common_point([a, b], warm=names)
+        assert met.relation == true.relation and met.depth == pytest.approx(true.depth, abs=1e-12)
+
+
 def test_refusals():
     with pytest.raises(EmptyMesh):
         common_point([])
     with pytest.raises(BadShape, match="item 1 is a ndarray"):
         common_point([Polytope(CUBE), CUBE])
+    with pytest.raises(BadShape, match=r"poses have shape \(1, 4, 4\)"):
+        common_point([Polytope(CUBE)] * 2, [np.eye(4)])
+    with pytest.raises(NotFinite):
+        common_point([Polytope(CUBE)], [np.full((4, 4), np.nan)])
