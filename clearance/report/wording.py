@@ -4,7 +4,7 @@ down."""
 from __future__ import annotations
 
 import math
-from decimal import ROUND_FLOOR, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 
 def mm(metres: float) -> str:
@@ -20,6 +20,32 @@ def mm(metres: float) -> str:
     value = Decimal(repr(float(metres))) * 1000  # exact, so that 0.0283 m is 28.30 mm
     places = max(0, min(3, 3 - value.adjusted()))
     return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
+
+
+def depth_mm(metres: float) -> str:
+    """A penetration in millimetres, rounded up so that it is never shown less than it is."""
+    value = Decimal(repr(float(metres))) * 1000
+    places = max(0, min(3, 3 - value.adjusted())) if value else 3
+    return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_CEILING)) if value else "0"
+
+
+def volume_cm3(cubic_metres: float) -> str:
+    """A volume in cubic centimetres, in three digits."""
+    return f"{cubic_metres * 1e6:.3g}"
+
+
+def contact_text(contact: dict) -> str:
+    """Depth and volume as one phrase; where they are not exact, the range that holds them."""
+    depths = depth_mm(contact["penetration"]), mm(contact["penetration_at_least"])
+    volumes = volume_cm3(contact["volume"]), volume_cm3(contact["volume_at_least"])
+    depth = _range(*depths, contact["exact"])
+    return f"{depth} mm deep, {_range(*volumes, contact['volume_exact'])} cm³ shared"
+
+
+def _range(greatest: str, least: str, exact: bool) -> str:
+    if exact or greatest == least:
+        return greatest
+    return f"at most {greatest}" if least == "0" else f"{least} to {greatest}"
 
 
 def limit_mm(metres: float) -> str:

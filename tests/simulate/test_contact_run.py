@@ -1,0 +1,153 @@
+"""Runs that hit something: the scene that does, and a real case with an obstacle pushed into its way."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+import clearance as cl
+from clearance.geometry import boolean
+from clearance.simulate.contact import find_contacts
+from clearance.world.pairs import measured_pairs
+from tests.report.records import record
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT.parent / "shared" / "cases"
+
+
+@pytest.fixture(scope="module")
+def shelf():
+    return cl.check(cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml"))
+
+
+def confirm(run, row):
+    """The overlap's translation of the link parts the pair; less than the lower bound does not."""
+    case, motion = run.record.case, run.record.motions[0]
+    body = next(b for b in motion.placed.robot.bodies if b.name == row.link)
+    obstacle = next(o for o in case.obstacles if o.name == row.obstacle)
+    i_link = motion.placed.robot.link_names.index(row.link)
+    pose = motion.poses(row.step, row.step + 1)[0, i_link]
+
+    def after(length):
+        moved = pose.copy()
+        moved[:3, 3] += length * row.found.direction
+        there = obstacle.world_from_body
+        return cl.distance(body.shape, obstacle.body.shape, pose_a=moved, pose_b=there)
+
+    assert after(row.found.penetration * (1 + 1e-9) + 1e-12).distance > 0.0
+    assert after(0.999 * row.found.penetration_at_least - 1e-12).contact
+
+
+def test_the_scene_in_contact_has_depth_and_volume_at_its_22_steps(shelf):
+    rows = shelf.steps.to_pylist()
+    hit = [row for row in rows if row["clearance"] == 0.0]
+    assert [row["step"] for row in hit] == list(range(136, 158))
+    assert all(row["penetration"] > 0.0 and row["volume"] > 0.0 for row in hit)
+    clear = [row for row in rows if row["clearance"] > 0.0]
+    assert {(row["penetration"], row["volume"]) for row in clear} == {(None, None)}
+
+
+def test_the_row_of_a_step_is_its_deepest_pair_and_the_sum_of_its_volumes(shelf):
+    for step in (136, 148, 157):
+        found = [row.found for row in shelf.record.contacts if row.step == step]
+        row = shelf.steps.slice(step, 1).to_pylist()[0]
+        assert row["penetration"] == max(one.penetration for one in found)
+        assert row["volume"] == pytest.approx(sum(one.volume for one in found), rel=1e-15)
+    assert {row.link for row in shelf.record.contacts} == {"panda_leftfinger", "panda_rightfinger"}
+
+
+def test_the_way_out_of_the_carton_is_back_out_of_the_shelf(shelf):
+    deepest = shelf.record.deepest
+    assert deepest.step == 148 and deepest.obstacle == "carton"
+    face = [-np.cos(0.1), -np.sin(0.1), 0.0]  # the carton's front, turned by 0.1 rad
+    assert deepest.found.direction == pytest.approx(face, abs=1e-9)
+    assert deepest.found.penetration == pytest.approx(0.03206, abs=1e-5)
+    assert deepest.found.penetration - deepest.found.penetration_at_least < 1e-4
+    for row in shelf.record.contacts[::5]:
+        confirm(shelf, row)
+
+
+@pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
+def test_the_shared_region_lies_in_the_carton(shelf):
+    carton = next(o for o in shelf.record.case.obstacles if o.name == "carton")
+    low, high = carton.body.shape.bounds
+    for row in shelf.record.contacts:
+        corners = row.found.region.vertices - carton.world_from_body[:3, 3]
+        inside = corners @ carton.world_from_body[:3, :3]
+        assert (inside >= low - 1e-9).all() and (inside <= high + 1e-9).all()
+        assert row.found.region.volume == pytest.approx(row.found.volume, rel=1e-12)
+
+
+def test_what_stands_for_a_body_reaches_the_notes(shelf):
+    told = [note for note in shelf.record.notes if note.startswith("contact: panda_leftfinger: ")]
+    assert len(told) == 1 and "its hull stands for it" in told[0]
+
+
+def test_a_run_without_contact_does_not_look(monkeypatch):
+    import clearance.run
+
+    monkeypatch.setitem(__import__("sys").modules, "clearance.simulate.contact", None)
+    case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
+    run = clearance.run.check(case)
+    assert run.record.contacts == () and run.record.deepest is None
+    assert run.steps["penetration"].null_count == run.steps.num_rows
+
+
+def test_a_pose_that_repeats_is_asked_once(monkeypatch):
+    import clearance.simulate.contact as room
+
+    run = record()
+    asked = []
+    monkeypatch.setattr(room, "distance", lambda *a, **k: asked.append(1) or cl.distance(*a, **k))
+    pairs = measured_pairs(run.case)[0]
+    step = int(np.flatnonzero(run.clearances == 0.0)[0])
+    still = run.motions[0].__class__(
+        run.motions[0].placed,
+        np.arange(5.0),
+        np.tile(run.motions[0].positions[step], (5, 1)),
+        np.zeros(5),
+    )
+    found, _ = find_contacts(run.case, (still,), pairs, np.zeros(5))
+    assert [row.step for row in found] == sorted(row.step for row in found)
+    assert len(found) == 5 * len([row for row in found if row.step == 0])
+    assert len(asked) <= len(pairs)
+
+
+@pytest.fixture(scope="module")
+def pushed(tmp_path_factory):
+    """The Fetch in its cage, with the obstacle that it comes nearest to pushed 2 cm into it."""
+    folder = CASES / "fetch_cage_planned"
+    if not folder.is_dir():
+        pytest.skip("the shared cases are not beside this checkout")
+    with (folder / "reference.csv").open(encoding="utf-8") as file:
+        nearest = min(csv.DictReader(file), key=lambda row: float(row["clearance"]))
+    points = [[float(nearest[f"{body}_{k}"]) for k in "xyz"] for body in ("link", "obstacle")]
+    way = np.subtract(*points)
+    given = YAML(typ="safe").load((folder / "case.yaml").read_text(encoding="utf-8"))
+    robot = folder / given["robot"]["urdf"]
+    given["robot"] |= {"urdf": str(robot), "package_dirs": [str(robot.parent)]}
+    given["trajectory"]["file"] = str(folder / "trajectory.csv")
+    obstacle = next(o for o in given["scene"]["obstacles"] if o["name"] == nearest["obstacle"])
+    shift = way + 0.02 * way / np.linalg.norm(way)
+    obstacle["pose"]["xyz"] = (np.array(obstacle["pose"]["xyz"]) + shift).tolist()
+    path = tmp_path_factory.mktemp("pushed") / "case.yaml"
+    with path.open("w", encoding="utf-8") as file:
+        YAML(typ="safe").dump(given, file)
+    return cl.check(cl.load_case(path)), int(nearest["step"]), nearest["link"], nearest["obstacle"]
+
+
+def test_a_real_case_pushed_into_an_obstacle(pushed):
+    run, step, link, obstacle = pushed
+    assert not run.passed
+    here = [row for row in run.record.contacts if row.step == step]
+    hit = next(row for row in here if (row.link, row.obstacle) == (link, obstacle))
+    assert 0.0 < hit.found.penetration <= 0.0205
+    assert hit.found.volume > 0.0
+    for row in here:
+        confirm(run, row)
+    in_contact = {row.step for row in run.record.contacts}
+    assert in_contact == set(np.flatnonzero(run.record.clearances == 0.0).tolist())
