@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from clearance.report.markup import Html, element, section, step_link, table
-from clearance.report.wording import contact_text, depth_mm, mm, seconds, volume_cm3
+from clearance.report.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
 from clearance.simulate.record import Record, StepContact
 
 
@@ -86,7 +86,7 @@ def _row(pair: dict[str, Any]) -> Html:
         depth_mm(pair["penetration"]),
         "exact" if pair["exact"] else mm(depth),
         volume_cm3(pair["volume"]),
-        "exact" if pair["volume_exact"] else volume_cm3(volume),
+        "exact" if pair["volume_exact"] else least_cm3(volume),
         seconds(pair["time"]),
     )
     return element(
@@ -109,6 +109,6 @@ def _meaning(pairs: list[dict[str, Any]]) -> list[str]:
     return [
         *told,
         "Depth and volume that are not exact are upper bounds, with the lower bound beside them: bodies "
-        "that are not convex are judged by convex parts (see How sure); a way out of such bodies is "
-        "confirmed by their distance after it.",
+        "that are not convex are judged by convex parts that hold them (see How sure), and a way out of deep "
+        "hollows is confirmed by the bodies' own distance after it.",
     ]

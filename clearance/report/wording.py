@@ -30,14 +30,33 @@ def depth_mm(metres: float) -> str:
 
 
 def volume_cm3(cubic_metres: float) -> str:
-    """A volume in cubic centimetres, in three digits."""
-    return f"{cubic_metres * 1e6:.3g}"
+    """A volume in cubic centimetres, three digits, rounded up as a depth is."""
+    return _digits(cubic_metres * 1e6, 3, ROUND_CEILING)
+
+
+def least_cm3(cubic_metres: float) -> str:
+    """A lower bound of a volume in cubic centimetres, three digits, rounded down."""
+    return _digits(cubic_metres * 1e6, 3, ROUND_FLOOR)
+
+
+def litres(cubic_metres: float) -> str:
+    """A volume in litres, four digits, rounded up."""
+    return _digits(cubic_metres * 1e3, 4, ROUND_CEILING)
+
+
+def _digits(value: float, n_digits: int, rounding: str) -> str:
+    if value == 0.0:
+        return "0"
+    exact = Decimal(repr(float(value)))
+    return (
+        f"{exact.quantize(Decimal(1).scaleb(exact.adjusted() - n_digits + 1), rounding=rounding):g}"
+    )
 
 
 def contact_text(contact: dict) -> str:
     """Depth and volume as one phrase; where they are not exact, the range that holds them."""
     depths = depth_mm(contact["penetration"]), mm(contact["penetration_at_least"])
-    volumes = volume_cm3(contact["volume"]), volume_cm3(contact["volume_at_least"])
+    volumes = volume_cm3(contact["volume"]), least_cm3(contact["volume_at_least"])
     depth = _range(*depths, contact["exact"])
     return f"{depth} mm deep, {_range(*volumes, contact['volume_exact'])} cm³ shared"
 

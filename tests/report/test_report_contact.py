@@ -10,7 +10,7 @@ import pytest
 from clearance.report import summary_of, write
 from clearance.report.contact import contacts
 from clearance.report.page import page_of
-from clearance.report.wording import contact_text, depth_mm
+from clearance.report.wording import contact_text, depth_mm, least_cm3, volume_cm3
 from clearance.simulate import replay_contact
 from clearance.simulate.replay import load_replay, replay_of
 from tests.report.browser import chromium, executable
@@ -44,8 +44,14 @@ def test_the_page_says_the_deepest_contact():
 def test_a_bound_is_worded_as_one():
     figures = {"penetration": 0.0123451, "penetration_at_least": 0.012, "exact": False}
     figures |= {"volume": 2e-6, "volume_at_least": 0.0, "volume_exact": False}
-    assert contact_text(figures) == "12.00 to 12.35 mm deep, at most 2 cm³ shared"
-    assert contact_text(figures | {"exact": True}) == "12.35 mm deep, at most 2 cm³ shared"
+    assert contact_text(figures) == "12.00 to 12.35 mm deep, at most 2.00 cm³ shared"
+    assert contact_text(figures | {"exact": True}) == "12.35 mm deep, at most 2.00 cm³ shared"
+
+
+@pytest.mark.parametrize("volume", [0.0, 1e-15, 1.23456e-6, 9.999e-7, 1.0])
+def test_a_volume_lies_between_its_two_wordings(volume):
+    assert float(least_cm3(volume)) <= volume * 1e6 <= float(volume_cm3(volume))
+    assert float(volume_cm3(volume)) <= 1.01 * volume * 1e6
 
 
 @pytest.mark.parametrize("depth", [1e-9, 0.0123451, 0.9999999, 1.0])
