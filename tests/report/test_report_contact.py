@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 
 import numpy as np
@@ -74,6 +75,20 @@ def test_too_many_contacts_are_thinned_but_never_the_deepest(monkeypatch):
     replay = replay_of(RUN)
     assert 2 <= len(replay.contacts) <= 5
     assert max(one.penetration for one in replay.contacts) == DEEPEST.found.penetration
+
+
+def test_the_table_has_a_row_for_each_pair_in_contact(tmp_path):
+    write(RUN, tmp_path / "out")
+    with (tmp_path / "out" / "contacts.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [(int(row["step"]), row["link"]) for row in rows] == [
+        (c.step, c.link) for c in RUN.contacts
+    ]
+    for row, contact in zip(rows, RUN.contacts, strict=True):
+        found = contact.found
+        assert float(row["penetration"]) == found.penetration
+        assert float(row["volume_at_least"]) == found.volume_at_least
+        assert [float(row[f"direction_{k}"]) for k in "xyz"] == found.direction.tolist()
 
 
 def red(pixels):
