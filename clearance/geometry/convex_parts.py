@@ -22,6 +22,9 @@ from clearance.tolerance import TESSELLATION
 FLAT = 1e-9
 """[-] Relative to the volume: as much may a body lack of its hull and count as convex (`Polytope`)."""
 
+MUCH_MORE = 1.1
+"""[-] A hull of more than this times the body's volume should have been cut."""
+
 MISSED = 1e-12
 """[-] Relative to the volume: parts that miss no more of a body hold it."""
 
@@ -129,9 +132,7 @@ def _solid(body: Polyhedron) -> tuple[Any, str]:
 
 def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
     try:
-        corners = decompose.cut_into_hulls(body.vertices, body.triangles())
-        parts = [hull] if len(corners) == 1 else [Polytope(points) for points in corners]
-        parts = _grown_to_hold(solid, parts)
+        parts = _grown_to_hold(solid, _cut(body, hull))
     except ClearanceError as error:
         return _held_by(hull, solid, True, f"concave, not cut into convex parts ({error.problem})")
     surface = body.vertices[body.triangles()]
@@ -149,6 +150,17 @@ def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
         who = f"{len(parts)} convex parts by CoACD hold it and stand"
     note = f"{who} out by at most {greatest * 1e3:.2g} mm, with {100.0 * extra:.2g} % more volume"
     return ConvexParts(tuple(parts), tuple(inner), solid, True, note)
+
+
+def _cut(body: Polyhedron, hull: Polytope) -> list[Polytope]:
+    """CoACD's parts; finer ones where it finds nothing to cut though the hull is much more than the body."""
+    for threshold in decompose.THRESHOLDS:
+        corners = decompose.cut_into_hulls(body.vertices, body.triangles(), threshold)
+        if len(corners) > 1:
+            return [Polytope(points) for points in corners]
+        if hull.volume <= MUCH_MORE * body.volume:
+            break
+    return [hull]
 
 
 def _grown_to_hold(solid: Any, parts: list[Polytope]) -> list[Polytope]:

@@ -17,9 +17,9 @@ import numpy as np
 from clearance.errors import BadPolygon, Unavailable
 from clearance.geometry.boolean import INSTALL
 
-THRESHOLD = 0.05
-"""[-] The concavity that CoACD leaves uncut, its default: finer costs parts, and depth is sharpened by
-distance queries on the bodies themselves."""
+THRESHOLDS = (0.05, 0.02, 0.01)
+"""[-] The concavity that CoACD leaves uncut, its default first: finer costs parts, and depth is sharpened by
+distance queries on the bodies themselves. The finer ones are for long thin bodies that it leaves whole."""
 
 LONGEST = 120.0
 """[s] After which CoACD is given up: a thousand times what the links of industrial arms take."""
@@ -32,7 +32,9 @@ def available() -> bool:
     return find_spec("coacd") is not None
 
 
-def cut_into_hulls(vertices: np.ndarray, triangles: np.ndarray) -> list[np.ndarray]:
+def cut_into_hulls(
+    vertices: np.ndarray, triangles: np.ndarray, threshold: float = THRESHOLDS[0]
+) -> list[np.ndarray]:
     """The corners (k, 3) [m] of convex parts that together stand for a closed mesh.
 
     The same mesh gives the same parts: CoACD's search is seeded.
@@ -46,7 +48,7 @@ def cut_into_hulls(vertices: np.ndarray, triangles: np.ndarray) -> list[np.ndarr
     if not available():
         raise Unavailable("CoACD is not installed", valid=INSTALL)
     sent = io.BytesIO()
-    np.savez(sent, vertices=vertices, triangles=triangles, threshold=THRESHOLD)
+    np.savez(sent, vertices=vertices, triangles=triangles, threshold=threshold)
     try:
         done = subprocess.run(
             [sys.executable, str(_PROCESS)],
