@@ -22,11 +22,17 @@ def mm(metres: float) -> str:
     return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
 
 
+NOISE = 1e-12
+"""[-] What is rounded up is first made less by this share: 0.05 m and a rounding is 50.00 mm, not 50.01."""
+
+
 def depth_mm(metres: float) -> str:
-    """A penetration in millimetres, rounded up so that it is never shown less than it is."""
-    value = Decimal(repr(float(metres))) * 1000
-    places = max(0, min(3, 3 - value.adjusted())) if value else 3
-    return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_CEILING)) if value else "0"
+    """A penetration in millimetres, rounded up so that it is not shown less than it is (but for noise)."""
+    if metres == 0.0:
+        return "0"
+    value = Decimal(repr(float(metres) * (1.0 - NOISE))) * 1000
+    places = max(0, min(3, 3 - value.adjusted()))
+    return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_CEILING))
 
 
 def volume_cm3(cubic_metres: float) -> str:
@@ -47,10 +53,10 @@ def litres(cubic_metres: float) -> str:
 def _digits(value: float, n_digits: int, rounding: str) -> str:
     if value == 0.0:
         return "0"
-    exact = Decimal(repr(float(value)))
-    return (
-        f"{exact.quantize(Decimal(1).scaleb(exact.adjusted() - n_digits + 1), rounding=rounding):g}"
-    )
+    towards = -NOISE if rounding == ROUND_CEILING else NOISE
+    exact = Decimal(repr(float(value) * (1.0 + towards)))
+    last = Decimal(1).scaleb(exact.adjusted() - n_digits + 1)
+    return f"{exact.quantize(last, rounding=rounding):f}"
 
 
 def contact_text(contact: dict) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import clearance as cl
 from clearance.geometry import boolean
 from clearance.simulate.contact import find_contacts
 from clearance.world.pairs import measured_pairs
+from tests.report.browser import chromium, executable
 from tests.report.records import record
 
 ROOT = Path(__file__).parents[2]
@@ -90,7 +92,7 @@ def test_what_stands_for_a_body_reaches_the_notes(shelf):
 def test_a_run_without_contact_does_not_look(monkeypatch):
     import clearance.run
 
-    monkeypatch.setitem(__import__("sys").modules, "clearance.simulate.contact", None)
+    monkeypatch.setitem(sys.modules, "clearance.simulate.contact", None)
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
     run = clearance.run.check(case)
     assert run.record.contacts == () and run.record.deepest is None
@@ -151,3 +153,21 @@ def test_a_real_case_pushed_into_an_obstacle(pushed):
         confirm(run, row)
     in_contact = {row.step for row in run.record.contacts}
     assert in_contact == set(np.flatnonzero(run.record.clearances == 0.0).tolist())
+
+
+@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+def test_the_page_of_the_pushed_case_shows_the_region(pushed, tmp_path):
+    run, step, _, _ = pushed
+    run.save(tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        page.run("document.getElementById('readout').style.display = 'none'")
+        page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
+        page.run("document.getElementById('camera-gap').click()")
+        page.settle()
+        pixels = page.pixels("#pane").astype(int)
+        drawn = page.run("window.clearance.state().contacts")
+        assert page.errors == []
+    red = (pixels[..., 0] > 170) & (pixels[..., 1] < 90) & (pixels[..., 2] < 90)
+    assert red.sum() > 200
+    assert len(drawn) == len([row for row in run.record.contacts if row.step == step])
