@@ -126,18 +126,18 @@ class _Placed:
     witness: np.ndarray
 
     def found(self) -> Contact:
-        region, volume_at_least, notes = self._region
+        region, volume, volume_at_least, notes = self._region
         ray, at_least = self._depth()
         notes = (*(n for n in (self.pair.parts_a.note, self.pair.parts_b.note) if n), *notes)
         return Contact(
             penetration=ray.length,
             penetration_at_least=min(at_least, ray.length),
             direction=ray.direction,
-            volume=region.volume,
-            volume_at_least=min(volume_at_least, region.volume),
+            volume=volume,
+            volume_at_least=min(volume_at_least, volume),
             centroid=self.witness if region.is_empty else region.centroid,
             region=region,
-            exact=(ray.length - at_least <= EXACT * self.size, volume_at_least >= region.volume),
+            exact=(ray.length - at_least <= EXACT * self.size, volume_at_least >= volume),
             notes=notes,
         )
 
@@ -187,7 +187,7 @@ class _Placed:
     def _confirmed(self, rays: list[Ray]) -> Ray:
         """The shortest way that the bodies confirm; the last of `rays` is proven by the hulls anyway."""
         padded = [Ray(r.length * (1.0 + 1e-12) + 1e-13 * self.size, r.direction) for r in rays]
-        return shortened(padded, self._is_clear) or padded[-1]
+        return shortened(padded, self._is_clear, self.size) or padded[-1]
 
     def _is_clear(self, shift: np.ndarray) -> bool:
         pose = self.b_from_a.copy()
@@ -205,8 +205,8 @@ class _Placed:
 
         To part the bodies, the part must be parted from itself.
         """
-        region, volume_at_least, _ = self._region
-        if region.is_empty or volume_at_least < region.volume:
+        region, volume, volume_at_least, _ = self._region
+        if region.is_empty or volume_at_least < volume:
             return 0.0, []
         try:
             corners = Corners(region.vertices, np.zeros((0, 3)))
@@ -226,17 +226,18 @@ class _Placed:
         return self.pair.a.excess + self.pair.b.excess > 0.0
 
     @cached_property
-    def _region(self) -> tuple[ClosedMesh, float, tuple[str, ...]]:
-        """The region, a lower bound of its volume [m^3], and what is to be told of it."""
-        mesh = None
-        if self._both_convex:
-            mesh = _mesh_of(intersect(self._hulls()))
-        elif self._both_closed and boolean.available():
+    def _region(self) -> tuple[ClosedMesh, float, float, tuple[str, ...]]:
+        """The region, its volume [m^3] from above and from below, and what is to be told of it."""
+        if not self._both_convex and self._both_closed and boolean.available():
             mesh = self._region_of_solids()
-        if mesh is not None:
-            return mesh, max(0.0, mesh.volume - self._shell(mesh)), ()
+            if mesh is not None:
+                return mesh, mesh.volume, max(0.0, mesh.volume - self._shell(mesh)), ()
+        shared = intersect(self._hulls())
+        mesh = _mesh_of(shared)
+        if self._both_convex:
+            return mesh, shared.volume, max(0.0, shared.volume - self._shell(mesh)), ()
         why = "the volume is at most that of the hulls' common region"
-        return _mesh_of(intersect(self._hulls())), self._volume_of_inner(), (why,)
+        return mesh, shared.volume, self._volume_of_inner(), (why,)
 
     def _volume_of_inner(self) -> float:
         """[m^3] the greatest region that a convex body inside a shares with one inside b."""
