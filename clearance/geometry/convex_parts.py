@@ -94,20 +94,27 @@ def _found(body: Polyhedron) -> ConvexParts:
     return _of_concave(body, hull, solid)
 
 
-def hull_drawn_in(surface: np.ndarray) -> tuple[Polytope, ...]:
+def hull_drawn_in(surface: np.ndarray, only_convex: bool) -> tuple[Polytope, ...]:
     """A convex part inside the closed surface (t, 3, 3) [m]: its hull less the depth of its dents, or none.
+
+    Args:
+        only_convex: none where there are dents; that is quick.
 
     Raises:
         NotSolid: the surface is flat.
     """
     hull = Polytope(surface.reshape(-1, 3))
     dent = _depth_in(hull, surface)
-    dent = dent if dent > 1e-12 * hull.size else 0.0
-    return _drawn_in(hull, dent) if _proves(hull, dent, surface) else ()
+    if dent <= 1e-12 * hull.size:
+        return (hull,) if _proves(hull, 0.0, surface) else ()
+    if only_convex or not _proves(hull, dent, surface):
+        return ()
+    return _drawn_in(hull, dent)
 
 
 def _held_by(hull: Polytope, solid: Any, closed: bool, why: str) -> ConvexParts:
-    return ConvexParts((hull,), (), solid, closed, f"{why}: its hull stands for it")
+    note = f"{why}: its hull stands for it, from which depth and volume are upper bounds"
+    return ConvexParts((hull,), (), solid, closed, note)
 
 
 def _of_convex(hull: Polytope, excess: float) -> ConvexParts:

@@ -28,6 +28,9 @@ from clearance.query.retreat import Ray, shortened, ways_out
 EXACT = 1e-12
 """[-] Bounds that differ by no more, relative to the bodies' size, are one value."""
 
+CLOSE = 0.99
+"""[-] A lower bound that is this share of the upper one is not worth a costly second one."""
+
 
 @dataclass(frozen=True, eq=False)
 class Contact:
@@ -126,9 +129,8 @@ class _Placed:
     witness: np.ndarray
 
     def found(self) -> Contact:
-        region, volume, volume_at_least, notes = self._region
+        region, volume, volume_at_least = self._region
         ray, at_least = self._depth()
-        notes = (*(n for n in (self.pair.parts_a.note, self.pair.parts_b.note) if n), *notes)
         return Contact(
             penetration=ray.length,
             penetration_at_least=min(at_least, ray.length),
@@ -138,7 +140,7 @@ class _Placed:
             centroid=self.witness if region.is_empty else region.centroid,
             region=region,
             exact=(ray.length - at_least <= EXACT * self.size, volume_at_least >= volume),
-            notes=notes,
+            notes=tuple(parts.note for parts in self._both_parts if parts.note),
         )
 
     @cached_property
@@ -172,12 +174,13 @@ class _Placed:
         ray = Ray(whole.depth, whole.direction)
         if self._both_convex and not self._faceted:
             return ray, whole.at_least
-        at_least, thin = self._width_of_region()
         if self._needs_search:
-            extra = np.array([whole.direction, *thin])
+            extra = np.array([whole.direction, *self._thin_ways()])
             rays = ways_out(self.outer_a, self.outer_b, whole.depth, extra)
             ray = self._confirmed([*rays, ray])
-        return ray, max(at_least, self._depth_of_inner())
+        at_least = self._depth_of_inner()
+        is_close = at_least > CLOSE * ray.length
+        return ray, max(at_least, self._width_of_region(only_convex=is_close))
 
     @property
     def _needs_search(self) -> bool:
@@ -200,24 +203,25 @@ class _Placed:
         deep = [penetration(p, q).at_least for p in inner_a for q in self.pair.parts_b.inner]
         return max(deep, default=0.0)
 
-    def _width_of_region(self) -> tuple[float, list[np.ndarray]]:
-        """[m] the width of a convex part of the region, and the directions in which the region is thin.
+    def _thin_ways(self) -> list[np.ndarray]:
+        """The two directions in which the region is thinnest; none where it is empty."""
+        region = self._region[0]
+        if region.is_empty:
+            return []
+        corners = Corners(region.vertices, np.zeros((0, 3)))
+        thin = penetration(corners, corners).direction
+        return [thin, -thin]
 
-        To part the bodies, the part must be parted from itself.
-        """
-        region, volume, volume_at_least, _ = self._region
+    def _width_of_region(self, only_convex: bool) -> float:
+        """[m] the width of a convex part of the region: to part the bodies, it must be parted from itself."""
+        region, volume, volume_at_least = self._region
         if region.is_empty or volume_at_least < volume:
-            return 0.0, []
+            return 0.0
         try:
-            corners = Corners(region.vertices, np.zeros((0, 3)))
-            thin = penetration(corners, corners).direction
-            widths = [
-                penetration(part, part).at_least
-                for part in hull_drawn_in(region.vertices[region.triangles])
-            ]
+            parts = hull_drawn_in(region.vertices[region.triangles], only_convex)
         except ClearanceError:  # thinner than rounding
-            return 0.0, []
-        return max(widths, default=0.0), [thin, -thin]
+            return 0.0
+        return max((penetration(part, part).at_least for part in parts), default=0.0)
 
     # ---- region
 
@@ -226,18 +230,17 @@ class _Placed:
         return self.pair.a.excess + self.pair.b.excess > 0.0
 
     @cached_property
-    def _region(self) -> tuple[ClosedMesh, float, float, tuple[str, ...]]:
-        """The region, its volume [m^3] from above and from below, and what is to be told of it."""
+    def _region(self) -> tuple[ClosedMesh, float, float]:
+        """The region, or that of the hulls, and its volume [m^3] from above and from below."""
         if not self._both_convex and self._both_closed and boolean.available():
             mesh = self._region_of_solids()
             if mesh is not None:
-                return mesh, mesh.volume, max(0.0, mesh.volume - self._shell(mesh)), ()
+                return mesh, mesh.volume, max(0.0, mesh.volume - self._shell(mesh))
         shared = intersect(self._hulls())
         mesh = _mesh_of(shared)
         if self._both_convex:
-            return mesh, shared.volume, max(0.0, shared.volume - self._shell(mesh)), ()
-        why = "the volume is at most that of the hulls' common region"
-        return mesh, shared.volume, self._volume_of_inner(), (why,)
+            return mesh, shared.volume, max(0.0, shared.volume - self._shell(mesh))
+        return mesh, shared.volume, self._volume_of_inner()
 
     def _volume_of_inner(self) -> float:
         """[m^3] the greatest region that a convex body inside a shares with one inside b."""

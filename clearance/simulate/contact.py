@@ -7,7 +7,8 @@ load this room. Not for: whether there is contact (`measure`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from clearance.simulate.steps import pair_names
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair as NamedPair
+
+Box = tuple[np.ndarray, np.ndarray]
+"""The least and the greatest coordinates (3,) [m]."""
 
 
 def find_contacts(
@@ -51,15 +55,17 @@ class _Finder:
 
     def at(self, step: int) -> Iterator[StepContact]:
         """The contacts of one step, in the order of the pairs."""
-        links, obstacles = pair_names(self.case, self.pairs)
+        links, obstacles = self._names
         poses = [motion.poses(step, step + 1)[0] for motion in self.motions]
+        link_boxes: dict[tuple[int, int], Box] = {}
         for i, pair in enumerate(self.pairs):
             robot = self.case.robots[pair.i_robot].robot
             body, obstacle = robot.bodies[pair.i_body], self.case.obstacles[pair.i_obstacle]
             world_from_link = poses[pair.i_robot][robot.link_names.index(body.name)]
-            if not _boxes_meet(
-                body.shape, world_from_link, obstacle.body.shape, obstacle.world_from_body
-            ):
+            link = (pair.i_robot, pair.i_body)
+            if link not in link_boxes:
+                link_boxes[link] = _world_box(body.shape, world_from_link)
+            if not _meet(link_boxes[link], self._obstacle_boxes[pair.i_obstacle]):
                 continue
             b_from_a = inverse(obstacle.world_from_body) @ world_from_link
             key = (i, b_from_a.tobytes())
@@ -71,6 +77,14 @@ class _Finder:
                 time = float(self.motions[0].times[step])
                 placed = found.placed(obstacle.world_from_body)
                 yield StepContact(step, time, links[i], obstacles[i], placed)
+
+    @cached_property
+    def _names(self) -> tuple[list[str], list[str]]:
+        return pair_names(self.case, self.pairs)
+
+    @cached_property
+    def _obstacle_boxes(self) -> list[Box]:
+        return [_world_box(o.body.shape, o.world_from_body) for o in self.case.obstacles]
 
     def notes(self) -> tuple[str, ...]:
         """What stands for the bodies that were in contact, where it is not they themselves."""
@@ -86,11 +100,7 @@ class _Finder:
         parts = [self._cut(body, name) for body, name in zip((a, b), names, strict=True)]
         if any(isinstance(part, str) for part in parts):
             return None
-        pair = Pair(a, b, *parts)
-        found = pair.contact(b_from_a, near.point_b)
-        for note in found.notes[sum(bool(part.note) for part in parts) :]:
-            self._told[f"contact: {names[0]} - {names[1]}: {note}"] = None
-        return replace(found, notes=found.notes)
+        return Pair(a, b, *parts).contact(b_from_a, near.point_b)
 
     def _cut(self, body: Polyhedron, name: str) -> ConvexParts | str:
         if id(body) not in self._parts:
@@ -105,14 +115,14 @@ class _Finder:
         return self._parts[id(body)]
 
 
-def _boxes_meet(a: Polyhedron, pose_a: np.ndarray, b: Polyhedron, pose_b: np.ndarray) -> bool:
-    """False only if the axis-parallel boxes of the two bodies in the world are apart."""
-    (low_a, high_a), (low_b, high_b) = _world_box(a, pose_a), _world_box(b, pose_b)
-    slack = 1e-12 * (np.abs([low_a, high_a, low_b, high_b]).max())
-    return bool((low_a <= high_b + slack).all() and (low_b <= high_a + slack).all())
+def _meet(a: Box, b: Box) -> bool:
+    """False only if two axis-parallel boxes are apart."""
+    return bool((a[0] <= b[1]).all() and (b[0] <= a[1]).all())
 
 
-def _world_box(body: Polyhedron, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _world_box(body: Polyhedron, pose: np.ndarray) -> Box:
+    """A box around the body in the world, a little wider than rounding."""
     middle = pose[:3, :3] @ body.bounds.mean(axis=0) + pose[:3, 3]
     half = np.abs(pose[:3, :3]) @ (0.5 * (body.bounds[1] - body.bounds[0]))
+    half += 1e-12 * (np.abs(middle).max() + half.max())
     return middle - half, middle + half

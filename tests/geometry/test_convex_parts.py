@@ -116,7 +116,8 @@ def test_a_dented_hull_is_drawn_in_below_its_dent():
     ring = body.face_vertices[4 * right : 4 * right + 4]
     fan = [(ring[i], ring[(i + 1) % 4], 8) for i in range(4)]
     surface = points[np.concatenate([triangles, fan])]
-    (inner,) = hull_drawn_in(surface)
+    (inner,) = hull_drawn_in(surface, only_convex=False)
+    assert hull_drawn_in(surface, only_convex=True) == ()
     assert inner.vertices.max() <= 0.49 and inner.volume > 0.94**3
 
 
