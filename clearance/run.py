@@ -150,7 +150,7 @@ def _contacts(
         return (), ()
     from clearance.simulate.contact import find_contacts
 
-    return find_contacts(case, motions, pairs, found.clearance)
+    return find_contacts(case, motions, pairs, found.clearance, found.pair)
 
 
 def _motions(case: Case, kind: str) -> tuple[Motion, ...]:

@@ -96,14 +96,14 @@ def contact(
     b_from_a = inverse(world_from_b) @ world_from_a
     witness = (inverse(world_from_b) @ [*near.point_b, 1.0])[:3]
     try:
-        pair = Pair(a, b, convex_parts(a), convex_parts(b))
+        pair = BodyPair(a, b, convex_parts(a), convex_parts(b))
     except ClearanceError as error:
         raise BadInput(f"a body in contact has no depth: {error.problem}") from None
     return pair.contact(b_from_a, witness).placed(world_from_b)
 
 
 @dataclass(frozen=True, eq=False)
-class Pair:
+class BodyPair:
     """Two bodies with their convex parts; each body in its own frame."""
 
     a: Polyhedron
@@ -124,7 +124,7 @@ class Pair:
 class _Placed:
     """A pair at one relative pose, all in the frame of b."""
 
-    pair: Pair
+    pair: BodyPair
     b_from_a: np.ndarray
     witness: np.ndarray
 

@@ -13,9 +13,14 @@ from ruamel.yaml import YAML
 import clearance as cl
 from clearance.geometry import boolean
 from clearance.simulate.contact import find_contacts
+from clearance.simulate.steps import pair_names
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import measured_pairs
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
 from tests.report.browser import chromium, executable
-from tests.report.records import record
+from tests.report.records import moved, record, with_contacts
 
 ROOT = Path(__file__).parents[2]
 CASES = ROOT.parent / "shared" / "cases"
@@ -113,10 +118,37 @@ def test_a_pose_that_repeats_is_asked_once(monkeypatch):
         np.tile(run.motions[0].positions[step], (5, 1)),
         np.zeros(5),
     )
-    found, _ = find_contacts(run.case, (still,), pairs, np.zeros(5))
+    deep = with_contacts(run).contacts[0]
+    named = list(zip(*pair_names(run.case, pairs), strict=True))
+    nearest = np.full(5, named.index((deep.link, deep.obstacle)))
+    found, _ = find_contacts(run.case, (still,), pairs, np.zeros(5), nearest)
     assert [row.step for row in found] == sorted(row.step for row in found)
     assert len(found) == 5 * len([row for row in found if row.step == 0])
     assert len(asked) <= len(pairs)
+    assert len([row for row in found if row.step == 0]) == 1
+
+
+def test_a_touch_that_rounding_parts_in_another_frame_is_a_contact_of_depth_0():
+    """A slider that ends exactly at a wall: contact in the world, whatever the wall's own frame says."""
+    turned = np.eye(4)
+    turned[:2, :2] = [[0.8, -0.6], [0.6, 0.8]]
+    run = cl.check(touching_case(turned))
+    rows = run.steps.to_pylist()
+    for row in rows:
+        assert (row["clearance"] == 0.0) == (row["penetration"] is not None)
+    deepest = [row["penetration"] for row in rows if row["clearance"] == 0.0]
+    assert all(depth < 1e-12 for depth in deepest)
+
+
+def touching_case(world):
+    """A cube that slides along x up to a wall at 0.1, both turned and moved by `world`, to rounding."""
+    joint = Joint("rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4))
+    body = Body("cube", cl.box((0.2, 0.2, 0.2)))
+    robot = Robot("cart", ("ground", "cube"), (joint,), (body,))
+    near = 0.1 * np.array([1.0, 1e-16, 0.0, -1e-16, -2e-16]) - 0.1
+    path = Trajectory(np.arange(5.0), ("rail",), near[:, None])
+    wall = Obstacle(Body("wall", cl.box((0.2, 1.0, 1.0))), world @ moved(0.2))
+    return Case("touch", (PlacedRobot(robot, path, world),), (wall,))
 
 
 @pytest.fixture(scope="module")
