@@ -108,8 +108,6 @@ def test_a_pose_that_repeats_is_asked_once(monkeypatch):
     import clearance.simulate.contact as room
 
     run = record()
-    asked = []
-    monkeypatch.setattr(room, "distance", lambda *a, **k: asked.append(1) or cl.distance(*a, **k))
     pairs = measured_pairs(run.case)[0]
     step = int(np.flatnonzero(run.clearances == 0.0)[0])
     still = run.motions[0].__class__(
@@ -121,6 +119,8 @@ def test_a_pose_that_repeats_is_asked_once(monkeypatch):
     deep = with_contacts(run).contacts[0]
     named = list(zip(*pair_names(run.case, pairs), strict=True))
     nearest = np.full(5, named.index((deep.link, deep.obstacle)))
+    asked = []
+    monkeypatch.setattr(room, "distance", lambda *a, **k: asked.append(1) or cl.distance(*a, **k))
     found, _ = find_contacts(run.case, (still,), pairs, np.zeros(5), nearest)
     assert [row.step for row in found] == sorted(row.step for row in found)
     assert len(found) == 5 * len([row for row in found if row.step == 0])
