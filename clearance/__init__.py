@@ -28,6 +28,7 @@ _ROOM_OF = {
     "Sketch": "sketch",
     "SketchResult": "sketch",
     "Trajectory": "world.trajectory",
+    "Workspace": "simulate.workspace",
     "biarcs": "planar.biarcs",
     "box": "geometry.shapes",
     "capsule": "geometry.shapes",
@@ -47,6 +48,7 @@ _ROOM_OF = {
     "polygon_distance": "query.distance",
     "polygon_distances": "query.distance",
     "read_mesh": "load.mesh",
+    "shared_workspace": "simulate.workspace",
     "sphere": "geometry.shapes",
     "within": "planar.hausdorff",
 }

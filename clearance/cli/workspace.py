@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
-import numpy as np
 
 from clearance.cli import ExitCode
 from clearance.cli.check import Millimetres
@@ -91,6 +90,8 @@ def _lines(found: Workspace, out: Path | None) -> list[str]:
     if found.region.is_empty:
         lines = [f"nothing is shared by {', '.join(found.robots)}"]
     else:
+        import numpy as np
+
         from clearance.report.wording import litres
 
         x, y, z = np.round(found.region.centroid, 3) + 0.0  # no -0.000

@@ -190,7 +190,7 @@ class _Placed:
     def _confirmed(self, rays: list[Ray]) -> Ray:
         """The shortest way that the bodies confirm; the last of `rays` is proven by the hulls anyway."""
         padded = [Ray(r.length * (1.0 + 1e-12) + 1e-13 * self.size, r.direction) for r in rays]
-        return shortened(padded, self._is_clear, self.size) or padded[-1]
+        return shortened(padded, self._is_clear) or padded[-1]
 
     def _is_clear(self, shift: np.ndarray) -> bool:
         pose = self.b_from_a.copy()

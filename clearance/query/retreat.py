@@ -22,9 +22,6 @@ RAYS_ASKED = 6
 HALVINGS = 10
 """A ray's length is right to this many halvings of what it could be shortened by."""
 
-BEYOND = (0.0, 1e-9, 1e-6)
-"""[-] Shares of the bodies' size that a ray is made longer by where the bodies still touch at its end."""
-
 APART = np.cos(np.radians(5.0))
 """Rays closer to each other than 5 degrees count as one."""
 
@@ -84,23 +81,17 @@ def _directions(a: Sequence[Corners], b: Sequence[Corners], extra: np.ndarray) -
     return rows[np.concatenate([fixed, rest[:: max(1, -(-len(rest) // MOST_DIRECTIONS))]])]
 
 
-def shortened(
-    rays: Sequence[Ray], is_clear: Callable[[np.ndarray], bool], size: float
-) -> Ray | None:
+def shortened(rays: Sequence[Ray], is_clear: Callable[[np.ndarray], bool]) -> Ray | None:
     """The shortest translation along one of the rays that the bodies themselves confirm; None if none is.
 
     Args:
         is_clear: True if the bodies are apart after a translation (3,) [m].
-        size: [m] of the bodies: where a ray ends in a touch, a little of it is added.
     """
     best: Ray | None = None
     for ray in _different(rays):
-        for more in BEYOND:
-            asked = ray.length + more * size
-            asked = asked if best is None else min(asked, 0.99 * best.length)
-            if is_clear(asked * ray.direction):
-                best = Ray(_halved(asked, ray.direction, is_clear), ray.direction)
-                break
+        asked = ray.length if best is None else min(ray.length, 0.99 * best.length)
+        if is_clear(asked * ray.direction):
+            best = Ray(_halved(asked, ray.direction, is_clear), ray.direction)
     return best
 
 
