@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from clearance.errors import BadInput
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.kinematic import kinematic_motion
-from clearance.simulate.measure import NEEDS, Progress, measure
-from clearance.simulate.record import CrossCheck, Record
+from clearance.simulate.measure import NEEDS, Measurement, Progress, measure
+from clearance.simulate.record import CrossCheck, Record, StepContact
 from clearance.simulate.steps import (
     STATUSES,
     PairMinima,
@@ -21,7 +21,7 @@ from clearance.simulate.steps import (
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
-from clearance.world.pairs import measured_pairs
+from clearance.world.pairs import Pair, measured_pairs
 from clearance.world.reach import require_within_reach
 
 if TYPE_CHECKING:
@@ -141,11 +141,18 @@ def check(
         certificate = certify_motion(
             case, motions, pairs, found, certify_gap, jobs=jobs, progress=progress
         )
+    contacts, contact_notes = _contacts(case, motions, pairs, found)
     record = Record(
         case=case,
         motions=motions,
         steps=step_table(
-            case, motions, pairs, found, certificate=certificate, with_error=motion == "simulated"
+            case,
+            motions,
+            pairs,
+            found,
+            certificate=certificate,
+            with_error=motion == "simulated",
+            contacts=contacts,
         ),
         pair_minima=PairMinima(case, motions, pairs, found),
         unmeasured=(*unmeasured, *cut_throughout(case, pairs, found)),
@@ -155,13 +162,25 @@ def check(
         need=need,
         every_pair=every_pair_table(case, pairs, found),
         certificate=certificate,
-        notes=(*case.notes, *(note for made in motions for note in made.notes)),
+        notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
+        contacts=contacts,
     )
     if cross_check:
         from clearance.crosscheck import cross_check as ask_peer
 
         record = replace(record, cross_check=ask_peer(record, progress))
     return Run(record)
+
+
+def _contacts(
+    case: Case, motions: tuple[Motion, ...], pairs: list[Pair], found: Measurement
+) -> tuple[tuple[StepContact, ...], tuple[str, ...]]:
+    """What the steps in contact look like from near; loads what that needs only where there is one."""
+    if not (found.clearance <= 0.0).any():
+        return (), ()
+    from clearance.simulate.contact import find_contacts
+
+    return find_contacts(case, motions, pairs, found.clearance, found.pair)
 
 
 def _motions(case: Case, kind: str) -> tuple[Motion, ...]:

@@ -8,6 +8,7 @@ from clearance import __version__
 from clearance.cli.check import check
 from clearance.cli.profile import profile
 from clearance.cli.view import view
+from clearance.cli.workspace import workspace
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -19,3 +20,4 @@ def clearance() -> None:
 clearance.add_command(check)
 clearance.add_command(profile)
 clearance.add_command(view)
+clearance.add_command(workspace)

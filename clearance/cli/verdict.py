@@ -15,7 +15,7 @@ from rich.text import Text
 
 from clearance.report import summary_of
 from clearance.report.intervals import Interval, intervals
-from clearance.report.wording import certified_text, count, limit_mm, mm, seconds
+from clearance.report.wording import certified_text, contact_text, count, limit_mm, mm, seconds
 from clearance.run import Run
 from clearance.simulate.record import CrossCheck, Disagreement, Record
 
@@ -45,6 +45,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
     lines: list[Text | Table] = [_headline(run), *_worst(run)]
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
+    lines += _deepest(record)
     if record.pair_minima:
         lines.append(_pair_table(record))
     if record.certificate is not None:
@@ -74,6 +75,16 @@ def _worst(run: Run) -> list[Text]:
         _row("worst", f"{where}: {row['link']} - {row['obstacle']}"),
         _row("points", f"{', '.join(points)} m"),
     ]
+
+
+def _deepest(record: Record) -> list[Text]:
+    """The deepest overlap: where, how deep, which way out of the link."""
+    if record.deepest is None:
+        return []
+    told = summary_of(record)["contact"]["deepest"]
+    way = ", ".join(f"{value:.4f}" for value in told["direction"])
+    text = f"step {told['step']}, {told['link']} in {told['obstacle']}: {contact_text(told)}"
+    return [_row("deepest", f"{text}; way out of the link ({way})")]
 
 
 def _point(row: dict, side: str) -> str:

@@ -74,6 +74,14 @@ def triangles_from_bytes(data: bytes, name: str) -> Triangles:
     raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join([*_OWN, *_TRIMESH]))
 
 
+def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
+    """The content of a mesh file: vertices (n, 3) [m], triangles (m, 3), kind "stl" or "glb" (turned y up)."""
+    import trimesh
+
+    turned = vertices @ Z_FROM_Y_UP if kind == "glb" else vertices
+    return trimesh.Trimesh(turned, triangles, process=False).export(file_type=kind)
+
+
 def _by_trimesh(data: bytes, suffix: str) -> Triangles:
     import trimesh
 

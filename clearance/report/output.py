@@ -9,13 +9,14 @@ from typing import Any
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.page import page_of
 from clearance.report.summary import summary_of
-from clearance.report.tables import write_csv, write_parquet
+from clearance.report.tables import contact_table, write_csv, write_parquet
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, replay_of
 
 
 def write(record: Record, folder: str | Path) -> None:
-    """Writes `steps.parquet`, `steps.csv`, `replay.npz`, `report.html` and, last, `summary.json`.
+    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `replay.npz`, `report.html` and, last,
+    `summary.json`.
 
     The same record gives the same bytes. Other files in `folder` are left alone; an older report
     there is replaced as a whole, or, if anything goes wrong, kept as it was.
@@ -31,6 +32,7 @@ def write(record: Record, folder: str | Path) -> None:
         write_csv(record.steps, place / "steps.csv")
         if record.every_pair is not None:
             write_parquet(record.every_pair, place / "pairs.parquet")
+        write_csv(contact_table(record), place / "contacts.csv")
         replay.save(place / FILE_NAME)
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")

@@ -42,6 +42,9 @@
     strong.style.color = colours[data.status[frame]];
     byId("readout").append(strong, ` ${word(frame)}`, document.createElement("br"), between(frame),
       document.createElement("br"), `${times[frame].toFixed(3)} s, step ${data.steps[frame].toLocaleString("en")}`);
+    for (const contact of data.contacts) if (contact.frame === frame) {
+      byId("readout").append(document.createElement("br"), contact.text);
+    }
     if (replay) replay.show(frame);
     moveCursor();
   }

@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+from dataclasses import asdict
 from html import escape
 from importlib.util import find_spec
 from pathlib import Path
@@ -21,7 +22,7 @@ import numpy as np
 from clearance.errors import Unavailable
 from clearance.report.markup import element
 from clearance.report.sections import header, sections
-from clearance.report.wording import count
+from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
 from clearance.simulate.steps import STATUSES
 
@@ -80,6 +81,17 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
         "lines": _floats(replay.lines, "<f8"),
         "status": replay.status.tolist(),
         "nearest": replay.nearest.tolist(),
+        "contacts": [
+            {
+                "frame": contact.frame,
+                "text": f"{contact.link} in {contact.obstacle}: {contact_text(asdict(contact))}",
+                "start": contact.start,
+                "direction": contact.direction,
+                "vertices": _floats(vertices, "<f4"),
+                "triangles": _floats(triangles, "<u4"),
+            }
+            for contact, (vertices, triangles) in zip(replay.contacts, replay.regions, strict=True)
+        ],
     }
 
 

@@ -5,6 +5,7 @@
 const STATUS_COLOURS = {clear: 0x2b7a4b, near: 0xc77d0a, violated: 0xc0281c, contact: 0x8a0f45};
 const LINK = 0x5c7390, LINK_IDLE = 0xa9b4c0, OBSTACLE = 0xb9b4a8;
 const LINE_PIXELS = 2.4, DOT_PIXELS = 4;
+const REGION = 0xe01010, WAY_OUT = 0x4a0008, ARROW_PIXELS = 78;
 
 function decode(text, Kind) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -23,6 +24,7 @@ class Replay {
     this.geometries = data.shapes.map((shape) => this.geometry(shape));
     this.bodies = data.bodies.map((body, i) => this.body(body, i));
     this.marks();
+    this.contacts = data.contacts.map((contact, i) => this.contact(contact, i));
     this.fit();
     // meshcat sizes its canvas by the window; ours stands in a figure
     this.viewer.set_3d_pane_size = () => Object.getPrototypeOf(this.viewer).set_3d_pane_size.call(
@@ -77,6 +79,44 @@ class Replay {
     this.material = material;
   }
 
+  // The region that two bodies share, seen through both of them, and the way out of the link.
+  contact(contact, i) {
+    const geometry = new this.three.BufferGeometry();
+    geometry.setAttribute("position", new this.three.BufferAttribute(decode(contact.vertices, Float32Array), 3));
+    geometry.setIndex(new this.three.BufferAttribute(decode(contact.triangles, Uint32Array), 1));
+    const seen = {depthTest: false, depthWrite: false, transparent: true};
+    const region = new this.three.Mesh(geometry, new this.three.MeshBasicMaterial({...seen, color: REGION, opacity: 0.45, side: this.three.DoubleSide}));
+    const edges = new this.three.LineSegments(new this.three.EdgesGeometry(geometry, 15), new this.three.LineBasicMaterial({...seen, color: REGION}));
+    const arrow = new this.three.Group();
+    const shaft = new this.three.CylinderGeometry(0.028, 0.028, 0.76, 12).translate(0, 0.38, 0);
+    const tip = new this.three.ConeGeometry(0.095, 0.26, 20).translate(0, 0.87, 0);
+    for (const part of [shaft, tip]) {
+      const mesh = new this.three.Mesh(part, new this.three.MeshBasicMaterial({...seen, color: WAY_OUT}));
+      mesh.renderOrder = 12;
+      mesh.frustumCulled = false;
+      arrow.add(mesh);
+    }
+    arrow.children[0].onBeforeRender = (renderer, scene, camera) => this.keepLength(arrow, camera);
+    arrow.position.set(...contact.start);
+    arrow.quaternion.setFromUnitVectors(new this.three.Vector3(0, 1, 0), new this.three.Vector3(...contact.direction));
+    region.renderOrder = 8;
+    edges.renderOrder = 9;
+    const made = {frame: contact.frame, parts: [region, edges, arrow], arrow, region};
+    made.parts.forEach((part, k) => {
+      part.visible = false;
+      this.viewer.set_object(["contacts", `${i}`, ["region", "edges", "arrow"][k]], part);
+    });
+    return made;
+  }
+
+  keepLength(arrow, camera) {
+    const eye = new this.three.Vector3().setFromMatrixPosition(camera.matrixWorld);
+    const foot = new this.three.Vector3().setFromMatrixPosition(arrow.matrixWorld);
+    const height = 2 * eye.distanceTo(foot) * Math.tan(camera.fov * Math.PI / 360);
+    arrow.scale.setScalar(ARROW_PIXELS * height / this.pane.clientHeight);
+    arrow.updateMatrixWorld(true);
+  }
+
   keepSize(mesh, camera, pixels, along) {
     const eye = new this.three.Vector3().setFromMatrixPosition(camera.matrixWorld);
     const centre = new this.three.Vector3().setFromMatrixPosition(mesh.matrixWorld);
@@ -104,6 +144,7 @@ class Replay {
       if (data.nearest[frame].includes(i)) body.surface.color.lerp(colour, 0.55);
     });
     this.material.color.copy(colour);
+    for (const contact of this.contacts) for (const part of contact.parts) part.visible = contact.frame === frame;
     const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(lines, 6 * frame + at));
     this.dots.forEach((dot, i) => dot.position.copy(ends[i]));
     const along = ends[1].clone().sub(ends[0]);
@@ -130,6 +171,11 @@ class Replay {
       step: this.data.steps[this.frame],
       line: this.line.visible ? [-0.5, 0.5].map((z) => world(this.line, z).toArray()) : null,
       dots: this.dots.map((dot) => world(dot, 0).toArray()),
+      contacts: this.contacts.filter((contact) => contact.region.visible).map((contact) => ({
+        foot: contact.arrow.position.toArray(),
+        direction: new this.three.Vector3(0, 1, 0).applyQuaternion(contact.arrow.quaternion).toArray(),
+        corners: contact.region.geometry.getAttribute("position").count,
+      })),
       colour: "#" + this.material.color.getHexString(),
       bodies,
     };
@@ -182,10 +228,12 @@ class Replay {
     this.look(ends[0].clone().add(ends[1]).multiplyScalar(0.5), Math.max(6 * ends[0].distanceTo(ends[1]), this.size / 12));
   }
 
-  // From whichever side shows the line least hidden and most from its side.
+  // From whichever side shows the line, or in contact the way out, least hidden and most from its side.
   look(target, distance) {
     const line = new this.three.Vector3().fromArray(this.lines, 6 * this.frame + 3)
       .sub(new this.three.Vector3().fromArray(this.lines, 6 * this.frame)).normalize();
+    const contact = this.data.contacts.find((one) => one.frame === this.frame);
+    if (contact) line.set(...contact.direction);
     const middle = new this.three.Vector3().fromArray(this.lines, 6 * this.frame)
       .add(new this.three.Vector3().fromArray(this.lines, 6 * this.frame + 3)).multiplyScalar(0.5);
     let best = null;

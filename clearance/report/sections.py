@@ -9,6 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from clearance.report.background import certainty, loaded, provenance, unmeasured
+from clearance.report.contact import contacts
 from clearance.report.markup import Html, element, section, step_link, table
 from clearance.report.wording import count, joint_value, limit_mm, mm, seconds
 
@@ -78,6 +79,7 @@ def sections(summary: dict[str, Any]) -> Html:
                     element("div", events(summary), certainty(summary)),
                     class_="columns",
                 ),
+                contacts(summary),
                 matrix(summary),
                 unmeasured(summary),
                 loaded(summary),

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, status_counts, verdict
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.simulate.record import CrossCheck, Record
@@ -45,6 +46,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "events": [asdict(event) for event in events(record)],
         "pairs": [asdict(minimum) for minimum in record.pair_minima],
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
+        "contact": contact_of(record),
         "certified": _certified(record),
         "cross_check": _cross_check(record.cross_check),
         "tracking_error": _tracking_error(record),

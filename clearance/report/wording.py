@@ -4,7 +4,7 @@ down."""
 from __future__ import annotations
 
 import math
-from decimal import ROUND_FLOOR, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 
 def mm(metres: float) -> str:
@@ -20,6 +20,57 @@ def mm(metres: float) -> str:
     value = Decimal(repr(float(metres))) * 1000  # exact, so that 0.0283 m is 28.30 mm
     places = max(0, min(3, 3 - value.adjusted()))
     return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_FLOOR))
+
+
+NOISE = 1e-12
+"""[-] What is rounded up is first made less by this share: 0.05 m and a rounding is 50.00 mm, not 50.01."""
+
+
+def depth_mm(metres: float) -> str:
+    """A penetration in millimetres, rounded up so that it is not shown less than it is (but for noise)."""
+    if metres == 0.0:
+        return "0"
+    value = Decimal(repr(float(metres) * (1.0 - NOISE))) * 1000
+    places = max(0, min(3, 3 - value.adjusted()))
+    return str(value.quantize(Decimal(1).scaleb(-places), rounding=ROUND_CEILING))
+
+
+def volume_cm3(cubic_metres: float) -> str:
+    """A volume in cubic centimetres, three digits, rounded up as a depth is."""
+    return _digits(cubic_metres * 1e6, 3, ROUND_CEILING)
+
+
+def least_cm3(cubic_metres: float) -> str:
+    """A lower bound of a volume in cubic centimetres, three digits, rounded down."""
+    return _digits(cubic_metres * 1e6, 3, ROUND_FLOOR)
+
+
+def litres(cubic_metres: float) -> str:
+    """A volume in litres, four digits, rounded up."""
+    return _digits(cubic_metres * 1e3, 4, ROUND_CEILING)
+
+
+def _digits(value: float, n_digits: int, rounding: str) -> str:
+    if value == 0.0:
+        return "0"
+    towards = -NOISE if rounding == ROUND_CEILING else NOISE
+    exact = Decimal(repr(float(value) * (1.0 + towards)))
+    last = Decimal(1).scaleb(exact.adjusted() - n_digits + 1)
+    return f"{exact.quantize(last, rounding=rounding):f}"
+
+
+def contact_text(contact: dict) -> str:
+    """Depth and volume as one phrase; where they are not exact, the range that holds them."""
+    depths = depth_mm(contact["penetration"]), mm(contact["penetration_at_least"])
+    volumes = volume_cm3(contact["volume"]), least_cm3(contact["volume_at_least"])
+    depth = _range(*depths, contact["exact"])
+    return f"{depth} mm deep, {_range(*volumes, contact['volume_exact'])} cm³ shared"
+
+
+def _range(greatest: str, least: str, exact: bool) -> str:
+    if exact or greatest == least:
+        return greatest
+    return f"at most {greatest}" if least == "0" else f"{least} to {greatest}"
 
 
 def limit_mm(metres: float) -> str:

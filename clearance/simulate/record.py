@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
 
 from clearance.world.case import Case, Unmeasured
 from clearance.world.motion import Motion
+
+if TYPE_CHECKING:
+    from clearance.query.contact import Contact
 
 
 @dataclass(frozen=True)
@@ -23,6 +27,17 @@ class PairMinimum:
     time: float  # [s]
     point_link: tuple[float, float, float]  # world frame [m]
     point_obstacle: tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class StepContact:
+    """One link-obstacle pair that overlaps at one step; `found` is in the world frame, the link is its body a."""
+
+    step: int
+    time: float  # [s]
+    link: str
+    obstacle: str
+    found: Contact
 
 
 @dataclass(frozen=True)
@@ -96,11 +111,13 @@ class Record:
             ("clear" | "near" | "violated" | "contact", null where a bound does not decide),
             tracking_error when simulated, lower_bound when certified (then the status is that of the motion
             from the step to the next) or where `need` leaves clearances unknown (null; then it is proven for
-            the step).
+            the step); penetration [m] of the deepest pair in contact and volume [m3] of all, or upper bounds
+            of them, null without contact.
         pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: one row a step and pair (step, link, obstacle, clearance), if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
+        contacts: every pair in contact at every step, steps first.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
     """
 
@@ -117,6 +134,12 @@ class Record:
     need: str = "steps"
     every_pair: pa.Table | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
+    contacts: tuple[StepContact, ...] = ()
+
+    @property
+    def deepest(self) -> StepContact | None:
+        """The first contact of greatest penetration; None without contact."""
+        return max(self.contacts, key=lambda row: row.found.penetration, default=None)
 
     @property
     def clearances(self) -> np.ndarray:

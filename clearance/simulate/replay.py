@@ -18,6 +18,7 @@ import pyarrow as pa
 from clearance.errors import BadSyntax, MissingFile
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.record import Record
+from clearance.simulate.replay_contact import DrawnContact, drawn_contacts
 from clearance.simulate.steps import STATUSES
 from clearance.world.motion import Motion
 
@@ -25,7 +26,7 @@ MAX_FRAMES = 3000
 """Most frames kept: at 20 links these are 1.7 MB of poses, and no screen is wider in pixels."""
 
 FILE_NAME = "replay.npz"
-_FORMAT = 1
+_FORMAT = 2
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,9 @@ class Replay:
         status: (frames,) uint8 indices into `STATUSES`.
         lines: (frames, 6) [m] witness points on link and obstacle in the world frame.
         nearest: (frames, 2) int32 indices into `bodies` of link and obstacle; -1: there is none.
+        contacts: the overlaps that are drawn, frames first.
+        regions: of each contact the common region's vertices (n, 3) float32 [m] in the world frame and
+            triangles (m, 3) int32.
     """
 
     name: str
@@ -69,6 +73,8 @@ class Replay:
     status: np.ndarray
     lines: np.ndarray
     nearest: np.ndarray
+    contacts: tuple[DrawnContact, ...] = ()
+    regions: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
 
     @property
     def i_worst(self) -> int:
@@ -82,6 +88,8 @@ class Replay:
             arrays[f"vertices_{i}"], arrays[f"triangles_{i}"] = vertices, triangles
         for i, poses in enumerate(self.poses):
             arrays[f"poses_{i}"] = poses
+        for i, (vertices, triangles) in enumerate(self.regions):
+            arrays[f"region_vertices_{i}"], arrays[f"region_triangles_{i}"] = vertices, triangles
         head = {
             "format": _FORMAT,
             "name": self.name,
@@ -89,6 +97,7 @@ class Replay:
             "n_steps": self.n_steps,
             "n_shapes": len(self.shapes),
             "bodies": [asdict(body) for body in self.bodies],
+            "contacts": [asdict(contact) for contact in self.contacts],
         }
         text = json.dumps(head, sort_keys=True).encode()
         np.savez_compressed(path, head=np.frombuffer(text, dtype=np.uint8), **arrays)
@@ -130,15 +139,26 @@ def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
         bodies=tuple(Drawn(**body) for body in head["bodies"]),
         shapes=tuple((arrays[f"vertices_{i}"], arrays[f"triangles_{i}"]) for i in range(n_shapes)),
         poses=tuple(arrays[f"poses_{i}"] for i in range(n_bodies)),
+        contacts=tuple(
+            DrawnContact(
+                **row | {"start": tuple(row["start"]), "direction": tuple(row["direction"])}
+            )
+            for row in head["contacts"]
+        ),
+        regions=tuple(
+            (arrays[f"region_vertices_{i}"], arrays[f"region_triangles_{i}"])
+            for i in range(len(head["contacts"]))
+        ),
         **{name: arrays[name] for name in _FRAME_ARRAYS},
     )
 
 
 def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
     """The replay of a record: every step, or where there are more than `max_frames` a choice that
-    keeps the least clearance of every stretch, the worst step, and the step of every pair's
-    minimum."""
+    keeps the least clearance of every stretch, the worst step, the step of every pair's minimum,
+    and the deepest contact."""
     kept = kept_steps(record, max_frames)
+    contacts, regions = drawn_contacts(record, kept)
     table = record.steps.take(kept)
     link_names, obstacle_names = table["link"].to_pylist(), table["obstacle"].to_pylist()
     bodies, shapes, poses = _drawn_bodies(record, kept)
@@ -159,6 +179,8 @@ def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
         status=codes_of(table),
         lines=_lines(record, table),
         nearest=np.array(nearest, dtype=np.int32).reshape(-1, 2),
+        contacts=contacts,
+        regions=regions,
     )
 
 
@@ -193,7 +215,8 @@ def kept_steps(record: Record, max_frames: int) -> np.ndarray:
     if n_steps <= max_frames:
         return np.arange(n_steps)
     pair_steps = [minimum.step for minimum in record.pair_minima]
-    kept = {0, n_steps - 1, record.worst_step, *pair_steps}
+    deepest = [] if record.deepest is None else [record.deepest.step]
+    kept = {0, n_steps - 1, record.worst_step, *pair_steps, *deepest}
     edges = np.linspace(0, n_steps, max(1, (max_frames - len(kept)) // 2) + 1).astype(np.int64)
     starts = np.unique(edges[:-1])
     least = [

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.measure import Measurement
-from clearance.simulate.record import Certificate, PairMinimum
+from clearance.simulate.record import Certificate, PairMinimum, StepContact
 from clearance.world.case import Case, Limits, Unmeasured
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -50,6 +50,7 @@ def step_table(
     *,
     certificate: Certificate | None = None,
     with_error: bool = False,
+    contacts: Sequence[StepContact] = (),
 ) -> pa.Table:
     """One row a step; columns as in `Record.steps`, null where only a bound is known."""
     links, obstacles = pair_names(case, pairs)
@@ -74,7 +75,18 @@ def step_table(
         columns["lower_bound"] = pa.array(found.lower_bound)
     if with_error:
         columns["tracking_error"] = pa.array(np.max([m.tracking_error for m in motions], axis=0))
+    columns |= _contact_columns(len(found.clearance), contacts)
     return pa.table(columns)
+
+
+def _contact_columns(n_steps: int, contacts: Sequence[StepContact]) -> dict[str, pa.Array]:
+    """The penetration of the deepest pair and the volume of all, step by step; null without contact."""
+    depth, volume, none = np.zeros(n_steps), np.zeros(n_steps), np.ones(n_steps, dtype=bool)
+    for row in contacts:
+        depth[row.step] = max(depth[row.step], row.found.penetration)
+        volume[row.step] += row.found.volume
+        none[row.step] = False
+    return {"penetration": pa.array(depth, mask=none), "volume": pa.array(volume, mask=none)}
 
 
 class PairMinima(Sequence[PairMinimum]):

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 COLOURS = {"clear": 0x2B7A4B, "near": 0xC77D0A, "violated": 0xC0281C, "contact": 0x8A0F45}
 LINK, LINK_NOT_MEASURED, OBSTACLE = 0x5C7390, 0xA9B4C0, 0xB9B4A8
+REGION, WAY_OUT = 0xE01010, 0x4A0008
 
 
 class Playback:
@@ -111,6 +112,7 @@ def fill(stage: Stage, replay: Replay) -> None:
         )
         _place(stage, path, replay.poses[i], times)
     _marks(stage, replay, times, size)
+    _contacts(stage, replay, times, size)
     stage.look(box.mean(axis=0), box.mean(axis=0) + 1.5 * size * _free_side(replay))
     _controls(stage, replay, times)
     stage.finish()
@@ -149,6 +151,22 @@ def _marks(stage: Stage, replay: Replay, times: list[float], size: float) -> Non
         stage.animate(path, "visible", "bool", times, (replay.status == code).tolist())
 
 
+def _contacts(stage: Stage, replay: Replay, times: list[float], size: float) -> None:
+    """Each overlap in red, with an arrow along the way out; seen in its frame only."""
+    shown = zip(replay.contacts, replay.regions, strict=True)
+    for i, (contact, (vertices, triangles)) in enumerate(shown):
+        path = f"contacts/{i}"
+        if len(triangles):
+            stage.region(f"{path}/region", vertices, triangles, REGION)
+        foot = np.array(contact.start)
+        reach = np.array(contact.direction) * size / 12
+        stage.arrow(f"{path}/arrow", foot, foot + reach, size / 450, WAY_OUT)
+        at, keys = contact.frame, [(times[contact.frame], True)]
+        keys = [(times[0], False)] * (at > 0) + keys
+        keys += [(times[at + 1], False)] * (at + 1 < len(times))
+        stage.animate(path, "visible", "bool", *zip(*keys, strict=True))
+
+
 def line_tracks(lines: np.ndarray) -> tuple[list, list, list]:
     """Middle, turn (quat_xyzw of the least turn from z) and scale of a unit rod that reaches from
     point to point.
@@ -184,6 +202,11 @@ def _controls(stage: Stage, replay: Replay, times: list[float]) -> None:
     for code, name in ((1, "first near miss"), (2, "first violation"), (3, "first contact")):
         if (replay.status == code).any():
             jumps[name] = int(np.argmax(replay.status == code))
+    if replay.contacts:
+        deepest = max(replay.contacts, key=lambda contact: contact.penetration)
+        jumps[f"deepest contact: {math.ceil(deepest.penetration * 1e6) / 1000:.3f} mm"] = (
+            deepest.frame
+        )
     for name, frame in jumps.items():
         stage.button(name, f"() => {{const t = {middles[frame]!r}; {_JUMP}}}")
 

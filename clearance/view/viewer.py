@@ -77,6 +77,36 @@ class Stage:
         upright.set_transform(Z_FROM_Y)
         self._last(f"{path}/rod")
 
+    def region(self, path: str, vertices: np.ndarray, triangles: np.ndarray, colour: int) -> None:
+        """Puts a surface (n, 3) [m], (m, 3) at `path` that is seen through whatever is before it."""
+        material = _over_all(colour)
+        material.opacity = 0.5
+        self._root[path].set_object(
+            meshcat.geometry.TriangularMeshGeometry(vertices, triangles), material
+        )
+        self._last(path)
+
+    def arrow(
+        self, path: str, foot: np.ndarray, tip: np.ndarray, radius: float, colour: int
+    ) -> None:
+        """Puts an arrow from `foot` to `tip`, both (3,) [m], at `path`, drawn over everything else."""
+        length = float(np.linalg.norm(tip - foot))
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = _frame_along((tip - foot) / length), foot
+        parts = {
+            "shaft": (meshcat.geometry.Cylinder(0.75 * length, radius), 0.375 * length),
+            "head": (
+                meshcat.geometry.Cylinder(0.25 * length, radiusTop=0.0, radiusBottom=3.0 * radius),
+                0.875 * length,
+            ),
+        }
+        for name, (shape, along) in parts.items():
+            upright = np.eye(4)
+            upright[2, 3] = along
+            self._root[path][name].set_object(shape, _over_all(colour))
+            self._root[path][name].set_transform(pose @ upright @ Z_FROM_Y)
+            self._last(f"{path}/{name}")
+
     def _last(self, path: str) -> None:
         """Draws what is at `path` after everything else, also after what is transparent and
         nearer."""
@@ -130,6 +160,13 @@ class Stage:
         """Ends the server."""
         self._root.window.server_proc.terminate()
         self._root.window.server_proc.wait()
+
+
+def _frame_along(direction: np.ndarray) -> np.ndarray:
+    """(3, 3) a rotation whose third column is the unit `direction`."""
+    aside = np.cross(direction, np.eye(3)[np.abs(direction).argmin()])
+    aside /= np.linalg.norm(aside)
+    return np.column_stack([aside, np.cross(direction, aside), direction])
 
 
 def _y_up(point: np.ndarray) -> list[float]:

@@ -13,7 +13,9 @@ from clearance.report import write
 from clearance.report.folder import fill_folder, write_file
 from tests.report.records import record
 
-NAMES = {"report.html", "replay.npz", "steps.csv", "steps.parquet", "summary.json"}
+NAMES = {
+    "report.html", "replay.npz", "steps.csv", "contacts.csv", "steps.parquet", "summary.json"
+}  # fmt: skip
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -20,9 +20,9 @@ from clearance.simulate.replay import replay_of
 from clearance.view import play, show
 from clearance.view.playback import line_tracks
 from tests.report.browser import Page, chromium, executable
-from tests.report.records import record
+from tests.report.records import record, with_contacts
 
-RUN = record()
+RUN = with_contacts(record())
 WORLD = """(name) => {
   const scene = viewer.scene; scene.updateMatrixWorld(true); const back =
   scene.matrixWorld.clone().invert(); const node = viewer.scene_tree.find(name).object; const at =
@@ -92,6 +92,15 @@ def test_the_button_jumps_to_the_worst_step(page):
     expected = RUN.motions[0].poses(RUN.worst_step, RUN.worst_step + 1)[0, 3, :3, 3]
     assert np.abs(node(page, "links", "3 gripper")["centre"] - expected).max() < 1e-6
     assert not page.run("viewer.animator.playing")
+
+
+def test_the_button_jumps_to_the_deepest_contact_which_is_drawn_there_only(page):
+    press(page, "deepest")
+    at = [i for i, row in enumerate(RUN.contacts) if row.step == RUN.deepest.step]
+    drawn = [node(page, "contacts", str(i))["visible"] for i in range(len(RUN.contacts))]
+    assert [i for i, seen in enumerate(drawn) if seen] == at
+    slide(page, 0)
+    assert not any(node(page, "contacts", str(i))["visible"] for i in at)
 
 
 def test_it_plays_and_scrubs_with_meshcats_own_controls(page):

@@ -1,0 +1,113 @@
+"""`clearance workspace`: what several robots of one cell share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from clearance.cli import ExitCode
+from clearance.cli.check import Millimetres
+
+if TYPE_CHECKING:
+    from clearance.simulate.workspace import Workspace
+
+MOST_LINKS = 8
+
+
+@click.command()
+@click.argument(
+    "case_files", metavar="CASE.yaml...", nargs=-1, required=True, type=click.Path(path_type=Path)
+)
+@click.option(
+    "--out",
+    metavar="DIR",
+    type=click.Path(path_type=Path),
+    help="Write the region (STL, GLB), a picture (SVG) and the figures (JSON) here.",
+)
+@click.option(
+    "--within-mm",
+    type=Millimetres(),
+    help="How coarse the pieces of the sweep are; smaller is tighter, slower.  [default: 5]",
+)
+@click.option(
+    "--convex-parts", is_flag=True, help="Cut concave links into convex parts: tighter, slower."
+)
+@click.option(
+    "--limit-litres",
+    type=click.FloatRange(min=0.0),
+    help="Exit with 1 where the shared volume is above this.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as one JSON object only.")
+def workspace(
+    case_files: tuple[Path, ...],
+    out: Path | None,
+    within_mm: float | None,
+    convex_parts: bool,
+    limit_litres: float | None,
+    as_json: bool,
+) -> int:
+    """The region that more than one robot passes through, whatever the timing of their trajectories.
+
+    Each CASE.yaml has its robot with its own base; all are of one cell, in one world frame. The
+    volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
+    """
+    from clearance.cli.places import require_folder_place
+    from clearance.load.case_file import load_case
+    from clearance.simulate.workspace import WITHIN, shared_workspace
+
+    require_folder_place(out)
+    found = shared_workspace(
+        [load_case(path) for path in case_files],
+        within=WITHIN if within_mm is None else within_mm,
+        cut_concave=convex_parts,
+    )
+    if out is not None:
+        from clearance.report.workspace import write_workspace
+
+        write_workspace(found, out)
+    _print(found, out, as_json)
+    above = limit_litres is not None and found.volume * 1e3 > limit_litres
+    return ExitCode.VIOLATED if above else ExitCode.CLEAR
+
+
+def _print(found: Workspace, out: Path | None, as_json: bool) -> None:
+    if as_json:
+        from clearance.report import json_text
+        from clearance.report.workspace import workspace_summary
+
+        click.echo(json_text(workspace_summary(found)), nl=False)
+        return
+    for line in _lines(found, out):
+        click.echo(line)
+
+
+def _lines(found: Workspace, out: Path | None) -> list[str]:
+    pieces = ", ".join(
+        f"{n} of {name}" for n, name in zip(found.n_pieces, found.robots, strict=True)
+    )
+    if found.region.is_empty:
+        lines = [f"nothing is shared by {', '.join(found.robots)}"]
+    else:
+        import numpy as np
+
+        from clearance.report.wording import litres
+
+        x, y, z = np.round(found.region.centroid, 3) + 0.0  # no -0.000
+        lines = [
+            f"shared at most {litres(found.volume)} litres, about ({x:.3f}, {y:.3f}, {z:.3f}) m",
+            *(
+                f"  {p.robot_a}/{p.link_a} - {p.robot_b}/{p.link_b}"
+                for p in found.links[:MOST_LINKS]
+            ),
+        ]
+        more = len(found.links) - MOST_LINKS
+        lines += [f"  and {more} more pairs of links, see --json"] if more > 0 else []
+    lines.append(
+        f"an upper bound: convex pieces ({pieces}) hold the sweeps, "
+        f"made wider by up to {found.leaves * 1e3:.3g} mm for the motion between the samples"
+    )
+    if found.excluded:
+        lines.append(f"left out, as the cases say: {', '.join(found.excluded)}")
+    return lines if out is None else [*lines, f"written to {out}"]

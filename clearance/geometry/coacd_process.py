@@ -1,0 +1,30 @@
+"""CoACD in a process of its own, and the one door to it: a mesh comes on stdin, parts go to stdout.
+
+The library is compiled code that ends the whole process on some broken meshes; a run must outlive that. This
+file is started by path and knows nothing of the package. Not for: importing (`decompose` starts it).
+"""
+
+import io
+import sys
+
+import numpy as np
+
+
+def _main() -> None:
+    import coacd
+
+    given = np.load(io.BytesIO(sys.stdin.buffer.read()))
+    coacd.set_log_level("off")
+    parts = coacd.run_coacd(
+        coacd.Mesh(given["vertices"], given["triangles"]),
+        threshold=float(given["threshold"]),
+        preprocess_mode="off",
+        seed=0,
+    )
+    written = io.BytesIO()
+    np.savez(written, *[np.asarray(corners, dtype=np.float64) for corners, _ in parts])
+    sys.stdout.buffer.write(written.getvalue())
+
+
+if __name__ == "__main__":
+    _main()

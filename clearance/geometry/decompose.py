@@ -1,0 +1,66 @@
+"""A closed concave mesh as a few convex parts, by CoACD.
+
+CoACD cuts a mesh where its hull strays from it and stops where the concavity is below a share of the size.
+Its parts approximate the mesh: `convex_parts` says by how much. Not for: convex bodies.
+"""
+
+from __future__ import annotations
+
+import io
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+
+from clearance.errors import BadPolygon, Unavailable
+from clearance.geometry.boolean import INSTALL
+
+THRESHOLDS = (0.05, 0.02, 0.01)
+"""[-] The concavity that CoACD leaves uncut, its default first: finer costs parts, and depth is sharpened by
+distance queries on the bodies themselves. The finer ones are for long thin bodies that it leaves whole."""
+
+LONGEST = 120.0
+"""[s] After which CoACD is given up: a thousand times what the links of industrial arms take."""
+
+_PROCESS = Path(__file__).with_name("coacd_process.py")
+
+
+def available() -> bool:
+    """True if CoACD is installed."""
+    return find_spec("coacd") is not None
+
+
+def cut_into_hulls(
+    vertices: np.ndarray, triangles: np.ndarray, threshold: float = THRESHOLDS[0]
+) -> list[np.ndarray]:
+    """The corners (k, 3) [m] of convex parts that together stand for a closed mesh.
+
+    The same mesh gives the same parts: CoACD's search is seeded.
+
+    Raises:
+        Unavailable: CoACD is not installed. BadPolygon: it makes nothing of this mesh.
+
+    Source: Wei, Liu, Ling & Su (2022), "Approximate convex decomposition for 3D meshes with
+        collision-aware concavity and tree search", as the library CoACD.
+    """
+    if not available():
+        raise Unavailable("CoACD is not installed", valid=INSTALL)
+    sent = io.BytesIO()
+    np.savez(sent, vertices=vertices, triangles=triangles, threshold=threshold)
+    try:
+        done = subprocess.run(
+            [sys.executable, str(_PROCESS)],
+            input=sent.getvalue(),
+            capture_output=True,
+            timeout=LONGEST,
+            check=True,
+        )
+        with np.load(io.BytesIO(done.stdout)) as parts:
+            hulls = [parts[name] for name in parts.files]
+    except (subprocess.SubprocessError, OSError, ValueError) as error:
+        raise BadPolygon(f"CoACD came to no end ({type(error).__name__})") from None
+    if not hulls:
+        raise BadPolygon("CoACD makes no parts of the mesh", valid="a closed mesh")
+    return hulls

@@ -1,0 +1,302 @@
+"""What it means that two bodies overlap: how deep, which way out, which region, which volume.
+
+Depth comes from convex parts (`penetration`, `retreat`), the region of convex bodies from the exact cut
+(`intersection`), that of concave ones from manifold3d. Whatever is not exact is a pair of bounds. Not for:
+whether bodies are in contact (`distance`), which never depends on parts.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadInput, ClearanceError
+from clearance.geometry import boolean
+from clearance.geometry.boolean import ClosedMesh
+from clearance.geometry.convex_parts import ConvexParts, convex_parts, hull_drawn_in, solid_of
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polytope import Polytope
+from clearance.geometry.pose import inverse, validated_pose
+from clearance.query.distance import distance
+from clearance.query.intersection import Intersection, intersect
+from clearance.query.penetration import Corners, penetration
+from clearance.query.retreat import Ray, shortened, ways_out
+
+EXACT = 1e-12
+"""[-] Bounds that differ by no more, relative to the bodies' size, are one value."""
+
+CLOSE = 0.99
+"""[-] A lower bound that is this share of the upper one is not worth a costly second one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """The overlap of body a with body b.
+
+    Attributes:
+        penetration: [m] `a` moved by `penetration * direction` is parted from `b`; the shortest such way, or an
+            upper bound of it.
+        penetration_at_least: [m] no shorter way parts them.
+        direction: (3,) unit, world frame: the retreat direction of `a`.
+        volume: [m^3] of the region that both fill, or an upper bound. volume_at_least: a lower bound.
+        centroid: (3,) [m] of the region, world frame; the common point where they only touch.
+        region: its surface, world frame; empty where they only touch, and for surfaces without an inside that
+            of the hulls.
+        exact: (depth, volume) are exact to rounding.
+        notes: what stands for a body that is not convex, or is faceted; one line each.
+    """
+
+    penetration: float
+    penetration_at_least: float
+    direction: np.ndarray
+    volume: float
+    volume_at_least: float
+    centroid: np.ndarray
+    region: ClosedMesh
+    exact: tuple[bool, bool]
+    notes: tuple[str, ...]
+
+    def placed(self, world_from_b: np.ndarray) -> Contact:
+        """The same overlap, its vectors turned and moved by a (4, 4) pose."""
+        turn, shift = world_from_b[:3, :3], world_from_b[:3, 3]
+        mesh = ClosedMesh(self.region.vertices @ turn.T + shift, self.region.triangles)
+        return Contact(
+            self.penetration, self.penetration_at_least, turn @ self.direction, self.volume,
+            self.volume_at_least, turn @ self.centroid + shift, mesh, self.exact, self.notes,
+        )  # fmt: skip
+
+
+def contact(
+    a: Polyhedron,
+    b: Polyhedron,
+    *,
+    pose_a: np.ndarray | None = None,
+    pose_b: np.ndarray | None = None,
+) -> Contact | None:
+    """How two bodies overlap; None if they are apart.
+
+    Args:
+        pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
+
+    Raises:
+        BadPose: not a rigid motion. BadInput: a body without any extent in space.
+
+    Exactness: for two convex bodies, exact to rounding. Otherwise `penetration` and `volume` are upper bounds
+        and `_at_least` lower ones; the translation has then been confirmed by the distance of the bodies
+        themselves, where both have an inside.
+    """
+    world_from_a = validated_pose(np.eye(4) if pose_a is None else pose_a)
+    world_from_b = validated_pose(np.eye(4) if pose_b is None else pose_b)
+    near = distance(a, b, pose_a=world_from_a, pose_b=world_from_b)
+    if not near.contact:
+        return None
+    b_from_a = inverse(world_from_b) @ world_from_a
+    witness = (inverse(world_from_b) @ [*near.point_b, 1.0])[:3]
+    try:
+        pair = BodyPair(a, b, convex_parts(a), convex_parts(b))
+    except ClearanceError as error:
+        raise BadInput(f"a body in contact has no depth: {error.problem}") from None
+    return pair.contact(b_from_a, witness).placed(world_from_b)
+
+
+@dataclass(frozen=True, eq=False)
+class BodyPair:
+    """Two bodies with their convex parts; each body in its own frame."""
+
+    a: Polyhedron
+    b: Polyhedron
+    parts_a: ConvexParts
+    parts_b: ConvexParts
+
+    def contact(self, b_from_a: np.ndarray, witness: np.ndarray) -> Contact:
+        """The overlap in the frame of b, of bodies that are in contact.
+
+        Args:
+            b_from_a: (4, 4) pose [m]. witness: (3,) a common point.
+        """
+        return _Placed(self, b_from_a, witness).found()
+
+
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    """A pair at one relative pose, all in the frame of b."""
+
+    pair: BodyPair
+    b_from_a: np.ndarray
+    witness: np.ndarray
+
+    def found(self) -> Contact:
+        region, volume, volume_at_least = self._region
+        ray, at_least = self._depth()
+        return Contact(
+            penetration=ray.length,
+            penetration_at_least=min(at_least, ray.length),
+            direction=ray.direction,
+            volume=volume,
+            volume_at_least=min(volume_at_least, volume),
+            centroid=self.witness if region.is_empty else region.centroid,
+            region=region,
+            exact=(ray.length - at_least <= EXACT * self.size, volume_at_least >= volume),
+            notes=tuple(parts.note for parts in self._both_parts if parts.note),
+        )
+
+    @cached_property
+    def outer_a(self) -> list[Corners]:
+        return [Corners.placed(part, self.b_from_a) for part in self.pair.parts_a.outer]
+
+    @cached_property
+    def outer_b(self) -> list[Corners]:
+        return [Corners(part.vertices, part.normals) for part in self.pair.parts_b.outer]
+
+    @cached_property
+    def size(self) -> float:
+        """[m] the sum of the bodies' diagonals."""
+        return float(
+            sum(np.linalg.norm(p.bounds[1] - p.bounds[0]) for p in (self.pair.a, self.pair.b))
+        )
+
+    @property
+    def _both_convex(self) -> bool:
+        return self.pair.parts_a.convex and self.pair.parts_b.convex
+
+    @property
+    def _both_closed(self) -> bool:
+        return self.pair.parts_a.closed and self.pair.parts_b.closed
+
+    # ---- depth
+
+    def _depth(self) -> tuple[Ray, float]:
+        """The way out, and what no way out is shorter than."""
+        whole = penetration(_joined(self.outer_a), _joined(self.outer_b))
+        ray = Ray(whole.depth, whole.direction)
+        if self._both_convex and not self._faceted:
+            return ray, whole.at_least
+        if self._needs_search:
+            extra = np.array([whole.direction, *self._thin_ways()])
+            rays = ways_out(self.outer_a, self.outer_b, whole.depth, extra)
+            ray = self._confirmed([*rays, ray])
+        at_least = self._depth_of_inner()
+        is_close = at_least > CLOSE * ray.length
+        return ray, max(at_least, self._width_of_region(only_convex=is_close))
+
+    @property
+    def _needs_search(self) -> bool:
+        """True where hulls are more than the bodies; surfaces without an inside are left as their hulls."""
+        return self._both_closed and not all(parts.tight for parts in self._both_parts)
+
+    def _confirmed(self, rays: list[Ray]) -> Ray:
+        """The shortest way that the bodies confirm; the last of `rays` is proven by the hulls anyway."""
+        padded = [Ray(r.length * (1.0 + 1e-12) + 1e-13 * self.size, r.direction) for r in rays]
+        return shortened(padded, self._is_clear) or padded[-1]
+
+    def _is_clear(self, shift: np.ndarray) -> bool:
+        pose = self.b_from_a.copy()
+        pose[:3, 3] += shift
+        return distance(self.pair.a, self.pair.b, pose_a=pose).distance > 0.0
+
+    def _depth_of_inner(self) -> float:
+        """[m] the depth of the convex bodies inside both: no way out of the bodies is shorter."""
+        inner_a = [Corners.placed(part, self.b_from_a) for part in self.pair.parts_a.inner]
+        deep = [penetration(p, q).at_least for p in inner_a for q in self.pair.parts_b.inner]
+        return max(deep, default=0.0)
+
+    def _thin_ways(self) -> list[np.ndarray]:
+        """The two directions in which the region is thinnest; none where it is empty."""
+        region = self._region[0]
+        if region.is_empty:
+            return []
+        corners = Corners(region.vertices, np.zeros((0, 3)))
+        thin = penetration(corners, corners).direction
+        return [thin, -thin]
+
+    def _width_of_region(self, only_convex: bool) -> float:
+        """[m] the width of a convex part of the region: to part the bodies, it must be parted from itself."""
+        region, volume, volume_at_least = self._region
+        if region.is_empty or volume_at_least < volume:
+            return 0.0
+        try:
+            parts = hull_drawn_in(region.vertices[region.triangles], only_convex)
+        except ClearanceError:  # thinner than rounding
+            return 0.0
+        return max((penetration(part, part).at_least for part in parts), default=0.0)
+
+    # ---- region
+
+    @property
+    def _faceted(self) -> bool:
+        return self.pair.a.excess + self.pair.b.excess > 0.0
+
+    @cached_property
+    def _region(self) -> tuple[ClosedMesh, float, float]:
+        """The region, or that of the hulls, and its volume [m^3] from above and from below."""
+        if not self._both_convex and self._both_closed and boolean.available():
+            mesh = self._region_of_solids()
+            if mesh is not None:
+                return mesh, mesh.volume, max(0.0, mesh.volume - self._shell(mesh))
+        shared = intersect(self._hulls())
+        mesh = _mesh_of(shared)
+        if self._both_convex:
+            return mesh, shared.volume, max(0.0, shared.volume - self._shell(mesh))
+        return mesh, shared.volume, self._volume_of_inner()
+
+    def _volume_of_inner(self) -> float:
+        """[m^3] the greatest region that a convex body inside a shares with one inside b."""
+        inner_a = [
+            Polytope(Corners.placed(p, self.b_from_a).vertices) for p in self.pair.parts_a.inner
+        ]
+        shared = [intersect([p, q]).volume for p in inner_a for q in self.pair.parts_b.inner]
+        return max(shared, default=0.0)
+
+    def _hulls(self) -> list[Polytope]:
+        corners = (
+            np.concatenate([p.vertices for p in parts]) for parts in (self.outer_a, self.outer_b)
+        )
+        return [Polytope(points) for points in corners]
+
+    @property
+    def _both_parts(self) -> tuple[ConvexParts, ConvexParts]:
+        return self.pair.parts_a, self.pair.parts_b
+
+    def _region_of_solids(self) -> ClosedMesh | None:
+        try:
+            a, b = (_solid(p) for p in self._both_parts)
+        except ClearanceError:
+            return None
+        return boolean.mesh_of(boolean.moved(a, self.b_from_a) ^ b)
+
+    def _shell(self, region: ClosedMesh) -> float:
+        """[m^3] what facets that stand out can add: their height times the area of those about the region."""
+        if region.is_empty:
+            return 0.0
+        shells = ((self.pair.a, self.b_from_a), (self.pair.b, np.eye(4)))
+        return sum(_shell_of(body, pose, region) for body, pose in shells)
+
+
+def _shell_of(body: Polyhedron, pose: np.ndarray, region: ClosedMesh) -> float:
+    if body.excess == 0.0:
+        return 0.0
+    corners = body.vertices[body.triangles()] @ pose[:3, :3].T + pose[:3, 3]
+    low, high = region.vertices.min(axis=0), region.vertices.max(axis=0)
+    reach = 2.0 * body.excess
+    near = (corners.min(axis=1) <= high + reach).all(axis=1)
+    near &= (corners.max(axis=1) >= low - reach).all(axis=1)
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(0.5 * np.linalg.norm(sides[near], axis=1).sum() * body.excess)
+
+
+def _solid(parts: ConvexParts) -> Any:
+    return solid_of(parts.outer[0]) if parts.solid is None else parts.solid
+
+
+def _joined(parts: list[Corners]) -> Corners:
+    return Corners(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
+
+
+def _mesh_of(shared: Intersection) -> ClosedMesh:
+    if shared.relation != "overlap":
+        return ClosedMesh.empty()
+    fans = [(r[0], r[i], r[i + 1]) for r in shared.faces for i in range(1, len(r) - 1)]
+    return ClosedMesh(np.asarray(shared.vertices), np.array(fans, dtype=np.int64).reshape(-1, 3))

@@ -1,0 +1,114 @@
+"""Overlaps in the summary and on the page: the deepest of the run, and the deepest of every pair.
+
+Not for: finding them (`simulate.contact`).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from clearance.report.markup import Html, element, section, step_link, table
+from clearance.report.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
+from clearance.simulate.record import Record, StepContact
+
+
+def contact_of(record: Record) -> dict[str, Any] | None:
+    """The deepest overlap of the run and of every pair that overlaps, deepest first; None without contact."""
+    if record.deepest is None:
+        return None
+    by_pair: dict[tuple[str, str], StepContact] = {}
+    n_steps: dict[tuple[str, str], int] = {}
+    for row in record.contacts:
+        pair = (row.link, row.obstacle)
+        n_steps[pair] = n_steps.get(pair, 0) + 1
+        if pair not in by_pair or row.found.penetration > by_pair[pair].found.penetration:
+            by_pair[pair] = row
+    deepest = sorted(by_pair.values(), key=lambda row: -row.found.penetration)
+    pairs = [_told(row) | {"n_steps": n_steps[row.link, row.obstacle]} for row in deepest]
+    return {"deepest": _told(record.deepest), "pairs": pairs}
+
+
+def _told(row: StepContact) -> dict[str, Any]:
+    found = row.found
+    return {
+        "step": row.step,
+        "time": row.time,
+        "link": row.link,
+        "obstacle": row.obstacle,
+        "penetration": found.penetration,
+        "penetration_at_least": found.penetration_at_least,
+        "exact": bool(found.exact[0]),
+        "direction": found.direction.tolist(),
+        "volume": found.volume,
+        "volume_at_least": found.volume_at_least,
+        "volume_exact": bool(found.exact[1]),
+        "centroid": found.centroid.tolist(),
+        "notes": list(found.notes),
+    }
+
+
+def contacts(summary: dict[str, Any]) -> Html:
+    """The section on overlaps; nothing where there are none."""
+    found = summary["contact"]
+    if found is None:
+        return Html("")
+    deepest = found["deepest"]
+    way = ", ".join(f"{value:.4f}" for value in deepest["direction"])
+    first = element(
+        "p",
+        f"Deepest at {seconds(deepest['time'])}, ",
+        step_link(deepest["step"]),
+        f": {deepest['link']} in {deepest['obstacle']}, {contact_text(deepest)}. The shortest way out "
+        f"found moves the link by {depth_mm(deepest['penetration'])} mm along ({way}).",
+    )
+    heads = (
+        "Link",
+        "Obstacle",
+        ">Steps",
+        ">Deep, mm",
+        ">At least",
+        ">Shared, cm³",
+        ">At least",
+        ">Time",
+    )
+    return section(
+        "Contact",
+        first,
+        table(heads, [_row(pair) for pair in found["pairs"]], class_="clickable"),
+        element("p", *_meaning(found["pairs"]), class_="faint"),
+    )
+
+
+def _row(pair: dict[str, Any]) -> Html:
+    depth, volume = pair["penetration_at_least"], pair["volume_at_least"]
+    cells = (
+        pair["n_steps"],
+        depth_mm(pair["penetration"]),
+        "exact" if pair["exact"] else mm(depth),
+        volume_cm3(pair["volume"]),
+        "exact" if pair["volume_exact"] else least_cm3(volume),
+        seconds(pair["time"]),
+    )
+    return element(
+        "tr",
+        element("td", pair["link"]),
+        element("td", pair["obstacle"]),
+        *[element("td", cell, class_="number") for cell in cells],
+        data_step=pair["step"],
+        tabindex=0,
+    )
+
+
+def _meaning(pairs: list[dict[str, Any]]) -> list[str]:
+    told = [
+        "The deepest step of each pair. The replay shows the common region in red and the way out of the "
+        "link as an arrow of fixed length. "
+    ]
+    if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
+        return [*told, "Depth and volume are exact to the rounding of float64."]
+    return [
+        *told,
+        "Depth and volume that are not exact are upper bounds, with the lower bound beside them: bodies "
+        "that are not convex are judged by convex parts that hold them (see How sure), and a way out of deep "
+        "hollows is confirmed by the bodies' own distance after it.",
+    ]

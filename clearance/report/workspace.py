@@ -1,0 +1,58 @@
+"""A shared workspace as a folder: the region as STL and GLB, a picture, the figures as JSON."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from clearance.load.mesh import mesh_file
+from clearance.report.folder import fill_folder
+from clearance.report.output import json_text
+from clearance.report.workspace_picture import picture_of
+from clearance.simulate.workspace import Workspace
+
+MESHES = {"workspace.stl": "stl", "workspace.glb": "glb"}
+
+
+def workspace_summary(workspace: Workspace) -> dict[str, Any]:
+    """The figures as JSON-ready values: lengths in metres, volume in cubic metres."""
+    region = workspace.region
+    return {
+        "robots": list(workspace.robots),
+        "volume": workspace.volume,
+        "volume_is": "upper bound",
+        "centroid": None if region.is_empty else region.centroid.tolist(),
+        "bounding_box": None
+        if region.is_empty
+        else [region.vertices.min(axis=0).tolist(), region.vertices.max(axis=0).tolist()],
+        "links": [asdict(pair) for pair in workspace.links],
+        "n_pieces": list(workspace.n_pieces),
+        "within": workspace.within,
+        "leaves": workspace.leaves,
+        "excluded": list(workspace.excluded),
+        "triangles": len(region.triangles),
+    }
+
+
+def write_workspace(workspace: Workspace, folder: Path) -> None:
+    """Writes `workspace.svg`, `workspace.json` and, where a region is shared, `workspace.stl` and `.glb`.
+
+    Raises:
+        Unwritable: `folder` cannot be written.
+    """
+    region = workspace.region
+
+    def fill(place: Path) -> None:
+        if not region.is_empty:
+            for name, kind in MESHES.items():
+                (place / name).write_bytes(mesh_file(region.vertices, region.triangles, kind))
+        (place / "workspace.svg").write_text(picture_of(workspace), encoding="utf-8")
+        (place / "workspace.json").write_text(
+            json_text(workspace_summary(workspace)), encoding="utf-8"
+        )
+
+    fill_folder(folder, fill)
+    if region.is_empty:
+        for name in MESHES:
+            (folder / name).unlink(missing_ok=True)  # of an older, shared region

@@ -1,0 +1,58 @@
+"""`clearance check` of a path that hits something tells how deep, which way out, and how much is shared."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import pytest
+
+from clearance.cli import run
+
+URDF = """<robot name="cart"><link name="ground"/>
+  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
+    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
+CASE = """name: rail
+robot: {urdf: cart.urdf}
+scene:
+  obstacles:
+  - {name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0]}}
+trajectory: {file: path.csv}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "cart.urdf").write_text(URDF)
+    (tmp_path / "case.yaml").write_text(CASE)
+    (tmp_path / "path.csv").write_text("time,rail\n0,0.5\n1,0.8125\n2,0.85\n3,0.75\n")
+    return tmp_path
+
+
+def test_the_verdict_names_the_deepest_contact(folder, capsys):
+    assert run(["check", str(folder / "case.yaml")]) == 1
+    told = capsys.readouterr().out
+    assert told.startswith("CONTACT")
+    line = "step 2, slider in wall: 50.00 mm deep, 2000 cm³ shared; way out of the link (-1.0000, "
+    assert line in told
+
+
+def test_the_files_have_depth_and_volume(folder):
+    out = folder / "out"
+    assert run(["check", str(folder / "case.yaml"), "--out", str(out), "--quiet"]) == 1
+    deepest = json.loads((out / "summary.json").read_text())["contact"]["deepest"]
+    assert deepest["penetration"] == pytest.approx(0.05, abs=1e-15)
+    assert deepest["volume"] == pytest.approx(0.05 * 0.04, rel=1e-12)
+    assert deepest["exact"] and deepest["volume_exact"]
+    with (out / "steps.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["penetration"] == "" for row in rows] == [True, False, False, True]
+    assert [float(row["clearance"]) for row in rows[1:3]] == [0.0, 0.0]
+    assert len((out / "contacts.csv").read_text().splitlines()) == 3
+
+
+def test_without_contact_there_is_no_such_line(folder, capsys):
+    (folder / "path.csv").write_text("time,rail\n0,0.5\n1,0.6\n")
+    assert run(["check", str(folder / "case.yaml")]) == 0
+    assert "deepest" not in capsys.readouterr().out

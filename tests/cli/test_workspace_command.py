@@ -1,0 +1,111 @@
+"""`clearance workspace` from outside: what it prints, writes, refuses, and its exit codes."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
+import clearance as cl
+from clearance.cli import run
+from clearance.geometry import boolean
+
+URDF = """<robot name="cart"><link name="ground"/>
+  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
+    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
+CASE = """name: {name}
+robot: {{urdf: cart.urdf, base: {{xyz: [{x}, 0, 0.05], rpy: [0, 0, {turn}]}}}}
+scene:
+  obstacles:
+  - {{name: wall, box: {{size: [0.2, 1, 1]}}, pose: {{xyz: [{wall}, 0, 0]}}}}
+trajectory: {{file: path.csv}}
+"""
+
+pytestmark = pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "cart.urdf").write_text(URDF)
+    (tmp_path / "path.csv").write_text("time,rail\n0,-0.5\n1,0.7\n")
+    rows = {
+        "along": {"x": 0, "turn": 0, "wall": 3},
+        "across": {"x": 0.3, "turn": 1.5707963267948966, "wall": 3},
+        "away": {"x": 2, "turn": 0, "wall": 3},
+        "other": {"x": 0.3, "turn": 0, "wall": 4},
+    }
+    for name, fields in rows.items():
+        (tmp_path / f"{name}.yaml").write_text(CASE.format(name=name, **fields))
+    return tmp_path
+
+
+def paths(folder, *names):
+    return [str(folder / f"{name}.yaml") for name in names]
+
+
+def test_it_tells_and_writes_the_region(folder, capsys):
+    out = folder / "out"
+    assert run(["workspace", *paths(folder, "along", "across"), "--out", str(out)]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("shared at most 8.001 litres, about (0.300, 0.000, 0.050) m\n")
+    assert "along/cart/slider - across/cart/slider" in told and "upper bound" in told
+    figures = json.loads((out / "workspace.json").read_text())
+    assert figures["volume"] == pytest.approx(0.008, rel=1e-6)
+    for name in ("workspace.stl", "workspace.glb"):
+        mesh = cl.read_mesh(out / name)
+        assert mesh.closed and mesh.volume == pytest.approx(0.008, rel=1e-5)
+        assert mesh.bounds.mean(axis=0) == pytest.approx([0.3, 0.0, 0.05], abs=1e-6)
+    picture = ElementTree.parse(out / "workspace.svg").getroot()
+    fills = [shape.get("fill") for shape in picture.iter("{http://www.w3.org/2000/svg}polygon")]
+    colours = [tuple(map(int, fill[4:-1].split(","))) for fill in fills]
+    red = [colour for colour in colours if colour[0] > 5 * max(colour[1:])]
+    assert len(red) == 6 and len(colours) > 12, "three sides of the region face us, in two halves"
+
+
+def test_the_same_cases_give_the_same_files(folder):
+    for name in ("one", "two"):
+        run(["workspace", *paths(folder, "along", "across"), "--out", str(folder / name)])
+    names = ("workspace.stl", "workspace.glb", "workspace.svg", "workspace.json")
+    assert all(
+        (folder / "one" / n).read_bytes() == (folder / "two" / n).read_bytes() for n in names
+    )
+
+
+def test_nothing_shared_leaves_no_older_mesh(folder, capsys):
+    out = folder / "out"
+    run(["workspace", *paths(folder, "along", "across"), "--out", str(out)])
+    capsys.readouterr()
+    assert run(["workspace", *paths(folder, "along", "away"), "--out", str(out)]) == 0
+    assert capsys.readouterr().out.startswith("nothing is shared by along/cart, away/cart\n")
+    assert sorted(path.name for path in out.iterdir()) == ["workspace.json", "workspace.svg"]
+
+
+@pytest.mark.parametrize(("limit", "code"), [("9", 0), ("7", 1)])
+def test_a_limit_decides_the_exit_code(folder, limit, code):
+    arguments = ["workspace", *paths(folder, "along", "across"), "--json", "--limit-litres", limit]
+    assert run(arguments) == code
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        (["along"], "1 robot is given; cases with two or more robots in all are needed"),
+        (["along", "along"], "stand on the same spot; give each its own robot.base"),
+        (["along", "other"], "obstacle 'wall' stands elsewhere in 'other' than in 'along'"),
+        (["along", "nothing"], "nothing.yaml"),
+    ],
+)
+def test_bad_input_is_one_line_and_exit_2(folder, capsys, names, told):
+    assert run(["workspace", *paths(folder, *names)]) == 2
+    error = capsys.readouterr().err
+    assert told in error and error.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    "given", [["--within-mm", "0"], ["--within-mm", "nan"], ["--limit-litres", "-1"]]
+)
+def test_bad_options_are_one_line_and_exit_2(folder, capsys, given):
+    assert run(["workspace", *paths(folder, "along", "across"), *given]) == 2
+    assert capsys.readouterr().err.count("\n") == 1

@@ -1,0 +1,127 @@
+"""Convex parts hold the body from outside and from inside, and say what they are."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.geometry import boolean, decompose
+from clearance.geometry.convex_parts import convex_parts, hull_drawn_in
+
+L_VOLUME = 4.0  # a 2 x 1 foot and a 1 x 2 stem, 1 thick
+
+
+def l_prism():
+    """An L of legs 2 and 3, 1 wide, 1 thick: convex faces only, one concave edge."""
+    rim = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
+    points = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in rim])
+    top = [[6, 7, 8, 9], [6, 9, 10, 11]]
+    bottom = [[3, 2, 1, 0], [5, 4, 3, 0]]
+    sides = [[i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6] for i in range(6)]
+    return cl.Polyhedron(points, top + bottom + sides)
+
+
+def inside(parts, points):
+    return np.array(
+        [((points @ p.normals.T + p.half_spaces[:, 3]).max(axis=1) <= 1e-9) for p in parts]
+    )
+
+
+def in_the_l(points):
+    x, y, z = points.T
+    return (x > 0) & (y > 0) & (z > 0) & (z < 1) & (((x < 2) & (y < 1)) | ((x < 1) & (y < 3)))
+
+
+def needs(module):
+    return pytest.mark.skipif(not module.available(), reason=f"{module.__name__}: not installed")
+
+
+def test_a_convex_body_is_its_own_part():
+    parts = convex_parts(cl.box((1.0, 2.0, 3.0)))
+    assert parts.convex and parts.tight and parts.closed and parts.note == ""
+    assert parts.outer == parts.inner and parts.outer[0].volume == pytest.approx(6.0, rel=1e-15)
+
+
+def test_facets_are_drawn_in_by_what_they_stand_out():
+    parts = convex_parts(cl.sphere(0.1))
+    assert parts.convex and parts.tight and parts.inner != parts.outer
+    reach = np.linalg.norm(parts.inner[0].vertices, axis=1)
+    assert reach.max() <= 0.1 and reach.min() > 0.0997
+    assert "facets" in parts.note
+
+
+@needs(boolean)
+@needs(decompose)
+def test_parts_of_an_l_hold_it_and_lie_in_it():
+    body = l_prism()
+    assert body.volume == L_VOLUME
+    parts = convex_parts(body)
+    assert len(parts.outer) > 1 and "CoACD" in parts.note and "more volume" in parts.note
+    points = np.random.default_rng(1).uniform(-0.1, 3.1, (4000, 3))
+    truly = in_the_l(points)
+    assert inside(parts.outer, points).any(axis=0)[truly].all()
+    assert not inside(parts.inner, points).any(axis=0)[~truly].any()
+    assert sum(p.volume for p in parts.inner) > 0.5 * L_VOLUME
+    assert convex_parts(body) is parts  # kept
+
+
+@needs(boolean)
+@needs(decompose)
+def test_the_same_mesh_gives_the_same_parts():
+    one, two = convex_parts(l_prism()), convex_parts(l_prism())
+    assert [p.vertices.tolist() for p in one.outer] == [p.vertices.tolist() for p in two.outer]
+
+
+@needs(boolean)
+def test_without_coacd_the_hull_stands_for_a_concave_body(monkeypatch):
+    monkeypatch.setattr(decompose, "available", lambda: False)
+    parts = convex_parts(l_prism())
+    assert len(parts.outer) == 1 and parts.inner == () and parts.closed
+    assert "CoACD is not installed (pip install 'clearance[contact]')" in parts.note
+
+
+@needs(boolean)
+@needs(decompose)
+def test_a_decomposition_that_dies_is_told_and_costs_nothing_else(monkeypatch, tmp_path):
+    script = tmp_path / "dies.py"
+    script.write_text("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n")
+    monkeypatch.setattr(decompose, "_PROCESS", script)
+    parts = convex_parts(l_prism())
+    assert len(parts.outer) == 1 and "CoACD came to no end" in parts.note
+
+
+def test_an_open_surface_has_no_parts():
+    whole = cl.box((1.0, 1.0, 1.0))
+    opened = cl.Polyhedron(
+        whole.vertices, [whole.face_vertices[4 * i : 4 * i + 4] for i in range(5)]
+    )
+    parts = convex_parts(opened)
+    assert not parts.closed and parts.inner == () and "not closed" in parts.note
+
+
+def test_a_double_wall_holds_nothing():
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    wall = cl.Polyhedron.from_triangles(
+        corners, np.array([[0, 1, 2], [0, 2, 1], [0, 1, 3], [0, 3, 1]])
+    )
+    assert "holds no volume" in convex_parts(wall).note
+
+
+def test_a_dented_hull_is_drawn_in_below_its_dent():
+    body = cl.box((1.0, 1.0, 1.0))
+    points = np.concatenate([body.vertices, [[0.5 - 0.01, 0.0, 0.0]]])
+    right = np.flatnonzero((body.normals == [1.0, 0.0, 0.0]).all(axis=1))[0]
+    triangles = body.triangles()[body.triangle_faces != right]
+    ring = body.face_vertices[4 * right : 4 * right + 4]
+    fan = [(ring[i], ring[(i + 1) % 4], 8) for i in range(4)]
+    surface = points[np.concatenate([triangles, fan])]
+    (inner,) = hull_drawn_in(surface, only_convex=False)
+    assert hull_drawn_in(surface, only_convex=True) == ()
+    assert inner.vertices.max() <= 0.49 and inner.volume > 0.94**3
+
+
+def test_manifold_is_asked_for_in_one_line(monkeypatch):
+    monkeypatch.setitem(sys.modules, "manifold3d", None)
+    with pytest.raises(cl.ClearanceError, match=r"pip install 'clearance\[contact\]'"):
+        boolean.solid(np.zeros((0, 3)), np.zeros((0, 3)))

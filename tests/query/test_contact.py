@@ -1,0 +1,196 @@
+"""What an overlap means: closed forms, and promises that a distance query can break."""
+
+import sys
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.geometry import boolean, decompose
+
+BOX = cl.box((1.0, 1.0, 1.0))
+WITH_LIBRARIES = pytest.mark.skipif(
+    not (boolean.available() and decompose.available()), reason="extra 'contact' is not installed"
+)
+
+
+def at(x=0.0, y=0.0, z=0.0, turn=0.0):
+    """A pose: a turn about z [rad], then a shift [m]."""
+    pose = np.eye(4)
+    pose[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def l_prism():
+    """Legs 2 along x and 3 along y, 1 wide, 1 thick."""
+    rim = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
+    points = np.array([(x, y, z) for z in (0.0, 1.0) for x, y in rim])
+    caps = [[6, 7, 8, 9], [6, 9, 10, 11], [3, 2, 1, 0], [5, 4, 3, 0]]
+    return cl.Polyhedron(
+        points, caps + [[i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6] for i in range(6)]
+    )
+
+
+def holds_what_it_says(a, b, pose_a, pose_b, found):
+    """The translation parts the bodies; one shorter than the lower bound does not, in this direction."""
+
+    def after(length):
+        moved = pose_a.copy()
+        moved[:3, 3] += length * found.direction
+        return cl.distance(a, b, pose_a=moved, pose_b=pose_b)
+
+    assert np.linalg.norm(found.direction) == pytest.approx(1.0, abs=1e-12)
+    assert 0.0 <= found.penetration_at_least <= found.penetration
+    assert 0.0 <= found.volume_at_least <= found.volume
+    assert after(found.penetration * (1 + 1e-9) + 1e-12).distance > 0.0
+    assert after(0.999 * found.penetration_at_least - 1e-12).contact
+
+
+def test_boxes_that_overlap_by_d():
+    pose = at(0.9, 0.1, 0.2)
+    found = cl.contact(BOX, BOX, pose_a=pose)
+    assert found.penetration == pytest.approx(0.1, rel=1e-13)
+    assert found.direction.tolist() == [1.0, 0.0, 0.0]
+    assert found.volume == pytest.approx(0.1 * 0.9 * 0.8, rel=1e-13)
+    assert found.centroid == pytest.approx([0.45, 0.05, 0.1], rel=1e-13)
+    assert found.region.volume == pytest.approx(found.volume, rel=1e-13)
+    assert found.exact == (True, True) and found.notes == ()
+    holds_what_it_says(BOX, BOX, pose, np.eye(4), found)
+
+
+def test_the_answer_moves_with_the_bodies():
+    world = at(3.0, -2.0, 1.0, turn=0.7)
+    here = cl.contact(BOX, BOX, pose_a=at(0.9, 0.1, 0.2))
+    there = cl.contact(BOX, BOX, pose_a=world @ at(0.9, 0.1, 0.2), pose_b=world)
+    assert there.penetration == pytest.approx(here.penetration, abs=1e-14)
+    assert there.volume == pytest.approx(here.volume, rel=1e-13)
+    assert there.direction == pytest.approx(world[:3, :3] @ here.direction, abs=1e-14)
+    assert there.centroid == pytest.approx((world @ [*here.centroid, 1.0])[:3], abs=1e-14)
+
+
+def test_containment_is_contact_with_the_full_volume():
+    small = cl.box((0.2, 0.2, 0.2))
+    found = cl.contact(small, BOX, pose_a=at(0.1, 0.1, 0.2))
+    assert found.volume == pytest.approx(0.008, rel=1e-13)
+    assert found.penetration == pytest.approx(0.4, rel=1e-13)  # 0.3 to the lid, 0.1 of its own half
+    assert found.direction.tolist() == [0.0, 0.0, 1.0]
+    around = cl.contact(BOX, small, pose_b=at(0.1, 0.1, 0.2))
+    assert around.volume == pytest.approx(0.008, rel=1e-13)
+    assert around.direction.tolist() == [0.0, 0.0, -1.0]
+
+
+@pytest.mark.parametrize("shift", [(1.0, 0.1, 0.2), (1.0, 1.0, 0.2), (1.0, 1.0, 1.0)])
+def test_touching_is_0_deep_with_a_volume_of_exactly_0(shift):
+    found = cl.contact(BOX, BOX, pose_a=at(*shift))
+    assert (found.penetration, found.volume) == (0.0, 0.0)
+    assert found.region.is_empty and np.isfinite(found.centroid).all()
+
+
+def test_apart_is_nothing():
+    assert cl.contact(BOX, BOX, pose_a=at(1.0 + 1e-9)) is None
+
+
+def test_two_octahedra_share_a_smaller_one():
+    corners = np.concatenate([np.eye(3), -np.eye(3)])
+    body = cl.Polytope(corners).polyhedron()
+    found = cl.contact(body, body, pose_a=at(0.5, 0.5, 0.5))
+    assert found.penetration == pytest.approx((2.0 - 1.5) / np.sqrt(3.0), rel=1e-12)
+    exact = cl.intersect([cl.Polytope(corners), cl.Polytope(corners + 0.5)]).volume
+    assert found.volume == pytest.approx(exact, rel=1e-12)
+    holds_what_it_says(body, body, at(0.5, 0.5, 0.5), np.eye(4), found)
+
+
+def test_facets_are_told_and_bound_both_figures():
+    rod = cl.cylinder(0.1, 0.5)
+    found = cl.contact(rod, BOX, pose_a=at(0.55, 0.1, 0.2))
+    true_volume = 0.5 * (0.1**2 * np.arccos(0.5) - 0.05 * np.sqrt(0.1**2 - 0.05**2))
+    assert found.penetration_at_least <= 0.05 <= found.penetration
+    assert found.penetration - found.penetration_at_least < 3e-4
+    assert found.volume_at_least <= true_volume <= found.volume
+    assert found.exact == (False, False) and "facets" in found.notes[0]
+
+
+@WITH_LIBRARIES
+def test_a_concave_body_is_left_by_its_hollow():
+    """A box in the corner of an L leaves through the hollow, not through the hull."""
+    body, peg = l_prism(), cl.box((0.4, 0.4, 0.4))
+    pose = at(1.1, 2.0, 0.5)  # 0.1 of it in the stem, the rest in the hollow
+    found = cl.contact(peg, body, pose_a=pose)
+    assert found.volume == pytest.approx(0.1 * 0.4 * 0.4, rel=1e-9)
+    assert 0.1 <= found.penetration < 0.1002
+    assert found.penetration_at_least == pytest.approx(
+        0.1, rel=1e-9
+    )  # the region is convex, 0.1 wide
+    assert found.direction == pytest.approx([1.0, 0.0, 0.0], abs=1e-6)
+    assert not found.exact[0]
+    holds_what_it_says(peg, body, pose, np.eye(4), found)
+
+
+@WITH_LIBRARIES
+def test_touching_a_wall_of_a_hollow_is_hardly_deep():
+    found = cl.contact(cl.box((0.5, 0.5, 0.5)), l_prism(), pose_a=at(1.25, 2.0, 0.5))
+    assert found.penetration <= 1e-5 and found.volume == 0.0
+    assert found.direction[0] > 0.5  # away from the wall, aside or not
+
+
+@pytest.mark.parametrize("thin", [1e-13, 1e-10])
+def test_a_sheet_of_overlap_has_a_volume_of_its_area_times_its_depth(thin):
+    pose = at(1.0 - thin)
+    found = cl.contact(BOX, BOX, pose_a=pose)
+    assert found.volume == pytest.approx(1.0 - pose[0, 3], abs=3e-16)
+    assert found.penetration == pytest.approx(1.0 - pose[0, 3], abs=3e-16)
+
+
+@WITH_LIBRARIES
+def test_containment_in_a_concave_body():
+    found = cl.contact(cl.box((0.4, 0.4, 0.4)), l_prism(), pose_a=at(0.5, 2.0, 0.5))
+    assert found.volume == pytest.approx(0.064, rel=1e-9)
+    assert 0.7 - 1e-3 <= found.penetration <= 0.7 * 1.002
+
+
+@WITH_LIBRARIES
+def test_a_rod_across_a_pipe_overlaps_its_two_walls_only():
+    tube, rod = cl.pipe(inner_radius=0.05, outer_radius=0.06, length=0.5), cl.box((0.3, 0.02, 0.02))
+    found = cl.contact(rod, tube)
+    assert 2 * 0.01 * 4e-4 <= found.volume < 2 * 0.0107 * 4e-4
+    assert found.volume_at_least < 2 * 0.01 * 4e-4
+    holds_what_it_says(rod, tube, np.eye(4), np.eye(4), found)
+
+
+@WITH_LIBRARIES
+def test_two_concave_bodies_keep_every_promise():
+    random = np.random.default_rng(11)
+    body = l_prism()
+    for _ in range(3):
+        pose = at(*random.uniform(-0.8, 0.8, 3), turn=random.uniform(0, 6))
+        found = cl.contact(body, body, pose_a=pose)
+        holds_what_it_says(body, body, pose, np.eye(4), found)
+
+
+def test_a_surface_without_an_inside_is_bounded_not_invented():
+    opened = cl.Polyhedron(BOX.vertices, [BOX.face_vertices[4 * i : 4 * i + 4] for i in range(5)])
+    found = cl.contact(opened, BOX, pose_a=at(0.9))
+    assert found.penetration == pytest.approx(0.1, rel=1e-12) and found.penetration_at_least == 0.0
+    assert found.volume == pytest.approx(0.1, rel=1e-12) and found.volume_at_least == 0.0
+    assert found.exact == (False, False) and "not closed" in " ".join(found.notes)
+
+
+def test_without_the_libraries_depth_and_volume_are_bounds(monkeypatch):
+    monkeypatch.setattr(decompose, "available", lambda: False)
+    monkeypatch.setitem(sys.modules, "manifold3d", None)
+    monkeypatch.setattr(boolean, "available", lambda: False)
+    peg, pose = cl.box((0.4, 0.4, 0.4)), at(1.1, 2.0, 0.5)
+    found = cl.contact(peg, l_prism(), pose_a=pose)
+    assert found.penetration >= 0.1 - 1e-12 and found.volume >= 0.016 - 1e-12
+    assert found.volume_at_least == 0.0 and not any(found.exact)
+    assert "clearance[contact]" in " ".join(found.notes)
+    holds_what_it_says(peg, l_prism(), pose, np.eye(4), found)
+
+
+def test_a_flat_body_has_no_depth_and_says_so():
+    sheet = cl.Polyhedron(
+        np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]), [[0, 1, 2, 3]]
+    )
+    with pytest.raises(cl.BadInput, match="no depth"):
+        cl.contact(sheet, BOX)

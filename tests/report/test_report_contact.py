@@ -1,0 +1,121 @@
+"""Overlaps in the report: the same figures in summary, page, replay and picture."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from clearance.report import summary_of, write
+from clearance.report.contact import contacts
+from clearance.report.page import page_of
+from clearance.report.wording import contact_text, depth_mm, least_cm3, volume_cm3
+from clearance.simulate import replay_contact
+from clearance.simulate.replay import load_replay, replay_of
+from tests.report.browser import chromium, executable
+from tests.report.records import record, with_contacts
+
+RUN = with_contacts(record())
+DEEPEST = RUN.deepest
+
+
+def test_the_summary_tells_the_deepest_contact_and_each_pair():
+    told = summary_of(RUN)["contact"]
+    assert told["deepest"]["step"] == DEEPEST.step
+    assert told["deepest"]["penetration"] == DEEPEST.found.penetration
+    assert told["deepest"]["direction"] == DEEPEST.found.direction.tolist()
+    depths = [pair["penetration"] for pair in told["pairs"]]
+    assert depths == sorted(depths, reverse=True) and depths[0] == DEEPEST.found.penetration
+    assert sum(pair["n_steps"] for pair in told["pairs"]) == len(RUN.contacts)
+    json.dumps(told, allow_nan=False)
+
+
+def test_without_contact_there_is_no_section():
+    summary = summary_of(record())
+    assert summary["contact"] is None and contacts(summary) == ""
+
+
+def test_the_page_says_the_deepest_contact():
+    page = page_of(summary_of(RUN), replay_of(RUN))
+    assert f"{depth_mm(DEEPEST.found.penetration)} mm along" in page
+
+
+def test_a_bound_is_worded_as_one():
+    figures = {"penetration": 0.0123451, "penetration_at_least": 0.012, "exact": False}
+    figures |= {"volume": 2e-6, "volume_at_least": 0.0, "volume_exact": False}
+    assert contact_text(figures) == "12.00 to 12.35 mm deep, at most 2.00 cm³ shared"
+    assert contact_text(figures | {"exact": True}) == "12.35 mm deep, at most 2.00 cm³ shared"
+
+
+@pytest.mark.parametrize("volume", [0.0, 1e-15, 1.23456e-6, 9.999e-7, 1.0])
+def test_a_volume_lies_between_its_two_wordings(volume):
+    more, less = 1 + 1e-11, 1 - 1e-11  # rounding noise does not count
+    assert float(least_cm3(volume)) * less <= volume * 1e6 <= float(volume_cm3(volume)) * more
+    assert float(volume_cm3(volume)) <= 1.01 * volume * 1e6
+
+
+@pytest.mark.parametrize("depth", [1e-9, 0.05000000000000001, 0.0123451, 0.9999999, 1.0])
+def test_a_depth_is_never_shown_too_small(depth):
+    assert float(depth_mm(depth)) >= depth * 1000 * (1 - 1e-11)
+    assert float(depth_mm(depth)) <= depth * 1000 * 1.001 + 1e-3
+
+
+def test_the_replay_comes_back_with_its_contacts(tmp_path):
+    replay = replay_of(RUN)
+    assert len(replay.contacts) == len(RUN.contacts) > 3
+    replay.save(tmp_path / "replay.npz")
+    back = load_replay(tmp_path / "replay.npz")
+    assert back.contacts == replay.contacts
+    for (v, t), (w, u) in zip(back.regions, replay.regions, strict=True):
+        assert np.array_equal(v, w) and np.array_equal(t, u)
+
+
+def test_too_many_contacts_are_thinned_but_never_the_deepest(monkeypatch):
+    monkeypatch.setattr(replay_contact, "MOST_CONTACTS", 5)
+    replay = replay_of(RUN)
+    assert 2 <= len(replay.contacts) <= 5
+    assert max(one.penetration for one in replay.contacts) == DEEPEST.found.penetration
+
+
+def test_the_table_has_a_row_for_each_pair_in_contact(tmp_path):
+    write(RUN, tmp_path / "out")
+    with (tmp_path / "out" / "contacts.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [(int(row["step"]), row["link"]) for row in rows] == [
+        (c.step, c.link) for c in RUN.contacts
+    ]
+    for row, contact in zip(rows, RUN.contacts, strict=True):
+        found = contact.found
+        assert float(row["penetration"]) == found.penetration
+        assert float(row["volume_at_least"]) == found.volume_at_least
+        assert [float(row[f"direction_{k}"]) for k in "xyz"] == found.direction.tolist()
+
+
+def red(pixels):
+    r, g, b = np.moveaxis(pixels[..., :3].astype(int), -1, 0)
+    return (r > 170) & (g < 90) & (b < 90)
+
+
+@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+def test_the_page_draws_the_region_in_red_and_the_way_out(tmp_path):
+    write(RUN, tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        page.run("document.getElementById('readout').style.display = 'none'")
+        counts = {}
+        for step in (0, DEEPEST.step):
+            page.run(f"window.clearance.showFrame({step})")
+            page.run("document.getElementById('camera-gap').click()")
+            page.settle()
+            counts[step] = int(red(page.pixels("#pane")).sum())
+        state = page.run("window.clearance.state()")
+        assert page.errors == []
+    assert counts[0] == 0 and counts[DEEPEST.step] > 400
+    here = [row.found for row in RUN.contacts if row.step == DEEPEST.step]
+    assert len(state["contacts"]) == len(here)
+    for drawn, found in zip(state["contacts"], here, strict=True):
+        assert drawn["foot"] == pytest.approx(found.centroid, abs=1e-6)
+        assert drawn["direction"] == pytest.approx(found.direction, abs=1e-6)
+        assert drawn["corners"] == len(found.region.vertices)

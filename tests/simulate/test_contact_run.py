@@ -1,0 +1,205 @@
+"""Runs that hit something: the scene that does, and a real case with an obstacle pushed into its way."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from ruamel.yaml import YAML
+
+import clearance as cl
+from clearance.geometry import boolean
+from clearance.simulate.contact import find_contacts
+from clearance.simulate.steps import pair_names
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.pairs import measured_pairs
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+from tests.report.browser import chromium, executable
+from tests.report.records import moved, record, with_contacts
+
+ROOT = Path(__file__).parents[2]
+CASES = ROOT.parent / "shared" / "cases"
+
+
+@pytest.fixture(scope="module")
+def shelf():
+    return cl.check(cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml"))
+
+
+def confirm(run, row):
+    """The overlap's translation of the link parts the pair; less than the lower bound does not."""
+    case, motion = run.record.case, run.record.motions[0]
+    body = next(b for b in motion.placed.robot.bodies if b.name == row.link)
+    obstacle = next(o for o in case.obstacles if o.name == row.obstacle)
+    i_link = motion.placed.robot.link_names.index(row.link)
+    pose = motion.poses(row.step, row.step + 1)[0, i_link]
+
+    def after(length):
+        moved = pose.copy()
+        moved[:3, 3] += length * row.found.direction
+        there = obstacle.world_from_body
+        return cl.distance(body.shape, obstacle.body.shape, pose_a=moved, pose_b=there)
+
+    assert after(row.found.penetration * (1 + 1e-9) + 1e-12).distance > 0.0
+    assert after(0.999 * row.found.penetration_at_least - 1e-12).contact
+
+
+def test_the_scene_in_contact_has_depth_and_volume_at_its_22_steps(shelf):
+    rows = shelf.steps.to_pylist()
+    hit = [row for row in rows if row["clearance"] == 0.0]
+    assert [row["step"] for row in hit] == list(range(136, 158))
+    assert all(row["penetration"] > 0.0 and row["volume"] > 0.0 for row in hit)
+    clear = [row for row in rows if row["clearance"] > 0.0]
+    assert {(row["penetration"], row["volume"]) for row in clear} == {(None, None)}
+
+
+def test_the_row_of_a_step_is_its_deepest_pair_and_the_sum_of_its_volumes(shelf):
+    for step in (136, 148, 157):
+        found = [row.found for row in shelf.record.contacts if row.step == step]
+        row = shelf.steps.slice(step, 1).to_pylist()[0]
+        assert row["penetration"] == max(one.penetration for one in found)
+        assert row["volume"] == pytest.approx(sum(one.volume for one in found), rel=1e-15)
+    assert {row.link for row in shelf.record.contacts} == {"panda_leftfinger", "panda_rightfinger"}
+
+
+def test_the_way_out_of_the_carton_is_back_out_of_the_shelf(shelf):
+    deepest = shelf.record.deepest
+    assert deepest.step == 148 and deepest.obstacle == "carton"
+    face = [-np.cos(0.1), -np.sin(0.1), 0.0]  # the carton's front, turned by 0.1 rad
+    assert deepest.found.direction == pytest.approx(face, abs=1e-9)
+    assert deepest.found.penetration == pytest.approx(0.03206, abs=1e-5)
+    assert deepest.found.penetration - deepest.found.penetration_at_least < 1e-4
+    for row in shelf.record.contacts[::5]:
+        confirm(shelf, row)
+
+
+@pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
+def test_the_shared_region_lies_in_the_carton(shelf):
+    carton = next(o for o in shelf.record.case.obstacles if o.name == "carton")
+    low, high = carton.body.shape.bounds
+    for row in shelf.record.contacts:
+        corners = row.found.region.vertices - carton.world_from_body[:3, 3]
+        inside = corners @ carton.world_from_body[:3, :3]
+        assert (inside >= low - 1e-9).all() and (inside <= high + 1e-9).all()
+        assert row.found.region.volume == pytest.approx(row.found.volume, rel=1e-12)
+
+
+def test_what_stands_for_a_body_reaches_the_notes(shelf):
+    told = [note for note in shelf.record.notes if note.startswith("contact: panda_leftfinger: ")]
+    assert len(told) == 1 and "its hull stands for it" in told[0]
+
+
+def test_a_run_without_contact_does_not_look(monkeypatch):
+    import clearance.run
+
+    monkeypatch.setitem(sys.modules, "clearance.simulate.contact", None)
+    case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
+    run = clearance.run.check(case)
+    assert run.record.contacts == () and run.record.deepest is None
+    assert run.steps["penetration"].null_count == run.steps.num_rows
+
+
+def test_a_pose_that_repeats_is_asked_once(monkeypatch):
+    import clearance.simulate.contact as room
+
+    run = record()
+    pairs = measured_pairs(run.case)[0]
+    step = int(np.flatnonzero(run.clearances == 0.0)[0])
+    still = run.motions[0].__class__(
+        run.motions[0].placed,
+        np.arange(5.0),
+        np.tile(run.motions[0].positions[step], (5, 1)),
+        np.zeros(5),
+    )
+    deep = with_contacts(run).contacts[0]
+    named = list(zip(*pair_names(run.case, pairs), strict=True))
+    nearest = np.full(5, named.index((deep.link, deep.obstacle)))
+    asked = []
+    monkeypatch.setattr(room, "distance", lambda *a, **k: asked.append(1) or cl.distance(*a, **k))
+    found, _ = find_contacts(run.case, (still,), pairs, np.zeros(5), nearest)
+    assert [row.step for row in found] == sorted(row.step for row in found)
+    assert len(found) == 5 * len([row for row in found if row.step == 0])
+    assert len(asked) <= len(pairs)
+    assert len([row for row in found if row.step == 0]) == 1
+
+
+def test_a_touch_that_rounding_parts_in_another_frame_is_a_contact_of_depth_0():
+    """A slider that ends exactly at a wall: contact in the world, whatever the wall's own frame says."""
+    turned = np.eye(4)
+    turned[:2, :2] = [[0.8, -0.6], [0.6, 0.8]]
+    run = cl.check(touching_case(turned))
+    rows = run.steps.to_pylist()
+    for row in rows:
+        assert (row["clearance"] == 0.0) == (row["penetration"] is not None)
+    deepest = [row["penetration"] for row in rows if row["clearance"] == 0.0]
+    assert all(depth < 1e-12 for depth in deepest)
+
+
+def touching_case(world):
+    """A cube that slides along x up to a wall at 0.1, both turned and moved by `world`, to rounding."""
+    joint = Joint("rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4))
+    body = Body("cube", cl.box((0.2, 0.2, 0.2)))
+    robot = Robot("cart", ("ground", "cube"), (joint,), (body,))
+    near = 0.1 * np.array([1.0, 1e-16, 0.0, -1e-16, -2e-16]) - 0.1
+    path = Trajectory(np.arange(5.0), ("rail",), near[:, None])
+    wall = Obstacle(Body("wall", cl.box((0.2, 1.0, 1.0))), world @ moved(0.2))
+    return Case("touch", (PlacedRobot(robot, path, world),), (wall,))
+
+
+@pytest.fixture(scope="module")
+def pushed(tmp_path_factory):
+    """The Fetch in its cage, with the obstacle that it comes nearest to pushed 2 cm into it."""
+    folder = CASES / "fetch_cage_planned"
+    if not folder.is_dir():
+        pytest.skip("the shared cases are not beside this checkout")
+    with (folder / "reference.csv").open(encoding="utf-8") as file:
+        nearest = min(csv.DictReader(file), key=lambda row: float(row["clearance"]))
+    points = [[float(nearest[f"{body}_{k}"]) for k in "xyz"] for body in ("link", "obstacle")]
+    way = np.subtract(*points)
+    given = YAML(typ="safe").load((folder / "case.yaml").read_text(encoding="utf-8"))
+    robot = folder / given["robot"]["urdf"]
+    given["robot"] |= {"urdf": str(robot), "package_dirs": [str(robot.parent)]}
+    given["trajectory"]["file"] = str(folder / "trajectory.csv")
+    obstacle = next(o for o in given["scene"]["obstacles"] if o["name"] == nearest["obstacle"])
+    shift = way + 0.02 * way / np.linalg.norm(way)
+    obstacle["pose"]["xyz"] = (np.array(obstacle["pose"]["xyz"]) + shift).tolist()
+    path = tmp_path_factory.mktemp("pushed") / "case.yaml"
+    with path.open("w", encoding="utf-8") as file:
+        YAML(typ="safe").dump(given, file)
+    return cl.check(cl.load_case(path)), int(nearest["step"]), nearest["link"], nearest["obstacle"]
+
+
+def test_a_real_case_pushed_into_an_obstacle(pushed):
+    run, step, link, obstacle = pushed
+    assert not run.passed
+    here = [row for row in run.record.contacts if row.step == step]
+    hit = next(row for row in here if (row.link, row.obstacle) == (link, obstacle))
+    assert 0.0 < hit.found.penetration <= 0.0205
+    assert hit.found.volume > 0.0
+    for row in here:
+        confirm(run, row)
+    in_contact = {row.step for row in run.record.contacts}
+    assert in_contact == set(np.flatnonzero(run.record.clearances == 0.0).tolist())
+
+
+@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+def test_the_page_of_the_pushed_case_shows_the_region(pushed, tmp_path):
+    run, step, _, _ = pushed
+    run.save(tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        page.run("document.getElementById('readout').style.display = 'none'")
+        page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
+        page.run("document.getElementById('camera-gap').click()")
+        page.settle()
+        pixels = page.pixels("#pane").astype(int)
+        drawn = page.run("window.clearance.state().contacts")
+        assert page.errors == []
+    red = (pixels[..., 0] > 170) & (pixels[..., 1] < 90) & (pixels[..., 2] < 90)
+    assert red.sum() > 200
+    assert len(drawn) == len([row for row in run.record.contacts if row.step == step])

@@ -1,0 +1,153 @@
+"""The region that robots share: closed forms for sliders, containment for arms, refusals."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadDimension, BadInput, Unavailable
+from clearance.geometry import boolean
+from clearance.simulate.kinematic import kinematic_motion
+from clearance.simulate.swept_pieces import swept_pieces
+from clearance.simulate.workspace import shared_workspace
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+from tests.report.records import arm, moved
+
+WITH_MANIFOLD = pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
+
+
+def slider(name, axis, start, stop, base=(0.0, 0.0, 0.0), n_steps=5) -> Case:
+    """A 0.2 cube that slides along an axis of the world."""
+    joint = Joint(
+        "rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4), np.array(axis, dtype=float)
+    )
+    robot = Robot(name, ("ground", "cube"), (joint,), (Body("cube", cl.box((0.2, 0.2, 0.2))),))
+    times = np.arange(float(n_steps))
+    path = Trajectory(times, ("rail",), np.linspace(start, stop, n_steps)[:, None])
+    return Case(name, (PlacedRobot(robot, path, moved(*base)),), ())
+
+
+def swinging(name, base, n_steps=12, excluded=()) -> Case:
+    """The arm of the report's tests, all joints moving."""
+    share = np.linspace(0.0, 1.0, n_steps)
+    positions = np.column_stack([2.0 * share - 1.0, 0.9 * np.sin(3 * share), 0.2 * share])
+    path = Trajectory(share, ("pan", "lift", "slide"), positions)
+    return Case(name, (PlacedRobot(arm(name), path, base, exclude_links=excluded),), ())
+
+
+@WITH_MANIFOLD
+def test_two_sliders_that_cross_share_a_cube():
+    one = slider("one", (1, 0, 0), -1.0, 1.0)
+    two = slider("two", (0, 1, 0), -1.0, 1.0, base=(0.3, 0.0, 0.05))
+    found = shared_workspace([one, two])
+    assert found.volume == pytest.approx(0.2 * 0.2 * 0.15, rel=1e-6)
+    assert found.volume >= 0.2 * 0.2 * 0.15
+    assert found.region.centroid == pytest.approx([0.3, 0.0, 0.025], abs=1e-8)
+    assert found.leaves == 0.0  # sliding is straight
+    (pair,) = found.links
+    assert (pair.robot_a, pair.link_a, pair.robot_b, pair.link_b) == ("one", "cube", "two", "cube")
+
+
+@WITH_MANIFOLD
+def test_of_three_robots_what_two_reach_counts_once():
+    cases = [slider("x", (1, 0, 0), -1, 1), slider("y", (0, 1, 0), -1, 1, (0.0, 0.0, 0.001))]
+    cases.append(slider("z", (0, 0, 1), -1, 1, (0.0, 0.001, 0.0)))
+    found = shared_workspace(cases)
+    assert found.volume == pytest.approx(0.2**3, rel=0.05)
+    assert len(found.links) == 3
+
+
+@WITH_MANIFOLD
+def test_timing_does_not_matter_and_apart_is_empty():
+    one = slider("one", (1, 0, 0), -1.0, 1.0)
+    there = slider("two", (0, 1, 0), -1.0, 1.0, base=(0.3, 0.0, 0.05))
+    back = slider("two", (0, 1, 0), 1.0, -1.0, base=(0.3, 0.0, 0.05))
+    assert shared_workspace([one, there]).volume == pytest.approx(
+        shared_workspace([one, back]).volume, rel=1e-12
+    )
+    far = shared_workspace([one, slider("two", (0, 1, 0), -1.0, 1.0, base=(3.0, 0.0, 0.0))])
+    assert far.volume == 0.0 and far.region.is_empty and far.links == ()
+
+
+@pytest.mark.parametrize("within", [1e-4, 5e-3, 0.2])
+def test_the_pieces_hold_the_links_between_the_samples(within):
+    case = swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6)
+    motion = kinematic_motion(case.robots[0])
+    pieces = swept_pieces(motion, within, cut_concave=False)
+    n = motion.n_steps
+    fine = np.linspace(0.0, n - 1.0, 20 * (n - 1) + 1)
+    between = [np.interp(fine, np.arange(n), column) for column in motion.positions.T]
+    dense = dataclasses.replace(
+        motion, times=fine, positions=np.column_stack(between), tracking_error=np.zeros(len(fine))
+    )
+    poses = dense.poses()
+    for body in case.robots[0].robot.bodies:
+        i_link = case.robots[0].robot.link_names.index(body.name)
+        for at, pose in zip(fine, poses[:, i_link], strict=True):
+            corners = body.shape.vertices @ pose[:3, :3].T + pose[:3, 3]
+            holding = [p for p in pieces if p.link == body.name and p.first <= at <= p.last]
+            assert any(
+                (corners @ p.body.normals.T + p.body.half_spaces[:, 3]).max() <= 0.0
+                for p in holding
+            ), (body.name, at)
+
+
+def test_finer_stretches_are_shorter_and_never_leave_a_gap():
+    motion = kinematic_motion(swinging("arm", np.eye(4)).robots[0])
+    for within in (1e-5, 5e-3, 0.5):
+        pieces = [p for p in swept_pieces(motion, within, False) if p.link == "gripper"]
+        assert pieces[0].first == 0 and pieces[-1].last == motion.n_steps - 1
+        assert all(a.last == b.first for a, b in zip(pieces, pieces[1:], strict=False))
+    assert len(swept_pieces(motion, 1e-5, False)) > len(swept_pieces(motion, 0.5, False))
+
+
+@WITH_MANIFOLD
+def test_the_region_of_two_arms_is_what_pairs_of_pieces_share():
+    one, two = swinging("left", moved(0.0)), swinging("right", moved(0.2, 1.0))
+    found = shared_workspace([one, two], within=0.05)
+    swept = [swept_pieces(kinematic_motion(c.robots[0]), 0.05, False) for c in (one, two)]
+    pieces = [cl.intersect([p.body, q.body]) for p in swept[0] for q in swept[1]]
+    parts = [shared for shared in pieces if shared.volume > 0.0]
+    assert found.volume <= sum(part.volume for part in parts) * (1 + 1e-9)
+    assert found.volume >= max(part.volume for part in parts) * (1 - 1e-9)
+    points = np.concatenate([part.centroid[None] for part in parts])
+    low, high = found.region.vertices.min(axis=0), found.region.vertices.max(axis=0)
+    assert (points >= low).all() and (points <= high).all()
+
+
+@WITH_MANIFOLD
+def test_excluded_links_are_left_out_and_told():
+    two = swinging("right", moved(0.2, 1.0), excluded=("gripper",))
+    found = shared_workspace([swinging("left", np.eye(4)), two], within=0.05)
+    assert found.excluded == ("right/gripper",)
+    assert "gripper" not in {pair.link_b for pair in found.links}
+
+
+@WITH_MANIFOLD
+def test_refusals():
+    one = slider("one", (1, 0, 0), -1.0, 1.0)
+    with pytest.raises(BadInput, match="1 robot is given; cases with two or more"):
+        shared_workspace([one])
+    with pytest.raises(BadInput, match=r"same spot; give each its own robot\.base"):
+        shared_workspace([one, slider("two", (0, 1, 0), -1.0, 1.0)])
+    table = Body("table", cl.box((1.0, 1.0, 0.1)))
+    here = dataclasses.replace(one, obstacles=(Obstacle(table, moved(0.0, 2.0)),))
+    there = slider("two", (0, 1, 0), -1.0, 1.0, base=(0.3, 0.0, 0.0))
+    there = dataclasses.replace(there, obstacles=(Obstacle(table, moved(1.0, 2.0)),))
+    with pytest.raises(BadInput, match="'table' stands elsewhere in 'two' than in 'one'"):
+        shared_workspace([here, there])
+    with pytest.raises(BadDimension, match="within is nan m"):
+        shared_workspace([one, there], within=float("nan"))
+
+
+def test_without_manifold_it_says_how_to_get_it(monkeypatch):
+    monkeypatch.setattr(boolean, "available", lambda: False)
+    two = slider("two", (0, 1, 0), -1.0, 1.0, base=(0.3, 0.0, 0.0))
+    with pytest.raises(Unavailable, match=r"pip install 'clearance\[contact\]'"):
+        shared_workspace([slider("one", (1, 0, 0), -1.0, 1.0), two])
