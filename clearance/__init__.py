@@ -21,6 +21,7 @@ _ROOM_OF = {
     "Nearest": "query.result",
     "Polyhedron": "geometry.polyhedron",
     "Polytope": "geometry.polytope",
+    "Profile": "profiles.profile",
     "Record": "simulate.record",
     "Robot": "world.robot",
     "Run": "run",
@@ -45,6 +46,7 @@ _ROOM_OF = {
     "polygon_distances": "query.distance",
     "read_mesh": "load.mesh",
     "sphere": "geometry.shapes",
+    "swept_profile": "profiles.sweep",
     "within": "planar.hausdorff",
 }
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import click
 
+from clearance.cli.profile_sweep import sweep
+
 
 @click.group()
 def profile() -> None:
     """Profiles: outlines in the plane."""
+
+
+profile.add_command(sweep)
 
 
 @profile.command()
