@@ -32,22 +32,24 @@ class Raster(NamedTuple):
 
 
 @inlined
-def _column(raster, x):
+def column_of(raster, x):
+    """The column of pixels that x lies in."""
     return math.floor((x - raster.x) / raster.pixel)
 
 
 @inlined
-def _row(raster, y):
+def row_of(raster, y):
+    """The row of pixels that y lies in."""
     return math.floor((y - raster.y) / raster.pixel)
 
 
 @inlined
-def _draw(raster, ax, ay, bx, by, count, touched, steps):
+def draw_edge(raster, ax, ay, bx, by, count, touched, steps):
     """Marks the pixels of an edge and, in each row that it crosses at mid-height, where the count changes."""
     if ay > by:
         ax, ay, bx, by, count = bx, by, ax, ay, -count
     slope = (bx - ax) / (by - ay) if by > ay else 0.0
-    for row in range(_row(raster, ay - SAFE), _row(raster, by + SAFE) + 1):
+    for row in range(row_of(raster, ay - SAFE), row_of(raster, by + SAFE) + 1):
         bottom = raster.y + row * raster.pixel
         low, high = max(ay, bottom - SAFE), min(by, bottom + raster.pixel + SAFE)
         if by - ay <= 4.0 * SAFE:
@@ -56,7 +58,7 @@ def _draw(raster, ax, ay, bx, by, count, touched, steps):
             one, two = ax + (low - ay) * slope, ax + (high - ay) * slope
             first, last = max(min(one, two), min(ax, bx)), min(max(one, two), max(ax, bx))
         slack = SAFE + SAFE * abs(slope)
-        for column in range(_column(raster, first - slack), _column(raster, last + slack) + 1):
+        for column in range(column_of(raster, first - slack), column_of(raster, last + slack) + 1):
             touched[row, column] = True
         middle = bottom + 0.5 * raster.pixel
         if ay <= middle < by:
@@ -66,7 +68,8 @@ def _draw(raster, ax, ay, bx, by, count, touched, steps):
 
 
 @inlined
-def _add_inside(raster, first_row, last_row, first_column, last_column, touched, steps):
+def add_inside(raster, first_row, last_row, first_column, last_column, touched, steps):
+    """Marks what the edges drawn so far surround, and clears them."""
     for row in range(first_row, last_row + 1):
         count = 0
         for column in range(last_column, first_column - 1, -1):
@@ -93,21 +96,21 @@ def add_cover(raster, points, edges, use_starts, use_faces, use_ways, signs):
     touched = np.zeros((rows, columns + 1), np.bool_)
     steps = np.zeros((rows, columns + 1), np.int32)
     for k in range(points.shape[0]):
-        first_row = max(0, _row(raster, points[k, :, 1].min()) - 1)
-        last_row = min(rows - 1, _row(raster, points[k, :, 1].max()) + 1)
-        first_column = max(0, _column(raster, points[k, :, 0].min()) - 1)
-        last_column = min(columns - 1, _column(raster, points[k, :, 0].max()) + 1)
+        first_row = max(0, row_of(raster, points[k, :, 1].min()) - 1)
+        last_row = min(rows - 1, row_of(raster, points[k, :, 1].max()) + 1)
+        first_column = max(0, column_of(raster, points[k, :, 0].min()) - 1)
+        last_column = min(columns - 1, column_of(raster, points[k, :, 0].max()) + 1)
         for e in range(edges.shape[0]):
             count = 0
             for use in range(use_starts[e], use_starts[e + 1]):
                 count += use_ways[use] * signs[k, use_faces[use]]
             if count != 0:
                 a, b = edges[e, 0], edges[e, 1]
-                _draw(
+                draw_edge(
                     raster, points[k, a, 0], points[k, a, 1], points[k, b, 0], points[k, b, 1],
                     count, touched, steps,
                 )  # fmt: skip
-        _add_inside(raster, first_row, last_row, first_column, last_column, touched, steps)
+        add_inside(raster, first_row, last_row, first_column, last_column, touched, steps)
 
 
 @kernel
@@ -127,7 +130,7 @@ def lies_covered(raster, sums, corners, n):
     low, high = corners[0, 1], corners[0, 1]
     for i in range(1, n):
         low, high = min(low, corners[i, 1]), max(high, corners[i, 1])
-    for row in range(_row(raster, low - SAFE), _row(raster, high + SAFE) + 1):
+    for row in range(row_of(raster, low - SAFE), row_of(raster, high + SAFE) + 1):
         bottom = raster.y + row * raster.pixel - SAFE
         top = bottom + raster.pixel + 2.0 * SAFE
         first, last = math.inf, -math.inf
@@ -141,7 +144,7 @@ def lies_covered(raster, sums, corners, n):
                     x = ax + (bx - ax) * ((level - ay) / (by - ay))
                     first, last = min(first, x), max(last, x)
         if first <= last:
-            left, right = _column(raster, first - SAFE), _column(raster, last + SAFE)
+            left, right = column_of(raster, first - SAFE), column_of(raster, last + SAFE)
             if left < 0 or right >= raster.covered.shape[1]:
                 return False
             if sums[row, right + 1] - sums[row, left] != right + 1 - left:

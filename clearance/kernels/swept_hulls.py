@@ -77,24 +77,59 @@ def fattened_hull(points, n, width, widened, out):
     return hull_of(widened, 4 * few, out)
 
 
+@inlined
+def _is_convex(four):
+    """True if the loop 0, 2, 3, 1 turns one way only: what the edge sweeps then is its hull."""
+    left = right = False
+    for i, j, k in ((0, 2, 3), (2, 3, 1), (3, 1, 0), (1, 0, 2)):
+        turn = _turn(four[i, 0], four[i, 1], four[j, 0], four[j, 1], four[k, 0], four[k, 1])
+        left, right = left or turn > 0.0, right or turn < 0.0
+    return not (left and right)
+
+
+@inlined
+def _twist(four):
+    """[m] how far a point of the hull may be from what the edge sweeps: a quarter of the edge's change.
+
+    A point of the hull with weights w_ij of the four corners is (w_00 w_11 - w_01 w_10) (change of the edge)
+    off the point of the ruled patch with the same shares, and that product is at most 1/4.
+    """
+    x = four[3, 0] - four[2, 0] - four[1, 0] + four[0, 0]
+    y = four[3, 1] - four[2, 1] - four[1, 1] + four[0, 1]
+    return 0.25 * math.hypot(x, y)
+
+
+@inlined
+def _part_of(points, k, a, b, low, high, four):
+    """Writes the ends of part `low` to `high` (shares) of edge a-b at the instants k and k + 1."""
+    for i in range(2):
+        for c in range(2):
+            start, end = points[k + i, a, c], points[k + i, b, c]
+            four[2 * i, c] = start + low * (end - start) if low > 0.0 else start
+            four[2 * i + 1, c] = start + high * (end - start) if high < 1.0 else end
+
+
 @kernel
-def edge_hulls(raster, sums, points, edges, use_starts, use_faces, use_ways, states, width):
+def edge_hulls(raster, sums, points, edges, use_starts, use_faces, use_ways, states, width, slack):
     """What the edges that may bound a body's outline sweep between neighbouring instants, uncovered only.
+
+    An edge is cut in halves until what it sweeps is convex or within `slack` of its hull.
 
     Args:
         points: (k + 1, v, 2) [m] the vertices in the plane at each instant.
         states: (k, f) for each interval 1 or -1 for faces that are surely seen from the front or from
             behind throughout, 0 for others.
         width: [m] what slenderer polygons are widened by, to either side.
+        slack: [m] how far hulls may exceed what the edges sweep on their chords.
 
     Returns:
         corners (m, MOST, 2), n_corners (m,), interval (m,).
     """
-    capacity, found = 1024, 0
-    corners = np.empty((capacity, MOST, 2))
-    n_corners = np.empty(capacity, np.int64)
-    intervals = np.empty(capacity, np.int64)
-    four, out, widened = np.empty((4, 2)), np.empty((40, 2)), np.empty((16, 2))
+    found = 0
+    corners, n_corners = np.empty((1024, MOST, 2)), np.empty(1024, np.int64)
+    intervals = np.empty(1024, np.int64)
+    four, spare = np.empty((4, 2)), np.empty((4, 2))
+    out, widened, waiting = np.empty((40, 2)), np.empty((16, 2)), np.empty((128, 2))
     for k in range(points.shape[0] - 1):
         for e in range(edges.shape[0]):
             count, known = 0, True
@@ -104,28 +139,29 @@ def edge_hulls(raster, sums, points, edges, use_starts, use_faces, use_ways, sta
                 count += use_ways[use] * state
             if known and count == 0:
                 continue
-            for i in range(2):
-                for c in range(2):
-                    four[i, c] = points[k, edges[e, i], c]
-                    four[2 + i, c] = points[k + 1, edges[e, i], c]
-            n = fattened_hull(four, 4, width, widened, out)
-            if lies_covered(raster, sums, out, n):
-                continue
-            if found == capacity:
-                capacity *= 2
-                grown = np.empty((capacity, MOST, 2))
-                grown[:found] = corners
-                corners = grown
-                n_grown = np.empty(capacity, np.int64)
-                n_grown[:found] = n_corners
-                n_corners = n_grown
-                i_grown = np.empty(capacity, np.int64)
-                i_grown[:found] = intervals
-                intervals = i_grown
-            corners[found, :n] = out[:n]
-            n_corners[found] = n
-            intervals[found] = k
-            found += 1
+            waiting[0, 0], waiting[0, 1], left = 0.0, 1.0, 1
+            while left:
+                left -= 1
+                low, high = waiting[left, 0], waiting[left, 1]
+                _part_of(points, k, edges[e, 0], edges[e, 1], low, high, four)
+                spare[:] = four
+                n = fattened_hull(spare, 4, width, widened, out)
+                if lies_covered(raster, sums, out, n):
+                    continue
+                if left < 126 and _twist(four) > slack and not _is_convex(four):
+                    middle = 0.5 * (low + high)
+                    waiting[left, 0], waiting[left, 1] = middle, high
+                    waiting[left + 1, 0], waiting[left + 1, 1] = low, middle
+                    left += 2
+                    continue
+                if found == len(intervals):
+                    corners = np.concatenate((corners, np.empty((found, MOST, 2))))
+                    n_corners = np.concatenate((n_corners, np.empty(found, np.int64)))
+                    intervals = np.concatenate((intervals, np.empty(found, np.int64)))
+                corners[found, :n] = out[:n]
+                n_corners[found] = n
+                intervals[found] = k
+                found += 1
     return corners[:found].copy(), n_corners[:found].copy(), intervals[:found].copy()
 
 

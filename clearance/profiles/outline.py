@@ -25,6 +25,7 @@ from clearance.profiles.region import (
     inner_points,
     region_of,
     rings_of,
+    smoothed,
 )
 
 ROUNDING = 1e-8
@@ -62,7 +63,10 @@ def outline_of(region: Region, inner: float, tolerance: float) -> Outline:
     boundary = Curve.contours([Curve.polyline(ring, closed=True) for ring, _ in rings_of(region)])
     for _ in range(4):
         offset = inner + ROUNDING + room
-        contours = tuple(_fitted(ring, room) for ring, _ in rings_of(grown(region, offset)))
+        contours = tuple(
+            _fitted(ring, 0.85 * room)
+            for ring, _ in rings_of(smoothed(grown(region, offset), 0.1 * room))
+        )
         height = 1e-3 * tolerance
         chords = [contour.flattened(height) for contour in contours]
         gap = boundary_distance(region, chords) - height - ROUNDING

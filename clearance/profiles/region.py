@@ -73,6 +73,11 @@ def shrunk(region: Region, distance: float) -> Region:
     return _areas(region.buffer(-distance, quad_segs=4))
 
 
+def smoothed(region: Region, distance: float) -> Region:
+    """The region with fewer vertices, its boundary within `distance` (Douglas and Peucker 1973)."""
+    return _areas(shapely.simplify(region, distance))
+
+
 def rings_of(region: Region) -> list[tuple[np.ndarray, bool]]:
     """Each ring and whether it is a hole; outer rings by their lowest left corner, each with its holes."""
     parts = [shapely.normalize(part) for part in shapely.get_parts(region) if part.area > 0.0]

@@ -80,7 +80,9 @@ class Silhouette:
             signs = np.sign(self._facing(poses)).astype(np.int8)
             add_cover(raster, self._seen(poses, self.shape.vertices), *self._edges, signs)
 
-    def hulls(self, raster: Raster, sums: np.ndarray, width: float) -> Iterator[Hulls]:
+    def hulls(
+        self, raster: Raster, sums: np.ndarray, width: float, slack: float
+    ) -> Iterator[Hulls]:
         """The polygons that are not covered, a few instants at a time."""
         knots = self.knots
         first = self._seen(knots.poses[:1], self.shape.vertices)[0]
@@ -89,15 +91,20 @@ class Silhouette:
         moving = np.flatnonzero(knots.moves)
         for run in np.split(moving, np.flatnonzero(np.diff(moving) != 1) + 1):
             for start in range(0, len(run), CHUNK):
-                yield self._chunk(raster, sums, width, run[start : start + CHUNK])
+                part = run[start : start + CHUNK]
+                yield self._chunk(raster, sums, width, slack, part)
 
-    def _chunk(self, raster: Raster, sums: np.ndarray, width: float, run: np.ndarray) -> Hulls:
+    def _chunk(
+        self, raster: Raster, sums: np.ndarray, width: float, slack: float, run: np.ndarray
+    ) -> Hulls:
         knots = self.knots
         facing = self._facing(knots.middle[run])
         open_side = np.abs(facing) <= knots.turn[run, None] + DOUBT
         states = np.where(open_side, 0, np.sign(facing)).astype(np.int8)
         points = self._seen(knots.poses[run[0] : run[-1] + 2], self.shape.vertices)
-        corners, count, interval = edge_hulls(raster, sums, points, *self._edges, states, width)
+        corners, count, interval = edge_hulls(
+            raster, sums, points, *self._edges, states, width, slack
+        )
         return Hulls(corners, count, knots.instant[run][interval])
 
     def _facing(self, poses: np.ndarray) -> np.ndarray:
@@ -114,7 +121,12 @@ class Silhouette:
 
     @property
     def short(self) -> float:
-        """[m] how far any swept point may be from the polygons and the covered pixels, and they from it."""
+        """[m] how far any swept point may be from the polygons and the covered pixels."""
         return float(self.knots.chord.max(initial=0.0))
+
+    @property
+    def excess(self) -> float:
+        """[m] how far any point of them may be from a swept point, beside `slack`."""
+        return self.short
 
     notes: tuple[str, ...] = ()

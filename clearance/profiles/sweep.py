@@ -34,8 +34,11 @@ PIXELS = 1000
 WIDTH = 1e-7
 """[m] What polygons without area are widened by to either side; part of the bound."""
 
-SHARE = 0.25
-"""Of the tolerance: how far points may leave their chords. It counts twice, the arcs take the rest."""
+SHARE = 0.22
+"""Of the tolerance: how far points may leave their chords. It counts twice; the arcs take what is left."""
+
+TWIST = 0.08
+"""Of the tolerance: how far hulls of what turns may exceed what it sweeps."""
 
 CUT_SHARE = 0.15
 """The same for sections, where it counts three times."""
@@ -129,7 +132,7 @@ def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
     collected = _Collected(covered_region(raster))
     sums = row_sums(raster.covered)
     for i, view in enumerate(views):
-        for hulls in view.hulls(raster, sums, WIDTH):
+        for hulls in view.hulls(raster, sums, WIDTH, TWIST * tolerance):
             collected.add(hulls, i)
         if progress:
             progress(i + 1, len(views))
@@ -141,7 +144,8 @@ def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
             valid="a height that a link passes",
         )
     short = max(float(view.short) for view in views) + 2.0 * WIDTH
-    outline = outline_of(region, short, tolerance - short)
+    excess = max(float(view.excess) for view in views) + 2.0 * WIDTH + TWIST * tolerance
+    outline = outline_of(region, short, tolerance - excess)
     return Profile(
         contours=outline.contours,
         name=name,
@@ -150,7 +154,7 @@ def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
         plane_axes=plane.axes,
         section=section,
         tolerance=tolerance,
-        bound=outline.outer + short,
+        bound=outline.outer + excess,
         facets=max(one.body.shape.excess for one in moving),
         n_steps=max(one.motion.n_steps for one in moving),
         origin=collected.origin(outline.contours, tuple(one.label for one in moving)),
