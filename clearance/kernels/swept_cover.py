@@ -57,8 +57,7 @@ def draw_edge(raster, ax, ay, bx, by, count, touched, steps):
         else:
             one, two = ax + (low - ay) * slope, ax + (high - ay) * slope
             first, last = max(min(one, two), min(ax, bx)), min(max(one, two), max(ax, bx))
-        slack = SAFE + SAFE * abs(slope)
-        for column in range(column_of(raster, first - slack), column_of(raster, last + slack) + 1):
+        for column in range(column_of(raster, first - SAFE), column_of(raster, last + SAFE) + 1):
             touched[row, column] = True
         middle = bottom + 0.5 * raster.pixel
         if ay <= middle < by:

@@ -62,6 +62,16 @@ def covered_region(raster: Raster) -> Region:
     return union(shapely.box(x0, y0, x1, y1))
 
 
+def convex_parts(region: Region) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles (m, 3, 2) that make up a region, and their numbers of corners (m,)."""
+    parts = [
+        shapely.get_parts(shapely.constrained_delaunay_triangles(part))
+        for part in shapely.get_parts(region)
+    ]
+    triangles = [shapely.get_coordinates(part)[:3] for group in parts for part in group]
+    return np.array(triangles).reshape(-1, 3, 2), np.full(len(triangles), 3)
+
+
 def grown(region: Region, distance: float) -> Region:
     """The region offset outward by at least `distance` and at most 3 % more; narrow holes close."""
     # Four chords a quarter circle fall short by 1 - cos(pi / 16) = 1.9 %; GEOS simplifies within 1 %.
