@@ -102,7 +102,7 @@ def check(
     if limits is not None:
         case = replace(case, limits=limits)
     pairs, unmeasured = measured_pairs(case)
-    motions = motions_of(case, motion)
+    motions = _motions(case, motion)
     require_within_reach(case, motions)
     if method == "paper":
         from clearance.simulate.measure_paper import measure_paper
@@ -134,8 +134,7 @@ def check(
     return Run(record)
 
 
-def motions_of(case: Case, kind: str) -> tuple[Motion, ...]:
-    """How the robots of a case move: "kinematic" or "simulated"."""
+def _motions(case: Case, kind: str) -> tuple[Motion, ...]:
     if kind == "kinematic":
         return tuple(kinematic_motion(placed) for placed in case.robots)
     from clearance.simulate.bullet import simulated_motion

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from clearance.cli.check import Millimetres
+from clearance.cli.profile_fit import fit
 from clearance.cli.profile_sweep import sweep
 
 
@@ -15,6 +16,7 @@ def profile() -> None:
     """Profiles: outlines in the plane."""
 
 
+profile.add_command(fit)
 profile.add_command(sweep)
 
 

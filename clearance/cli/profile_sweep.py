@@ -17,7 +17,8 @@ from clearance.cli.check import Millimetres
     show_default=True,
     help='xy, xz, yz or "px py pz nx ny nz": a point and a normal.',
 )
-@click.option("--links", help="Only these links, separated by commas.")
+@click.option("--links", help="Only these links, separated by commas; '' for none.")
+@click.option("--obstacles", help="These obstacles as well, separated by commas.")
 @click.option("--section", type=float, help="Cut at this height [m] along the normal, not project.")
 @click.option("--tolerance", type=Millimetres(), help="[mm] How far it may exceed.  [default: 0.5]")
 @click.option("--per-link", is_flag=True, help="Each link's own profile as well.")
@@ -39,6 +40,7 @@ def sweep(
     case_file: Path,
     plane: str,
     links: str | None,
+    obstacles: str | None,
     section: float | None,
     tolerance: float | None,
     per_link: bool,
@@ -64,7 +66,8 @@ def sweep(
         found = swept_profile(
             moved,
             plane,
-            links=None if links is None else [name.strip() for name in links.split(",")],
+            links=None if links is None else _names(links),
+            obstacles=_names(obstacles or ""),
             section=section,
             tolerance=TOLERANCE if tolerance is None else tolerance,
             per_link=per_link,
@@ -75,13 +78,17 @@ def sweep(
         _tell(found, out)
 
 
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
 def _moved(case, motion: str):
     """What is swept: the case as its trajectory says, or as the physics engine moves it."""
     if motion == "kinematic":
         return case
-    from clearance.run import motions_of
+    from clearance.run import check
 
-    return motions_of(case, motion)
+    return check(case, motion=motion)
 
 
 def _tell(found, out: Path) -> None:

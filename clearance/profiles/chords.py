@@ -61,7 +61,7 @@ def knots_of(motion: Motion, body: Body, plane: Plane, limit: float, *, solid: b
         done.append((low[fine], high[fine], chord[fine], turn[fine], middle[fine], moves[fine]))
         low, high = _split(low[~fine], high[~fine], chord[~fine], limit)
     if not done:
-        return _standing(motion, chain.link)
+        return standing(motion.poses(0, 1)[0, chain.link])
     low, high, chord, turn, middle, moves = (
         np.concatenate(part) for part in zip(*done, strict=True)
     )
@@ -79,10 +79,10 @@ def positions_at(motion: Motion, instant: np.ndarray) -> np.ndarray:
     return motion.positions[step] * (1.0 - share) + motion.positions[ahead] * share
 
 
-def _standing(motion: Motion, link: int) -> Knots:
+def standing(pose: np.ndarray) -> Knots:
+    """The one instant of a body that never moves, at a (4, 4) pose [m]."""
     none = np.zeros(0)
-    poses = motion.poses(0, 1)[:, link]
-    return Knots(np.zeros(1), poses, none.astype(bool), none, none, np.zeros((0, 4, 4)))
+    return Knots(np.zeros(1), pose[None], none.astype(bool), none, none, np.zeros((0, 4, 4)))
 
 
 def _split(low: np.ndarray, high: np.ndarray, chord: np.ndarray, limit: float):

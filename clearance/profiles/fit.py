@@ -16,8 +16,10 @@ import numpy as np
 from clearance.errors import BadDimension, BadInput, BadShape
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import Hausdorff, hausdorff
-from clearance.profiles.fit_search import Search, Target
-from clearance.profiles.fit_shape import Placed, SketchShape
+from clearance.profiles.fit_report import held_rates, sensitivities, touching
+from clearance.profiles.fit_search import Search
+from clearance.profiles.fit_shape import SketchShape
+from clearance.profiles.fit_target import Found, Target
 from clearance.profiles.outline_file import Drawn, require_closed
 from clearance.profiles.profile import Profile
 from clearance.sketch import Sketch
@@ -66,6 +68,27 @@ class Fit:
     n_starts: int
     curve: Curve = field(repr=False)
 
+    @property
+    def ends(self) -> np.ndarray:
+        """(2, 2) where the Hausdorff distance is attained: on the outline, on the sketch."""
+        return np.stack([self.distance.point_b, self.distance.point_a])
+
+    @property
+    def title(self) -> str:
+        """One line for a picture: the mode and the dimensions in mm where they are lengths."""
+        kinds = {
+            name: self.sketch.constraints[name].kind
+            for name in self.dimensions
+            if name in self.sketch.constraints
+        }
+        told = ", ".join(
+            f"{name} {value:.4g} rad"
+            if kinds.get(name) == "angle"
+            else f"{name} {1000 * value:.2f} mm"
+            for name, value in self.dimensions.items()
+        )
+        return f"{self.mode}: {told}"
+
 
 def fit(
     sketch: Sketch,
@@ -100,9 +123,11 @@ def fit(
     outline = _drawn(profile)
     require_closed(outline.curve, outline.name)
     shape = SketchShape(sketch, free)
-    require_closed(shape.sketch.curves(), "sketch")
-    target = Target(outline, shape, mode, margin)
-    search = Search(shape, target)
+    drawn = shape.at(shape.start)
+    if drawn is None:
+        raise BadShape("the sketch cannot be drawn", where="sketch")
+    target = Target(outline, shape, drawn, mode, margin)
+    search = Search(shape, target, drawn)
     best, tried = _best(search, _starts(shape, outline, mode, starts))
     if best is None:
         what = "contains the outline" if mode == "outside" else "stays clear of the outline"
@@ -177,25 +202,24 @@ def _best(search: Search, starts: list[np.ndarray]):
     return best, tried
 
 
-def _told(sketch: Sketch, shape: SketchShape, search: Search, best, tried: int) -> Fit:
-    here: Placed = best.placed
+def _told(sketch: Sketch, shape: SketchShape, search: Search, best: Found, tried: int) -> Fit:
+    here, target = best.placed, search.target
     n = len(shape.free)
     place = here.numbers[n:]
-    distance = hausdorff(here.curve, search.target.outline.curve)
-    active, sensitivity, touching = search.told(best)
+    distance = hausdorff(here.curve, target.outline.curve)
     return Fit(
-        mode=search.target.mode,
+        mode=target.mode,
         sketch=shape.placed_sketch(here.numbers, sketch),
         dimensions=dict(zip(shape.free, here.numbers[:n].tolist(), strict=True)),
         shift=place[:2].copy() if shape.slides else np.zeros(2),
         turn=float(place[2]) if shape.turns else 0.0,
         distance=distance,
-        area=abs(here.area),
-        margin=search.target.margin,
+        area=here.area,
+        margin=target.margin,
         clearance=best.clearance,
-        active=active,
-        sensitivity=sensitivity,
-        touching=touching,
+        active=held_rates(shape, target, best),
+        sensitivity=sensitivities(shape, target, best),
+        touching=touching(shape, target, best),
         n_starts=tried,
         curve=here.curve,
     )

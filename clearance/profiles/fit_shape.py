@@ -9,15 +9,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, ClearanceError, nearest_name
 from clearance.planar.curve import Curve
-from clearance.profiles.outline_file import require_solved
+from clearance.profiles.contour import Contour, joined
+from clearance.profiles.fit_rows import Slope
+from clearance.profiles.outline_file import require_closed, require_solved
+from clearance.profiles.pieces import Pieces
 from clearance.sketch import Sketch
+from clearance.sketch.entities import Arc, Circle, Segment
+from clearance.sketch.outline import angles_of, chains, ends_of
 
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
+LONGEST_ARC = 1.2
+"""[rad] Arcs are cut into equal parts of at most this as drawn; fitting may double it before a bulge is lost."""
 
 
 class NoFreeDimension(BadInput):
@@ -26,15 +33,30 @@ class NoFreeDimension(BadInput):
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A shape: the sketch's curve moved to where it stands.
+    """A shape: what the sketch draws, moved to where it stands.
 
     Attributes:
         numbers: (n,) the free dimensions, then x, y [m] and turn [rad] where they are free.
+        contours: closed; always the same pieces.
     """
 
     numbers: np.ndarray
-    curve: Curve
-    area: float
+    contours: tuple[Contour, ...]
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """For the search."""
+        return Pieces(self.contours)
+
+    @cached_property
+    def curve(self) -> Curve:
+        """For certified distances."""
+        return joined(self.contours)
+
+    @cached_property
+    def area(self) -> float:
+        """[m^2] that the contours enclose, holes taken off where they run the other way."""
+        return abs(sum(contour.area for contour in self.contours))
 
 
 class SketchShape:
@@ -64,10 +86,13 @@ class SketchShape:
                 valid="every shape is said by dimensions: add driven ones",
             )
         self.kinds = [self._kind(name) for name in self.free]
-        self._anchor = self._stand(self.sketch.curves())
+        drawn = self.sketch.curves()
+        require_closed(drawn, "sketch")
+        self._chains = self._drawn_chains()
+        self._anchor = self._stand(self._contours())
         first = [float(self.sketch.value(name)) for name in self.free]
         self.start = np.array(first + ([0.0, 0.0] if self.slides else []) + [0.0] * self.turns)
-        self.size = self.sketch.curves().size
+        self.size = drawn.size
         lengths = [1.0 if kind == "angle" else self.size for kind in self.kinds]
         self.scale = np.array(lengths + [self.size] * (2 * self.slides) + [1.0] * self.turns)
 
@@ -91,10 +116,15 @@ class SketchShape:
                 self.sketch.set(name, float(number))
             if not self.sketch.solve().solved:
                 return None
-            curve = self._moved(self.sketch.curves(), numbers[len(self.free) :])
+            contours = self._contours()
         except ClearanceError:
             return None
-        return Placed(numbers.copy(), curve, area_of(curve))
+        motion = self._motion(numbers[len(self.free) :], *self._stand(contours))
+        moved = (c.vertices @ motion[:, :2].T + motion[:, 2] for c in contours)
+        return Placed(
+            numbers.copy(),
+            tuple(Contour(v, c.bulges) for v, c in zip(moved, contours, strict=True)),
+        )
 
     def changed(self, name: str, change: float, numbers: np.ndarray) -> Placed | None:
         """The shape with a held dimension changed; it is put back."""
@@ -107,28 +137,34 @@ class SketchShape:
         finally:
             self.sketch.set(name, before)
 
-    def slopes(self, here: Placed) -> list[tuple[Placed, Placed, float]]:
-        """For each number the shapes a little below and above, and how far apart their numbers are.
-
-        A shape that cannot be drawn is replaced by `here`; where neither can, the width is 0.
-        """
+    def slopes(self, here: Placed) -> list[Slope]:
+        """For each number the shape a little further, or a little before where that cannot be drawn."""
         found = []
         for i, number in enumerate(here.numbers):
-            step = 1e-5 * self.scale[i]
+            step = 1e-6 * self.scale[i]
             if i < len(self.free):
                 step = min(step, 1e-3 * abs(number)) or step
-            ahead, behind = here.numbers.copy(), here.numbers.copy()
-            ahead[i] += step
-            behind[i] -= step
-            pair = (self.at(behind) or here, self.at(ahead) or here)
-            found.append((*pair, float(pair[1].numbers[i] - pair[0].numbers[i])))
+            found.append(
+                self._slope(here, i, step)
+                or self._slope(here, i, -step)
+                or Slope(here.pieces, here.pieces, 0.0)
+            )
         return found
+
+    def _slope(self, here: Placed, i: int, step: float) -> Slope | None:
+        numbers = here.numbers.copy()
+        numbers[i] += step
+        there = self.at(numbers)
+        return (
+            None
+            if there is None
+            else Slope(here.pieces, there.pieces, float(numbers[i] - here.numbers[i]))
+        )
 
     def placed_sketch(self, numbers: np.ndarray, original: Sketch) -> Sketch:
         """The sketch itself at these numbers, free dimensions driven as they were."""
         self.at(numbers)
-        center, turn = self._stand(self.sketch.curves())
-        motion = self._motion(numbers[len(self.free) :], center, turn)
+        motion = self._motion(numbers[len(self.free) :], *self._stand(self._contours()))
         driven = {c.name for c in original.constraints.values() if c.driven}
         return copied(self.sketch, motion=motion, released=driven)
 
@@ -153,11 +189,36 @@ class SketchShape:
             return "parameter"
         return self.sketch.constraint(name).kind
 
-    def _stand(self, curve: Curve) -> tuple[np.ndarray, float]:
-        """Where a drawn curve stands: its first point, and the direction of its start."""
-        start = curve.limits[0, 0]
-        along = curve.derivative(np.array([start]))[0]
-        return curve.point(np.array([start]))[0], math.atan2(along[1], along[0])
+    def _drawn_chains(self) -> list[list[tuple]]:
+        """Closed chains of (entity, runs backwards, number of equal parts); circles alone."""
+        entities = list(self.sketch.entities.values())
+        parts = [e for e in entities if isinstance(e, Segment | Arc)]
+        found = [
+            [(e, back, self._parts(e)) for e, back in chain] for chain in chains(self.sketch, parts)
+        ]
+        return found + [[(e, False, 6)] for e in entities if type(e) is Circle]
+
+    def _parts(self, entity) -> int:
+        if isinstance(entity, Segment):
+            return 1
+        start, end = angles_of(entity)
+        return max(1, math.ceil((end - start) / LONGEST_ARC))
+
+    def _contours(self) -> tuple[Contour, ...]:
+        """What the sketch draws now."""
+        found = []
+        for chain in self._chains:
+            vertices, bulges = [], []
+            for entity, back, n in chain:
+                _draw(entity, back, n, vertices, bulges)
+            found.append(Contour(np.array(vertices), np.array(bulges)))
+        return tuple(found)
+
+    def _stand(self, contours: tuple[Contour, ...]) -> tuple[np.ndarray, float]:
+        """Where the drawing stands: its first vertex, and the direction to the next."""
+        first, second = contours[0].vertices[:2]
+        along = second - first
+        return first, math.atan2(along[1], along[0])
 
     def _motion(self, place: np.ndarray, at: np.ndarray, turn: float) -> np.ndarray:
         """(2, 3) what brings a curve that stands at `at` with `turn` to its place.
@@ -172,22 +233,23 @@ class SketchShape:
         shift = self._anchor[0] + place[:2] - matrix @ at
         return np.column_stack([matrix, shift])
 
-    def _moved(self, curve: Curve, place: np.ndarray) -> Curve:
-        if not self.slides:
-            return curve
-        return curve.transformed(self._motion(place, *self._stand(curve)))
 
-
-def area_of(curve: Curve) -> float:
-    """The area that closed contours of lines and arcs enclose, signed by sense; to about 1e-14 relative."""
-    low, high = curve.limits.T
-    at = (0.5 * (low + high))[:, None] + (0.5 * (high - low))[:, None] * NODES
-    point, speed = curve.point(at), curve.derivative(at)
-    middle = curve.box.mean(axis=0)
-    cross = (point[..., 0] - middle[0]) * speed[..., 1] - (point[..., 1] - middle[1]) * speed[
-        ..., 0
-    ]
-    return float(0.5 * np.sum((cross @ WEIGHTS) * 0.5 * (high - low)))
+def _draw(entity, back: bool, n: int, vertices: list, bulges: list) -> None:
+    """Appends the start of each of `n` equal parts of an entity, and their bulge."""
+    if isinstance(entity, Segment):
+        vertices.append(ends_of(entity)[1 if back else 0].position)
+        bulges.append(0.0)
+        return
+    start, end = angles_of(entity) if isinstance(entity, Arc) else (0.0, 2.0 * math.pi)
+    bulge = math.tan(0.25 * (end - start) / n)
+    center, radius = entity.center.position, entity.radius
+    for k in range(n):
+        angle = end - (end - start) * k / n if back else start + (end - start) * k / n
+        place = center + radius * np.array([math.cos(angle), math.sin(angle)])
+        if k == 0 and isinstance(entity, Arc):
+            place = ends_of(entity)[1 if back else 0].position
+        vertices.append(place)
+        bulges.append(-bulge if back else bulge)
 
 
 def copied(

@@ -11,9 +11,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadDimension, NothingToMeasure, UnknownLink, nearest_name
+from clearance.errors import (
+    BadDimension,
+    NothingToMeasure,
+    UnknownLink,
+    UnknownObstacle,
+    nearest_name,
+)
 from clearance.kernels.swept_cover import Raster, row_sums
-from clearance.profiles.chords import knots_of
+from clearance.profiles.chords import Knots, knots_of, standing
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Origin, Profile
@@ -51,11 +57,22 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True, eq=False)
 class _Moving:
-    """A body of one of the motions."""
+    """A body of one of the motions, or one that stands at a pose."""
 
     label: str
     body: Body
-    motion: Motion
+    motion: Motion | None
+    pose: np.ndarray | None = None
+
+    @property
+    def n_steps(self) -> int:
+        return 1 if self.motion is None else self.motion.n_steps
+
+    def knots(self, plane: Plane, limit: float, *, solid: bool) -> Knots:
+        """The instants at which it is looked at."""
+        if self.motion is None:
+            return standing(self.pose)
+        return knots_of(self.motion, self.body, plane, limit, solid=solid)
 
 
 def swept_profile(
@@ -63,6 +80,7 @@ def swept_profile(
     plane: str = "xy",
     *,
     links: Sequence[str] | None = None,
+    obstacles: Sequence[str] = (),
     section: float | None = None,
     tolerance: float = TOLERANCE,
     per_link: bool = False,
@@ -74,6 +92,7 @@ def swept_profile(
         run: a `Run` or `Record` (its motions), or a `Case` (the trajectory itself).
         plane: xy, xz, yz, or a point and a normal as six numbers; the projection is along the normal.
         links: names; None for all links with geometry.
+        obstacles: names of obstacles to be drawn as well, e.g. with no links a wall and its openings.
         section: [m] cut at this height along the plane's normal instead of projecting.
         tolerance: [m] how far the profile may exceed what is swept.
         per_link: also each link's own profile, in `parts`.
@@ -82,7 +101,7 @@ def swept_profile(
     Exactness: contains what the faceted links sweep, joints moving linearly between steps; no point is farther
         than `Profile.bound` <= `tolerance` from a swept point. Holes narrower than that may be filled.
     Raises:
-        BadInput: not a plane. BadDimension: not a tolerance. UnknownLink.
+        BadInput: not a plane. BadDimension: not a tolerance. UnknownLink, UnknownObstacle.
         NothingToMeasure: the plane cuts nothing.
     """
     if not 1e-6 <= tolerance < math.inf:
@@ -91,7 +110,9 @@ def swept_profile(
         )
     name, motions = _motions(run)
     seen_on = Plane.of(plane, section)
-    moving = _chosen(motions, links)
+    moving = [*_chosen(motions, links), *_standing(run, obstacles)]
+    if not moving:
+        raise NothingToMeasure("no link and no obstacle is asked for", where="links")
     parts = {}
     if per_link:
         for one in moving:
@@ -122,6 +143,17 @@ def _chosen(motions: Sequence[Motion], links: Sequence[str] | None) -> list[_Mov
                 f"unknown link {label!r}", where="links", valid=nearest_name(label, known)
             )
     return [one for one in found if one.label in set(links)]
+
+
+def _standing(run, names: Sequence[str]) -> list[_Moving]:
+    case: Case = run if isinstance(run, Case) else getattr(run, "record", run).case
+    known = {obstacle.name: obstacle for obstacle in case.obstacles}
+    for name in names:
+        if name not in known:
+            raise UnknownObstacle(
+                f"unknown obstacle {name!r}", where="obstacles", valid=nearest_name(name, known)
+            )
+    return [_Moving(name, known[name].body, None, known[name].world_from_body) for name in names]
 
 
 def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
@@ -156,7 +188,7 @@ def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
         tolerance=tolerance,
         bound=outline.outer + excess,
         facets=max(one.body.shape.excess for one in moving),
-        n_steps=max(one.motion.n_steps for one in moving),
+        n_steps=max(one.n_steps for one in moving),
         origin=collected.origin(outline.contours, tuple(one.label for one in moving)),
         parts=parts or {},
         notes=tuple(note for view in views for note in view.notes),
@@ -170,7 +202,7 @@ def _views(
         return [
             Silhouette(
                 one.body.shape,
-                knots_of(one.motion, one.body, plane, SHARE * tolerance, solid=False),
+                one.knots(plane, SHARE * tolerance, solid=False),
                 plane,
             )
             for one in moving
@@ -181,7 +213,7 @@ def _views(
         Section(
             one.label,
             one.body.shape,
-            knots_of(one.motion, one.body, plane, CUT_SHARE * tolerance, solid=True),
+            one.knots(plane, CUT_SHARE * tolerance, solid=True),
             plane,
         )
         for one in moving
