@@ -60,14 +60,17 @@ def fit(
     if picture is not None:
         from clearance.profiles.picture import draw_outlines
 
-        draw_outlines(outline, Drawn(out.name, found.curve), found.ends, found.title, picture)
+        sketch = Drawn(out.name, found.curve)
+        shade = ("only in the sketch", "only in the outline")
+        draw_outlines(outline, sketch, found.ends, found.title, picture, shade=shade)
         click.echo(f"picture {picture}")
 
 
 def _tell(found) -> None:
+    what = "distance" if found.mode == "nearest" else "gap"
     for name, value in found.dimensions.items():
         up, down = found.sensitivity[name]
-        click.echo(f"{name} {value:.12g}  (distance changes {up:+.4g} a unit up, {down:+.4g} down)")
+        click.echo(f"{name} {value:.12g}  ({what} changes {up:+.4g} a unit up, {down:+.4g} down)")
     if found.shift.any() or found.turn:
         x, y = found.shift
         click.echo(f"placed by ({x:.9g}, {y:.9g}) m, {found.turn:.9g} rad")

@@ -49,6 +49,8 @@ class Fit:
             [m], area [m^2]) changes for each unit of the dimension.
         sensitivity: for each free dimension how the distance (nearest) or the clearance changes when it grows
             and when it shrinks, per unit.
+        ends: (2, 2) [m] where it is attained what counts: the Hausdorff distance (nearest) or the least gap, on
+            the outline and on the sketch.
         touching: (k, 2) points that hold the fit.
         n_starts: how many starts were tried.
     """
@@ -64,14 +66,10 @@ class Fit:
     clearance: float | None
     active: dict[str, float]
     sensitivity: dict[str, tuple[float, float]]
+    ends: np.ndarray
     touching: np.ndarray
     n_starts: int
     curve: Curve = field(repr=False)
-
-    @property
-    def ends(self) -> np.ndarray:
-        """(2, 2) where the Hausdorff distance is attained: on the outline, on the sketch."""
-        return np.stack([self.distance.point_b, self.distance.point_a])
 
     @property
     def title(self) -> str:
@@ -207,6 +205,7 @@ def _told(sketch: Sketch, shape: SketchShape, search: Search, best: Found, tried
     n = len(shape.free)
     place = here.numbers[n:]
     distance = hausdorff(here.curve, target.outline.curve)
+    seen = distance if target.mode == "nearest" else target.clearance(here)[1]
     return Fit(
         mode=target.mode,
         sketch=shape.placed_sketch(here.numbers, sketch),
@@ -219,6 +218,7 @@ def _told(sketch: Sketch, shape: SketchShape, search: Search, best: Found, tried
         clearance=best.clearance,
         active=held_rates(shape, target, best),
         sensitivity=sensitivities(shape, target, best),
+        ends=np.stack([seen.point_b, seen.point_a]),
         touching=touching(shape, target, best),
         n_starts=tried,
         curve=here.curve,

@@ -40,7 +40,7 @@ def sides_of(pieces: Pieces, region: Region) -> np.ndarray:
         ]
     )
     half = np.full(len(longest), 0.5)
-    step = 1e-6 * pieces.size * pieces.left(longest, half)
+    step = 1e-5 * pieces.size * pieces.left(longest, half)
     return np.where(holds(region, pieces.point(longest, half) + step), 1.0, -1.0)
 
 

@@ -120,7 +120,7 @@ class Search:
         """Least (outside) or greatest (inside) area with every gap at least the margin, then certified."""
         target, wanted = self.target, self.target.margin
         extra, samples = np.zeros((0, 2)), self.samples
-        for _ in range(7):
+        for k in range(7):
             here, rows, marginals, used = self._area_steps(here, wanted, samples, extra)
             gap, least = target.clearance(here)
             if gap >= target.margin and (gap > 0.0 or target.margin > 0.0):
@@ -129,7 +129,7 @@ class Search:
                 return None
             extra = np.vstack([extra, least.point_b])
             samples = self._with_places(here, least.point_a[None], samples)
-            wanted += 1.05 * (target.margin - max(gap, 0.0)) + 1e-9 * self.shape.size
+            wanted += 1.05 * (target.margin - max(gap, 0.0)) + 4.0**k * 1e-9 * self.shape.size
         return None
 
     def _area_steps(self, here: Placed, wanted: float, samples: Places, extra: np.ndarray):

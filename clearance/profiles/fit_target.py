@@ -21,8 +21,11 @@ from clearance.profiles.fit_rows import (
 )
 from clearance.profiles.fit_shape import Placed, SketchShape
 from clearance.profiles.outline_file import Drawn
-from clearance.profiles.pieces import Pieces
-from clearance.profiles.region import Region, holds, region_of
+from clearance.profiles.pieces import FINE, Pieces, contours_of
+from clearance.profiles.region import Region, boundary_distance, holds, region_of
+
+CHORD = 1e-7
+"""[-] How far chords may stray from arcs where sides are told, relative to the size."""
 
 MOST_GIVEN = 3000
 """Points of the outline that are looked at."""
@@ -62,13 +65,16 @@ class Target:
         self, outline: Drawn, shape: SketchShape, drawn: Placed, mode: str, margin: float
     ) -> None:
         self.outline, self.mode, self.margin = outline, mode, margin
-        self.pieces = Pieces.of_curve(outline.curve)
-        self.sides = sides_of(self.pieces, outline.region)
-        points = self.pieces.point(*self.pieces.spread(2))
+        contours = contours_of(outline.curve, FINE * outline.curve.size)
+        self.contours, self.pieces = contours, Pieces(contours)
+        self.region = region_of([c.flattened(CHORD * self.pieces.size) for c in contours])
+        self.sides = sides_of(self.pieces, self.region)
+        per_piece = int(np.clip(1500 // len(self.pieces.bulge), 2, 64))
+        points = self.pieces.point(*self.pieces.spread(per_piece))
         self.given = points[:: max(1, len(points) // MOST_GIVEN)]
         self.shape_sides = sides_of(drawn.pieces, region_of_shape(drawn))
         free_form = mode == "inside" and outline.profile is None
-        self.room = free_form and bool(holds(outline.region, drawn.pieces.start[:1]).all())
+        self.room = free_form and bool(holds(self.region, drawn.pieces.start[:1]).all())
 
     def rows(
         self, here: Pieces, slopes: list[Slope], samples: Places, given: np.ndarray
@@ -100,11 +106,23 @@ class Target:
         so that one point of it decides.
         """
         least = minimum_distance(here.curve, self.outline.curve)
+        lower = least.distance - least.error_bound
+        if least.error_bound > 1e-9 * here.pieces.size:  # arcs that run alongside arcs: on chords
+            lower = max(lower, self._gap_of_chords(here))
         theirs = holds(region_of_shape(here), self._starts)
-        ours = holds(self.outline.region, np.array([c.vertices[0] for c in here.contours]))
+        ours = holds(self.region, np.array([c.vertices[0] for c in here.contours]))
         right = theirs.all() if self.mode == "outside" else not theirs.any()
         right = right and (ours.all() if self.room else not ours.any())
-        return (least.distance - least.error_bound if right else -1.0), least
+        return (lower if right else -1.0), least
+
+    def _gap_of_chords(self, here: Placed) -> float:
+        """[m] the least distance of chords within known heights of the arcs, less the heights."""
+        height = 1e-8 * here.pieces.size
+        if any(np.diff(self.outline.curve.pieces.first) > 3):
+            return 0.0  # free-form pieces have no chords of known height here
+        theirs = region_of([c.flattened(height) for c in self.contours])
+        ours = [contour.flattened(height) for contour in here.contours]
+        return boundary_distance(theirs, ours) - 2.01 * height
 
     def better(self, one: Found, two: Found) -> bool:
         """True if `one` beats `two` by more than rounding; equal areas are told apart by distance."""
@@ -124,5 +142,5 @@ class Target:
 
 
 def region_of_shape(here: Placed) -> Region:
-    """What a shape encloses, arcs as chords within 1e-7 of its size; for sides, not for bounds."""
-    return region_of([contour.flattened(1e-7 * here.pieces.size) for contour in here.contours])
+    """What a shape encloses, arcs as chords within CHORD of its size; for sides, not for bounds."""
+    return region_of([contour.flattened(CHORD * here.pieces.size) for contour in here.contours])

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import BadShape, BadSyntax, MissingFile, at
+from clearance.kernels.arc import RADIUS
 from clearance.planar.curve import Curve
 from clearance.planar.curve_file import read_curve
 from clearance.profiles.profile import Profile
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from clearance.sketch import Sketch
 
 FINE = 1e-4
-"""[-] Chords of areas and pictures, relative to the outline's size; squared and halved it is their error."""
+"""[-] Ten times how far chords stray in areas and pictures, relative to the outline's size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +80,7 @@ def rings_of_curve(curve: Curve) -> list[np.ndarray]:
         owner = curve.contour
     else:
         rows, piece = curve.leaves.arcs, curve.leaves.piece
-        count = np.where(np.diff(curve.pieces.first)[piece] == 2, 1, 16)
+        count = _chord_counts(curve, rows, piece)
         index = np.repeat(np.arange(len(rows)), count)
         rank = np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)
         local = rows[index, 0] + (rows[index, 1] - rows[index, 0]) * rank / count[index]
@@ -87,6 +88,15 @@ def rings_of_curve(curve: Curve) -> list[np.ndarray]:
         points = curve.point(low + local * (high - low))
         owner = curve.contour[piece[index]]
     return np.split(points, np.flatnonzero(np.diff(owner)) + 1)
+
+
+def _chord_counts(curve: Curve, rows: np.ndarray, piece: np.ndarray) -> np.ndarray:
+    """(n,) chords of each leaf, so that they stay within about FINE / 10 of the size of the curve."""
+    chord = np.hypot(rows[:, 4] - rows[:, 2], rows[:, 5] - rows[:, 3])
+    radius = np.where(rows[:, RADIUS] > 0.0, rows[:, RADIUS], np.inf)
+    count = np.ceil(chord / np.sqrt(8.0 * radius * 0.1 * FINE * curve.size))
+    free = np.diff(curve.pieces.first)[piece] > 3
+    return np.clip(count + 3 * free, 1, 64).astype(int)
 
 
 def read_outline(path: str | Path) -> Drawn:

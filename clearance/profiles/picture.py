@@ -107,7 +107,7 @@ def _zoom(whole, near, ends: np.ndarray, page: float) -> None:
         xlim=(middle[0] - reach, middle[0] + reach),
         ylim=(middle[1] - reach, middle[1] + reach),
         aspect="equal",
-        title="the worst place",
+        title="where it is attained",
     )
     near.title.set_fontsize("small")
     if reach < 0.4 * page:
