@@ -59,8 +59,11 @@ class Run:
 
     @property
     def status(self) -> str:
-        """The worst status of any step: "clear", "near", "violated" or "contact"."""
-        occurring = self.steps["status"].drop_null().unique().to_pylist()
+        """The worst status of any step: "clear", "near", "violated" or "contact"; "violated" where a sweep
+        does not keep to a profile of the case."""
+        occurring = set(self.steps["status"].drop_null().unique().to_pylist())
+        if not all(answer.passed for answer in self.record.profiles):
+            occurring.add("violated")
         return str([status for status in STATUSES if status in occurring][-1])
 
     @property
@@ -165,6 +168,10 @@ def check(
         notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
         contacts=contacts,
     )
+    if case.profiles:
+        from clearance.profiles.answer import answer_profiles
+
+        record = replace(record, profiles=answer_profiles(record))
     if cross_check:
         from clearance.crosscheck import cross_check as ask_peer
 

@@ -7,6 +7,7 @@ terminal.
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
@@ -15,9 +16,10 @@ from rich.text import Text
 
 from clearance.report import summary_of
 from clearance.report.intervals import Interval, intervals
+from clearance.report.profiles import gap_text, plane_text
 from clearance.report.wording import certified_text, contact_text, count, limit_mm, mm, seconds
 from clearance.run import Run
-from clearance.simulate.record import CrossCheck, Disagreement, Record
+from clearance.simulate.record import CrossCheck, Disagreement, ProfileAnswer, Record
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
 _LEVELS = {"contact": "contact", "below_fail": "below fail", "below_warn": "below warn"}
@@ -48,6 +50,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
     lines += _deepest(record)
     if record.pair_minima:
         lines.append(_pair_table(record))
+    lines += [_row("profile", _profile_text(answer)) for answer in record.profiles]
     if record.certificate is not None:
         lines.append(_row("certified", certified_text(summary_of(record)["certified"])))
     if run.cross_check is not None:
@@ -119,6 +122,16 @@ def _pair_table(record: Record) -> Table:
         )
         table.add_row(*(Text(cell) for cell in cells))
     return table
+
+
+def _profile_text(answer: ProfileAnswer) -> str:
+    known = asdict(answer)
+    verdict = "kept" if answer.passed else "NOT KEPT"
+    what = "distance" if answer.mode == "nearest" else "gap"
+    return (
+        f"{answer.name} ({answer.mode}, {plane_text(known)}): {verdict}, {what} {gap_text(known)} mm, "
+        f"limit {answer.limit * 1000:g} mm, {answer.link}, step {answer.step}"
+    )
 
 
 def _cross_check(check: CrossCheck) -> list[Text]:

@@ -20,6 +20,7 @@ from clearance.load.motion_names import (
     note_on_joints_at_zero,
 )
 from clearance.load.plausibility import limit_notes, motion_notes, obstacle_notes
+from clearance.load.reserved import reserved_spaces
 from clearance.load.scene_file import make_obstacles
 from clearance.load.schema_errors import validated
 from clearance.load.trajectory_file import parse_trajectory
@@ -51,6 +52,7 @@ def load_case(path: str | Path) -> Case:
     with at(path.name):
         robot = placed.robot
         allow = checked_pairs(given.allow, robot.link_names, [o.name for o in obstacles])
+        profiles = reserved_spaces(given.profiles, path.parent, files, robot.link_names)
     limits = _limits(given.limits)
     notes = [
         *limit_notes(limits),
@@ -68,6 +70,7 @@ def load_case(path: str | Path) -> Case:
         contact_response=given.contact_response,
         sources=files.sources,
         notes=tuple(notes),
+        profiles=profiles,
     )
     with at(path.name):
         measured_pairs(case)  # refuses a case that leaves nothing to measure

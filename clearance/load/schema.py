@@ -207,6 +207,18 @@ class Limits(Strict):
         return self
 
 
+class Profile(Strict):
+    """A sketched outline that what the robot sweeps in a plane must keep to; lengths in metres."""
+
+    name: Name
+    sketch: Name
+    plane: Name = "xy"
+    section: float | None = None
+    mode: Literal["outside", "inside", "nearest"] = "outside"
+    limit: Annotated[float, Field(ge=0)] = 0.0
+    links: list[Name] = []
+
+
 class Case(Strict):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
@@ -217,3 +229,4 @@ class Case(Strict):
     limits: Limits = Limits()
     allow: list[Annotated[list[Name], Field(min_length=2, max_length=2)]] = []
     contact_response: bool = False
+    profiles: list[Profile] = []

@@ -60,7 +60,9 @@ class Event:
 
 
 def verdict(record: Record) -> str:
-    """The worst that any step says: "clear", "near miss" or "violated"."""
+    """The worst that any step or profile says: "clear", "near miss" or "violated"."""
+    if not all(answer.passed for answer in record.profiles):
+        return _VERDICTS[max(codes_of(record.steps).max(), _VERDICTS.index("violated"))]
     return _VERDICTS[int(codes_of(record.steps).max())]
 
 

@@ -25,7 +25,7 @@ def write(record: Record, folder: str | Path) -> None:
         Unwritable: `folder` cannot be written.
     """
     summary, replay = summary_of(record), replay_of(record)
-    page = page_of(summary, replay)
+    page = page_of(summary, replay, {answer.name: answer.picture for answer in record.profiles})
 
     def fill(place: Path) -> None:
         write_parquet(record.steps, place / "steps.parquet")

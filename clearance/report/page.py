@@ -21,6 +21,7 @@ import numpy as np
 
 from clearance.errors import Unavailable
 from clearance.report.markup import element
+from clearance.report.profiles import profiles
 from clearance.report.sections import header, sections
 from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
@@ -29,8 +30,13 @@ from clearance.simulate.steps import STATUSES
 _HERE = Path(__file__).parent
 
 
-def page_of(summary: dict[str, Any], replay: Replay) -> str:
+def page_of(
+    summary: dict[str, Any], replay: Replay, pictures: dict[str, str] | None = None
+) -> str:
     """The whole page.
+
+    Args:
+        pictures: SVG of each profile by its name.
 
     Raises:
         Unavailable: meshcat is installed without its viewer.
@@ -41,7 +47,7 @@ def page_of(summary: dict[str, Any], replay: Replay) -> str:
         style=_own("page.css"),
         header=header(summary),
         stage_note=_stage_note(replay),
-        sections=sections(summary),
+        sections=sections(summary) + profiles(summary, pictures or {}),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
         data=_json_inside_script(_data(summary, replay)),
         plotly=_inside_script(_plotly()),

@@ -14,7 +14,7 @@ import numpy as np
 from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, status_counts, verdict
 from clearance.report.provenance import inputs, public_origin, versions
-from clearance.simulate.record import CrossCheck, Record
+from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
 from clearance.simulate.replay import link_label
 from clearance.world.body import Body
 from clearance.world.motion import Motion
@@ -53,6 +53,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "robots": [_robot(record, motion) for motion in record.motions],
         "obstacles": [_body(record, obstacle.body, obstacle.name) for obstacle in case.obstacles],
         "tessellation_bound": _tessellation_bound(record),
+        "profiles": [_profile(answer) for answer in record.profiles],
         "tally": dict(record.tally),
         "notes": _notes(record),
         "inputs": inputs(case),
@@ -139,6 +140,11 @@ def _certified(record: Record) -> dict[str, Any] | None:
         "greatest_gap": float((certificate.upper_bound - certificate.lower_bound).max()),
         "tally": dict(certificate.tally),
     }
+
+
+def _profile(answer: ProfileAnswer) -> dict[str, Any]:
+    """A profile's answer without its picture."""
+    return {key: value for key, value in asdict(answer).items() if key != "picture"}
 
 
 def _cross_check(check: CrossCheck | None) -> dict[str, Any] | None:

@@ -101,6 +101,36 @@ class Certificate:
         return int(np.argmin(self.lower_bound))
 
 
+@dataclass(frozen=True)
+class ProfileAnswer:
+    """Whether what the robot sweeps keeps to a reserved outline, and how close it comes.
+
+    Attributes:
+        passed: proven, for the continuous motion.
+        contained: nothing that is swept crosses the sketch (outside, inside).
+        gap: [m] proven lower bound of the gap between sweep and sketch; negative: how far the swept outline
+            is beyond it. For nearest the Hausdorff distance.
+        bound: [m] the true gap is at most this much larger.
+        point_sweep, point_sketch: [m] in the plane, where it is attained. link, step: who swept there.
+        picture: SVG.
+    """
+
+    name: str
+    plane: str
+    section: float | None
+    mode: str
+    limit: float
+    passed: bool
+    contained: bool
+    gap: float
+    bound: float
+    point_sweep: tuple[float, float]
+    point_sketch: tuple[float, float]
+    link: str
+    step: int
+    picture: str
+
+
 @dataclass(frozen=True, eq=False)
 class Record:
     """The measured run of one case.
@@ -135,6 +165,7 @@ class Record:
     every_pair: pa.Table | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
     contacts: tuple[StepContact, ...] = ()
+    profiles: tuple[ProfileAnswer, ...] = ()
 
     @property
     def deepest(self) -> StepContact | None:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.world.body import Obstacle
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from clearance.sketch.sketch import Sketch
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,28 @@ class PlacedRobot:
 
 
 @dataclass(frozen=True, eq=False)
+class ReservedSpace:
+    """An outline in a plane that what the robot sweeps must keep to.
+
+    Attributes:
+        plane: "xy", "xz", "yz" or a point and a normal; `section` cuts there [m] instead of projecting.
+        sketch: its closed contours, in the plane's coordinates [m].
+        mode: "outside": the sketch contains the sweep; "inside": it stays clear of it; "nearest": the outlines
+            differ by no more than the limit.
+        limit: [m] the least gap (outside, inside) or the greatest distance (nearest).
+        links: names; empty for all.
+    """
+
+    name: str
+    sketch: Sketch
+    plane: str = "xy"
+    section: float | None = None
+    mode: str = "outside"
+    limit: float = 0.0
+    links: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class Case:
     """Robots, obstacles, trajectories, limits.
 
@@ -68,6 +94,7 @@ class Case:
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
+        profiles: outlines that the sweep must keep to.
     """
 
     name: str
@@ -78,3 +105,4 @@ class Case:
     contact_response: bool = False
     sources: tuple[Source, ...] = ()
     notes: tuple[str, ...] = ()
+    profiles: tuple[ReservedSpace, ...] = ()

@@ -1,0 +1,99 @@
+"""Answers a case's reserved outlines: does the sweep keep to each sketch, how close does it come, who and when.
+
+The swept profile contains all that is swept, so that a gap to it is a gap to the motion itself; a sweep that is
+beyond a sketch by less than the profile's bound is still called a violation. Not for: fitting.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.errors import at
+from clearance.planar.deviation import deviation
+from clearance.planar.hausdorff import hausdorff
+from clearance.profiles.gap import Closed, proven_gap
+from clearance.profiles.outline_file import Drawn, require_closed
+from clearance.profiles.picture import picture_bytes
+from clearance.profiles.profile import Profile
+from clearance.profiles.region import holds
+from clearance.profiles.sweep import swept_profile
+from clearance.simulate.record import ProfileAnswer, Record
+from clearance.world.case import ReservedSpace
+
+
+def answer_profiles(record: Record) -> tuple[ProfileAnswer, ...]:
+    """One answer for each of the case's profiles, in their order.
+
+    Raises:
+        BadInput: not a plane, an open contour; with the profile's name.
+    """
+    found = []
+    for i, space in enumerate(record.case.profiles):
+        with at(f"profiles[{i}] {space.name}"):
+            swept = swept_profile(
+                record, space.plane, links=space.links or None, section=space.section
+            )
+            found.append(_answer(space, swept))
+    return tuple(found)
+
+
+def _answer(space: ReservedSpace, swept: Profile) -> ProfileAnswer:
+    curve = space.sketch.curves()
+    require_closed(curve, "sketch")
+    sketch, outline = Closed.of_curve(curve), Closed.of(swept.contours)
+    if space.mode == "nearest":
+        whole = hausdorff(curve, swept.curve)
+        gap, ends = whole.distance, np.stack([whole.point_b, whole.point_a])
+        passed, contained = gap + whole.error_bound <= space.limit, False
+    else:
+        around = space.mode == "outside"
+        gap, least = proven_gap(sketch, outline, around=around)
+        contained, ends = gap > 0.0, np.stack([least.point_b, least.point_a])
+        passed = contained and gap >= space.limit
+        if not contained:
+            gap, ends = _beyond(sketch, swept, around, ends)
+    link, step = _maker(swept, ends[0])
+    return ProfileAnswer(
+        name=space.name,
+        plane=space.plane,
+        section=space.section,
+        mode=space.mode,
+        limit=space.limit,
+        passed=bool(passed),
+        contained=bool(contained),
+        gap=float(gap),
+        bound=swept.bound,
+        point_sweep=_pair(ends[0]),
+        point_sketch=_pair(ends[1]),
+        link=link,
+        step=step,
+        picture=_picture(space, swept, Drawn("sketch", curve), ends),
+    )
+
+
+def _beyond(sketch: Closed, swept: Profile, around: bool, ends: np.ndarray):
+    """How far the swept outline is beyond the sketch, at the worst of many samples, negative; and where."""
+    along = deviation(swept.curve, sketch.curve, samples=4000)
+    wrong = holds(sketch.region, along.point) != around
+    if not wrong.any():  # the sketch lies in the sweep, or the other way round
+        return 0.0, ends
+    worst = int(np.argmax(np.where(wrong, along.distance, -1.0)))
+    return -float(along.distance[worst]), np.stack([along.point[worst], along.foot[worst]])
+
+
+def _maker(swept: Profile, point: np.ndarray) -> tuple[str, int]:
+    piece, _, _ = Closed.of(swept.contours).pieces.feet(point[None])
+    made = swept.maker(int(piece[0]))
+    assert made is not None
+    return made
+
+
+def _picture(space: ReservedSpace, swept: Profile, sketch: Drawn, ends: np.ndarray) -> str:
+    drawn = Drawn("swept", swept.curve, swept)
+    title = f"{space.name}: {space.mode}, plane {space.plane}"
+    shade = ("only in the sketch", "only swept")
+    return picture_bytes(drawn, sketch, ends, title, ".svg", shade=shade).decode()
+
+
+def _pair(point: np.ndarray) -> tuple[float, float]:
+    return float(point[0]), float(point[1])

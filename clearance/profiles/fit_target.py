@@ -1,0 +1,111 @@
+"""What a fitted sketch should be to an outline: near, around or clear of it; rows to search by, and the proof.
+
+Not for: the search (`fit_search`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.planar.hausdorff import hausdorff
+from clearance.planar.minimum import Minimum
+from clearance.profiles.fit_rows import (
+    Rows,
+    Slope,
+    joined_rows,
+    rows_of_outline,
+    rows_of_shape,
+    sides_of,
+)
+from clearance.profiles.fit_shape import Placed, SketchShape
+from clearance.profiles.gap import Closed, proven_gap
+from clearance.profiles.outline_file import Drawn
+from clearance.profiles.pieces import Pieces
+from clearance.profiles.region import holds
+
+MOST_GIVEN = 3000
+"""Points of the outline that are looked at."""
+
+Places = tuple[np.ndarray, np.ndarray]
+"""Pieces and shares of places on a shape."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A shape at the end of a search.
+
+    Attributes:
+        score: Hausdorff distance [m], or area [m^2] with a sign; least is best.
+        clearance: [m] proven lower bound of the gap; None for nearest.
+        rows, marginals: of the last linear program; samples, given, chosen: which rows they are.
+    """
+
+    placed: Placed
+    score: float
+    clearance: float | None
+    rows: Rows
+    marginals: np.ndarray
+    samples: Places
+    given: np.ndarray
+    chosen: np.ndarray
+
+
+class Target:
+    """An outline, and what a shape should be to it.
+
+    Attributes:
+        room: the shape stays within the outline's inside (a drawn room) instead of clear of it.
+    """
+
+    def __init__(
+        self, outline: Drawn, shape: SketchShape, drawn: Placed, mode: str, margin: float
+    ) -> None:
+        self.outline, self.mode, self.margin = outline, mode, margin
+        self.closed = Closed.of_curve(outline.curve)
+        self.pieces = self.closed.pieces
+        self.sides = sides_of(self.pieces, self.closed.region)
+        per_piece = int(np.clip(1500 // len(self.pieces.bulge), 2, 64))
+        points = self.pieces.point(*self.pieces.spread(per_piece))
+        self.given = points[:: max(1, len(points) // MOST_GIVEN)]
+        self.shape_sides = sides_of(drawn.pieces, Closed.of(drawn.contours).region)
+        free_form = mode == "inside" and outline.profile is None
+        self.room = free_form and bool(holds(self.closed.region, drawn.pieces.start[:1]).all())
+
+    def rows(
+        self, here: Pieces, slopes: list[Slope], samples: Places, given: np.ndarray
+    ) -> tuple[Rows, Rows]:
+        """Rows of the shape's places and of the outline's points, positive inside the other."""
+        return (
+            rows_of_shape(here, slopes, self.pieces, self.sides, samples),
+            rows_of_outline(here, slopes, self.shape_sides, given),
+        )
+
+    def gaps(self, pair: tuple[Rows, Rows]) -> Rows:
+        """One set of rows whose distance must be at least the margin."""
+        one = 1.0 if self.room else -1.0
+        two = 1.0 if self.mode == "outside" else -1.0
+        turned = (
+            Rows(sign * rows.distance, sign * rows.slope, rows.point)
+            for sign, rows in zip((one, two), pair, strict=True)
+        )
+        return joined_rows(*turned)
+
+    def score(self, here: Placed) -> float:
+        """[m^2] what outside and inside make least."""
+        return here.area if self.mode == "outside" else -here.area
+
+    def clearance(self, here: Placed) -> tuple[float, Minimum]:
+        """Proven lower bound of the gap, -1 where the shape is on the wrong side, and the witnesses."""
+        shape = Closed.of(here.contours)
+        return proven_gap(shape, self.closed, around=self.mode == "outside", room=self.room)
+
+    def better(self, one: Found, two: Found) -> bool:
+        """True if `one` beats `two` by more than rounding; equal areas are told apart by distance."""
+        if abs(one.score - two.score) > 1e-9 * max(abs(two.score), 1e-300):
+            return one.score < two.score
+        if self.mode == "nearest":
+            return one.score < two.score
+        far = [hausdorff(f.placed.curve, self.outline.curve).distance for f in (one, two)]
+        return far[0] < far[1] * (1.0 - 1e-9)

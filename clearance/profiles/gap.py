@@ -1,0 +1,95 @@
+"""The proven gap between a sketch and an outline, and whether each is on its right side of the other.
+
+Not for: swept bounds, which come on top (`answer`), or searching (`fit_search`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.planar.curve import Curve
+from clearance.planar.minimum import Minimum, minimum_distance
+from clearance.profiles.contour import Contour, joined
+from clearance.profiles.pieces import FINE, Pieces, contours_of
+from clearance.profiles.region import Region, boundary_distance, holds, region_of
+
+CHORD = 1e-7
+"""[-] How far chords may stray from arcs where sides are told, relative to the size."""
+
+WIDE = 1e-9
+"""[-] Error of a least distance, relative to the size, above which chords are tried as well."""
+
+
+@dataclass(frozen=True, eq=False)
+class Closed:
+    """Closed contours in the forms that are asked of them.
+
+    Attributes:
+        contours: lines and arcs. curve: what is certified.
+        exact: whether the contours are the curve itself, not arcs near it.
+    """
+
+    contours: tuple[Contour, ...]
+    curve: Curve
+    exact: bool = True
+
+    @classmethod
+    def of(cls, contours: Sequence[Contour]) -> Closed:
+        """Contours of lines and arcs."""
+        return cls(tuple(contours), joined(contours))
+
+    @classmethod
+    def of_curve(cls, curve: Curve) -> Closed:
+        """Any curve of closed contours."""
+        free = bool((np.diff(curve.pieces.first) > 3).any())
+        return cls(contours_of(curve, FINE * curve.size), curve, exact=not free)
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """For searches."""
+        return Pieces(self.contours)
+
+    @cached_property
+    def region(self) -> Region:
+        """What is enclosed, by parity, arcs as chords within CHORD; for sides, not for bounds."""
+        return region_of([c.flattened(CHORD * self.curve.size) for c in self.contours])
+
+    @property
+    def starts(self) -> np.ndarray:
+        """(k, 2) the first point of each contour."""
+        return np.array([contour.vertices[0] for contour in self.contours])
+
+
+def proven_gap(
+    sketch: Closed, outline: Closed, *, around: bool, room: bool = False
+) -> tuple[float, Minimum]:
+    """Lower bound of the gap, -1 where one is on the wrong side of the other, and the witnesses.
+
+    Where the curves are apart by more than nothing, each contour is wholly on one side of the other curve, so
+    that one point of it decides.
+
+    Args:
+        around: the outline is to lie inside the sketch; else outside it.
+        room: the sketch is to lie inside the outline; else outside it.
+    """
+    least = minimum_distance(sketch.curve, outline.curve)
+    lower, size = least.distance - least.error_bound, sketch.curve.size
+    if least.error_bound > WIDE * size and sketch.exact and outline.exact:
+        lower = max(lower, _gap_of_chords(sketch, outline))  # arcs that run alongside arcs
+    theirs = holds(sketch.region, outline.starts)
+    ours = holds(outline.region, sketch.starts)
+    right = (theirs.all() if around else not theirs.any()) and (
+        ours.all() if room else not ours.any()
+    )
+    return (lower if right else -1.0), least
+
+
+def _gap_of_chords(one: Closed, two: Closed) -> float:
+    """The least distance of chords within known heights of the arcs, less the heights."""
+    height = 1e-8 * one.curve.size
+    theirs = region_of([c.flattened(height) for c in two.contours])
+    return boundary_distance(theirs, [c.flattened(height) for c in one.contours]) - 2.01 * height

@@ -1,0 +1,177 @@
+"""Outlines from any file that holds one: a profile, a sketch, a list of curves, a DXF drawing.
+
+Not for: writing (`profile_file`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clearance.errors import BadShape, BadSyntax, MissingFile, at
+from clearance.kernels.arc import RADIUS
+from clearance.planar.curve import Curve
+from clearance.planar.curve_file import read_curve
+from clearance.profiles.profile import Profile
+from clearance.profiles.profile_file import is_profile, profile_of
+
+if TYPE_CHECKING:
+    from clearance.profiles.region import Region
+    from clearance.sketch import Sketch
+
+FINE = 1e-4
+"""[-] Ten times how far chords stray in areas and pictures, relative to the outline's size."""
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """An outline and what it came from.
+
+    Attributes:
+        name: for messages and pictures.
+        curve: all contours.
+        profile: with makers and bounds, where it is a profile of ours.
+    """
+
+    name: str
+    curve: Curve
+    profile: Profile | None = None
+
+    @cached_property
+    def region(self) -> Region:
+        """What the contours enclose, by parity; for areas and pictures, not for bounds.
+
+        Raises: BadShape (an open contour).
+        """
+        from clearance.profiles.region import region_of
+
+        require_closed(self.curve, self.name)
+        return region_of(rings_of_curve(self.curve))
+
+
+def require_closed(curve: Curve, name: str) -> None:
+    """Nothing, if every contour ends where it starts.
+
+    Raises: BadShape, with the ends that do not meet.
+    """
+    for k in range(int(curve.contour[-1]) + 1):
+        own = np.flatnonzero(curve.contour == k)
+        ends = curve.point(np.array([curve.limits[own[0], 0], curve.limits[own[-1], 1] - 0.0]))
+        first = curve.pieces.control[curve.pieces.first[own[0]]]
+        last = curve.pieces.control[curve.pieces.first[own[-1] + 1] - 1]
+        gap = np.hypot(*(first[:2] / first[2] - last[:2] / last[2]))
+        if gap > 1e-9 * curve.size:
+            raise BadShape(
+                f"contour {k + 1} is open: it ends {gap:g} away from its start "
+                f"({ends[0][0]:g}, {ends[0][1]:g})",
+                where=name,
+                valid="closed contours, since a region is asked for",
+            )
+
+
+def rings_of_curve(curve: Curve) -> list[np.ndarray]:
+    """Each contour as points dense enough for areas and pictures, (n, 2)."""
+    if curve.highest_degree == 1:
+        points = curve.point(curve.limits[:, 0])
+        owner = curve.contour
+    else:
+        rows, piece = curve.leaves.arcs, curve.leaves.piece
+        count = _chord_counts(curve, rows, piece)
+        index = np.repeat(np.arange(len(rows)), count)
+        rank = np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)
+        local = rows[index, 0] + (rows[index, 1] - rows[index, 0]) * rank / count[index]
+        low, high = curve.limits[piece[index]].T
+        points = curve.point(low + local * (high - low))
+        owner = curve.contour[piece[index]]
+    return np.split(points, np.flatnonzero(np.diff(owner)) + 1)
+
+
+def _chord_counts(curve: Curve, rows: np.ndarray, piece: np.ndarray) -> np.ndarray:
+    """(n,) chords of each leaf, so that they stay within about FINE / 10 of the size of the curve."""
+    chord = np.hypot(rows[:, 4] - rows[:, 2], rows[:, 5] - rows[:, 3])
+    radius = np.where(rows[:, RADIUS] > 0.0, rows[:, RADIUS], np.inf)
+    count = np.ceil(chord / np.sqrt(8.0 * radius * 0.1 * FINE * curve.size))
+    free = np.diff(curve.pieces.first)[piece] > 3
+    return np.clip(count + 3 * free, 1, 64).astype(int)
+
+
+def read_outline(path: str | Path) -> Drawn:
+    """The outline in a profile (.yaml), a sketch (.yaml), a list of curves (.yaml) or a drawing (.dxf).
+
+    Raises:
+        MissingFile, BadSyntax and what the readers of each kind raise, with the file.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in (".yaml", ".yml"):
+        return Drawn(path.name, read_curve(str(path)))
+    document = yaml_of(path)
+    if is_profile(document):
+        with at(str(path)):
+            found = profile_of(document)
+        return Drawn(path.name, found.curve, found)
+    if isinstance(document, dict) and "curves" not in document and "points" in document:
+        return Drawn(path.name, solved_sketch(path).curves())
+    return Drawn(path.name, read_curve(str(path)))
+
+
+def read_profile(path: str | Path) -> Profile:
+    """The profile of ours in a YAML file.
+
+    Raises: MissingFile, BadSyntax (also: not a profile).
+    """
+    document = yaml_of(Path(path))
+    with at(str(path)):
+        if not is_profile(document):
+            raise BadSyntax(
+                "not a profile", valid="a file by `clearance profile sweep --out FILE.yaml`"
+            )
+        return profile_of(document)
+
+
+def solved_sketch(path: str | Path) -> Sketch:
+    """The sketch of a file with all its constraints true.
+
+    Raises: what `Sketch.load` raises; BadShape (constraints that contradict each other, by name).
+    """
+    from clearance.sketch import Sketch
+
+    sketch = Sketch.load(path)
+    with at(str(path)):
+        require_solved(sketch)
+    return sketch
+
+
+def require_solved(sketch: Sketch) -> None:
+    """Solves a sketch.
+
+    Raises: BadShape (constraints that contradict each other, by name).
+    """
+    result = sketch.solve()
+    if not result.solved:
+        raise BadShape(
+            f"the constraints {', '.join(result.conflicts[:6])} contradict each other",
+            valid="a sketch that can be drawn",
+        )
+
+
+def yaml_of(path: Path):
+    """What a YAML file holds.
+
+    Raises: MissingFile, BadSyntax.
+    """
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    with at(str(path)):
+        try:
+            return YAML(typ="safe").load(path.read_text(encoding="utf-8"))
+        except OSError:
+            raise MissingFile(
+                "no such file", valid="a profile, sketch, curve file or DXF"
+            ) from None
+        except (YAMLError, UnicodeDecodeError) as error:
+            raise BadSyntax(f"not YAML ({' '.join(str(error).split())[:120]})") from None

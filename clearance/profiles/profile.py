@@ -1,0 +1,101 @@
+"""A profile: closed outlines of lines and arcs in a plane, and for a sweep what it was made from and how sure.
+
+Not for: making one from a motion (`sweep`), or files (`profile_file`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from clearance.planar.curve import Curve
+from clearance.profiles.contour import Contour, joined
+
+if TYPE_CHECKING:
+    from clearance.profiles.region import Region
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """What part of a motion made each piece of a profile.
+
+    Attributes:
+        links: names; `link` counts in them.
+        link, step: (n,) for all pieces of all contours in order: the link, and the step at or after which
+            it swept there. A piece that several reach is given to the first.
+    """
+
+    links: tuple[str, ...]
+    link: np.ndarray
+    step: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """What a motion sweeps in a plane, or any set of closed outlines.
+
+    Attributes:
+        contours: outer ones counter-clockwise, holes clockwise.
+        name: the case, or the file.
+        plane: as asked for: "xy", "xz", "yz" or a point and a normal.
+        plane_origin: (3,) [m] world point of the coordinates (0, 0). plane_axes: (2, 3) their directions.
+        section: [m] the height of the cut, or None for the silhouette.
+        tolerance: [m] that was asked for.
+        bound: [m] the profile contains everything that is swept, and no point of it is farther than this from
+            something that is (for a section: in space). 0 for drawn outlines.
+        facets: [m] how far the polygons of round shapes stand outside the shapes; not in `bound`.
+        n_steps: steps of the motion.
+        origin: which link and step made each piece, or None.
+        parts: profiles of single links by name, if asked for.
+        notes: what had to be assumed, one line each.
+    """
+
+    contours: tuple[Contour, ...]
+    name: str = ""
+    plane: str = "xy"
+    plane_origin: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    plane_axes: np.ndarray = field(default_factory=lambda: np.eye(3)[:2])
+    section: float | None = None
+    tolerance: float = 0.0
+    bound: float = 0.0
+    facets: float = 0.0
+    n_steps: int = 0
+    origin: Origin | None = None
+    parts: dict[str, Profile] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def curve(self) -> Curve:
+        """All contours as one curve [m]; pieces in the order of `contours`."""
+        return joined(self.contours)
+
+    @cached_property
+    def region(self) -> Region:
+        """What the contours enclose, arcs as chords within 1e-6 m; for areas and pictures, not for bounds."""
+        from clearance.profiles.region import region_of
+
+        return region_of([contour.flattened(1e-6) for contour in self.contours])
+
+    @property
+    def n_pieces(self) -> int:
+        """Lines and arcs."""
+        return sum(contour.n_pieces for contour in self.contours)
+
+    @property
+    def area(self) -> float:
+        """[m^2] enclosed, holes taken off."""
+        return sum(contour.area for contour in self.contours)
+
+    @property
+    def length(self) -> float:
+        """[m] of all contours."""
+        return sum(contour.length for contour in self.contours)
+
+    def maker(self, i_piece: int) -> tuple[str, int] | None:
+        """The link and the step that made a piece (counted over all contours); None for a drawn outline."""
+        if self.origin is None:
+            return None
+        return self.origin.links[self.origin.link[i_piece]], int(self.origin.step[i_piece])

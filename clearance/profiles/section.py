@@ -1,0 +1,122 @@
+"""What a body's cut with a plane sweeps: its covered pixels, and the polygons that matter beyond them.
+
+A closed part cuts a filled region, an open surface only its own line. A point of the profile may be where the
+body never quite is: the bound holds in space. Not for: silhouettes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.swept_cover import Raster
+from clearance.kernels.swept_cut import add_cut_cover, cut_hulls, cut_segments
+from clearance.profiles.chords import Knots
+from clearance.profiles.plane import Plane
+from clearance.profiles.silhouette import CHUNK, Hulls
+
+
+class Section:
+    """One body cut by a plane, at its knots."""
+
+    def __init__(self, label: str, shape: Polyhedron, knots: Knots, plane: Plane) -> None:
+        self.shape, self.knots = shape.outward(), knots
+        self._axes = np.vstack([plane.axes, np.cross(*plane.axes)])
+        self._origin = plane.origin
+        self._closed = self.shape.component_closed[self.shape.face_component]
+        self._label = label
+        self._open_cut = False
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """That an open surface was cut, once `hulls` has met it."""
+        return (
+            (f"{self._label} is not closed: its cut is that of its surface",)
+            if self._open_cut
+            else ()
+        )
+
+    @property
+    def short(self) -> float:
+        """[m] how far any point swept in the plane may be from the polygons and the covered pixels."""
+        return float(self.knots.chord.max(initial=0.0))
+
+    @property
+    def excess(self) -> float:
+        """[m] how far any point of them may be from a swept point in space: beside the plane, and off a chord."""
+        return 2.0 * self.short
+
+    def box(self) -> np.ndarray:
+        """(2, 2) [m] a box in the plane that holds the body at all knots."""
+        corners = np.stack(np.meshgrid(*self.shape.bounds.T), axis=-1).reshape(-1, 3)
+        seen = self._placed(self.knots.poses, corners)[:, :, :2].reshape(-1, 2)
+        return np.stack([seen.min(axis=0), seen.max(axis=0)])
+
+    def cover(self, raster: Raster) -> None:
+        """Marks the pixels that are filled at any knot."""
+        shape = self.shape
+        for start in range(0, len(self.knots.instant), CHUNK):
+            points = self._placed(self.knots.poses[start : start + CHUNK], shape.vertices)
+            add_cut_cover(raster, points, shape.face_starts, shape.face_vertices, self._closed)
+
+    def hulls(
+        self, raster: Raster, sums: np.ndarray, width: float, slack: float
+    ) -> Iterator[Hulls]:
+        """The polygons that are not covered, a few instants at a time."""
+        knots, vertices = self.knots, self.shape.vertices
+        yield self._filled()
+        triangles = self.shape.triangles()
+        places = self._placed(knots.poses[:1], vertices)
+        runs = [(0, 0, 0.0)] + [(i, i + 1, knots.chord[i]) for i in np.flatnonzero(knots.moves)]
+        for i, j, reach in runs:
+            places = self._placed(knots.poses[[i, j]], vertices)
+            found = cut_hulls(
+                raster, sums, places[0], places[1], triangles, float(reach), width, slack
+            )
+            self._open_cut |= len(found[0]) > 0 and not self._closed.all()
+            yield Hulls(*found, np.full(len(found[0]), knots.instant[i]))
+
+    def _filled(self) -> Hulls:
+        """What the closed parts fill at the first knot, part by part, as convex polygons."""
+        from clearance.profiles.region import convex_parts, union
+
+        shape, points = self.shape, self._placed(self.knots.poses[:1], self.shape.vertices)[0]
+        cuts = np.empty((shape.n_faces, 4))
+        filled = []
+        for component in np.flatnonzero(shape.component_closed):
+            chosen = shape.face_component == component
+            n = cut_segments(points, shape.face_starts, shape.face_vertices, chosen, cuts)
+            filled.append(region_of_cuts(cuts[:n]))
+        corners, count = convex_parts(union(filled))
+        return Hulls(corners, count, np.zeros(len(count)))
+
+    def _placed(self, poses: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """(k, v, 3) [m] the points of the body in the plane's frame, heights last."""
+        turn = self._axes @ poses[:, :3, :3]
+        shift = (poses[:, :3, 3] - self._origin) @ self._axes.T
+        return np.ascontiguousarray(points @ turn.transpose(0, 2, 1) + shift[:, None])
+
+
+def region_of_cuts(cuts: np.ndarray):
+    """What directed segments (n, 4) enclose that meet end to end to the last bit."""
+    from clearance.profiles.region import region_of
+
+    following = {}
+    for row in cuts.tolist():
+        following.setdefault((row[0], row[1]), []).append((row[2], row[3]))
+    rings = []
+    while following:
+        first, ring = next(iter(following)), []
+        at = first
+        while at in following:
+            ring.append(at)
+            ends = following[at]
+            after = ends.pop()
+            if not ends:
+                del following[at]
+            at = after
+        if len(ring) >= 3:
+            rings.append(np.array(ring))
+    return region_of(rings)

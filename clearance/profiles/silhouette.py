@@ -1,0 +1,132 @@
+"""What a body's projection sweeps: its covered pixels, and the polygons that matter beyond them.
+
+A face counts 1 where it is seen from the front, -1 from behind; an edge whose faces cancel bounds nothing.
+What is left are loops whose winding number is the number of layers over a point, for any soup of faces,
+closed or not. A moving region sweeps where it is at first and what its boundary sweeps, so that beyond the
+faces at the first instant only edges that may bound something need be looked at. Not for: sections.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.swept_cover import Raster, add_cover
+from clearance.kernels.swept_hulls import edge_hulls, triangle_hulls
+from clearance.profiles.chords import Knots
+from clearance.profiles.plane import Plane
+
+CHUNK = 64
+"""Instants that are worked on at once: memory does not grow with their number."""
+
+DOUBT = 1e-5
+"""[-] Cosine to the direction of view below which a face's side is left open: slivers' normals are right to
+2^-18."""
+
+
+@dataclass(frozen=True)
+class Hulls:
+    """Convex polygons in the plane that together with the covered pixels make up what is swept.
+
+    Attributes:
+        corners: (m, k, 2) [m], counter-clockwise; only the first `n_corners` of each count.
+        n_corners: (m,).
+        instant: (m,) in steps: where each begins.
+    """
+
+    corners: np.ndarray
+    n_corners: np.ndarray
+    instant: np.ndarray
+
+
+class Silhouette:
+    """One body seen along a plane's normal, at its knots."""
+
+    def __init__(self, shape: Polyhedron, knots: Knots, plane: Plane) -> None:
+        self.shape, self.knots, self.plane = shape, knots, plane
+
+    @cached_property
+    def _edges(self) -> tuple[np.ndarray, ...]:
+        """Vertices of each edge, and the faces along it as `add_cover` takes them."""
+        shape = self.shape
+        _, kinds = distinct_vertices(shape.vertices)
+        ring = rings_of(shape.face_starts)
+        corners = kinds[shape.face_vertices]
+        use = edge_use(corners, corners[ring.ahead])
+        firsts = use.order[use.starts[:-1]]
+        ends = np.stack(
+            [shape.face_vertices[firsts], shape.face_vertices[ring.ahead[firsts]]], axis=1
+        )
+        ends = np.where(use.forward[use.starts[:-1], None], ends, ends[:, ::-1])
+        ways = np.where(use.forward, 1, -1).astype(np.int64)
+        return np.ascontiguousarray(ends), use.starts, ring.face[use.order], ways
+
+    def box(self) -> np.ndarray:
+        """(2, 2) [m] a box in the plane that holds the body at all knots."""
+        low, high = self.shape.bounds
+        corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1)
+        seen = self._seen(self.knots.poses, corners.reshape(-1, 3)).reshape(-1, 2)
+        return np.stack([seen.min(axis=0), seen.max(axis=0)])
+
+    def cover(self, raster: Raster) -> None:
+        """Marks the pixels that are covered at any knot."""
+        for start in range(0, len(self.knots.instant), CHUNK):
+            poses = self.knots.poses[start : start + CHUNK]
+            signs = np.sign(self._facing(poses)).astype(np.int8)
+            add_cover(raster, self._seen(poses, self.shape.vertices), *self._edges, signs)
+
+    def hulls(
+        self, raster: Raster, sums: np.ndarray, width: float, slack: float
+    ) -> Iterator[Hulls]:
+        """The polygons that are not covered, a few instants at a time."""
+        knots = self.knots
+        first = self._seen(knots.poses[:1], self.shape.vertices)[0]
+        found = triangle_hulls(raster, sums, first, self.shape.triangles(), width)
+        yield Hulls(*found, np.full(len(found[0]), knots.instant[0]))
+        moving = np.flatnonzero(knots.moves)
+        for run in np.split(moving, np.flatnonzero(np.diff(moving) != 1) + 1):
+            for start in range(0, len(run), CHUNK):
+                part = run[start : start + CHUNK]
+                yield self._chunk(raster, sums, width, slack, part)
+
+    def _chunk(
+        self, raster: Raster, sums: np.ndarray, width: float, slack: float, run: np.ndarray
+    ) -> Hulls:
+        knots = self.knots
+        facing = self._facing(knots.middle[run])
+        open_side = np.abs(facing) <= knots.turn[run, None] + DOUBT
+        states = np.where(open_side, 0, np.sign(facing)).astype(np.int8)
+        points = self._seen(knots.poses[run[0] : run[-1] + 2], self.shape.vertices)
+        corners, count, interval = edge_hulls(
+            raster, sums, points, *self._edges, states, width, slack
+        )
+        return Hulls(corners, count, knots.instant[run][interval])
+
+    def _facing(self, poses: np.ndarray) -> np.ndarray:
+        """(k, f) cosine of each face's normal to the plane's."""
+        normal = self.plane.axes[0], self.plane.axes[1]
+        toward = np.cross(*normal)
+        return (poses[:, :3, :3].transpose(0, 2, 1) @ toward) @ self.shape.normals.T
+
+    def _seen(self, poses: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """(k, v, 2) [m] the points of the body in the plane."""
+        turn = self.plane.axes @ poses[:, :3, :3]
+        shift = (poses[:, :3, 3] - self.plane.origin) @ self.plane.axes.T
+        return np.ascontiguousarray(points @ turn.transpose(0, 2, 1) + shift[:, None])
+
+    @property
+    def short(self) -> float:
+        """[m] how far any swept point may be from the polygons and the covered pixels."""
+        return float(self.knots.chord.max(initial=0.0))
+
+    @property
+    def excess(self) -> float:
+        """[m] how far any point of them may be from a swept point, beside `slack`."""
+        return self.short
+
+    notes: tuple[str, ...] = ()

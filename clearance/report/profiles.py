@@ -1,0 +1,67 @@
+"""The page's section on reserved outlines: is each kept, how close, who and when, with a picture."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+from clearance.report.markup import Html, element, section, step_link, table
+from clearance.report.wording import mm
+
+
+def profiles(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
+    """The section; nothing where the case names no profile."""
+    if not summary["profiles"]:
+        return Html("")
+    heads = ("Profile", "Plane", "Kept", ">Gap, mm", ">Limit, mm", "Closest", "When")
+    rows = [_row(answer) for answer in summary["profiles"]]
+    figures = [_figure(answer, pictures) for answer in summary["profiles"]]
+    note = element(
+        "p",
+        "Gaps are proven for the continuous motion, joints moving linearly between steps, and rounded down; "
+        "the true gap is larger by at most the bound in summary.json. A negative gap is how far the swept "
+        "outline is beyond the sketch.",
+        class_="faint",
+    )
+    return section("Profiles", table(heads, rows, class_="clickable"), note, *figures)
+
+
+def gap_text(answer: dict[str, Any]) -> str:
+    """The gap [mm], rounded down; of a negative one its size is rounded to 3 digits."""
+    gap = answer["gap"]
+    return mm(gap) if gap >= 0.0 else f"-{-gap * 1000:.3f}"
+
+
+def plane_text(answer: dict[str, Any]) -> str:
+    """The plane, and the height of the cut if it is one."""
+    cut = answer["section"]
+    return answer["plane"] if cut is None else f"{answer['plane']} at {cut:g} m"
+
+
+def _row(answer: dict[str, Any]) -> Html:
+    kept = (
+        element("span", "yes")
+        if answer["passed"]
+        else element("span", "no", class_="text-violated")
+    )
+    return element(
+        "tr",
+        element("td", f"{answer['name']} ({answer['mode']})"),
+        element("td", plane_text(answer)),
+        element("td", kept),
+        element("td", gap_text(answer), class_="number"),
+        element("td", f"{answer['limit'] * 1000:g}", class_="number"),
+        element("td", answer["link"]),
+        element("td", step_link(answer["step"])),
+        data_step=answer["step"],
+        tabindex=0,
+    )
+
+
+def _figure(answer: dict[str, Any], pictures: dict[str, str]) -> Html:
+    picture = pictures.get(answer["name"])
+    if picture is None:
+        return Html("")
+    source = "data:image/svg+xml;base64," + base64.b64encode(picture.encode()).decode()
+    style = "max-width:100%;height:auto;background:white"
+    return element("p", element("img", src=source, alt=f"profile {answer['name']}", style=style))

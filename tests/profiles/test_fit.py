@@ -1,0 +1,175 @@
+"""Fitted sketches: known answers, proven containment, refusals."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput, BadShape
+from clearance.profiles.fit import NoFit
+from clearance.profiles.fit_shape import NoFreeDimension, SketchShape, copied
+from clearance.profiles.outline_file import read_outline
+from tests.oracle.outlines import inside
+from tests.profiles.moving import rows, slab, turning
+
+SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
+
+
+def rectangle(width, depth, *, driven=("width", "depth"), fixed=False):
+    """A rectangle with its lower left corner at the origin."""
+    s = cl.Sketch()
+    p = [
+        s.point(x, y, name=f"p{i}")
+        for i, (x, y) in enumerate([(0, 0), (width, 0), (width, depth), (0, depth)])
+    ]
+    sides = [s.segment(p[i], p[(i + 1) % 4], name=f"s{i}") for i in range(4)]
+    for i in (0, 2):
+        s.horizontal(sides[i])
+        s.vertical(sides[i + 1])
+    s.distance(p[0], p[1], width, name="width", driven="width" in driven)
+    s.distance(p[1], p[2], depth, name="depth", driven="depth" in driven)
+    if fixed:
+        s.fix(p[0])
+    return s
+
+
+def contours_of_shape(found):
+    """A fitted sketch as the oracle takes it."""
+    shape = SketchShape(found.sketch, list(found.dimensions))
+    placed = shape.at(shape.start)
+    return [np.column_stack([c.vertices, c.bulges]).tolist() for c in placed.contours]
+
+
+@pytest.mark.parametrize("name", ["keep_in_zone", "d_cell", "port_bar"])
+def test_an_outline_made_from_a_sketch_gives_its_dimensions_back(name):
+    sketch = cl.Sketch.load(SKETCHES / f"{name}.yaml")
+    shape = SketchShape(sketch, None)
+    n = len(shape.free)
+    wanted = shape.start.copy()
+    wanted[:n] *= np.linspace(1.21, 0.83, n)
+    wanted[n:] += [0.13, -0.07, 0.4][: len(wanted) - n]
+    found = cl.fit(sketch, shape.at(wanted).curve, "nearest")
+    assert list(found.dimensions.values()) == pytest.approx(wanted[:n].tolist(), abs=1e-9)
+    assert found.distance.distance + found.distance.error_bound <= 1e-9
+    again = found.sketch.solve()
+    assert again.solved and again.movement <= 1e-9
+    assert cl.hausdorff(found.sketch.curves(), found.curve).distance <= 1e-9
+
+
+def test_the_least_rectangle_about_a_turned_ellipse_like_outline_touches_four_sides():
+    outline = cl.Curve.polyline(
+        [
+            [0.9 * math.cos(t) + 0.2, 0.4 * math.sin(t) - 0.1]
+            for t in np.linspace(0, 2 * math.pi, 60)[:-1]
+        ],
+        closed=True,
+    )
+    found = cl.fit(rectangle(1.0, 1.0), outline, "outside", margin=0.05)
+    low, high = outline.box
+    wide, deep = high - low + 0.1
+    assert found.dimensions["width"] == pytest.approx(wide, abs=2e-8)
+    assert found.dimensions["depth"] == pytest.approx(deep, abs=2e-8)
+    assert found.area == pytest.approx(wide * deep, abs=1e-7)
+    assert 0.05 <= found.clearance <= 0.05 + 1e-7
+    assert found.sensitivity["width"][1] == pytest.approx(
+        -1.0, abs=1e-6
+    )  # smaller: it touches at once
+
+
+def test_the_largest_bar_in_a_round_port_has_its_corners_on_the_rim():
+    radius, height, margin = 0.17, 0.10, 0.004
+    port = cl.Curve.circle([0.02, 0.76], radius)
+    found = cl.fit(cl.Sketch.load(SKETCHES / "port_bar.yaml"), port, "inside", margin=margin)
+    width = 2 * math.sqrt((radius - margin) ** 2 - height**2 / 4)
+    assert found.dimensions["width"] == pytest.approx(width, abs=1e-7)
+    assert found.clearance >= margin
+    # d(width)/d(height) at the optimum; the area also grows by the height itself.
+    slope = width - height * height / width
+    assert found.active["height"] == pytest.approx(-slope, rel=1e-3)  # minus: more area is better
+
+
+def test_nearest_is_the_middle_between_two_circles():
+    """A circle of free radius between two concentric ones is nearest half-way."""
+    s = cl.Sketch()
+    centre = s.point(0, 0)
+    s.fix(centre)
+    s.radius(s.circle(centre, 0.5), 0.5, name="r", driven=True)
+    rings = cl.Curve.contours([cl.Curve.circle([0, 0], 1.0), cl.Curve.circle([0, 0], 0.6)])
+    found = cl.fit(s, rings, "nearest")
+    assert found.dimensions["r"] == pytest.approx(0.8, abs=1e-9)
+    assert found.distance.distance == pytest.approx(0.2, abs=1e-9)
+
+
+def test_a_zone_about_a_sweep_contains_it_by_the_oracle():
+    profile = cl.swept_profile(turning(slab([0.2, -0.05, 0], [1.0, 0.05, 0.1]), [0, 0.7, 1.3]))
+    found = cl.fit(
+        cl.Sketch.load(SKETCHES / "keep_in_zone.yaml"), profile, "outside", margin=0.01, starts=3
+    )
+    zone = contours_of_shape(found)
+    outline = np.concatenate([c.flattened(1e-4) for c in profile.contours])
+    assert all(inside(point, zone) for point in outline[:: max(1, len(outline) // 60)])
+    swept = rows(profile)
+    assert not any(inside(row[:2], swept) for contour in zone for row in contour)
+    assert found.clearance >= 0.01
+    assert cl.minimum_distance(found.sketch.curves(), profile.curve).distance >= 0.01 - 1e-9
+
+
+def test_the_same_answer_each_time():
+    outline = cl.Curve.contours([cl.Curve.circle([0.3, 0.1], 0.4)])
+    one, two = (cl.fit(rectangle(1, 1), outline, "outside") for _ in range(2))
+    assert one.dimensions == two.dimensions and one.clearance == two.clearance
+
+
+def test_the_sketch_itself_is_left_alone_and_a_copy_is_the_same():
+    sketch = cl.Sketch.load(SKETCHES / "d_cell.yaml")
+    before = [e.position.tolist() for e in sketch.entities.values() if e.what == "point"]
+    cl.fit(sketch, cl.Curve.circle([0.1, 0.0], 0.3), "outside", starts=1)
+    assert before == [e.position.tolist() for e in sketch.entities.values() if e.what == "point"]
+    again = copied(sketch)
+    assert list(again.entities) == list(sketch.entities)
+    assert list(again.constraints) == list(sketch.constraints)
+
+
+def contradictory():
+    s = rectangle(1.0, 0.5, driven=("depth",))
+    s.distance(s.entity("p3"), s.entity("p2"), 1.2, name="other_width")
+    return s
+
+
+SQUARE = cl.Curve.polyline([[0, 0], [1, 0], [1, 1], [0, 1]], closed=True)
+
+
+@pytest.mark.parametrize(
+    ("sketch", "outline", "options", "fault", "said"),
+    [
+        (lambda: rectangle(1, 1, driven=()), SQUARE, {}, NoFreeDimension, "no free dimension"),
+        (contradictory, SQUARE, {}, BadShape, "contradict each other"),
+        (
+            lambda: rectangle(1, 1),
+            cl.Curve.polyline([[0, 0], [1, 0], [1, 1]]),
+            {},
+            BadShape,
+            "is open",
+        ),
+        (lambda: rectangle(1, 1), SQUARE, {"free": ["w"]}, BadInput, "no dimension named 'w'"),
+        (lambda: rectangle(1, 1), SQUARE, {"mode": "around"}, BadInput, "unknown mode 'around'"),
+        (
+            lambda: rectangle(0.1, 0.1, driven=("width",), fixed=True),
+            SQUARE,
+            {"mode": "outside", "starts": 2},
+            NoFit,
+            "contains the outline",
+        ),
+    ],
+)
+def test_refusals_of_fit_are_one_line(sketch, outline, options, fault, said):
+    with pytest.raises(fault) as caught:
+        cl.fit(sketch(), outline, **options)
+    assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_sketch_can_be_compared_as_it_is():
+    drawn = read_outline(SKETCHES / "d_cell.yaml")
+    assert drawn.curve.is_closed and drawn.profile is None

@@ -1,0 +1,244 @@
+"""Swept profiles: closed forms, and against sampling a hundred times finer."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import clearance as cl
+from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLink
+from clearance.profiles.chords import knots_of, positions_at
+from clearance.profiles.plane import Plane
+from clearance.simulate.kinematic import kinematic_motion
+from clearance.world.kinematics import link_poses
+from clearance.world.robot import JointKind
+from tests.oracle.outlines import inside
+from tests.profiles.moving import (
+    Z,
+    joint,
+    moved,
+    rows,
+    shifted,
+    slab,
+    sliding,
+    tetrahedron,
+    turning,
+)
+
+shapely = pytest.importorskip("shapely")
+
+
+def strays(profile, truth):
+    """[m] greatest distance of the profile's outline from a region of shapely."""
+    points = np.concatenate([contour.flattened(1e-6) for contour in profile.contours])
+    return float(shapely.distance(truth, shapely.points(points)).max())
+
+
+def finely_swept(case, plane, parts):
+    """Unions of all projected triangles at every step and `parts` - 1 instants in between: of what is
+    there at these instants, and of the hulls from each to the next."""
+    motion = kinematic_motion(case.robots[0])
+    instants = np.linspace(0, motion.n_steps - 1, (motion.n_steps - 1) * parts + 1)
+    poses = link_poses(case.robots[0], positions_at(motion, instants))
+    names = case.robots[0].robot.link_names
+    at, between = [], []
+    for body in case.robots[0].robot.bodies:
+        corners = body.shape.vertices[body.shape.triangles()]
+        turned = poses[:, None, None, names.index(body.name)]
+        world = np.einsum("ktcij,tcj->ktci", turned[..., :3, :3], corners) + turned[..., :3, 3]
+        seen = plane.coordinates(world)
+        at.append(shapely.polygons(seen).ravel())
+        six = np.concatenate([seen[:-1], seen[1:]], axis=2)
+        between.append(shapely.convex_hull(shapely.multipoints(six)).ravel())
+    return shapely.unary_union(np.concatenate(at)), shapely.unary_union(np.concatenate(between))
+
+
+def test_a_bar_turning_about_a_point_sweeps_a_sector_of_an_annulus():
+    near, far, wide, angle = 0.2, 1.0, 0.1, 1.3
+    found = cl.swept_profile(
+        turning(slab([near, -wide / 2, 0], [far, wide / 2, 0.1]), [0, 0.6, angle])
+    )
+    corner_sq = far**2 + wide**2 / 4
+    area = (far - near) * wide + 0.5 * angle * (corner_sq - near**2)
+    assert area <= found.area <= area + found.bound * found.length
+    assert found.bound <= 5e-4
+    radius = np.hypot(*np.concatenate([c.flattened(1e-7) for c in found.contours]).T)
+    assert math.sqrt(corner_sq) <= radius.max() <= math.sqrt(corner_sq) + found.bound
+    assert near - found.bound <= radius.min() <= near
+    assert found.n_pieces <= 20  # two arcs, two sides, two ends, and their corners
+
+
+def test_a_sliding_box_sweeps_a_box():
+    found = cl.swept_profile(sliding(slab([0, 0, 0], [0.3, 0.2, 0.1]), [0, 0.1, 0.7]))
+    truth = shapely.box(0, 0, 1.0, 0.2)
+    assert found.region.contains(truth) and strays(found, truth) <= found.bound
+    assert len(found.contours) == 1 and found.n_pieces <= 8
+
+
+def test_a_sphere_on_a_line_sweeps_a_stadium():
+    radius, way = 0.1, 0.5
+    found = cl.swept_profile(sliding(cl.sphere(radius), [0, way]))
+    truth = cl.Curve.chain(
+        [
+            cl.Curve.line([0, -radius], [way, -radius]),
+            cl.Curve.arc([way, 0], radius, -math.pi / 2, math.pi / 2),
+            cl.Curve.line([way, radius], [0, radius]),
+            cl.Curve.arc([0, 0], radius, math.pi / 2, 3 * math.pi / 2),
+        ]
+    )
+    assert 0 < found.facets <= 1e-4
+    assert cl.hausdorff(found.curve, truth).distance <= found.bound + found.facets
+    assert cl.minimum_distance(found.curve, truth).distance > 0.0
+
+
+def test_a_straight_two_link_arm_reaches_a_disc():
+    first, second, wide = 0.6, 0.4, 0.06
+    case = moved(
+        [joint(0, JointKind.REVOLUTE, Z), joint(1, JointKind.REVOLUTE, Z, (first, 0, 0))],
+        {
+            1: slab([0, -wide / 2, 0], [first, wide / 2, 0.1]),
+            2: slab([0, -wide / 2, 0], [second, wide / 2, 0.1]),
+        },
+        [[0, 0], [3.0, 0], [2 * math.pi, 0]],
+    )
+    found = cl.swept_profile(case)
+    reach = math.hypot(first + second, wide / 2)
+    assert len(found.contours) == 1
+    radius = np.hypot(*found.contours[0].flattened(1e-7).T)
+    assert reach <= radius.min() and radius.max() <= reach + found.bound
+    assert found.n_pieces <= 12
+    assert {found.maker(i)[0] for i in range(found.n_pieces)} == {"l2"}
+
+
+def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
+    found = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.5, 0.1, 0.1]), [0, 3.2, 6.4]))
+    outer, hole = found.contours
+    assert outer.area > 0 > hole.area
+    assert abs(-hole.area - math.pi * 0.3**2) <= found.bound * hole.length
+
+
+def sweeps(seed):
+    rng = np.random.default_rng(seed)
+    kinds = [JointKind.REVOLUTE, rng.choice([JointKind.REVOLUTE, JointKind.PRISMATIC])]
+    axes = rng.normal(size=(2, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    joints = [joint(i, JointKind(kinds[i]), axes[i], rng.uniform(-0.3, 0.3, 3)) for i in range(2)]
+    shapes = {
+        1: shifted(cl.box(rng.uniform(0.02, 0.8, 3)), rng.uniform(-0.3, 0.3, 3)),
+        2: tetrahedron(rng, 0.3),
+    }
+    case = moved(joints, shapes, np.cumsum(rng.uniform(-0.5, 0.5, (3, 2)), axis=0))
+    return rng, case
+
+
+@settings(max_examples=6, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]))
+def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):
+    rng, case = sweeps(seed)
+    found = cl.swept_profile(case, name, tolerance=2e-3)
+    sampled, truth = finely_swept(case, Plane.of(name), 100)
+    assert sampled.difference(found.region).area == 0.0
+    assert found.bound <= 2e-3 and strays(found, truth) <= found.bound
+    corners = shapely.get_coordinates(sampled)
+    chosen = rows(found)
+    assert all(inside(point, chosen) for point in corners[rng.integers(len(corners), size=15)])
+
+
+def test_a_long_bar_spinning_about_its_middle_is_a_double_wedge_not_its_hull():
+    case = turning(cl.box((2.0, 0.004, 0.1)), [0.0, 0.04])
+    found = cl.swept_profile(case)
+    sampled, truth = finely_swept(case, Plane.of("xy"), 100)
+    assert sampled.difference(found.region).area == 0.0
+    assert strays(found, truth) <= found.bound
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed):
+    rng, case = sweeps(seed)
+    motion = kinematic_motion(case.robots[0])
+    height = float(motion.poses()[:, -1, 2, 3].mean())
+    try:
+        found = cl.swept_profile(case, section=height, tolerance=2e-3, links=["l1"])
+    except NothingToMeasure:
+        return
+    body = case.robots[0].robot.bodies[0]
+    instants = rng.uniform(0, motion.n_steps - 1, 400)
+    poses = link_poses(case.robots[0], positions_at(motion, instants))[:, 1]
+    low, high = body.shape.bounds
+    page = np.array([c.vertices for c in found.contours], dtype=object)
+    vertices = np.concatenate(list(page)).astype(float)
+    on_plane = rng.uniform(vertices.min(axis=0), vertices.max(axis=0), (400, 2))
+    world = np.column_stack([on_plane, np.full(400, height)])
+    local = np.einsum("nji,npj->npi", poses[:, :3, :3], world[None] - poses[:, None, :3, 3])
+    cut = ((local >= low) & (local <= high)).all(axis=2).any(axis=0)
+    chosen = rows(found)
+    assert all(inside(point, chosen) for point in on_plane[cut][:40])
+    dense = link_poses(
+        case.robots[0], positions_at(motion, np.linspace(0, motion.n_steps - 1, 3000))
+    )[:, 1]
+    outline = np.column_stack([vertices, np.full(len(vertices), height)])[:60]
+    local = np.einsum("nji,npj->npi", dense[:, :3, :3], outline[None] - dense[:, None, :3, 3])
+    away = np.linalg.norm(np.maximum(np.maximum(low - local, local - high), 0.0), axis=2).min(
+        axis=0
+    )
+    assert away.max() <= found.bound + 5e-4  # the dense samples' own steps
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_points_stay_within_the_chord_bound(seed):
+    _, case = sweeps(seed)
+    motion, plane = kinematic_motion(case.robots[0]), Plane.of("xz")
+    body = case.robots[0].robot.bodies[1]
+    knots = knots_of(motion, body, plane, 1.0, solid=False)
+    for k in range(len(knots.chord)):
+        share = np.linspace(0.0, 1.0, 21)
+        instants = knots.instant[k] + share * (knots.instant[k + 1] - knots.instant[k])
+        poses = link_poses(case.robots[0], positions_at(motion, instants))[:, 2]
+        path = plane.coordinates(
+            body.shape.vertices @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
+        )
+        chord = path[0] + share[:, None, None] * (path[-1] - path[0])
+        off = np.sqrt(((path - chord) ** 2).sum(axis=2)).max()
+        assert off <= knots.chord[k] * (1 + 1e-12) + 1e-15
+        toward = poses[:, :3, :3].transpose(0, 2, 1) @ np.cross(*plane.axes)
+        assert np.arccos(np.clip(toward @ toward[10], -1, 1)).max() <= knots.turn[k] + 1e-7
+
+
+def test_only_the_links_asked_for_and_each_on_its_own():
+    case = moved(
+        [joint(0, JointKind.REVOLUTE, Z)],
+        {0: slab([2, 2, 0], [3, 3, 1]), 1: slab([0, 0, 0], [0.1, 0.1, 0.1])},
+        [[0.0], [0.5]],
+    )
+    alone = cl.swept_profile(case, links=["l1"])
+    both = cl.swept_profile(case, per_link=True)
+    assert len(alone.contours) == 1 and len(both.contours) == 2
+    assert sorted(both.parts) == ["l0", "l1"]
+    assert both.parts["l1"].area == pytest.approx(alone.area, abs=1e-12)
+    assert {both.maker(i)[0] for i in range(both.n_pieces)} == {"l0", "l1"}
+
+
+def test_the_same_profile_each_time():
+    _, case = sweeps(5)
+    assert rows(cl.swept_profile(case)) == rows(cl.swept_profile(case))
+
+
+@pytest.mark.parametrize(
+    ("options", "fault", "said"),
+    [
+        ({"plane": "zz"}, BadInput, "plane: 'zz'"),
+        ({"plane": "0 0 0 0 0 0"}, BadInput, "zero length"),
+        ({"links": ["l3"]}, UnknownLink, "unknown link 'l3'; valid: l1"),
+        ({"section": 9.0}, NothingToMeasure, "cuts no link"),
+        ({"tolerance": 0.0}, BadDimension, "at least 1e-6 m"),
+    ],
+)
+def test_refusals_are_one_line(options, fault, said):
+    case = sliding(slab([0, 0, 0], [0.3, 0.2, 0.1]), [0, 0.1])
+    with pytest.raises(fault) as caught:
+        cl.swept_profile(case, **options)
+    assert said in str(caught.value) and "\n" not in str(caught.value)
