@@ -1,4 +1,4 @@
-"""Proves how close the continuous motion comes between the steps; joints move linearly in between.
+"""Proves how close the continuous motion comes between the steps, joints moving as `Motion` says.
 
 Not for: the clearance at the steps (`measure`), which it starts from.
 """
@@ -13,11 +13,12 @@ from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
 from clearance.kernels.certify import Asked, certify
 from clearance.kernels.drift import Chain
+from clearance.kernels.joint_path import JointPath
 from clearance.kernels.surface import Surface
 from clearance.simulate.measure import CHUNK, COUNTERS, Measurement, Progress, lay_out
 from clearance.simulate.record import Certificate
 from clearance.world.case import Case
-from clearance.world.kinematics import chain_arrays, positions_by_link
+from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -45,18 +46,28 @@ def certify_motion(
         chosen = [i for i, pair in enumerate(pairs) if pair.i_robot == i_robot]
         surface, chain, asked = _lay_out(case, motions, [pairs[i] for i in chosen])
         order = np.maximum(np.searchsorted(chosen, found.pair), 0) % len(chosen)
-        positions = positions_by_link(motion.placed.robot, motion.positions)
+        path = _joint_path(motion)
         robot_lower, robot_upper = lower.copy(), upper.copy()
         for first in range(0, n_steps - 1, CHUNK):
             last = min(first + CHUNK, n_steps - 1)
             certify(
-                surface, chain, asked, positions, order, first, last, found.clearance, gap,
+                surface, chain, asked, path, order, first, last, found.clearance, gap,
                 case.limits.fail, robot_lower, robot_upper, tally,
             )  # fmt: skip
             if progress:
                 progress(last + 1, n_steps)
         lower, upper = np.minimum(lower, robot_lower), np.minimum(upper, robot_upper)
     return Certificate(lower, upper, gap, dict(zip(COUNTERS, tally.tolist(), strict=True)))
+
+
+def _joint_path(motion: Motion) -> JointPath:
+    """The motion of the joints above all links."""
+    robot = motion.placed.robot
+    positions = positions_by_link(robot, motion.positions)
+    velocities = np.empty((0, positions.shape[1]))
+    if motion.velocities is not None:
+        velocities = velocities_by_link(robot, motion.velocities)
+    return JointPath(np.ascontiguousarray(motion.times, dtype=np.float64), positions, velocities)
 
 
 def _lay_out(
