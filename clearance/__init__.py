@@ -21,6 +21,7 @@ _ROOM_OF = {
     "Nearest": "query.result",
     "Polyhedron": "geometry.polyhedron",
     "Polytope": "geometry.polytope",
+    "Query": "query.pair_query",
     "Record": "simulate.record",
     "Robot": "world.robot",
     "Run": "run",
