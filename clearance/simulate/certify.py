@@ -60,16 +60,6 @@ def certify_motion(
     return Certificate(lower, upper, gap, dict(zip(COUNTERS, tally.tolist(), strict=True)))
 
 
-def _joint_path(motion: Motion) -> JointPath:
-    """The motion of the joints above all links."""
-    robot = motion.placed.robot
-    positions = positions_by_link(robot, motion.positions)
-    velocities = np.empty((0, positions.shape[1]))
-    if motion.velocities is not None:
-        velocities = velocities_by_link(robot, motion.velocities)
-    return JointPath(np.ascontiguousarray(motion.times, dtype=np.float64), positions, velocities)
-
-
 def _lay_out(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]
 ) -> tuple[Surface, Chain, Asked]:
@@ -94,3 +84,13 @@ def _with_whole_faces(surface: Surface) -> Surface:
         edge_starts=starts,
         owned_edges=np.stack([corners, corners[rings_of(starts).ahead]], axis=1),
     )
+
+
+def _joint_path(motion: Motion) -> JointPath:
+    """The motion of the joints above all links."""
+    robot = motion.placed.robot
+    positions = positions_by_link(robot, motion.positions)
+    velocities = np.empty((0, positions.shape[1]))
+    if motion.velocities is not None:
+        velocities = velocities_by_link(robot, motion.velocities)
+    return JointPath(np.ascontiguousarray(motion.times, dtype=np.float64), positions, velocities)

@@ -1,12 +1,18 @@
-"""What is told of velocities that carry a joint beyond its limits, or look like degrees a second."""
+"""Velocities in a trajectory file: what is told of them, what is refused, and that the proof goes by them."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from clearance import check, load_case
+from clearance.errors import MissingKey, UnknownJoint
 from clearance.load.plausibility import motion_notes
 from clearance.world.case import PlacedRobot
+from clearance.world.cubic import asked_at
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.load.making import write_case
 
 
 def notes(positions, velocities, kind=JointKind.REVOLUTE):
@@ -53,3 +59,27 @@ def test_degrees_a_second_are_told():
     told = notes(positions, 1000.0 * velocities, JointKind.PRISMATIC)
     assert any("is this mm/s?" in note for note in told)
     assert notes([0.0, 0.0], [1e-4, 1e-4]) == []
+
+
+def test_a_case_file_is_certified_on_the_cubics_of_its_trajectory(tmp_path):
+    rows = "time,shoulder,shoulder/velocity\n0,0.3,0.8\n1,0.3,-0.8\n"
+    case = load_case(write_case(tmp_path, trajectory=rows))
+    asked = case.robots[0].trajectory
+    assert asked.velocities.tolist() == [[0.8], [-0.8]]
+    run = check(case, certify=True)
+    times = np.linspace(0.0, 1.0, 501)
+    sampled = Trajectory(times, asked.joint_names, asked_at(asked, times))
+    finer = replace(case, robots=(replace(case.robots[0], trajectory=sampled),))
+    least = check(finer).record.clearances.min()
+    bound = run.record.certificate.lower_bound[0]
+    assert least < run.record.clearances.min() - 1e-3
+    assert least - 2e-4 <= bound <= least
+
+
+def test_a_velocity_of_a_joint_that_the_robot_lacks_is_refused(tmp_path):
+    path = write_case(tmp_path, trajectory="time,elbow,elbow/velocity\n0,0,0\n")
+    with pytest.raises(UnknownJoint, match="unknown joint 'elbow'"):
+        load_case(path)
+    path = write_case(tmp_path, trajectory="time,shoulder,sholder/velocity\n0,0,0\n")
+    with pytest.raises(MissingKey, match=r"path.csv.*'sholder', which has no column; did you mean 'shoulder'"):
+        load_case(path)
