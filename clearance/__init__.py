@@ -24,6 +24,7 @@ _ROOM_OF = {
     "Polyhedron": "geometry.polyhedron",
     "Polytope": "geometry.polytope",
     "Profile": "profiles.profile",
+    "Query": "query.pair_query",
     "Record": "simulate.record",
     "Robot": "world.robot",
     "Run": "run",

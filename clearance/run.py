@@ -105,8 +105,8 @@ def check(
         motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
             controlled robot makes of it.
         limits: instead of the case's.
-        certify: also prove a lower bound for the motion between the steps, joints moving linearly; the
-            verdict then rests on it.
+        certify: also prove a lower bound for the motion between the steps, joints moving linearly or, where
+            the trajectory has velocities, on cubics; the verdict then rests on it.
         certify_gap: [m] how far that bound may be below a distance that occurs.
         cross_check: also ask FCL at every step.
         jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.

@@ -28,6 +28,7 @@ from clearance.kernels.drift import (
     drift_of_face_along,
 )
 from clearance.kernels.face_pair import may_meet, nearest_of_faces
+from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
 from clearance.kernels.predicates import faces_meet
 from clearance.kernels.surface import box_of
@@ -69,6 +70,7 @@ class Middle(NamedTuple):
 
     positions: np.ndarray  # (1, n_links)
     swing: np.ndarray  # (n_links,)
+    bend: np.ndarray  # (n_links,)
     poses: np.ndarray  # (1, n_links, 4, 4)
     scratch: Scratch
 
@@ -198,13 +200,13 @@ def _face_floor(a, face_a, b, face_b, sight, slack, drift):
 
 
 @inlined
-def _go_to(chain, before, after, low, high, middle):
-    """Puts `middle` in the middle of the part `low` to `high` of an interval (0 to 1)."""
-    at = 0.5 * (low + high)
-    for link in range(len(before)):
-        step = after[link] - before[link]
-        middle.positions[0, link] = before[link] + at * step
-        middle.swing[link] = 0.5 * (high - low) * step * (1.0 + 1e-12)
+def _go_to(chain, path, step, low, high, middle):
+    """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
+    for link in range(path.positions.shape[1]):
+        part = part_of(path, step, link, low, high)
+        middle.positions[0, link] = part.middle
+        middle.swing[link] = part.swing
+        middle.bend[link] = part.bend
     forward(
         chain.world_from_base, chain.parents, chain.kinds, chain.parent_from_joint, chain.axes,
         middle.positions, middle.poses,
@@ -218,7 +220,7 @@ def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tal
     link = asked.links[pair]
     pose = rigid(middle.poses[0, link])
     root = surface.roots[body_a]
-    drift = drift_of(surface, root, chain, link, middle.poses[0], middle.swing, pose)
+    drift = drift_of(surface, root, chain, link, middle.poses[0], middle.swing, middle.bend, pose)
     frames = frames_of(pose, rigid(asked.standing[body_b]))
     tally[1] += 1
     held = hold(
@@ -231,23 +233,24 @@ def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tal
 
 @kernel
 def certify(
-    surface, chain, asked, positions, order, first, last, known, gap, fail, lower, upper, tally
+    surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally
 ):
     """Fills `lower` [m] for the motion between the steps `first` to `last`, and lowers `upper`.
 
     Args:
         surface: every face owns all its features.
-        positions: (n, n_links) of the joint of each link; linear between steps.
+        path: how the joint of each link moves from step to step, a `JointPath`.
         order: (n,) the pair to look at first in each interval.
         known: (n,) [m] clearance of the steps over these pairs, proven to within rounding.
         gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
         fail: [m] the limit that is to be decided, if need be with a smaller gap.
     """
     n_pairs = len(asked.bodies)
-    n_links = positions.shape[1]
+    n_links = path.positions.shape[1]
     middle = Middle(
-        np.empty((1, n_links)), np.empty(n_links), np.empty((1, n_links, 4, 4)), new_scratch()
-    )
+        np.empty((1, n_links)), np.empty(n_links), np.empty(n_links),
+        np.empty((1, n_links, 4, 4)), new_scratch(),
+    )  # fmt: skip
     seeds = np.full((n_pairs, 2), -1)
     waiting = np.empty((DEPTH, 2))
     for step in range(first, last):
@@ -262,7 +265,7 @@ def certify(
             while n_waiting > 0:
                 n_waiting -= 1
                 low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
-                _go_to(chain, positions[step], positions[step + 1], low, high, middle)
+                _go_to(chain, path, step, low, high, middle)
                 held = _hold_pair(
                     surface, chain, asked, pair, middle, least, gap, fail, seeds, tally
                 )

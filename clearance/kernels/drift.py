@@ -1,8 +1,10 @@
-"""How far the points of a link can move while its joints move linearly: first order exactly, the rest bounded.
+"""How far the points of a link can move while its joints move: first order exactly, the rest bounded.
 
-About the middle of an interval, a point x moves by s v(x) + r with |s| <= 1: v is the link's twist there, an
-affine map of x, and |r| is at most half the greatest acceleration. Source: the product of exponentials
-differentiated twice; joints nearer to the link come first, since only they move the link about an axis.
+About the middle of an interval, where joint k moves by s swing_k + b_k with |s| <= 1 and |b_k| <= bend_k, a point
+x moves by s v(x) + r: v is the link's twist by the swings, an affine map of x. |r| is at most half the greatest
+second derivative over all joint motions of |swing_k| + bend_k, and what the bends do in the first order.
+Source: the product of exponentials differentiated twice; joints nearer to the link come first, since only they
+move the link about an axis.
 """
 
 import math
@@ -69,37 +71,38 @@ def _world_axis(chain, poses, link):
 
 
 @inlined
-def drift_of(surface, root, chain, link, poses, swing, world_from_body):
+def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
     """The drift of a body that is fixed to `link`.
 
     Args:
         poses: (n_links, 4, 4) in the middle of the interval.
-        swing: (n_links,) [rad or m] half of what the joint of each link moves in the interval.
+        swing: (n_links,) [rad or m] half of what the joint of each link moves in the interval, to first order.
+        bend: (n_links,) [rad or m] how far from that it can be; 0 for linear motion.
         world_from_body: the pose of the link as `Rigid`.
     """
-    shallower = 0.0  # sum of the swings of the turning joints between here and the base
+    shallower = 0.0  # sum of the motions of the turning joints between here and the base
     i = link
     while i != 0:
         if chain.kinds[i] == TURNING:
-            shallower += abs(swing[i])
+            shallower += abs(swing[i]) + bend[i]
         i = chain.parents[i]
     spin, velocity = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
     rest = 0.0
     moved = 0.0  # how far the joints up to here move any point of the body
     i = link
     while i != 0:
-        size = abs(swing[i])
+        size = abs(swing[i]) + bend[i]
         if size > 0.0 and chain.kinds[i] == TURNING:
             shallower = max(0.0, shallower - size)
             axis = _world_axis(chain, poses, i)
             origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
             arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
-            rest += 0.5 * size * arm * (size + 2.0 * shallower)
+            rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * arm
             moved += size * arm
             spin = along(spin, swing[i], axis)
             velocity = along(velocity, swing[i], cross(origin, axis))
         elif size > 0.0 and chain.kinds[i] == SLIDING:
-            rest += size * shallower
+            rest += size * shallower + bend[i]
             moved += size
             velocity = along(velocity, swing[i], _world_axis(chain, poses, i))
         i = chain.parents[i]

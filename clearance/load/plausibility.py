@@ -10,7 +10,9 @@ import numpy as np
 
 from clearance.load import schema
 from clearance.world.case import Limits, PlacedRobot
+from clearance.world.cubic import extremes_between
 from clearance.world.robot import Joint, JointKind
+from clearance.world.trajectory import Trajectory
 
 LARGE_LIMIT = 0.5
 """[m] A clearance limit above half a metre would forbid a robot most of its cell; in millimetres it
@@ -26,6 +28,15 @@ LARGE_TURN = 4 * np.pi
 """[rad] Two full turns: more than industrial wrists have, and passed at once by angles given in
 degrees.
 """
+
+TOO_FAST = 10.0
+"""Velocities that mean ten times the way of the positions: degrees are 57 times radians, millimetres 1000."""
+
+LEAST_WAY = 1e-3
+"""[rad or m] A way below this is rest, and says nothing about units."""
+
+ROUNDING = 1e-9
+"""[rad or m] A joint that is beyond its limit by less than this is at it."""
 
 
 def limit_notes(limits: Limits) -> list[str]:
@@ -55,21 +66,24 @@ def obstacle_notes(obstacles: list[schema.Obstacle]) -> list[str]:
 def motion_notes(placed: PlacedRobot) -> list[str]:
     """Notes on joints that leave their limits or whose values look like degrees."""
     joints = {joint.name: joint for joint in placed.robot.moving_joints}
+    asked = placed.trajectory
     notes = []
-    for name, column in zip(
-        placed.trajectory.joint_names, placed.trajectory.positions.T, strict=True
-    ):
+    for name, column in zip(asked.joint_names, asked.positions.T, strict=True):
         notes += _joint_notes(joints[name], column)
     for name, value in placed.fixed_positions.items():
         notes += _joint_notes(joints[name], np.array([value]))
+    if asked.velocities is not None:
+        least, greatest = extremes_between(asked.times, asked.positions, asked.velocities)
+        for i, name in enumerate(asked.joint_names):
+            notes += _velocity_notes(joints[name], asked, i)
+            notes += _notes_between(joints[name], asked.positions[:, i], least[:, i], greatest[:, i])
     return notes
 
 
 def _joint_notes(joint: Joint, positions: np.ndarray) -> list[str]:
     notes = []
-    turns = joint.kind in (JointKind.REVOLUTE, JointKind.CONTINUOUS)
     greatest = float(np.abs(positions).max())
-    if turns and greatest > LARGE_TURN:
+    if _turns(joint) and greatest > LARGE_TURN:
         notes.append(
             f"CHECK UNITS: joint {joint.name!r} goes to {greatest:g} rad; "
             "angles are in radians, is this degrees?"
@@ -77,9 +91,47 @@ def _joint_notes(joint: Joint, positions: np.ndarray) -> list[str]:
     beyond = np.maximum(positions - joint.upper, joint.lower - positions)
     n_beyond = int((beyond > 0).sum())
     if n_beyond:
-        unit = "rad" if turns else "m"
-        notes.append(
-            f"joint {joint.name!r} leaves its limits {joint.lower:g} to {joint.upper:g} {unit} "
-            f"by up to {float(beyond.max()):.3g} {unit} in {n_beyond} of {len(positions)} steps"
-        )
+        notes.append(f"{_leaves(joint, beyond)} in {n_beyond} of {len(positions)} steps")
     return notes
+
+
+def _velocity_notes(joint: Joint, asked: Trajectory, i_column: int) -> list[str]:
+    """A note if the velocities mean a way that is many times what the positions go."""
+    speed = np.abs(asked.velocities[:, i_column])
+    gone = float(np.abs(np.diff(asked.positions[:, i_column])).sum())
+    meant = float((0.5 * (speed[1:] + speed[:-1]) * np.diff(asked.times)).sum())
+    if meant <= TOO_FAST * gone or meant <= TOO_FAST * LEAST_WAY:
+        return []
+    unit, other = ("rad/s", "degrees/s") if _turns(joint) else ("m/s", "mm/s")
+    return [
+        f"CHECK UNITS: the velocities of joint {joint.name!r} mean a way of {meant:.3g} where its positions "
+        f"go {gone:.3g}; velocities are in {unit}, is this {other}?"
+    ]
+
+
+def _notes_between(
+    joint: Joint, positions: np.ndarray, least: np.ndarray, greatest: np.ndarray
+) -> list[str]:
+    """A note if the joint goes farther beyond its limits between two samples than at them."""
+    at_samples = np.maximum(positions - joint.upper, joint.lower - positions)
+    ends = np.maximum(0.0, np.maximum(at_samples[:-1], at_samples[1:]))
+    beyond = np.maximum(greatest - joint.upper, joint.lower - least)
+    farther = beyond > ends + ROUNDING
+    if not farther.any():
+        return []
+    return [
+        f"CHECK: {_leaves(joint, beyond[farther])} between two samples, on the cubic that its velocities make, "
+        f"in {int(farther.sum())} of {len(beyond)} intervals"
+    ]
+
+
+def _leaves(joint: Joint, beyond: np.ndarray) -> str:
+    unit = "rad" if _turns(joint) else "m"
+    return (
+        f"joint {joint.name!r} leaves its limits {joint.lower:g} to {joint.upper:g} {unit} "
+        f"by up to {float(beyond.max()):.3g} {unit}"
+    )
+
+
+def _turns(joint: Joint) -> bool:
+    return joint.kind in (JointKind.REVOLUTE, JointKind.CONTINUOUS)

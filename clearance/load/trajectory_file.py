@@ -1,5 +1,8 @@
 """CSV to a trajectory: a `time` column [s] and one column a joint, by name, in any order.
 
+A column `<joint>/velocity` [rad/s or m/s], named as ros2_control names its interfaces, gives the joint's velocity;
+all joints have one or none.
+
 The table is parsed by pyarrow in one pass; only when something is wrong is the text gone through
 again, slowly, to name the line. Not for: which joints the robot has (`trajectory_check`).
 """
@@ -8,7 +11,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -21,21 +24,23 @@ from clearance.errors import (
     MissingKey,
     NotFinite,
     at,
+    nearest_name,
 )
 from clearance.world.trajectory import Trajectory
 
 _TIME = "time"
+_VELOCITY = "/velocity"
 
 
 def parse_trajectory(data: bytes, shown: str) -> Trajectory:
-    """The samples in a CSV file, columns in the file's order without `time`.
+    """The samples in a CSV file; joints in the order of their position columns.
 
     Args:
         shown: the file's name in errors.
 
     Raises:
         BadSyntax, BadShape, MissingKey, DuplicateName, NotFinite, BadTime: with the line in the
-        file.
+        file. BadDimension: a velocity that no joint can have.
     """
     with at(shown):
         names = _header(data)
@@ -44,8 +49,17 @@ def parse_trajectory(data: bytes, shown: str) -> Trajectory:
         i_time = names.index(_TIME)
         times = np.ascontiguousarray(table[:, i_time])
         _refuse_standing_time(times, data)
-        joints = tuple(name for name in names if name != _TIME)
-        return Trajectory(times, joints, np.delete(table, i_time, axis=1))
+        joints = tuple(name for name in names if name != _TIME and not name.endswith(_VELOCITY))
+        positions = _columns(table, names, joints)
+        velocities = None
+        if len(joints) < len(names) - 1:
+            velocities = _columns(table, names, [joint + _VELOCITY for joint in joints])
+        return Trajectory(times, joints, positions, velocities)
+
+
+def _columns(table: np.ndarray, names: list[str], wanted: Iterable[str]) -> np.ndarray:
+    """(n, len(wanted)) the columns of these names."""
+    return np.ascontiguousarray(table[:, [names.index(name) for name in wanted]])
 
 
 def _header(data: bytes) -> list[str]:
@@ -67,7 +81,25 @@ def _header(data: bytes) -> list[str]:
         )
     if len(names) == 1:
         raise BadShape("there is no joint column", valid="time and at least one joint are needed")
+    _refuse_unmatched_velocities(names)
     return names
+
+
+def _refuse_unmatched_velocities(names: list[str]) -> None:
+    joints = [name for name in names if name != _TIME and not name.endswith(_VELOCITY)]
+    given = [name.removesuffix(_VELOCITY) for name in names if name.endswith(_VELOCITY)]
+    for joint in given:
+        if joint not in joints:
+            raise MissingKey(
+                f"column {joint + _VELOCITY!r} is the velocity of {joint!r}, which has no column",
+                valid=nearest_name(joint, joints),
+            )
+    without = [joint for joint in joints if joint not in given]
+    if given and without:
+        raise MissingKey(
+            f"joint {without[0]!r} has no column {without[0] + _VELOCITY!r}, joint {given[0]!r} has one",
+            valid="velocities of all joints or of none",
+        )
 
 
 def _table(data: bytes, names: list[str]) -> np.ndarray:

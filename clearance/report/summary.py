@@ -130,7 +130,9 @@ def _certified(record: Record) -> dict[str, Any] | None:
         return None
     step = certificate.worst_interval
     times = record.steps["time"].to_numpy()
+    cubic = any(motion.velocities is not None for motion in record.motions)
     return {
+        "joints": "cubic" if cubic else "linear",
         "lower_bound": float(certificate.lower_bound[step]),
         "upper_bound": float(certificate.upper_bound[step]),
         "step": step,

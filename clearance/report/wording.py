@@ -102,8 +102,9 @@ def count(number: int, noun: str) -> str:
 
 def certified_text(certified: dict) -> str:
     """What is proven of the continuous motion, as one sentence."""
+    way = {"linear": "linearly", "cubic": "on cubics through the given velocities"}[certified["joints"]]
     return (
-        f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving linearly between steps; "
+        f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving {way} between steps; "
         f"least from {seconds(certified['start'])} to {seconds(certified['end'])}, "
         f"where {mm(certified['upper_bound'])} mm occurs"
     )

@@ -24,6 +24,7 @@ from clearance.errors import BadInput, NotFinite, Unavailable
 from clearance.simulate.physics_model import notes_on_masses, write_obj, write_physics_urdf
 from clearance.world.body import Obstacle
 from clearance.world.case import PlacedRobot
+from clearance.world.cubic import asked_at
 from clearance.world.kinematics import moving_positions
 from clearance.world.motion import Motion
 from clearance.world.robot import Joint, JointKind
@@ -48,7 +49,7 @@ def simulated_motion(
 
     The states are those after each simulation step, the first one included; they go on for
     `settle_time` after the last sample, while the robot arrives. Asked positions between samples
-    are linear.
+    are linear, or on cubics where the trajectory has velocities.
 
     Args:
         placed: its trajectory is what is asked; joints it does not name are held at their fixed
@@ -92,12 +93,10 @@ def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
 def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n,) times [s], (n, k) positions and (n, k) rates asked for at each simulation step."""
     trajectory = placed.trajectory
-    samples = moving_positions(placed, trajectory.joint_names, trajectory.positions)
     start, end = trajectory.times[0], trajectory.times[-1]
     n_steps = int(np.ceil((end - start + settle_time) * STEPS_PER_SECOND - 1e-9)) + 1
     times = start + np.arange(n_steps) / STEPS_PER_SECOND
-    columns = [np.interp(times, trajectory.times, column) for column in samples.T]
-    asked = np.array(columns).reshape(-1, n_steps).T
+    asked = moving_positions(placed, trajectory.joint_names, asked_at(trajectory, times))
     rates = np.diff(asked, axis=0, prepend=asked[:1]) * STEPS_PER_SECOND
     return times, asked, rates
 

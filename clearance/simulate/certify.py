@@ -1,4 +1,4 @@
-"""Proves how close the continuous motion comes between the steps; joints move linearly in between.
+"""Proves how close the continuous motion comes between the steps, joints moving as `Motion` says.
 
 Not for: the clearance at the steps (`measure`), which it starts from.
 """
@@ -13,13 +13,14 @@ from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
 from clearance.kernels.certify import Asked, certify
 from clearance.kernels.drift import Chain
+from clearance.kernels.joint_path import JointPath
 from clearance.kernels.surface import Surface
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, Measurement, Progress
 from clearance.simulate.parts import in_order, parts, usable_cores
 from clearance.simulate.record import Certificate
 from clearance.world.case import Case
-from clearance.world.kinematics import chain_arrays, positions_by_link
+from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -52,16 +53,16 @@ def certify_motion(
         chosen = [i for i, pair in enumerate(pairs) if pair.i_robot == i_robot]
         surface, chain, asked = _lay_out(case, [pairs[i] for i in chosen])
         order = np.maximum(np.searchsorted(chosen, found.pair), 0) % len(chosen)
-        positions = positions_by_link(motion.placed.robot, motion.positions)
+        path = _joint_path(motion)
         robot_lower, robot_upper = lower.copy(), upper.copy()
 
         def run_part(
-            span: slice, surface=surface, chain=chain, asked=asked, positions=positions, order=order,
+            span: slice, surface=surface, chain=chain, asked=asked, path=path, order=order,
             lower=robot_lower, upper=robot_upper,
         ) -> tuple[int, np.ndarray]:  # fmt: skip
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
             certify(
-                surface, chain, asked, positions, order, span.start, span.stop, found.clearance,
+                surface, chain, asked, path, order, span.start, span.stop, found.clearance,
                 gap, case.limits.fail, lower, upper, counts,
             )  # fmt: skip
             return span.stop, counts
@@ -96,3 +97,13 @@ def _with_whole_faces(surface: Surface) -> Surface:
         edge_starts=starts,
         owned_edges=np.stack([corners, corners[rings_of(starts).ahead]], axis=1),
     )
+
+
+def _joint_path(motion: Motion) -> JointPath:
+    """The motion of the joints above all links."""
+    robot = motion.placed.robot
+    positions = positions_by_link(robot, motion.positions)
+    velocities = np.empty((0, positions.shape[1]))
+    if motion.velocities is not None:
+        velocities = velocities_by_link(robot, motion.velocities)
+    return JointPath(np.ascontiguousarray(motion.times, dtype=np.float64), positions, velocities)

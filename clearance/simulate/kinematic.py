@@ -5,16 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematics import moving_positions
+from clearance.world.kinematics import moving_positions, moving_velocities
 from clearance.world.motion import Motion
 
 
 def kinematic_motion(placed: PlacedRobot) -> Motion:
     """The motion that goes through the samples of the trajectory, with no tracking error."""
     asked = placed.trajectory
+    velocities = None
+    if asked.velocities is not None:
+        velocities = moving_velocities(placed, asked.joint_names, asked.velocities)
     return Motion(
         placed=placed,
         times=asked.times,
         positions=moving_positions(placed, asked.joint_names, asked.positions),
         tracking_error=np.zeros(asked.n_steps),
+        velocities=velocities,
     )

@@ -81,7 +81,7 @@ class CrossCheck:
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """Proven bounds on the clearance of the continuous motion, joints moving linearly between steps.
+    """Proven bounds on the clearance of the continuous motion, joints moving between steps as `Motion` says.
 
     Attributes:
         lower_bound: (n,) [m] row i holds from step i to step i + 1; the last row for its step alone.

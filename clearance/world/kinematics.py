@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from clearance.errors import UnknownJoint, nearest_name
@@ -69,6 +71,11 @@ def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: n
     return positions
 
 
+def moving_velocities(placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray) -> np.ndarray:
+    """(n, k) velocities of all moving joints from those given by name; joints that are not named rest."""
+    return moving_positions(replace(placed, fixed_positions={}), joint_names, given)
+
+
 def _column(columns: dict[str, int], name: str) -> int:
     if name not in columns:
         raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, columns))
@@ -85,6 +92,15 @@ def positions_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
         if joint.kind is not JointKind.FIXED:
             positions[:, index[joint.child]] = _position(joint, by_name, columns, moving)
     return positions
+
+
+def velocities_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
+    """(n, n_links) the velocity of the joint above each link from those of the moving joints."""
+    without_offsets = tuple(
+        joint if joint.mimic is None else replace(joint, mimic=replace(joint.mimic, offset=0.0))
+        for joint in robot.joints
+    )
+    return positions_by_link(replace(robot, joints=without_offsets), moving)
 
 
 def _position(

@@ -19,6 +19,8 @@ class Motion:
         positions: (n, k) [rad] or [m] the positions that occur, columns as `placed.robot.moving_joints`.
         tracking_error: (n,) greatest |actual - asked| over the joints [rad or m]; zeros when kinematic.
         notes: what had to be assumed to make the motion, one line each, for the report.
+        velocities: (n, k) [rad/s] or [m/s]: between steps each joint moves on the cubic that has them at both
+            ends; None where the joints move linearly.
     """
 
     placed: PlacedRobot
@@ -26,6 +28,7 @@ class Motion:
     positions: np.ndarray
     tracking_error: np.ndarray
     notes: tuple[str, ...] = ()
+    velocities: np.ndarray | None = None
 
     @property
     def n_steps(self) -> int:

@@ -10,6 +10,7 @@ from clearance.errors import BadDimension
 from clearance.tolerance import REACH
 from clearance.world.body import Body
 from clearance.world.case import Case
+from clearance.world.cubic import extremes_between
 from clearance.world.motion import Motion
 
 
@@ -32,7 +33,11 @@ def _slide(motion: Motion) -> float:
     robot = motion.placed.robot
     apart = sum(float(np.abs(joint.parent_from_joint[:3, 3]).sum()) for joint in robot.joints)
     slides = [i for i, joint in enumerate(robot.moving_joints) if joint.kind == "prismatic"]
-    return apart + float(np.abs(motion.positions[:, slides]).max(axis=0, initial=0.0).sum())
+    positions = motion.positions
+    if motion.velocities is not None:
+        least, greatest = extremes_between(motion.times, positions, motion.velocities)
+        positions = np.concatenate([positions, least, greatest])
+    return apart + float(np.abs(positions[:, slides]).max(axis=0, initial=0.0).sum())
 
 
 def _require(what: str, body: Body, origin: np.ndarray) -> None:

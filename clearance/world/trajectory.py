@@ -6,22 +6,55 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.errors import BadDimension, BadShape, NotFinite
+from clearance.tolerance import LARGEST
+
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Samples of joint positions; between samples the joints move linearly.
+    """Samples of joint positions, and of velocities if they are known.
+
+    Between samples each joint moves linearly; with velocities, on the cubic that has them at both ends.
 
     Attributes:
         times: (n,) [s], strictly increasing.
         joint_names: (k,) of the robot's moving joints, in column order.
         positions: (n, k) [rad] or [m].
+        velocities: (n, k) [rad/s] or [m/s], or None.
+
+    Raises:
+        BadShape, NotFinite: velocities that are not one finite number for each position. BadDimension: one
+            that carries its joint out of all bounds before the next sample.
     """
 
     times: np.ndarray
     joint_names: tuple[str, ...]
     positions: np.ndarray
+    velocities: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        if self.velocities is not None:
+            self._refuse_bad_velocities(np.asarray(self.velocities))
 
     @property
     def n_steps(self) -> int:
         """Number of samples."""
         return len(self.times)
+
+    def _refuse_bad_velocities(self, velocities: np.ndarray) -> None:
+        if velocities.shape != np.shape(self.positions):
+            raise BadShape(
+                f"velocities have shape {velocities.shape}",
+                valid=f"that of the positions, {np.shape(self.positions)}",
+            )
+        if not np.isfinite(velocities).all():
+            raise NotFinite("a velocity is NaN or infinite", valid="finite numbers")
+        longest = np.diff(self.times).max(initial=0.0)
+        with np.errstate(over="ignore"):
+            farthest = np.abs(velocities).max(axis=0, initial=0.0) * max(1.0, longest)
+        if (farthest > LARGEST).any():
+            raise BadDimension(
+                f"joint {self.joint_names[int(np.argmax(farthest))]!r} has a velocity that takes it "
+                f"{farthest.max():g} rad or m before the next sample",
+                valid=f"{LARGEST:g} or less",
+            )

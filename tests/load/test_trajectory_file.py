@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from clearance.errors import BadShape, BadSyntax, BadTime, DuplicateName, MissingKey, NotFinite
+from clearance.errors import (
+    BadDimension,
+    BadShape,
+    BadSyntax,
+    BadTime,
+    DuplicateName,
+    MissingKey,
+    NotFinite,
+)
 from clearance.load.trajectory_file import parse_trajectory
 
 
@@ -27,6 +35,25 @@ def test_time_may_be_any_column_and_joints_keep_their_order(text):
     assert trajectory.joint_names == ("b", "a")
     assert trajectory.times.tolist() == [0, 1]
     assert trajectory.positions.tolist() == [[1, 2], [3, 4]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "time,b,a,b/velocity,a/velocity\n0,1,2,5,6\n1,3,4,7,8\n",
+        "a/velocity,b,time,b/velocity,a\n6,1,0,5,2\n8,3,1,7,4\n",
+        "time, b ,a, a/velocity ,b/velocity\r\n0,1,2,6,5\r\n1,3,4,8,7",
+    ],
+)
+def test_velocity_columns_go_with_their_joints(text):
+    trajectory = parse(text)
+    assert trajectory.joint_names == ("b", "a")
+    assert trajectory.positions.tolist() == [[1, 2], [3, 4]]
+    assert trajectory.velocities.tolist() == [[5, 6], [7, 8]]
+
+
+def test_a_file_without_velocities_has_none():
+    assert parse("time,a,velocity\n0,1,2\n").velocities is None
 
 
 def test_numbers_are_read_to_the_last_bit():
@@ -61,6 +88,17 @@ def test_numbers_are_read_to_the_last_bit():
         ("time,a\nnan,1\n", NotFinite, "line 2: nan in column 'time'"),
         ("time,a\n0,1\n1,1\n\n1,2\n", BadTime, "line 5: time 1.0 follows 1.0"),
         ("time,a\n0,1\n-1,1\n", BadTime, "line 3: time -1.0 follows 0.0"),
+        ("time,arm,amr/velocity\n0,1,2\n", MissingKey, "'amr/velocity' is the velocity of 'amr'"),
+        ("time,arm,amr/velocity\n0,1,2\n", MissingKey, "did you mean 'arm'?"),
+        ("time,a/velocity\n0,1\n", MissingKey, "'a', which has no column"),
+        ("time,a,time/velocity\n0,1,1\n", MissingKey, "'time', which has no column"),
+        ("time,a,a/velocity/velocity\n0,1,1\n", MissingKey, "'a/velocity', which has no column"),
+        ("time,a,b,b/velocity\n0,1,1,1\n", MissingKey, "joint 'a' has no column 'a/velocity', joint 'b'"),
+        ("time,a,a/velocity,a/velocity\n0,1,1,1\n", DuplicateName, "column 'a/velocity' is there twice"),
+        ("time,a,a/velocity\n0,1,1\n1,1,nan\n", NotFinite, "line 3: nan in column 'a/velocity'"),
+        ("time,a,a/velocity\n0,1,x\n", BadSyntax, "line 2: 'x' in column 'a/velocity'"),
+        ("time,a,a/velocity\n0,1,1\n0,1,1\n", BadTime, "line 3: time 0.0 follows 0.0"),
+        ("time,a,a/velocity\n0,1,1\n1,1,1e200\n", BadDimension, "joint 'a' has a velocity"),
     ],
 )
 def test_each_fault_is_one_line_with_its_place(text, fault, says):

@@ -20,9 +20,9 @@ SHAPE = box((0.3, 0.1, 0.2))
 
 
 @kernel
-def drifts(surface, chain, link, poses, swing, direction):
+def drifts(surface, chain, link, poses, swing, bend, direction):
     pose = rigid(poses[link])
-    drift = drift_of(surface, surface.roots[0], chain, link, poses, swing, pose)
+    drift = drift_of(surface, surface.roots[0], chain, link, poses, swing, bend, pose)
     along = drift_of_box_along(box_of(surface, 0), Vec3(direction[0], direction[1], direction[2]), drift)
     return drift_of_box(box_of(surface, 0), drift), along
 
@@ -45,20 +45,31 @@ def random_robot(rng, n_joints):
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([1e-4, 1e-2, 0.3, 2.0]))
-def test_no_point_leaves_its_bound(seed, n_joints, size):
+@given(
+    st.integers(0, 2**32 - 1),
+    st.integers(1, 7),
+    st.sampled_from([1e-4, 1e-2, 0.3, 2.0]),
+    st.sampled_from([0.0, 0.1, 1.0, 10.0]),
+)
+def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng, n_joints)
     n_moving = len(robot.moving_joints)
     placed = PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
     middle, half = rng.uniform(-2, 2, n_moving), size * rng.uniform(-1, 1, n_moving)
     shares = np.concatenate([[0.0], np.linspace(-1.0, 1.0, 41)])
-    poses = link_poses(placed, middle + shares[:, None] * half)
+    bend = bent * size * rng.uniform(0, 1, n_moving)
+    aside = bend * rng.choice([-1.0, 0.3, 1.0], (len(shares), n_moving))
+    aside[0] = 0.0
+    poses = link_poses(placed, middle + shares[:, None] * half + aside)
     chain = Chain(np.eye(4), *chain_arrays(robot))
     swing = positions_by_link(robot, half[None])[0]
     direction = rng.normal(size=3)
     direction /= np.linalg.norm(direction)  # in the frame of the link
-    bound, bound_along = drifts(surface_of(SHAPE), chain, n_joints, poses[0], swing, direction)
+    bends = positions_by_link(robot, bend[None])[0]
+    bound, bound_along = drifts(
+        surface_of(SHAPE), chain, n_joints, poses[0], swing, bends, direction
+    )
     corners = np.c_[SHAPE.vertices, np.ones(len(SHAPE.vertices))]
     moved = (poses[:, n_joints] @ corners.T)[:, :3] - (poses[0, n_joints] @ corners.T)[:3]
     lengths = np.linalg.norm(moved, axis=1)
@@ -73,7 +84,19 @@ def test_the_bound_of_a_slide_is_exact():
     chain = Chain(np.eye(4), *chain_arrays(robot))
     poses = np.tile(np.eye(4), (2, 1, 1))
     bound, along = drifts(
-        surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), np.array([0.0, 1.0, 0.0])
+        surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), np.zeros(2), np.array([0.0, 1.0, 0.0])
     )
     assert bound == pytest.approx(0.25, rel=1e-11)
     assert along == 0.0
+
+
+def test_a_bend_is_added_to_the_slide_in_every_direction():
+    robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
+    chain = Chain(np.eye(4), *chain_arrays(robot))
+    poses, bend = np.tile(np.eye(4), (2, 1, 1)), np.array([0.0, 0.125])
+    sideways = np.array([0.0, 1.0, 0.0])
+    bound, along = drifts(
+        surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), bend, sideways
+    )
+    assert bound == pytest.approx(0.375, rel=1e-11)
+    assert along == pytest.approx(0.125, rel=1e-11)
