@@ -18,6 +18,8 @@ from clearance.kernels.surface import Surface
 from clearance.kernels.tree_build import build_tree
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
+_joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Surface]]
+_joined = weakref.WeakKeyDictionary()
 
 
 def surface_of(shape: Polyhedron) -> Surface:
@@ -28,10 +30,22 @@ def surface_of(shape: Polyhedron) -> Surface:
 
 
 def join(shapes: Sequence[Polyhedron]) -> Surface:
-    """The searchable form of several polyhedra; `roots[i]` is the tree of `shapes[i]`."""
-    parts = [surface_of(shape) for shape in shapes]
-    if len(parts) == 1:
-        return parts[0]
+    """The searchable form of several polyhedra; `roots[i]` is the tree of `shapes[i]`.
+
+    The last one that begins with the same shape is kept, for runs of one case after another.
+    """
+    if len(shapes) == 1:
+        return surface_of(shapes[0])
+    known = _joined.get(shapes[0])
+    if known is not None and len(known[0]) == len(shapes):
+        if all(ref() is shape for ref, shape in zip(known[0], shapes, strict=True)):
+            return known[1]
+    joined = _join([surface_of(shape) for shape in shapes])
+    _joined[shapes[0]] = (tuple(weakref.ref(shape) for shape in shapes), joined)
+    return joined
+
+
+def _join(parts: Sequence[Surface]) -> Surface:
     n_before = {name: _offsets([len(getattr(part, name)) for part in parts]) for name in Surface._fields}
 
     def stacked(name: str, shift: str | None = None) -> np.ndarray:
