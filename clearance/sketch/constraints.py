@@ -12,18 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from clearance.kernels.sketch_equations import (
-    ACROSS,
-    CIRCLE_CIRCLE,
-    LENGTHS,
-    LINE_CIRCLE,
-    LINEAR,
-    MIDDLE_ON,
-    POINT_CIRCLE,
-    POINT_LINE,
-    POINT_POINT,
-    RATIO,
-)
+from clearance.kernels import sketch_equations as equation
 from clearance.sketch.entities import Circle, Entity, Line, Point
 from clearance.sketch.faults import BadConstraint
 
@@ -102,17 +91,17 @@ def _half_turn(x: list[float], line: Line, other: Line) -> float:
 
 
 def _point_point(x, p, q):
-    return [Row(POINT_POINT, _pair(p) + _pair(q), scale=1.0)]
+    return [Row(equation.POINT_POINT, _pair(p) + _pair(q), scale=1.0)]
 
 
 def _point_line(x, p, line):
     place = (*_pair(p), line.variable, line.variable + 1)
-    return [Row(POINT_LINE, place, scale=_sign(_gap(x, p, line)))]
+    return [Row(equation.POINT_LINE, place, scale=_sign(_gap(x, p, line)))]
 
 
 def _point_circle(x, p, c):
     side = _sign(_span(x, p, c.center) - x[c.variable])
-    return [Row(POINT_CIRCLE, (*_pair(p), *_pair(c.center), c.variable), scale=side)]
+    return [Row(equation.POINT_CIRCLE, (*_pair(p), *_pair(c.center), c.variable), scale=side)]
 
 
 def _line_line(x, a, b):
@@ -120,21 +109,21 @@ def _line_line(x, a, b):
     same = _sign(math.cos(turn))
     shift = x[b.variable + 1] - same * x[a.variable + 1]
     return [
-        Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
-        Row(LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same), scale=_sign(shift)),
+        Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
+        Row(equation.LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same), scale=_sign(shift)),
     ]
 
 
 def _on_line(x, p, line):
-    return [Row(POINT_LINE, (*_pair(p), line.variable, line.variable + 1))]
+    return [Row(equation.POINT_LINE, (*_pair(p), line.variable, line.variable + 1))]
 
 
 def _on_circle(x, p, c):
-    return [Row(POINT_CIRCLE, (*_pair(p), *_pair(c.center), c.variable))]
+    return [Row(equation.POINT_CIRCLE, (*_pair(p), *_pair(c.center), c.variable))]
 
 
 def _together(x, p, q):
-    return [Row(LINEAR, (p.variable + k, q.variable + k), (1.0, -1.0)) for k in (0, 1)]
+    return [Row(equation.LINEAR, (p.variable + k, q.variable + k), (1.0, -1.0)) for k in (0, 1)]
 
 
 def _centered(x, c, d):
@@ -149,15 +138,15 @@ def _same_line(x, a, b):
     turn = _half_turn(x, a, b)
     same = _sign(math.cos(turn))
     return [
-        Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
-        Row(LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same)),
+        Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
+        Row(equation.LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same)),
     ]
 
 
 def _line_touches(x, line, c):
     side = _sign(_gap(x, c.center, line))
     place = (*_pair(c.center), line.variable, line.variable + 1, c.variable)
-    return [Row(LINE_CIRCLE, place, (side,))]
+    return [Row(equation.LINE_CIRCLE, place, (side,))]
 
 
 def _circles_touch(x, c, d, inside=None):
@@ -167,50 +156,50 @@ def _circles_touch(x, c, d, inside=None):
         inside = abs(apart - abs(r - q)) < abs(apart - (r + q))
     signs = (1.0, 1.0) if not inside else ((1.0, -1.0) if r >= q else (-1.0, 1.0))
     place = (*_pair(c.center), *_pair(d.center), c.variable, d.variable)
-    return [Row(CIRCLE_CIRCLE, place, signs)]
+    return [Row(equation.CIRCLE_CIRCLE, place, signs)]
 
 
 def _angle(x, a, b):
     turn = _turns(x, a, b)
     whole = 2.0 * math.pi * round(turn / (2.0 * math.pi))
     side = _sign(turn - whole)
-    return [Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), side, whole)]
+    return [Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), side, whole)]
 
 
 def _parallel(x, a, b):
     turn = _half_turn(x, a, b)
-    return [Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
+    return [Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
 
 
 def _perpendicular(x, a, b):
     turn = math.pi * (round(_turns(x, a, b) / math.pi - 0.5) + 0.5)
-    return [Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
+    return [Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
 
 
 def _level(x, line):
     turn = math.pi * round(x[line.variable] / math.pi)
-    return [Row(LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
+    return [Row(equation.LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
 
 
 def _upright(x, line):
     turn = math.pi * (round(x[line.variable] / math.pi - 0.5) + 0.5)
-    return [Row(LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
+    return [Row(equation.LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
 
 
 def _points_level(x, p, q):
-    return [Row(LINEAR, (p.variable + 1, q.variable + 1), (1.0, -1.0), ground=ORIENTED)]
+    return [Row(equation.LINEAR, (p.variable + 1, q.variable + 1), (1.0, -1.0), ground=ORIENTED)]
 
 
 def _points_upright(x, p, q):
-    return [Row(LINEAR, (p.variable, q.variable), (1.0, -1.0), ground=ORIENTED)]
+    return [Row(equation.LINEAR, (p.variable, q.variable), (1.0, -1.0), ground=ORIENTED)]
 
 
 def _radius(x, c):
-    return [Row(LINEAR, (c.variable,), (1.0,), 1.0)]
+    return [Row(equation.LINEAR, (c.variable,), (1.0,), 1.0)]
 
 
 def _diameter(x, c):
-    return [Row(LINEAR, (c.variable,), (1.0,), 0.5)]
+    return [Row(equation.LINEAR, (c.variable,), (1.0,), 0.5)]
 
 
 def _lengths(a, b):
@@ -218,19 +207,19 @@ def _lengths(a, b):
 
 
 def _equal_length(x, a, b):
-    return [Row(LENGTHS, _lengths(a, b), offset=1.0)]
+    return [Row(equation.LENGTHS, _lengths(a, b), offset=1.0)]
 
 
 def _length_ratio(x, a, b):
-    return [Row(LENGTHS, _lengths(a, b), scale=1.0)]
+    return [Row(equation.LENGTHS, _lengths(a, b), scale=1.0)]
 
 
 def _equal_radius(x, c, d):
-    return [Row(LINEAR, (c.variable, d.variable), (1.0, -1.0))]
+    return [Row(equation.LINEAR, (c.variable, d.variable), (1.0, -1.0))]
 
 
 def _radius_ratio(x, c, d):
-    return [Row(RATIO, (c.variable, d.variable), scale=1.0)]
+    return [Row(equation.RATIO, (c.variable, d.variable), scale=1.0)]
 
 
 def _midpoint(x, m, line):
@@ -239,14 +228,14 @@ def _midpoint(x, m, line):
 
 def _middle(x, m, p, q):
     return [
-        Row(LINEAR, (m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5))
+        Row(equation.LINEAR, (m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5))
         for k in (0, 1)
     ]
 
 
 def _symmetric(x, p, q, line):
     place = (*_pair(p), *_pair(q), line.variable, line.variable + 1)
-    return [Row(MIDDLE_ON, place), Row(ACROSS, place[:5])]
+    return [Row(equation.MIDDLE_ON, place), Row(equation.ACROSS, place[:5])]
 
 
 def _circles_symmetric(x, c, d, line):
@@ -254,16 +243,19 @@ def _circles_symmetric(x, c, d, line):
 
 
 def _fix_point(x, p):
-    return [Row(LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in _pair(p)]
+    return [Row(equation.LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in _pair(p)]
 
 
 def _fix_line(x, line):
     at = line.variable
-    return [Row(LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in (at, at + 1)]
+    return [Row(equation.LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in (at, at + 1)]
 
 
 def _fix_circle(x, c):
-    return [*_fix_point(x, c.center), Row(LINEAR, (c.variable,), (1.0,), offset=x[c.variable])]
+    return [
+        *_fix_point(x, c.center),
+        Row(equation.LINEAR, (c.variable,), (1.0,), offset=x[c.variable]),
+    ]
 
 
 def _nothing(x, *entities):
