@@ -170,56 +170,56 @@ def _find_freed(
 
 
 @kernel
-def execute(s, plan, x, sketch, turned, active, limits):
-    """Runs the steps in place on x; the fate (s,) of each.
+def place_closed(s, plan, x, sketch, turned, active, limits, begin, fate):
+    """Runs the closed steps from `begin` on, in place on x and `fate` (s,), up to a numeric step that has
+    work to do; its index, or the number of steps.
 
     `turned` (s,) is 1 where a closed step takes the sketch's branch, -1 the other; `active` (v,) leaves
     out the vertices of parts that need no work.
     """
-    n_steps = plan.vertex.shape[0]
-    settled, floor, tolerance = limits.settled, limits.floor, limits.tolerance
-    attempts = limits.attempts
-    fate = np.full(n_steps, DONE, np.int64)
     gradient = np.empty(8)
-    first = np.full(s.kind.shape[0], -1, np.int64)
-    pivot = np.zeros((plan.held.shape[0], 2))
+    for k in range(begin, plan.vertex.shape[0]):
+        b, v = plan.block[k], plan.vertex[k]
+        fate[k] = KEPT
+        if b >= 0:
+            at = plan.block_row_start[b]
+            rows = plan.block_row[at : plan.block_row_start[b + 1]]
+            if not active[plan.block_vertex[plan.block_vertex_start[b]]]:
+                continue
+            if not _holds(s, rows, x, gradient, limits.settled):
+                return k
+        elif active[v]:
+            if turned[k] > 0.0 and _holds(s, plan.edges[k], x, gradient, limits.settled):
+                continue
+            if s.kind[v] == POINT and plan.partner[k] >= 0:
+                return k
+            done = place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient, turned[k])
+            fate[k] = DONE if done else FAILED
+    return plan.vertex.shape[0]
+
+
+@kernel
+def solve_numeric(s, plan, x, sketch, k, limits):
+    """The fate of one numeric step, in place on x: a cluster, or a circle from three conditions."""
+    floor, tolerance, attempts = limits.floor, limits.tolerance, limits.attempts
     alone = np.full(s.kind.shape[0], -1, np.int64)
-    pair = np.empty(2, np.int64)
-    fresh = True
-    for k in range(n_steps):
-        b = plan.block[k]
-        v = plan.vertex[k] if b < 0 else plan.block_vertex[plan.block_vertex_start[b]]
-        if not active[v]:
-            fate[k] = KEPT
-            continue
-        if b < 0:
-            if turned[k] > 0.0 and _holds(s, plan.edges[k], x, gradient, settled):
-                fate[k] = KEPT
-            elif s.kind[v] == POINT and plan.partner[k] >= 0:  # a circle from three conditions
-                pair[0], pair[1] = v, plan.partner[k]
-                three = plan.edges[k][plan.edges[k] >= 0]
-                if not solve_block(s, pair, three, x, alone, pivot, floor, tolerance, attempts):
-                    fate[k] = FAILED
-            elif not place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient, turned[k]):
-                fate[k] = FAILED
-            continue
-        if fresh:
-            pivot = pivots_of(s, plan.body_of, plan.held.shape[0], x)
-            fresh = False
+    pivot = pivots_of(s, plan.body_of, plan.held.shape[0], x)
+    b = plan.block[k]
+    if b < 0:
+        vertices, rows = np.empty(2, np.int64), plan.edges[k][plan.edges[k] >= 0]
+        vertices[0], vertices[1] = plan.vertex[k], plan.partner[k]
+    else:
         vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
         rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
-        if _holds(s, rows, x, gradient, settled):
-            fate[k] = KEPT
-        elif rows.shape[0] > limits.largest_block:
-            fate[k] = TOO_LARGE
-        else:
-            unknowns, done = freedoms(s, vertices, plan.body_of), False
-            if BANDED <= unknowns and freedoms(s, vertices, alone) <= FREED * unknowns:
-                done = _find_freed(
-                    s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, b == 0
-                )
-            if not done and not solve_block(
-                s, vertices, rows, x, plan.body_of, pivot, floor, tolerance, attempts
-            ):
-                fate[k] = FAILED
-    return fate
+    if rows.shape[0] > limits.largest_block:
+        return TOO_LARGE
+    unknowns = freedoms(s, vertices, plan.body_of)
+    if BANDED <= unknowns and freedoms(s, vertices, alone) <= FREED * unknowns:
+        first = np.full(s.kind.shape[0], -1, np.int64)
+        if _find_freed(
+            s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, b == 0
+        ):
+            return DONE
+    body_of = plan.body_of if b >= 0 else alone
+    done = solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance, attempts)
+    return DONE if done else FAILED

@@ -51,6 +51,23 @@ class Plan(NamedTuple):
 
 
 @kernel
+def peeled_plan(kind, ends, absolute, theta_of):
+    """(the plan, True) of a graph that can be peeled as a whole, else (a part of it, False)."""
+    n = kind.shape[0]
+    starts, rows = lists(ends, n)
+    live, removed = (ends[:, 0] >= 0).astype(np.uint8), np.zeros(n, np.uint8)
+    vertex, partner, edges = peel(kind, ends, starts, rows, absolute, theta_of, live, removed)
+    size = vertex.shape[0]
+    none, zero = np.empty(0, np.int64), np.zeros(1, np.int64)
+    plan = Plan(
+        vertex[::-1].copy(), partner[::-1].copy(), edges[::-1].copy(), np.full(size, -1, np.int64),
+        np.zeros(size, np.int64), zero, none, zero, none, np.full(n, -1, np.int64),
+        np.zeros(0, np.uint8), none, zero, none,
+    )  # fmt: skip
+    return plan, not live.any()
+
+
+@kernel
 def make_plan(kind, ends, absolute, theta_of):
     """The plan of a constraint graph; see `Plan`."""
     n, m = kind.shape[0], ends.shape[0]

@@ -150,29 +150,31 @@ def search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks)
     keep(s, vertices, x, original, False)
     pivots, kept_pivots = pivot.copy(), pivot.copy()
     gradient, step = np.empty(8), np.empty(n)
-    spacing, state = _spacing(s, vertices, x), 12345
+    spacing, state = _spacing(s, vertices, x), np.int64(12345)
     enough, least = tolerance * tolerance, floor * floor
-    total, steps = descend_damped(
-        s, vertices, rows, x, body_of, pivot, first, n, half, FROM_SKETCH, least, enough, 120, 8
-    )
-    for _ in range(kicks):
-        if total <= enough or float(steps) * n * half * half > WORK:
-            break
-        keep(s, vertices, x, kept, False)
-        kept_pivots[:] = pivot
-        state, node = _violated(s, rows, x, of_row, state, gradient)
-        state, which = next_share(state)
-        state, share = next_share(state)
-        ring = int(3.0 * which)
-        amount = (2.0 if ring == 0 else (1.0 if ring == 1 else 0.5)) * (0.3 + 0.7 * share)
-        reach = _reach(s, rows, x, node, of_row, start, mine, spacing)
-        state = _kick(
-            node, ring, of_row, start, mine, reach, amount, column, width, is_turn, step, state
-        )
-        move(s, vertices, step, 1.0, x, first, body_of, pivot)
+    total, steps, damping = math.inf, 0, FROM_SKETCH
+    longest, patience = np.int64(120), np.int64(8)
+    for turn in range(kicks + 1):
+        if turn > 0:
+            if total <= enough or float(steps) * n * half * half > WORK:
+                break
+            damping, longest, patience = FROM_KICK, np.int64(60), np.int64(4)
+            keep(s, vertices, x, kept, False)
+            kept_pivots[:] = pivot
+            state, node = _violated(s, rows, x, of_row, state, gradient)
+            state, which = next_share(state)
+            state, share = next_share(state)
+            ring = int(3.0 * which)
+            amount = (2.0 if ring == 0 else (1.0 if ring == 1 else 0.5)) * (0.3 + 0.7 * share)
+            reach = _reach(s, rows, x, node, of_row, start, mine, spacing)
+            state = _kick(
+                node, ring, of_row, start, mine, reach, amount, column, width, is_turn, step, state
+            )
+            move(s, vertices, step, 1.0, x, first, body_of, pivot)
         after, more = descend_damped(
-            s, vertices, rows, x, body_of, pivot, first, n, half, FROM_KICK, least, enough, 60, 4
-        )
+            s, vertices, rows, x, body_of, pivot, first, n, half, damping, least, enough, longest,
+            patience,
+        )  # fmt: skip
         steps += more
         if after < WORSE * total:
             total = after
@@ -180,8 +182,22 @@ def search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks)
             keep(s, vertices, x, kept, True)
             pivot[:] = kept_pivots
     if DIGITS * enough < total <= NEAR * enough:
+        longest = np.int64(40)
         total, _ = descend_damped(
-            s, vertices, rows, x, body_of, pivot, first, n, half, 1e-12, least, 0.0, 40, 40
+            s,
+            vertices,
+            rows,
+            x,
+            body_of,
+            pivot,
+            first,
+            n,
+            half,
+            1e-12,
+            least,
+            0.0,
+            longest,
+            longest,
         )
     for v in vertices:
         first[v] = -1

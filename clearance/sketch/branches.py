@@ -18,13 +18,13 @@ from clearance.kernels.sketch_equations import (
     MIDDLE_ON,
     POINT_LINE,
 )
-from clearance.kernels.sketch_execute import FAILED, execute
+from clearance.kernels.sketch_execute import FAILED
 from clearance.kernels.sketch_graph import POINT, TURN
 from clearance.sketch.execution import WRONG_SIDE, Outcome, run
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.roots import other_solutions
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import limits_of, residual_of
+from clearance.sketch.steps import execute, limits_of, residual_of
 
 MOST = 10
 """Choices up to which all their combinations are tried: 1024 runs of a plan."""
@@ -108,7 +108,7 @@ def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: np.nd
         turned = np.ones(problem.plan.vertex.size)
         turned[steps[(mask >> np.arange(steps.size)) & 1 == 1]] = -1.0
         x = start.copy()
-        fates = execute(problem.system, problem.plan, x, start, turned, every, limits_of(problem))
+        fates = execute(problem, x, start, turned, every, limits_of(problem))
         if (fates == FAILED).any():
             continue
         x = x[problem.alias]

@@ -1,8 +1,7 @@
-"""Constraint kinds: between which entities, with which valency, and the equations they stand for.
+"""Constraint kinds: between which entities, with which valency, and what each measures.
 
-A kind turns entities into rows (see `clearance.kernels.sketch_equations`). Whatever an equation
-leaves open by sign (the side of a line, inside or outside, the turn of an angle) is read from the
-sketch when the constraint is made and never changes afterwards. Not for: solving.
+A kind turns entities into rows (`rows`) when the constraint is made; the signs read from the sketch then
+never change afterwards. Not for: solving.
 """
 
 from __future__ import annotations
@@ -12,34 +11,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from clearance.kernels.sketch_equations import (
-    ACROSS,
-    CIRCLE_CIRCLE,
-    LENGTHS,
-    LINE_CIRCLE,
-    LINEAR,
-    MIDDLE_ON,
-    POINT_CIRCLE,
-    POINT_LINE,
-    POINT_POINT,
-    RATIO,
-)
+from clearance.sketch import rows
 from clearance.sketch.entities import Circle, Entity, Line, Point
 from clearance.sketch.faults import BadConstraint
-
-NOWHERE, GROUNDED, ORIENTED = 0, 1, 2
-"""How a row refers to the ground: not, by position, by direction only."""
-
-
-class Row(NamedTuple):
-    """One equation; its value is `scale` times the dimension plus `offset`."""
-
-    code: int
-    var: tuple[int, ...]
-    coef: tuple[float, ...] = ()
-    scale: float = 0.0
-    offset: float = 0.0
-    ground: int = NOWHERE
+from clearance.sketch.rows import Row
 
 
 @dataclass(eq=False)
@@ -75,201 +50,6 @@ class Constraint:
         return self.n_rows
 
 
-def _pair(p: Point) -> tuple[int, int]:
-    return p.variable, p.variable + 1
-
-
-def _gap(x: list[float], p: Point, line: Line) -> float:
-    """[m] signed distance of p from the line in the sketch."""
-    theta, d = x[line.variable], x[line.variable + 1]
-    return math.cos(theta) * x[p.variable + 1] - math.sin(theta) * x[p.variable] - d
-
-
-def _span(x: list[float], p: Point, q: Point) -> float:
-    return math.hypot(x[p.variable] - x[q.variable], x[p.variable + 1] - x[q.variable + 1])
-
-
-def _sign(value: float) -> float:
-    return -1.0 if value < 0.0 else 1.0
-
-
-def _turns(x: list[float], line: Line, other: Line) -> float:
-    return x[other.variable] - x[line.variable]
-
-
-def _half_turn(x: list[float], line: Line, other: Line) -> float:
-    return math.pi * round(_turns(x, line, other) / math.pi)
-
-
-def _point_point(x, p, q):
-    return [Row(POINT_POINT, _pair(p) + _pair(q), scale=1.0)]
-
-
-def _point_line(x, p, line):
-    place = (*_pair(p), line.variable, line.variable + 1)
-    return [Row(POINT_LINE, place, scale=_sign(_gap(x, p, line)))]
-
-
-def _point_circle(x, p, c):
-    side = _sign(_span(x, p, c.center) - x[c.variable])
-    return [Row(POINT_CIRCLE, (*_pair(p), *_pair(c.center), c.variable), scale=side)]
-
-
-def _line_line(x, a, b):
-    turn = _half_turn(x, a, b)
-    same = _sign(math.cos(turn))
-    shift = x[b.variable + 1] - same * x[a.variable + 1]
-    return [
-        Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
-        Row(LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same), scale=_sign(shift)),
-    ]
-
-
-def _on_line(x, p, line):
-    return [Row(POINT_LINE, (*_pair(p), line.variable, line.variable + 1))]
-
-
-def _on_circle(x, p, c):
-    return [Row(POINT_CIRCLE, (*_pair(p), *_pair(c.center), c.variable))]
-
-
-def _together(x, p, q):
-    return [Row(LINEAR, (p.variable + k, q.variable + k), (1.0, -1.0)) for k in (0, 1)]
-
-
-def _centered(x, c, d):
-    return _together(x, c.center, d.center)
-
-
-def _point_centered(x, p, c):
-    return _together(x, p, c.center)
-
-
-def _same_line(x, a, b):
-    turn = _half_turn(x, a, b)
-    same = _sign(math.cos(turn))
-    return [
-        Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
-        Row(LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same)),
-    ]
-
-
-def _line_touches(x, line, c):
-    side = _sign(_gap(x, c.center, line))
-    place = (*_pair(c.center), line.variable, line.variable + 1, c.variable)
-    return [Row(LINE_CIRCLE, place, (side,))]
-
-
-def _circles_touch(x, c, d, inside=None):
-    r, q = x[c.variable], x[d.variable]
-    apart = _span(x, c.center, d.center)
-    if inside is None:
-        inside = abs(apart - abs(r - q)) < abs(apart - (r + q))
-    signs = (1.0, 1.0) if not inside else ((1.0, -1.0) if r >= q else (-1.0, 1.0))
-    place = (*_pair(c.center), *_pair(d.center), c.variable, d.variable)
-    return [Row(CIRCLE_CIRCLE, place, signs)]
-
-
-def _angle(x, a, b):
-    turn = _turns(x, a, b)
-    whole = 2.0 * math.pi * round(turn / (2.0 * math.pi))
-    side = _sign(turn - whole)
-    return [Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), side, whole)]
-
-
-def _parallel(x, a, b):
-    turn = _half_turn(x, a, b)
-    return [Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
-
-
-def _perpendicular(x, a, b):
-    turn = math.pi * (round(_turns(x, a, b) / math.pi - 0.5) + 0.5)
-    return [Row(LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn)]
-
-
-def _level(x, line):
-    turn = math.pi * round(x[line.variable] / math.pi)
-    return [Row(LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
-
-
-def _upright(x, line):
-    turn = math.pi * (round(x[line.variable] / math.pi - 0.5) + 0.5)
-    return [Row(LINEAR, (line.variable,), (1.0,), offset=turn, ground=ORIENTED)]
-
-
-def _points_level(x, p, q):
-    return [Row(LINEAR, (p.variable + 1, q.variable + 1), (1.0, -1.0), ground=ORIENTED)]
-
-
-def _points_upright(x, p, q):
-    return [Row(LINEAR, (p.variable, q.variable), (1.0, -1.0), ground=ORIENTED)]
-
-
-def _radius(x, c):
-    return [Row(LINEAR, (c.variable,), (1.0,), 1.0)]
-
-
-def _diameter(x, c):
-    return [Row(LINEAR, (c.variable,), (1.0,), 0.5)]
-
-
-def _lengths(a, b):
-    return _pair(a.ends[0]) + _pair(a.ends[1]) + _pair(b.ends[0]) + _pair(b.ends[1])
-
-
-def _equal_length(x, a, b):
-    return [Row(LENGTHS, _lengths(a, b), offset=1.0)]
-
-
-def _length_ratio(x, a, b):
-    return [Row(LENGTHS, _lengths(a, b), scale=1.0)]
-
-
-def _equal_radius(x, c, d):
-    return [Row(LINEAR, (c.variable, d.variable), (1.0, -1.0))]
-
-
-def _radius_ratio(x, c, d):
-    return [Row(RATIO, (c.variable, d.variable), scale=1.0)]
-
-
-def _midpoint(x, m, line):
-    return _middle(x, m, *line.ends)
-
-
-def _middle(x, m, p, q):
-    return [
-        Row(LINEAR, (m.variable + k, p.variable + k, q.variable + k), (1.0, -0.5, -0.5))
-        for k in (0, 1)
-    ]
-
-
-def _symmetric(x, p, q, line):
-    place = (*_pair(p), *_pair(q), line.variable, line.variable + 1)
-    return [Row(MIDDLE_ON, place), Row(ACROSS, place[:5])]
-
-
-def _circles_symmetric(x, c, d, line):
-    return _symmetric(x, c.center, d.center, line) + _equal_radius(x, c, d)
-
-
-def _fix_point(x, p):
-    return [Row(LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in _pair(p)]
-
-
-def _fix_line(x, line):
-    at = line.variable
-    return [Row(LINEAR, (v,), (1.0,), offset=x[v], ground=GROUNDED) for v in (at, at + 1)]
-
-
-def _fix_circle(x, c):
-    return [*_fix_point(x, c.center), Row(LINEAR, (c.variable,), (1.0,), offset=x[c.variable])]
-
-
-def _nothing(x, *entities):
-    return []
-
-
 class Form(NamedTuple):
     """One way to use a kind: the entities it takes, how it becomes rows, and its dimension's
     unit."""
@@ -284,29 +64,32 @@ class Form(NamedTuple):
 P, L, C = Point, Line, Circle
 KINDS: dict[str, tuple[Form, ...]] = {
     "distance": (
-        Form((P, P), _point_point, "length"),
-        Form((P, L), _point_line, "length"),
-        Form((P, C), _point_circle, "length"),
-        Form((L, L), _line_line, "length"),
+        Form((P, P), rows.point_point, "length"),
+        Form((P, L), rows.point_line, "length"),
+        Form((P, C), rows.point_circle, "length"),
+        Form((L, L), rows.line_line, "length"),
     ),
-    "incident": (Form((P, L), _on_line), Form((P, C), _on_circle)),
-    "coincident": (Form((P, P), _together), Form((L, L), _same_line)),
-    "tangent": (Form((L, C), _line_touches), Form((C, C), _circles_touch)),
-    "angle": (Form((L, L), _angle, "angle"),),
-    "parallel": (Form((L, L), _parallel),),
-    "perpendicular": (Form((L, L), _perpendicular),),
-    "concentric": (Form((P, C), _point_centered), Form((C, C), _centered)),
-    "horizontal": (Form((L,), _level), Form((P, P), _points_level)),
-    "vertical": (Form((L,), _upright), Form((P, P), _points_upright)),
-    "radius": (Form((C,), _radius, "length"),),
-    "diameter": (Form((C,), _diameter, "length"),),
-    "equal_length": (Form((L, L), _equal_length, spans=True),),
-    "equal_radius": (Form((C, C), _equal_radius),),
-    "ratio": (Form((L, L), _length_ratio, "ratio", True), Form((C, C), _radius_ratio, "ratio")),
-    "midpoint": (Form((P, L), _midpoint, spans=True), Form((P, P, P), _middle)),
-    "symmetric": (Form((P, P, L), _symmetric), Form((C, C, L), _circles_symmetric)),
-    "same_side": (Form((P, P, L), _nothing),),
-    "fix": (Form((P,), _fix_point), Form((L,), _fix_line), Form((C,), _fix_circle)),
+    "incident": (Form((P, L), rows.on_line), Form((P, C), rows.on_circle)),
+    "coincident": (Form((P, P), rows.together), Form((L, L), rows.same_line)),
+    "tangent": (Form((L, C), rows.line_touches), Form((C, C), rows.circles_touch)),
+    "angle": (Form((L, L), rows.angle, "angle"),),
+    "parallel": (Form((L, L), rows.parallel),),
+    "perpendicular": (Form((L, L), rows.perpendicular),),
+    "concentric": (Form((P, C), rows.point_centered), Form((C, C), rows.centered)),
+    "horizontal": (Form((L,), rows.level), Form((P, P), rows.points_level)),
+    "vertical": (Form((L,), rows.upright), Form((P, P), rows.points_upright)),
+    "radius": (Form((C,), rows.radius, "length"),),
+    "diameter": (Form((C,), rows.diameter, "length"),),
+    "equal_length": (Form((L, L), rows.equal_length, spans=True),),
+    "equal_radius": (Form((C, C), rows.equal_radius),),
+    "ratio": (
+        Form((L, L), rows.length_ratio, "ratio", True),
+        Form((C, C), rows.radius_ratio, "ratio"),
+    ),
+    "midpoint": (Form((P, L), rows.midpoint, spans=True), Form((P, P, P), rows.middle)),
+    "symmetric": (Form((P, P, L), rows.symmetric), Form((C, C, L), rows.circles_symmetric)),
+    "same_side": (Form((P, P, L), rows.nothing),),
+    "fix": (Form((P,), rows.fix_point), Form((L,), rows.fix_line), Form((C,), rows.fix_circle)),
 }
 """Every kind of constraint with its forms; the valency is the number of rows."""
 
@@ -348,21 +131,21 @@ def measured(constraint: Constraint, x: list[float]) -> float:
     if kind in ("radius", "diameter"):
         return x[entities[0].variable] * (2.0 if kind == "diameter" else 1.0)
     if kind == "angle":
-        turn = math.remainder(_turns(x, *entities), 2.0 * math.pi)
+        turn = math.remainder(rows.turns(x, *entities), 2.0 * math.pi)
         return abs(turn)
     if kind == "ratio":
         a, b = entities
         if isinstance(a, Circle):
             return x[a.variable] / x[b.variable]
-        return _span(x, *a.ends) / _span(x, *b.ends)
+        return rows.span(x, *a.ends) / rows.span(x, *b.ends)
     if kind != "distance":
         return math.nan
     a, b = entities
     if isinstance(b, Point):
-        return _span(x, a, b)
+        return rows.span(x, a, b)
     if isinstance(b, Circle):
-        return abs(_span(x, a, b.center) - x[b.variable])
+        return abs(rows.span(x, a, b.center) - x[b.variable])
     if isinstance(a, Point):
-        return abs(_gap(x, a, b))
-    same = _sign(math.cos(_turns(x, a, b)))
+        return abs(rows.gap(x, a, b))
+    same = rows.sign(math.cos(rows.turns(x, a, b)))
     return abs(x[b.variable + 1] - same * x[a.variable + 1])

@@ -97,9 +97,11 @@ def _proof(trial: Trials, conflict: list[int]) -> str:
     part = trial.part(conflict)
     if (part.fate == CONTRADICTED).any():
         return LINEAR
-    if part.plan.dependent.size or part.repeated:
-        return COUNT
     sides = trial.sketch.sides(set(conflict))
+    if part.plan.dependent.size:
+        outcome = trial.run(conflict)
+        implied = outcome.broken in part.plan.dependent
+        return COUNT if implied and _rest_holds(part, outcome.x) else ""
     return BRANCHES if exhausted(part, trial.before, sides) else ""
 
 

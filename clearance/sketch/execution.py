@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from clearance.kernels.sketch_equations import LENGTHS, RATIO
-from clearance.kernels.sketch_execute import FAILED, KEPT, execute
+from clearance.kernels.sketch_execute import FAILED, KEPT
 from clearance.kernels.sketch_fit import set_down
 from clearance.kernels.sketch_graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
 from clearance.kernels.sketch_search import RESTARTS, solve_block
@@ -21,7 +21,7 @@ from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import LARGEST_BLOCK, limits_of, residual_of
+from clearance.sketch.steps import LARGEST_BLOCK, execute, limits_of, residual_of
 
 NEARLY = 1e-5
 """[-] Error of an implied equation, relative to the size, up to which all equations are solved
@@ -132,7 +132,7 @@ def _solve_parts(
     active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
     limits = limits_of(problem, RESTARTS if effort else 4)
     turned = np.ones(problem.plan.vertex.size) if turned is None else turned
-    fates = execute(s, problem.plan, x, start, turned, active, limits)
+    fates = execute(problem, x, start, turned, active, limits)
     if effort == 0 and (fates == FAILED).any():
         return fates, x
     loose = _loosened(problem, problem.plan.dependent)

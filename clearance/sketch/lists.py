@@ -9,7 +9,8 @@ import math
 from array import array
 from collections.abc import Iterable
 
-from clearance.sketch.constraints import Constraint, Row
+from clearance.sketch.constraints import Constraint
+from clearance.sketch.rows import Row
 
 
 class FlatLists:

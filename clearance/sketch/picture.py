@@ -1,5 +1,4 @@
-"""A sketch as an SVG picture: what is drawn in black, construction lines and circles thin and
-grey."""
+"""A sketch as an SVG picture: what is drawn in black, construction lines grey, distances of points blue."""
 
 from __future__ import annotations
 
@@ -26,7 +25,8 @@ def svg_of(sketch, *, width: int = 800, title: str = "") -> str:
     low, high = low - margin, high + margin
     scale = width / (high[0] - low[0])
     height = scale * (high[1] - low[1])
-    body = "".join(_drawn(e, low, high, scale) for e in sketch.entities.values())
+    body = "".join(_span(c, low, high, scale) for c in sketch.constraints.values())
+    body += "".join(_drawn(e, low, high, scale) for e in sketch.entities.values())
     head = f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height:.0f}">'
     text = f'<text x="8" y="18" font-family="sans-serif" font-size="14">{title}</text>'
     return f'{head}<rect width="100%" height="100%" fill="white"/>{body}{text}</svg>\n'
@@ -35,6 +35,16 @@ def svg_of(sketch, *, width: int = 800, title: str = "") -> str:
 def write_svg(sketch, path: Path, *, title: str = "") -> None:
     """Writes the picture of a sketch."""
     Path(path).write_text(svg_of(sketch, title=title), encoding="utf-8")
+
+
+def _span(c, low, high, scale: float) -> str:
+    """A distance of two points as a thin line; nothing for other constraints."""
+    if c.kind != "distance" or not all(isinstance(e, Point) for e in c.entities):
+        return ""
+    ends = [(e.position - low) * scale for e in c.entities]
+    height = (high[1] - low[1]) * scale
+    d = " L".join(f"{x:.2f} {height - y:.2f}" for x, y in ends)
+    return _path(f"M{d}", "#59d", 0.9)
 
 
 def _drawn(e, low, high, scale: float) -> str:

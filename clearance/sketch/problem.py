@@ -25,7 +25,7 @@ from clearance.kernels.sketch_graph import (
     vertices,
 )
 from clearance.kernels.sketch_place import System
-from clearance.kernels.sketch_plan import Plan, make_plan
+from clearance.kernels.sketch_plan import Plan, make_plan, peeled_plan
 from clearance.kernels.sketch_start import counts, row_parts
 
 RESIDUAL = 1e-12
@@ -218,7 +218,9 @@ def _fresh(
     ends[first_is_ground] = np.array([_ground_first(e) for e in ends[first_is_ground]]).reshape(
         -1, 5
     )
-    plan = make_plan(kind, ends, ground, theta_of)
+    plan, whole = peeled_plan(kind, ends, ground, theta_of)
+    if not whole:
+        plan = make_plan(kind, ends, ground, theta_of)
     part, n_parts, hold = components(kind, ends, theta_of, ground)
     free = counts(kind, ends, part, n_parts, plan.dependent, FREEDOMS)
     return Problem(

@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.kernels.sketch_equations import worst
-from clearance.kernels.sketch_execute import FAILED, TOO_LARGE, Limits, execute
+from clearance.kernels.sketch_execute import (
+    DONE,
+    FAILED,
+    TOO_LARGE,
+    Limits,
+    place_closed,
+    solve_numeric,
+)
 from clearance.kernels.sketch_search import RESTARTS
 from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
 
@@ -28,6 +35,23 @@ def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
     return worst(s.code, s.var, s.coef, s.value, x, problem.length_scale)
 
 
+def execute(problem: Problem, x, sketch, turned, active, limits: Limits, plan=None) -> np.ndarray:
+    """Runs the steps of a plan in place on x (n,); the fate (s,) of each.
+
+    Numeric steps are compiled apart: most sketches need none. For `turned` and `active` see
+    `clearance.kernels.sketch_execute.place_closed`.
+    """
+    plan = problem.plan if plan is None else plan
+    fate = np.full(plan.vertex.shape[0], DONE)
+    s, k = problem.system, 0
+    while True:
+        k = place_closed(s, plan, x, sketch, turned, active, limits, k, fate)
+        if k == fate.size:
+            return fate
+        fate[k] = solve_numeric(s, plan, x, sketch, k, limits)
+        k += 1
+
+
 def run_after(
     problem: Problem, block: int, x: np.ndarray, sketch: np.ndarray
 ) -> tuple[np.ndarray, bool]:
@@ -42,5 +66,5 @@ def run_after(
     out = x.copy()
     every = np.ones(problem.system.kind.size, np.uint8)
     turned = np.ones(plan.vertex.size)
-    fates = execute(problem.system, plan, out, sketch, turned, every, limits_of(problem))
+    fates = execute(problem, out, sketch, turned, every, limits_of(problem), plan)
     return out, not ((fates == FAILED) | (fates == TOO_LARGE)).any()

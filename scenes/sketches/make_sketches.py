@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.sketch import Sketch
+from clearance.sketch.picture import write_svg
 
 HERE = Path(__file__).parent
 BREADTH, DEPTH, BOTTOM, TANK, BILGE, DECK = 16.0, 19.0, 2.0, 2.4, 1.8, 11.0
@@ -326,6 +327,26 @@ def under_constrained_prism() -> Sketch:
     return s
 
 
+CHANGES = {"B": 16.6, "D": 19.4, "h": 2.2, "w": 2.5, "r": 1.9, "t": 11.2}
+"""[m] The design change (f): breadth, depth, double bottom, wing tank, bilge radius, second deck."""
+
+
+def pictures() -> None:
+    """Draws the solved stages (b) to (e), and (f) after the design change."""
+    folder = HERE / "pictures"
+    for stage in "bcde":
+        sketch = Sketch.load(HERE / f"midship_{stage}.yaml")
+        result = sketch.solve()
+        title = f"({stage}) {result.status}, freedom {result.freedom}"
+        write_svg(sketch, folder / f"midship_{stage}.svg", title=title)
+    for name, value in CHANGES.items():
+        sketch.set(name, value)
+    result = sketch.solve()
+    write_svg(
+        sketch, folder / "midship_f.svg", title=f"(f) six dimensions changed, {result.status}"
+    )
+
+
 def main() -> None:
     for stage in "bcde":
         sketch = midship(stage)
@@ -336,6 +357,7 @@ def main() -> None:
     extended_cluster().save(HERE / "extended_cluster.yaml")
     under_constrained().save(HERE / "under_constrained.yaml")
     under_constrained_prism().save(HERE / "under_constrained_prism.yaml")
+    pictures()
 
 
 if __name__ == "__main__":

@@ -1,18 +1,20 @@
 """Times the sketch solver against its targets, and against slvs where that is installed.
 
-    PYTHONPATH=. python scripts/bench/sketch.py [--peers] [--seeds N]
+    PYTHONPATH=. python scripts/bench/sketch.py [--peers] [--seeds N] [--csv scripts/bench/results/sketch.csv]
 
-One run, one core, compiled beforehand; sketches are built outside the clock, a solve includes
-everything from the
-flat lists to the residual. Fixed seeds; median and worst of the repetitions.
+One run, one core, compiled beforehand; sketches are built outside the clock, a solve includes everything
+from the flat lists to the residual. CPU time of this process, which a busy machine does not stretch; fixed
+seeds; median, least and greatest of the repetitions.
 """
 
 from __future__ import annotations
 
 import argparse
+import csv
 import heapq
 import math
 import time
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -120,20 +122,46 @@ def patch(n: int, off: float, seed: int):
     return sketched(points, shaken(points, off, seed + 1), edges), points, edges
 
 
-def timed(make, repetitions: int = 5):
-    """(median ms, worst ms, last result) of solving fresh sketches."""
+@dataclass
+class Table:
+    """The rows of one run: printed as they come, kept for the file."""
+
+    rows: list[tuple[str, str, str, str]] = field(default_factory=list)
+
+    def add(self, what: str, library: str, target: str, measured: str) -> None:
+        """Prints and keeps one measurement."""
+        print(f"{what:<58} {library:<10} {target:>15}   {measured}", flush=True)
+        self.rows.append((what, library, target, measured))
+
+    def write(self, path: Path) -> None:
+        """Writes all rows as CSV."""
+        with path.open("w", newline="", encoding="utf-8") as out:
+            writer = csv.writer(out)
+            writer.writerow(("what", "library", "target", "measured"))
+            writer.writerows(self.rows)
+
+
+def spread(times: list[float]) -> str:
+    """Median and range of times [ms]."""
+    return f"{np.median(times):.2f} ms ({min(times):.2f} to {max(times):.2f})"
+
+
+def clocked(work) -> tuple[float, object]:
+    """[ms] of CPU of one call, and its value."""
+    start = time.process_time()
+    value = work()
+    return 1e3 * (time.process_time() - start), value
+
+
+def timed(make, repetitions: int = 7):
+    """(times [ms], last result) of solving fresh sketches."""
     make().solve()
     times = []
     for _ in range(repetitions):
         s = make()
-        start = time.perf_counter()
-        result = s.solve()
-        times.append(1e3 * (time.perf_counter() - start))
-    return float(np.median(times)), max(times), result
-
-
-def report(name: str, target: str, measured: str) -> None:
-    print(f"{name:<52} {target:>16}   {measured}", flush=True)
+        taken, result = clocked(s.solve)
+        times.append(taken)
+    return times, result
 
 
 def flipped(s: Sketch, points: np.ndarray, edges) -> int:
@@ -151,64 +179,105 @@ def flipped(s: Sketch, points: np.ndarray, edges) -> int:
     )
 
 
-def patches(peers: bool) -> None:
+def relative(result) -> float:
+    """The residual relative to the sketch's size."""
+    return result.residual / result._problem.size
+
+
+def patches(table: Table, peers: bool) -> None:
+    medians = {}
     for n, target in ((100, "2 ms"), (300, "6 ms"), (1000, "20 ms"), (10000, "500 ms")):
-        median, worst, result = timed(lambda n=n: patch(n, 0.05, 1)[0])
-        left = result.residual / result._problem.size
-        text = f"{median:.2f} ms (worst {worst:.2f}), residual / size {left:.1e}"
+        name = f"triangulated patch, n = {n}, off by 5 %"
+        times, result = timed(lambda n=n: patch(n, 0.05, 1)[0])
+        medians[n] = float(np.median(times))
+        text = f"{spread(times)}, residual / size {relative(result):.1e}"
+        table.add(name, "clearance", target, text)
         if peers and n <= 300:
-            text += f", slvs {slvs_time(*patch(n, 0.05, 1)[1:], 0.05):.0f} ms"
-        report(f"triangulated patch, n = {n}, off by 5 %", target, text)
-    solved = flips = 0
+            _, points, edges = patch(n, 0.05, 1)
+            taken, done, _ = slvs_solve(points, shaken(points, 0.05, 2), edges)
+            table.add(name, "slvs", "", f"{taken:.1f} ms, {'solved' if done else 'failed'}")
+    growth = medians[10000] / medians[1000]
+    table.add("growth from n = 1000 to 10,000", "clearance", "13.3 (n log n)", f"{growth:.1f}")
+    turned(table, peers)
+
+
+def turned(table: Table, peers: bool) -> None:
+    name, solved, flips, theirs, their_flips = (
+        "the same, n = 100, off by 20 %, 10 seeds",
+        0,
+        0,
+        0,
+        0,
+    )
     for seed in range(10):
         s, points, edges = patch(100, 0.2, seed)
         solved += s.solve().solved
         flips += flipped(s, points, edges)
-    report(
-        "the same, n = 100, off by 20 %, 10 seeds",
-        "10, 0 flipped",
-        f"{solved} solved, {flips} flipped",
-    )
+        if peers:
+            _, done, x = slvs_solve(points, shaken(points, 0.2, seed + 1), edges)
+            theirs += done
+            their_flips += flipped(sketched(points, x, edges), points, edges) if done else 0
+    table.add(name, "clearance", "10, 0 flipped", f"{solved} solved, {flips} flipped")
+    if peers:
+        table.add(name, "slvs", "", f"{theirs} solved, {their_flips} flipped")
 
 
-def irreducible_clusters(seeds: int) -> None:
+def irreducible_clusters(table: Table, seeds: int, peers: bool) -> None:
     if seeds == 0:
         return
-    solved, times = 0, []
+    solved, times, worst, theirs, their_times = 0, [], 0.0, 0, []
     for seed in range(seeds):
         points, edges = irreducible(100, seed)
-        s = sketched(points, shaken(points, 0.2, seed + 1000), edges)
-        start = time.perf_counter()
-        solved += s.solve().solved
-        times.append(1e3 * (time.perf_counter() - start))
-    median, most = np.quantile(times, 0.5), np.quantile(times, 0.9)
-    text = f"{solved} of {seeds}, median {median:.1f} ms, 9 of 10 below {most:.0f} ms"
-    report(f"3-connected, n = 100, off by 20 %, {seeds} seeds", "all, 30 ms", text)
+        drawn = shaken(points, 0.2, seed + 1000)
+        s = sketched(points, drawn, edges)
+        taken, result = clocked(s.solve)
+        solved += result.solved
+        worst = max(worst, relative(result)) if result.solved else worst
+        times.append(taken)
+        if peers and seed < 10:
+            taken, done, _ = slvs_solve(points, drawn, edges)
+            theirs += done
+            their_times.append(taken)
+    name = f"3-connected, n = 100, off by 20 %, {seeds} seeds"
+    text = f"{solved} solved, {spread(times)}, 9 of 10 below {np.quantile(times, 0.9):.1f} ms"
+    table.add(name, "clearance", "all, 30 ms", f"{text}, residual / size {worst:.1e}")
+    if peers:
+        table.add(name, "slvs", "", f"{theirs} of {min(seeds, 10)} solved, {spread(their_times)}")
 
 
-def midship() -> None:
-    median, worst, result = timed(lambda: Sketch.load(SKETCHES / "midship_e.yaml"), 5)
-    report(
-        "midship section: first solve",
-        "10 ms",
-        f"{median:.2f} ms (worst {worst:.2f}), {result.status}",
-    )
+def midship(table: Table) -> None:
+    times, result = timed(lambda: Sketch.load(SKETCHES / "midship_e.yaml"))
+    text = f"{spread(times)}, {result.status}, residual / size {relative(result):.1e}"
+    table.add("midship section: first solve", "clearance", "10 ms", text)
     s, times = Sketch.load(SKETCHES / "midship_e.yaml"), []
     s.solve()
     for k in range(20):
         s.set("t", 11.0 + 0.01 * k)
-        start = time.perf_counter()
-        assert s.solve().solved
-        times.append(1e3 * (time.perf_counter() - start))
-    report(
-        "midship section: change of one dimension",
-        "1 ms",
-        f"{np.median(times):.2f} ms (worst {max(times):.2f})",
-    )
+        taken, result = clocked(s.solve)
+        assert result.solved
+        times.append(taken)
+    table.add("midship section: change of one dimension", "clearance", "1 ms", spread(times))
 
 
-def conflict() -> None:
-    times = []
+def bars(table: Table) -> None:
+    """The bar in the box, its length free, drawn in 60 places."""
+    solved, lengths = 0, set()
+    for seed in range(60):
+        random, s = np.random.default_rng(seed), Sketch.load(SKETCHES / "bar_length.yaml")
+        turn, middle = random.uniform(0.2, 1.2), np.array([5.0, 3.0]) + random.uniform(-1, 1, 2)
+        d = np.array([math.cos(turn), math.sin(turn)])
+        m = np.array([-d[1], d[0]])
+        for k, (u, v) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):
+            at = s.entity(f"P{k}").variable
+            s._numbers[at : at + 2] = (middle + 4.5 * u * d + 0.5 * v * m).tolist()
+        result = s.solve()
+        solved += result.solved
+        lengths.add(round(s.value("length"), 4))
+    text = f"{solved}, lengths {', '.join(map(str, sorted(lengths)))}"
+    table.add("bar in the box from 60 starts", "clearance", "60", text)
+
+
+def conflict(table: Table) -> None:
     for span, factor in ((4, 1.1), (8, 1.1), (8, 0.9)):
         s, points, edges = patch(300, 0.05, 1)
         present = {tuple(sorted(e)) for e in edges}
@@ -221,14 +290,12 @@ def conflict() -> None:
         p = list(s.entities.values())
         s.distance(p[a], p[b], factor * float(np.linalg.norm(points[a] - points[b])), name="wrong")
         s.solve().conflicts  # noqa: B018 - compiled
-        start = time.perf_counter()
-        names = s.solve().conflicts
-        times.append(1e3 * (time.perf_counter() - start))
-        report(
-            f"one dimension {factor} x over {span} edges, n = 300",
-            "100 ms",
-            f"{times[-1]:.1f} ms, {len(names)} named",
-        )
+        times = []
+        for _ in range(5):
+            taken, names = clocked(lambda s=s: s.solve().conflicts)
+            times.append(taken)
+        name = f"one dimension {factor} x over {span} edges, n = 300"
+        table.add(name, "clearance", "100 ms", f"{spread(times)}, {len(names)} named")
 
 
 def rectangles() -> Sketch:
@@ -244,34 +311,38 @@ def rectangles() -> Sketch:
     return s
 
 
-def slvs_time(points: np.ndarray, edges, off: float) -> float:
-    """[ms] of SolveSpace's library on the same patch."""
-    from python_solvespace import SolverSystem
+def slvs_solve(points: np.ndarray, drawn: np.ndarray, edges):
+    """([ms], whether solved, points) of SolveSpace's library on the same distances."""
+    from python_solvespace import ResultFlag, SolverSystem
 
     system = SolverSystem()
     plane = system.create_2d_base()
-    drawn = shaken(points, off, 2)
     p = [system.add_point_2d(float(x), float(y), plane) for x, y in drawn]
     system.dragged(p[0], plane)
     for a, b in edges:
         system.distance(p[a], p[b], float(np.linalg.norm(points[a] - points[b])), plane)
-    start = time.perf_counter()
-    system.solve()
-    return 1e3 * (time.perf_counter() - start)
+    taken, flag = clocked(system.solve)
+    x = np.array([system.params(q.params) for q in p])
+    return taken, flag == ResultFlag.OKAY, x
 
 
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--peers", action="store_true")
     arguments.add_argument("--seeds", type=int, default=20)
+    arguments.add_argument("--csv", type=Path)
     chosen = arguments.parse_args()
-    report("what", "target", "measured")
-    patches(chosen.peers)
-    midship()
-    conflict()
-    median, worst, _ = timed(rectangles, 3)
-    report("1000 separate rectangles", "40 ms", f"{median:.1f} ms (worst {worst:.1f})")
-    irreducible_clusters(chosen.seeds)
+    table = Table()
+    patches(table, chosen.peers)
+    midship(table)
+    bars(table)
+    conflict(table)
+    times, result = timed(rectangles, 5)
+    text = f"{spread(times)}, residual / size {relative(result):.1e}"
+    table.add("1000 separate rectangles", "clearance", "40 ms", text)
+    irreducible_clusters(table, chosen.seeds, chosen.peers)
+    if chosen.csv:
+        table.write(chosen.csv)
 
 
 if __name__ == "__main__":
