@@ -20,7 +20,19 @@ CUSP = Curve.bezier([[0, 0], [1, 1], [0, 1], [1, 0]])
 
 
 @pytest.mark.parametrize(
-    "curve", [WAVE, CUSP, Curve.circle([1e6, -1e6], 3.0), Curve.line([0, 0], [1, 2])]
+    "curve",
+    [
+        WAVE,
+        CUSP,
+        Curve.circle([1e6, -1e6], 3.0),
+        Curve.line([0, 0], [1, 2]),
+        Curve.bezier([[0, 0], [3, 0], [-2, 0], [1, 0]]),  # straight, and doubled back
+        Curve.bezier([[0, 0], [1, 1], [2, -1], [3, 0]]),  # an inflection
+        Curve.bspline(
+            [[0, 0], [1, 2], [2, 0], [3, 2], [4, 0]], 2, [0, 0, 0, 1, 1, 2, 2, 2.0]
+        ),  # a corner
+        Curve.bspline([[0, 0], [1, 2], [2, -1], [3, 0]], weights=[1, 50, 0.02, 1]),
+    ],
 )
 @pytest.mark.parametrize("share", [1e-2, 1e-5])
 def test_biarcs_stay_within_their_proven_error(curve, share):
@@ -40,6 +52,10 @@ def test_biarcs_stay_within_their_proven_error(curve, share):
         assert np.hypot(*(points[0] - start)) <= slack and np.hypot(*(points[-1] - end)) <= slack
         if math.isfinite(radius):
             assert np.abs(np.hypot(*(points - center).T) - radius).max() <= slack
+        else:
+            along = (points - start) @ (end - start) / max(1e-300, (end - start) @ (end - start))
+            feet = start + np.clip(along, 0, 1)[:, None] * (end - start)
+            assert np.hypot(*(points - feet).T).max() <= slack
     assert np.allclose(fitted.parameters[1:, 0], fitted.parameters[:-1, 1])
 
 
