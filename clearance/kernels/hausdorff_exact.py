@@ -284,7 +284,9 @@ def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, b
             state[UPPER] = max(state[UPPER], bound)
             continue
         chosen = middle
-        if was_cut == 0.0 and bound < 2.0 * state[DISTANCE]:
+        # next to each other the two branches cross where B's pieces meet: there, or halving creeps up on it
+        beside = abs(seen.leaf - foot.leaf) <= 1
+        if was_cut == 0.0 and (beside or bound < 2.0 * state[DISTANCE]):
             s, reached = slide_from(pa, pb, i, t, j, s, shift_x, shift_y)
             if seen.distance < reached * (1.0 - 1e-12):
                 crossing = self_bisector(

@@ -236,7 +236,7 @@ def _solve_segment(
         t1, k, d1 = stack[top, 3], int(stack[top, 4]), stack[top, 5]
         enough = state[LOWER] + gap
         state[CUTS] += 1.0
-        if j == k:
+        if j == k:  # one segment: the distance is convex between two points already offered
             continue
         x, y = _at(pc, i, t1)
         bound = max(d0, _off(qc, j, x + shift_x, y + shift_y))
@@ -254,19 +254,14 @@ def _solve_segment(
         if bound <= enough:
             state[UPPER] = max(state[UPPER], bound)
             continue
+        if not t0 < t < t1:
+            t = 0.5 * (t0 + t1)
         x, y = _at(pc, i, t)
         d, m = nearest_segment(qc, boxes, x + shift_x, y + shift_y, j, nodes, gaps)
         _offer(qc, i, t, m, x + shift_x, y + shift_y, d, state)
-        if bound <= state[LOWER] + gap:
-            state[UPPER] = max(state[UPPER], bound)
-            continue
-        if not t0 < t < t1:
-            t = 0.5 * (t0 + t1)
-            x, y = _at(pc, i, t)
-            d, m = nearest_segment(qc, boxes, x + shift_x, y + shift_y, j, nodes, gaps)
-            _offer(qc, i, t, m, x + shift_x, y + shift_y, d, state)
-        if state[CUTS] > budget or top + 2 > STACK or not t0 < t < t1:
-            state[GIVEN_UP] += 1.0
+        done = bound <= state[LOWER] + gap
+        if done or state[CUTS] > budget or top + 2 > STACK or not t0 < t < t1:
+            state[GIVEN_UP] += not done
             state[UPPER] = max(state[UPPER], bound)
             continue
         stack[top, 0], stack[top, 1], stack[top, 2] = t, m, d

@@ -34,6 +34,7 @@ from clearance.planar.entries import (
     checked_weights,
     sweep_of,
 )
+from clearance.planar.extent import least_box
 from clearance.tolerance import (
     BIARC,
     CLOSED,
@@ -195,8 +196,13 @@ class Curve:
 
     @cached_property
     def box(self) -> np.ndarray:
-        """(2, 2) lower and upper corner of a box that contains the curve: that of its control points."""
+        """(2, 2) corners of a box that contains the curve, that of its control points; least: `bounding_box`."""
         return control_box(self.pieces.control).reshape(2, 2) + self.origin
+
+    @cached_property
+    def bounding_box(self) -> np.ndarray:
+        """(2, 2) lower and upper corner of the least box around the curve, to rounding."""
+        return least_box(self.pieces) + self.origin
 
     @cached_property
     def corners(self) -> list[list[float]]:

@@ -23,6 +23,9 @@ from clearance.tolerance import LAST_BITS, SHARPER
 BUDGET = 200_000.0
 """Intervals after which a search gives the rest up with their bounds; only the error bound suffers."""
 
+INTERVALS_A_PIECE = 20.0
+"""What long curves may use beyond that for each piece of both: seen are up to seven on noisy outlines."""
+
 
 class UnknownMethod(BadInput):
     """A method of solution that there is not."""
@@ -131,11 +134,12 @@ def _sum_of(one: Tally, two: Tally) -> Tally:
 
 
 def _solve(a, b, shift, gap, limit):
+    budget = BUDGET + INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces)
     if a.is_polyline and b.is_polyline:
-        return solve_polylines(a, b, shift, gap, limit, BUDGET)
+        return solve_polylines(a, b, shift, gap, limit, budget)
     return both_directions(
         a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], gap, limit,
-        BUDGET,
+        budget,
     )  # fmt: skip
 
 

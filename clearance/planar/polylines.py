@@ -15,14 +15,10 @@ from clearance.kernels.hausdorff_state import AT_A, AT_B, LOWER, PIECE_A, PIECE_
 from clearance.planar.curve import Curve
 from clearance.tolerance import MEETING, NORMAL, PARAMETER, TANGENT
 
-INTERVALS_A_SEGMENT = 20.0
-"""What long polylines may use beyond the budget of intervals: seen are up to seven on noisy outlines."""
-
 
 def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, gap: float, limit: float, budget: float):
     """Both directed searches, (2, STATE) numbers and witnesses (2, 5), as `kernels.hausdorff` gives them."""
     state, points = np.empty((2, STATE)), np.empty((2, 5))
-    budget += INTERVALS_A_SEGMENT * (a.n_pieces + b.n_pieces)
     for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):
         directed_polyline(
             one.pieces.control, one.segment_boxes, two.pieces.control, two.segment_boxes, step[0], step[1],

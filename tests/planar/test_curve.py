@@ -118,3 +118,32 @@ def test_refusals_are_one_clear_line(make, said):
         make()
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("curve", "low", "high"),
+    [
+        (Curve.arc([2, 1], 3.0, 0.5, 3.5), None, None),
+        (Curve.circle([1e6, -1e6], 2.0), [1e6 - 2, -1e6 - 2], [1e6 + 2, -1e6 + 2]),
+        (Curve.bezier([[0, 0], [1, 4], [3, 4], [4, 0]]), [0, 0], [4, 3]),
+        (Curve.polyline(SQUARE), [0, 0], [1, 1]),
+        (Curve.bspline(np.random.default_rng(2).normal(size=(20, 2)), 5), None, None),
+        (Curve.bspline(SQUARE, weights=[1, 9, 0.1, 2]), None, None),
+        (
+            Curve.bezier([[k / 7, 0.1] for k in range(8)], np.linspace(0.3, 3, 8)),
+            [0, 0.1],
+            [1, 0.1],
+        ),
+    ],
+)
+def test_bounding_box_is_the_least(curve, low, high):
+    points = curve.point(np.linspace(curve.limits[0, 0], curve.limits[-1, 1], 20_001))
+    (x0, y0), (x1, y1) = curve.bounding_box
+    slack = 1e-14 * np.abs(curve.bounding_box).max()
+    assert (points >= [x0 - slack, y0 - slack]).all() and (points <= [x1 + slack, y1 + slack]).all()
+    assert np.allclose(points.min(axis=0), [x0, y0], atol=1e-6)
+    assert np.allclose(points.max(axis=0), [x1, y1], atol=1e-6)
+    if low is not None:
+        assert np.allclose(curve.bounding_box, [low, high], atol=slack)
+    assert (curve.box[0] <= curve.bounding_box[0] + slack).all()
+    assert (curve.box[1] >= curve.bounding_box[1] - slack).all()

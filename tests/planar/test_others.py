@@ -20,7 +20,19 @@ CUSP = Curve.bezier([[0, 0], [1, 1], [0, 1], [1, 0]])
 
 
 @pytest.mark.parametrize(
-    "curve", [WAVE, CUSP, Curve.circle([1e6, -1e6], 3.0), Curve.line([0, 0], [1, 2])]
+    "curve",
+    [
+        WAVE,
+        CUSP,
+        Curve.circle([1e6, -1e6], 3.0),
+        Curve.line([0, 0], [1, 2]),
+        Curve.bezier([[0, 0], [3, 0], [-2, 0], [1, 0]]),  # straight, and doubled back
+        Curve.bezier([[0, 0], [1, 1], [2, -1], [3, 0]]),  # an inflection
+        Curve.bspline(
+            [[0, 0], [1, 2], [2, 0], [3, 2], [4, 0]], 2, [0, 0, 0, 1, 1, 2, 2, 2.0]
+        ),  # a corner
+        Curve.bspline([[0, 0], [1, 2], [2, -1], [3, 0]], weights=[1, 50, 0.02, 1]),
+    ],
 )
 @pytest.mark.parametrize("share", [1e-2, 1e-5])
 def test_biarcs_stay_within_their_proven_error(curve, share):
@@ -40,6 +52,10 @@ def test_biarcs_stay_within_their_proven_error(curve, share):
         assert np.hypot(*(points[0] - start)) <= slack and np.hypot(*(points[-1] - end)) <= slack
         if math.isfinite(radius):
             assert np.abs(np.hypot(*(points - center).T) - radius).max() <= slack
+        else:
+            along = (points - start) @ (end - start) / max(1e-300, (end - start) @ (end - start))
+            feet = start + np.clip(along, 0, 1)[:, None] * (end - start)
+            assert np.hypot(*(points - feet).T).max() <= slack
     assert np.allclose(fitted.parameters[1:, 0], fitted.parameters[:-1, 1])
 
 
@@ -121,6 +137,56 @@ def test_dxf_entities_become_one_curve(tmp_path):
     (tmp_path / "bad.dxf").write_text("hello")
     with pytest.raises(ClearanceError, match=r"bad\.dxf: not a DXF"):
         Curve.from_dxf(str(tmp_path / "bad.dxf"))
+
+
+def test_dxf_bulges_old_polylines_weights_and_refusals(tmp_path):
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    space = drawing.modelspace()
+    space.add_lwpolyline(
+        [(0, 0, 1.0), (2, 0, 0.0), (2, 3, 0.0), (0, 3, -0.5)], format="xyb", close=True
+    )
+    space.add_polyline2d([(5, 0, 0.4), (6, 1, 0), (7, 0, 0)], format="xyb", close=True)
+    space.add_arc((10, 0), 2, 350, 20)  # through the angle 0
+    space.add_rational_spline([(0, 9), (1, 11), (2, 8), (3, 9)], [1, 2, 0.5, 1])
+    drawing.saveas(tmp_path / "part.dxf")
+    curve = Curve.from_dxf(str(tmp_path / "part.dxf"))
+    assert curve.contour.max() == 3 and curve.is_closed is False
+    half = Curve.arc(
+        [1, 0], 1, math.pi, 2 * math.pi
+    )  # a bulge of 1 is a half turn, to the right of the chord
+    gap = minimum_distance(half, curve)
+    assert gap.distance <= 1e-15 and hausdorff(half, curve).directed["a_to_b"].distance <= 1e-14
+    arc = Curve.arc([10, 0], 2, math.radians(-10), math.radians(20))
+    assert hausdorff(arc, curve).directed["a_to_b"].distance <= 1e-14
+    spline = Curve.bspline([[0, 9], [1, 11], [2, 8], [3, 9]], weights=[1, 2, 0.5, 1])
+    assert hausdorff(spline, curve).directed["a_to_b"].distance <= 1e-14
+    for add, said in [
+        (
+            lambda: space.add_spline(fit_points=[(0, 9), (1, 10), (3, 9)]),
+            "a spline of fit points alone",
+        ),
+        (lambda: space.add_ellipse((0, 0), (3, 0), 0.5), "an entity ELLIPSE"),
+        (
+            lambda: space.add_circle((0, 0), 1, dxfattribs={"extrusion": (0, 1, 0)}),
+            "extrusion (0.0, 1.0, 0.0)",
+        ),
+        (lambda: space.add_line((1, 1), (1, 1)), "a curve of zero length"),
+    ]:
+        entity = add()
+        drawing.saveas(tmp_path / "bad.dxf")
+        with pytest.raises(ClearanceError) as caught:
+            Curve.from_dxf(str(tmp_path / "bad.dxf"))
+        assert said in str(caught.value) and "bad.dxf" in str(caught.value)
+        assert "\n" not in str(caught.value)
+        space.delete_entity(entity)
+
+
+def test_a_witness_at_a_contours_end_keeps_its_contour():
+    two = Curve.contours([Curve.line([0, 0], [0, 9]), Curve.line([5, 0], [6, 0])])
+    found = hausdorff(two, Curve.line([0, 0], [6, 0]))
+    assert found.point_a == pytest.approx([0, 9])
+    assert two.point(found.parameter_a) == pytest.approx([0, 9], abs=1e-12)
 
 
 def test_compare_prints_and_draws_the_same_bytes(tmp_path):

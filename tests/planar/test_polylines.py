@@ -127,3 +127,33 @@ def test_long_polylines_that_coincide(turn):
     assert found.distance <= 1e-15 * a.size and found.tally.intervals < 100
     moved = hausdorff(a, Curve.polyline(many[::turn] + [1e-9, 0.0]))
     assert 0.0 < moved.distance <= 1e-9 + moved.error_bound and moved.tally.given_up == 0
+
+
+def slot(n):
+    """A rounded slot of lines and arcs, and the closed polyline of `n` vertices on it."""
+    parts = [
+        Curve.line([3, 0], [37, 0]),
+        Curve.arc([37, 3], 3, -0.5 * math.pi, 0.5 * math.pi),
+        Curve.line([37, 6], [3, 6]),
+        Curve.arc([3, 3], 3, 0.5 * math.pi, 1.5 * math.pi),
+    ]
+    exact = Curve.chain(parts)
+    vertices = exact.point(np.linspace(0, exact.limits[-1, 1], n + 1)[:-1])
+    return exact, vertices
+
+
+def test_an_outline_against_its_own_tessellation():
+    """Thousands of joints on the curve itself: each costs one crossing and not a row of halvings."""
+    exact, vertices = slot(3000)
+    fine = Curve.polyline(vertices, closed=True)
+    found = hausdorff(exact, fine)
+    assert found.tally.given_up == 0 and found.error_bound <= 1e-14 * exact.size
+    assert found.tally.intervals < 10 * len(vertices)
+    rows = fine.pieces.control[:, :2].reshape(-1, 2, 2) + fine.origin
+    middle, half = rows.mean(axis=1), 0.5 * np.hypot(*(rows[:, 1] - rows[:, 0]).T)
+    on_arc = (middle[:, 0] > 37.0) | (middle[:, 0] < 3.0)
+    sagitta = 3.0 - np.sqrt(9.0 - half[on_arc] ** 2)
+    # the chords across the four joints of line and arc aside, the farthest point is over a chord's middle
+    assert sagitta.max() - 1e-13 <= found.distance <= 2.0 * half.max()
+    few = hausdorff(exact, Curve.polyline(vertices))
+    assert few.distance == pytest.approx(np.hypot(*(vertices[-1] - vertices[0])) / 2, rel=1e-3)
