@@ -48,6 +48,15 @@ def inlined(function: Callable) -> Callable:
     return numba.njit(nogil=True, error_model="numpy")(function)
 
 
+def merged(function: Callable) -> Callable:
+    """Like `inlined`, but always merged into its callers, at the price of code size and compile time.
+
+    For what inner loops call: a call that is not merged passes every array of a `Surface` by value, some
+    two hundred numbers, which costs more than most of these functions do.
+    """
+    return numba.njit(nogil=True, error_model="numpy", forceinline=True)(function)
+
+
 @functools.cache
 def _cache_root() -> Path:
     given = os.environ.get("NUMBA_CACHE_DIR")

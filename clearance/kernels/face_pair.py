@@ -8,7 +8,7 @@ both; each is a candidate here, over the features that the two faces own. Not fo
 import math
 from typing import NamedTuple
 
-from clearance.jit import inlined
+from clearance.jit import merged
 from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
 from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
 
@@ -32,14 +32,26 @@ class Hit(NamedTuple):
     q: Vec3
 
 
+CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES = range(6)
+"""Kinds of feature pairs, that of a first."""
+
+
 class Near(NamedTuple):
-    """The best pair so far, and the least squared distance seen in a face pair that could be the minimum."""
+    """The best pair so far, and the nearest features seen in a face pair that could be the minimum.
+
+    Attributes:
+        near_sq: [m^2] their squared distance.
+        kind, i, j: what they are: indices of vertices or of owned edges; not used for a face.
+    """
 
     best: Hit
     near_sq: float
+    kind: int
+    i: int
+    j: int
 
 
-@inlined
+@merged
 def limit_of(a, face_a, b, face_b, best_gap, margin):
     """[m] the greatest distance in doubles that a feature pair of two faces may have and still win."""
     blunt_a, blunt_b = a.blunt[face_a], b.blunt[face_b]
@@ -51,16 +63,18 @@ def limit_of(a, face_a, b, face_b, best_gap, margin):
     )
 
 
-@inlined
-def take(near, found_sq, upper_sq, face_a, face_b, p, q):
+@merged
+def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
     """`near` with one more candidate, which is within the limit."""
     best = near.best
     if upper_sq < best.gap_sq:
         best = Hit(upper_sq, face_a, face_b, p, q)
-    return Near(best, min(near.near_sq, found_sq))
+    if found_sq < near.near_sq:
+        return Near(best, found_sq, kind, i, j)
+    return Near(best, near.near_sq, near.kind, near.i, near.j)
 
 
-@inlined
+@merged
 def is_over(surface, face, x):
     """True if the foot of `x` on the plane of `face` lies in the face (body frame)."""
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
@@ -70,7 +84,7 @@ def is_over(surface, face, x):
     return True
 
 
-@inlined
+@merged
 def may_be_over(surface, face, x, margin):
     """True unless the foot of `x` is outside the face by more than rounding."""
     room = margin * surface.blunt[face] + surface.width[face]
@@ -82,21 +96,21 @@ def may_be_over(surface, face, x, margin):
     return True
 
 
-@inlined
+@merged
 def height(surface, face, x):
     """The signed height of `x` over the plane of `face` (body frame)."""
     first = row(surface.vertices, surface.face_vertices[surface.face_starts[face]])
     return dot(row(surface.normals, face), sub(x, first))
 
 
-@inlined
+@merged
 def has_plane(surface, face):
     """True if the face has a normal that is more than rounding."""
     n = row(surface.normals, face)
     return n.x != 0.0 or n.y != 0.0 or n.z != 0.0
 
 
-@inlined
+@merged
 def _upper_sq(surface, face, h, margin):
     """An upper bound on the squared distance of a point at height `h` over the face."""
     blunt = surface.blunt[face]
@@ -104,33 +118,35 @@ def _upper_sq(surface, face, h, margin):
     return upper * upper
 
 
-@inlined
+@merged
 def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
     if has_plane(b, face_b):
-        for i in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
-            p = row(a.vertices, a.owned_vertices[i])
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
             x = move_back(m, p)
             h = height(b, face_b, x)
             if h * h <= limit_sq and is_over(b, face_b, x):
                 q = move(m, along(x, -h, row(b.normals, face_b)))
                 upper_sq = _upper_sq(b, face_b, h, margin)
-                near = take(near, h * h, upper_sq, face_a, face_b, p, q)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q, CORNER_FACE, i, 0)
     return near
 
 
-@inlined
+@merged
 def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
     flat = has_plane(a, face_a)
-    for i in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
-        q = move(m, row(b.vertices, b.owned_vertices[i]))
+    for k in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        j = b.owned_vertices[k]
+        q = move(m, row(b.vertices, j))
         if flat:
             h = height(a, face_a, q)
             if h * h <= limit_sq and is_over(a, face_a, q):
                 p = along(q, -h, row(a.normals, face_a))
                 upper_sq = _upper_sq(a, face_a, h, margin)
-                near = take(near, h * h, upper_sq, face_a, face_b, p, q)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q, FACE_CORNER, 0, j)
         for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[e, 0])
             p1 = row(a.vertices, a.owned_edges[e, 1])
@@ -138,48 +154,51 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGE_CORNER, e, j)
     return near
 
 
-@inlined
+@merged
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`."""
-    for k in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
-        q0 = move(m, row(b.vertices, b.owned_edges[k, 0]))
-        q1 = move(m, row(b.vertices, b.owned_edges[k, 1]))
-        for i in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
-            p = row(a.vertices, a.owned_vertices[i])
+    for e in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
+        q0 = move(m, row(b.vertices, b.owned_edges[e, 0]))
+        q1 = move(m, row(b.vertices, b.owned_edges[e, 1]))
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
             inside, q = foot_inside(p, q0, q1)
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
-        for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
-            p0 = row(a.vertices, a.owned_edges[e, 0])
-            p1 = row(a.vertices, a.owned_edges[e, 1])
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNER_EDGE, i, e)
+        for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
+            p0 = row(a.vertices, a.owned_edges[i, 0])
+            p1 = row(a.vertices, a.owned_edges[i, 1])
             inside, p, q = common_perpendicular(p0, p1, q0, q1)
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGES, i, e)
     return near
 
 
-@inlined
+@merged
 def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with owned vertices against owned vertices."""
-    for i in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
-        q = move(m, row(b.vertices, b.owned_vertices[i]))
+    for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        j = b.owned_vertices[n]
+        q = move(m, row(b.vertices, j))
         for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
-            p = row(a.vertices, a.owned_vertices[k])
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
             found_sq = gap_sq(p, q)
             if found_sq <= limit_sq:
-                near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+                near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNERS, i, j)
     return near
 
 
-@inlined
+@merged
 def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     """The best pair of points, and the nearest that two faces come if it could be the minimum, else infinity.
 
@@ -189,14 +208,14 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     """
     limit = limit_of(a, face_a, b, face_b, math.sqrt(best.gap_sq), margin)
     limit_sq = limit * limit
-    near = Near(best, math.inf)
+    near = Near(best, math.inf, CORNERS, 0, 0)
     near = vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near)
     near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
     near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)
     return edges_to_edges(a, face_a, b, face_b, m, limit_sq, near)
 
 
-@inlined
+@merged
 def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
     """True if all corners of the other face are clearly on one side of the plane of `face`."""
     least, most = math.inf, -math.inf
@@ -207,7 +226,7 @@ def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
     return least > tolerance or most < -tolerance
 
 
-@inlined
+@merged
 def may_meet(a, face_a, b, face_b, m, margin):
     """False only if one face is clearly on one side of the other's plane."""
     far = margin / (512.0 * 2.0**-53)
