@@ -1,7 +1,7 @@
 """A few queries for processes with other compiler settings (`test_lanes`): prints their answers as JSON.
 
-`answers`: polygon pairs and bodies, as hexadecimal floats. `rules`: the same bodies with each pruning rule
-off in turn, which needs functions that can be replaced, hence the JIT off.
+`answers`: polygon pairs as hexadecimal floats. `meetings`: where faces of boxes meet. `rules`: bodies with
+each pruning rule off in turn, which needs functions that can be replaced, hence the JIT off.
 """
 
 import json
@@ -70,6 +70,31 @@ def answers_without_rules(n):
     return found
 
 
+def meetings(n):
+    """Which faces of two boxes meet, straight from the kernels: planes, tree and predicates."""
+    from clearance.geometry.tree import surface_of
+    from clearance.kernels.double_double import frames_of
+    from clearance.kernels.predicates import meeting, room_for_exact
+    from clearance.kernels.vec3 import rigid
+
+    exact, found = room_for_exact(), []
+    for a, b, pose in body_pairs(n):
+        frames = frames_of(rigid(np.eye(4)), rigid(pose))
+        one, two = surface_of(a), surface_of(b)
+        for i in range(6):
+            for j in range(6):
+                at = meeting(one, i, two, j, frames, exact)
+                found.append([bool(at.found), *(int(x) for x in at[1:])])
+    return found
+
+
+def n_compiled():
+    """How many forms of the kernel of `meetings` were compiled in this process, none of them from a cache."""
+    from clearance.kernels.predicates import meeting
+
+    return sum(meeting.stats.cache_misses.values()) - sum(meeting.stats.cache_hits.values())
+
+
 def out_of_bounds_is_seen():
     """True if reading past an array is an error here."""
 
@@ -90,6 +115,8 @@ def main():
     np.seterr(all="ignore")
     if sys.argv[1] == "rules":
         told_now = {"all": body_answers(12), "without": answers_without_rules(12)}
+    elif sys.argv[1] == "meetings":
+        told_now = {"meetings": meetings(12), "bounds": out_of_bounds_is_seen(), "compiled": n_compiled()}
     else:
         told_now = {"polygons": polygon_answers(int(sys.argv[2])), "bounds": out_of_bounds_is_seen()}
     print(json.dumps(told_now))
