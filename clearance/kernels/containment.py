@@ -1,66 +1,127 @@
-"""Whether a body lies wholly inside another one whose surface it does not meet.
+"""Whether a body lies wholly inside another one whose surface it does not meet, decided exactly.
 
 A point is inside where the winding number of the closed, consistently oriented components is not zero, so
-that cavities are outside and overlapping components inside. Open surfaces have no inside. Source: van
-Oosterom & Strackee 1983 for the solid angle of a triangle.
+that cavities are outside and overlapping components inside. Open surfaces have no inside. The winding number
+is the signed count of the triangles that a ray along an axis of the world meets. Where the ray meets an
+edge or a corner, the point is moved aside by (e, e^2) for an infinitely small e, in thought: the signs of
+the predicates (`predicates`) then follow from coordinates, so that no ray is a special case. Source:
+Edelsbrunner & Mücke 1990, simulation of simplicity.
 """
-
-import math
 
 from clearance.jit import inlined, kernel
 from clearance.kernels.bounds import LEAN
+from clearance.kernels.double_double import frames_of, size
+from clearance.kernels.predicates import (
+    FILTER,
+    Posed,
+    orient_posed,
+    room_for_exact,
+    set_poses,
+    side_along,
+    turn_along,
+)
 from clearance.kernels.surface import box_of
-from clearance.kernels.vec3 import cross, dot, move, move_back, row, sub
+from clearance.kernels.vec3 import Rigid, Vec3, dot, move, move_back, row, sub
+
+AXIS = 2
+"""The ray's coordinate axis."""
+
+ROUNDING = 512.0 * 2.0**-53
+"""Rounding of a moved point, relative to the sum of the coordinates' magnitudes, with room."""
 
 
 @inlined
-def _solid_angle(x, y, z):
-    """The signed solid angle of the triangle x y z seen from the origin."""
-    nx = math.sqrt(dot(x, x))
-    ny = math.sqrt(dot(y, y))
-    nz = math.sqrt(dot(z, z))
-    volume = dot(x, cross(y, z))
-    return 2.0 * math.atan2(
-        volume, nx * ny * nz + dot(x, y) * nz + dot(y, z) * nx + dot(z, x) * ny
-    )
-
-
-@inlined
-def _in_box(surface, node, x):
+def _in_box(surface, node, x, far):
+    """True unless `x` is outside the node's box by more than rounding."""
     box = box_of(surface, node)
     d = sub(x, box.centre)
-    lean = LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
-    if abs(dot(box.x, d)) > box.half.x + lean or abs(dot(box.y, d)) > box.half.y + lean:
+    room = LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half))
+    if abs(dot(box.x, d)) > box.half.x + room or abs(dot(box.y, d)) > box.half.y + room:
         return False
-    return abs(dot(box.z, d)) <= box.half.z + lean
+    return abs(dot(box.z, d)) <= box.half.z + room
 
 
 @inlined
-def is_inside(surface, body, x):
-    """True if `x` (body frame) is inside the solid; `x` must not lie on its surface."""
-    if not _in_box(surface, surface.roots[body], x):
-        return False
-    angle = 0.0
+def _turn(a, b, x, exact):
+    """1 or -1: how the points a, b and x, moved aside, turn seen along the ray; 0 if a and b are one there."""
+    turn = turn_along(a, b, x, AXIS, exact)
+    if turn == 0:
+        turn = side_along(a, b, (AXIS + 2) % 3, exact)
+    if turn == 0:
+        turn = side_along(b, a, (AXIS + 1) % 3, exact)
+    return turn
+
+
+@inlined
+def _crossing(a, b, c, x, exact):
+    """1 or -1 if the ray from x leaves or enters through the triangle a b c, 0 if it misses it."""
+    turn = _turn(a, b, x, exact)
+    if turn == 0 or _turn(b, c, x, exact) != turn or _turn(c, a, x, exact) != turn:
+        return 0
+    return turn if orient_posed(a, b, c, x, exact) == turn else 0
+
+
+@inlined
+def _beside(exact, a, b, c, x):
+    """True if the triangle is clearly beside or below the ray: told by the boxes of rounded coordinates."""
+    for axis in range(3):
+        turn_x, turn_a = row(exact.poses[x.body], axis), row(exact.poses[a.body], axis)
+        at = dot(turn_x, x.v) + (x.body - a.body) * exact.shift[0, axis]
+        p, q, r = dot(turn_a, a.v) - at, dot(turn_a, b.v) - at, dot(turn_a, c.v) - at
+        far = size(x.v) + abs(exact.shift[0, axis]) + max(size(a.v), max(size(b.v), size(c.v)))
+        error = 4.0 * FILTER * far
+        if max(p, max(q, r)) < -error or (axis != AXIS and min(p, min(q, r)) > error):
+            return True
+    return False
+
+
+@inlined
+def winding_number(surface, body, is_b, x, exact):
+    """How often the closed components of a body wind round a point that is not on its surface, exactly.
+
+    Args:
+        x: `Posed`, a vertex of the other body.
+        exact: with the poses set.
+    """
+    number = 0
+    side = 1 if is_b else 0
     for i in range(surface.solid_starts[body], surface.solid_starts[body + 1]):
         face = surface.solid_faces[i]
         start = surface.face_starts[face]
-        first = sub(row(surface.vertices, surface.face_vertices[start]), x)
-        for c in range(start + 2, surface.face_starts[face + 1]):
-            second = sub(row(surface.vertices, surface.face_vertices[c - 1]), x)
-            third = sub(row(surface.vertices, surface.face_vertices[c]), x)
-            angle += _solid_angle(first, second, third)
-    return abs(angle) > 2.0 * math.pi
+        first = Posed(row(surface.exact, surface.face_vertices[start]), side)
+        for k in range(start + 2, surface.face_starts[face + 1]):
+            second = Posed(row(surface.exact, surface.face_vertices[k - 1]), side)
+            third = Posed(row(surface.exact, surface.face_vertices[k]), side)
+            if not _beside(exact, first, second, third, x):
+                number += _crossing(first, second, third, x, exact)
+    return number
+
+
+@kernel
+def contained_at(a, body_a, b, body_b, frames):
+    """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
+
+    Exactness: right for the float vertices under the float poses of `frames`.
+    """
+    far = size(frames.m.t)
+    one, body_one, two, body_two = a, body_a, b, body_b
+    for side in range(2):
+        is_a = side == 0
+        for i in range(one.probe_starts[body_one], one.probe_starts[body_one + 1]):
+            v = row(one.vertices, one.probes[i])
+            x = move_back(frames.m, v) if is_a else move(frames.m, v)
+            if _in_box(two, two.roots[body_two], x, far + size(v)):
+                exact = room_for_exact()
+                set_poses(frames, exact)
+                probe = Posed(row(one.exact, one.probes[i]), side)
+                if winding_number(two, body_two, is_a, probe, exact) != 0:
+                    return True, v if is_a else x
+        one, body_one, two, body_two = b, body_b, a, body_a
+    return False, frames.m.t
 
 
 @kernel
 def contained(a, body_a, b, body_b, m):
-    """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet."""
-    for i in range(a.probe_starts[body_a], a.probe_starts[body_a + 1]):
-        x = row(a.vertices, a.probes[i])
-        if is_inside(b, body_b, move_back(m, x)):
-            return True, x
-    for i in range(b.probe_starts[body_b], b.probe_starts[body_b + 1]):
-        x = move(m, row(b.vertices, b.probes[i]))
-        if is_inside(a, body_a, x):
-            return True, x
-    return False, m.t
+    """The same for the motion `a_from_b` as it is, which is rounded unless a stands at the origin."""
+    still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
+    return contained_at(a, body_a, b, body_b, frames_of(still, m))

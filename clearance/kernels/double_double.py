@@ -4,7 +4,7 @@ Every operation is right to a few 2^-104 of its operands' magnitudes as long as 
 below the least double. Not for: decisions that must be exact (`predicates`).
 
 Source: Dekker 1971; Joldes, Muller & Popescu, Tight and rigorous error bounds for basic building blocks of
-double-word arithmetic, 2017 (algorithms 6, 11, 17).
+double-word arithmetic, 2017 (algorithms 5, 11, 17).
 """
 
 import math
@@ -42,6 +42,7 @@ class Frames(NamedTuple):
         m: `a_from_b`, rounded.
         shift: origin of b minus origin of a, exact.
         defect: how far the rotations are from orthonormal.
+        still_a, still_b: True for the identity rotation.
     """
 
     a: Rigid
@@ -49,6 +50,8 @@ class Frames(NamedTuple):
     m: Rigid
     shift: Wide3
     defect: float
+    still_a: bool
+    still_b: bool
 
 
 @inlined
@@ -65,11 +68,9 @@ def wide(x):
 
 @inlined
 def plus(a, b):
-    """a + b."""
+    """a + b, right to 2^-104 (|a| + |b|); exact for sums of two doubles."""
     s, e = two_sum(a.hi, b.hi)
-    t, f = two_sum(a.lo, b.lo)
-    first = _renormal(s, e + t)
-    return _renormal(first.hi, f + first.lo)
+    return _renormal(s, e + (a.lo + b.lo))
 
 
 @inlined
@@ -125,6 +126,18 @@ def minus3(a, b):
 
 
 @inlined
+def scaled3(s, a):
+    """s a."""
+    return Wide3(times(s, a.x), times(s, a.y), times(s, a.z))
+
+
+@inlined
+def negative3(a):
+    """-a."""
+    return Wide3(Wide(-a.x.hi, -a.x.lo), Wide(-a.y.hi, -a.y.lo), Wide(-a.z.hi, -a.z.lo))
+
+
+@inlined
 def along3(a, s, d):
     """a + s d."""
     return Wide3(plus(a.x, times(s, d.x)), plus(a.y, times(s, d.y)), plus(a.z, times(s, d.z)))
@@ -164,8 +177,6 @@ def is_still(m):
 @inlined
 def turned(m, v):
     """R v of a plain vector."""
-    if is_still(m):
-        return Wide3(wide(v.x), wide(v.y), wide(v.z))
     return Wide3(
         _product_sum(m.xx, v.x, m.xy, v.y, m.xz, v.z),
         _product_sum(m.yx, v.x, m.yy, v.y, m.yz, v.z),
@@ -214,16 +225,21 @@ def _defect(m):
 def frames_of(world_from_a, world_from_b):
     """The frames of two bodies at given poses (`Rigid`)."""
     a, b = world_from_a, world_from_b
-    return Frames(a, b, relative(a, b), difference(b.t, a.t), _defect(a) + _defect(b))
+    shift = difference(b.t, a.t)
+    return Frames(a, b, relative(a, b), shift, _defect(a) + _defect(b), is_still(a), is_still(b))
 
 
 @inlined
 def point_of_a(frames, v):
     """A point of a (body frame), seen from the origin of a in the orientation of the world."""
+    if frames.still_a:
+        return Wide3(wide(v.x), wide(v.y), wide(v.z))
     return turned(frames.a, v)
 
 
 @inlined
 def point_of_b(frames, v):
     """A point of b (body frame), seen from the origin of a in the orientation of the world."""
+    if frames.still_b:
+        return plus3(Wide3(wide(v.x), wide(v.y), wide(v.z)), frames.shift)
     return plus3(turned(frames.b, v), frames.shift)

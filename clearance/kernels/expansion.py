@@ -8,12 +8,15 @@ Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997, theorems 7
 
 from __future__ import annotations
 
+import numba
+from numba.extending import intrinsic
+
 from clearance.jit import inlined
 
 N_TERMS = 128
 """Room for the longest expansion here: 24 products of three coordinates, four terms each, and one spare."""
 
-_SPLITTER = 134217729.0  # 2^27 + 1
+SPLITTER = 134217729.0  # 2^27 + 1
 _FILTER_3D = 7.771561172376103e-16  # (7 + 56 u) u with u = 2^-53, Shewchuk's o3derrboundA
 _FILTER_2D = 3.3306690738754716e-16  # (3 + 16 u) u, Shewchuk's ccwerrboundA
 
@@ -26,17 +29,37 @@ def two_sum(a, b):
     return s, (a - (s - b_part)) + (b - b_part)
 
 
+def rest_by_splitting(a, b, p):
+    """a b - p for p = fl(a b), in 16 operations. Source: Dekker 1971."""
+    wide = SPLITTER * a
+    a_high = wide - (wide - a)
+    a_low = a - a_high
+    wide = SPLITTER * b
+    b_high = wide - (wide - b)
+    b_low = b - b_high
+    return a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
+
+
+@intrinsic
+def _rest_fused(typing_context, a, b, p):
+    """The same by one fused multiply-subtract: half the time on processors that have it, equal bits."""
+    number = numba.types.float64
+
+    def emit(context, builder, signature, values):
+        x, y, product = values
+        return builder.fma(x, y, builder.fneg(product))
+
+    return number(number, number, number), emit
+
+
+_rest = rest_by_splitting if numba.config.DISABLE_JIT else _rest_fused
+
+
 @inlined
 def two_product(a, b):
     """(p, e) with p = fl(a b) and a b = p + e exactly."""
     p = a * b
-    wide = _SPLITTER * a
-    a_high = wide - (wide - a)
-    a_low = a - a_high
-    wide = _SPLITTER * b
-    b_high = wide - (wide - b)
-    b_low = b - b_high
-    return p, a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
+    return p, _rest(a, b, p)
 
 
 @inlined

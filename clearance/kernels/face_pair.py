@@ -32,11 +32,23 @@ class Hit(NamedTuple):
     q: Vec3
 
 
+CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES = range(6)
+"""Kinds of feature pairs, that of a first."""
+
+
 class Near(NamedTuple):
-    """The best pair so far, and the least squared distance seen in a face pair that could be the minimum."""
+    """The best pair so far, and the nearest features seen in a face pair that could be the minimum.
+
+    Attributes:
+        near_sq: [m^2] their squared distance.
+        kind, i, j: what they are: indices of vertices or of owned edges; not used for a face.
+    """
 
     best: Hit
     near_sq: float
+    kind: int
+    i: int
+    j: int
 
 
 @merged
@@ -52,12 +64,14 @@ def limit_of(a, face_a, b, face_b, best_gap, margin):
 
 
 @merged
-def take(near, found_sq, upper_sq, face_a, face_b, p, q):
+def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
     """`near` with one more candidate, which is within the limit."""
     best = near.best
     if upper_sq < best.gap_sq:
         best = Hit(upper_sq, face_a, face_b, p, q)
-    return Near(best, min(near.near_sq, found_sq))
+    if found_sq < near.near_sq:
+        return Near(best, found_sq, kind, i, j)
+    return Near(best, near.near_sq, near.kind, near.i, near.j)
 
 
 @merged
@@ -108,14 +122,15 @@ def _upper_sq(surface, face, h, margin):
 def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
     if has_plane(b, face_b):
-        for i in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
-            p = row(a.vertices, a.owned_vertices[i])
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
             x = move_back(m, p)
             h = height(b, face_b, x)
             if h * h <= limit_sq and is_over(b, face_b, x):
                 q = move(m, along(x, -h, row(b.normals, face_b)))
                 upper_sq = _upper_sq(b, face_b, h, margin)
-                near = take(near, h * h, upper_sq, face_a, face_b, p, q)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q, CORNER_FACE, i, 0)
     return near
 
 
@@ -123,14 +138,15 @@ def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
 def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
     flat = has_plane(a, face_a)
-    for i in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
-        q = move(m, row(b.vertices, b.owned_vertices[i]))
+    for k in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        j = b.owned_vertices[k]
+        q = move(m, row(b.vertices, j))
         if flat:
             h = height(a, face_a, q)
             if h * h <= limit_sq and is_over(a, face_a, q):
                 p = along(q, -h, row(a.normals, face_a))
                 upper_sq = _upper_sq(a, face_a, h, margin)
-                near = take(near, h * h, upper_sq, face_a, face_b, p, q)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q, FACE_CORNER, 0, j)
         for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[e, 0])
             p1 = row(a.vertices, a.owned_edges[e, 1])
@@ -138,44 +154,47 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGE_CORNER, e, j)
     return near
 
 
 @merged
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`."""
-    for k in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
-        q0 = move(m, row(b.vertices, b.owned_edges[k, 0]))
-        q1 = move(m, row(b.vertices, b.owned_edges[k, 1]))
-        for i in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
-            p = row(a.vertices, a.owned_vertices[i])
+    for e in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
+        q0 = move(m, row(b.vertices, b.owned_edges[e, 0]))
+        q1 = move(m, row(b.vertices, b.owned_edges[e, 1]))
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
             inside, q = foot_inside(p, q0, q1)
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
-        for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
-            p0 = row(a.vertices, a.owned_edges[e, 0])
-            p1 = row(a.vertices, a.owned_edges[e, 1])
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNER_EDGE, i, e)
+        for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
+            p0 = row(a.vertices, a.owned_edges[i, 0])
+            p1 = row(a.vertices, a.owned_edges[i, 1])
             inside, p, q = common_perpendicular(p0, p1, q0, q1)
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGES, i, e)
     return near
 
 
 @merged
 def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with owned vertices against owned vertices."""
-    for i in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
-        q = move(m, row(b.vertices, b.owned_vertices[i]))
+    for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        j = b.owned_vertices[n]
+        q = move(m, row(b.vertices, j))
         for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
-            p = row(a.vertices, a.owned_vertices[k])
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
             found_sq = gap_sq(p, q)
             if found_sq <= limit_sq:
-                near = take(near, found_sq, found_sq, face_a, face_b, p, q)
+                near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNERS, i, j)
     return near
 
 
@@ -189,7 +208,7 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     """
     limit = limit_of(a, face_a, b, face_b, math.sqrt(best.gap_sq), margin)
     limit_sq = limit * limit
-    near = Near(best, math.inf)
+    near = Near(best, math.inf, CORNERS, 0, 0)
     near = vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near)
     near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
     near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)

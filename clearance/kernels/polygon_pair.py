@@ -9,10 +9,12 @@ from clearance.jit import inlined, kernel
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import Frames, Wide, Wide3, minus3, root, rounded
+from clearance.kernels.every_feature import Ask
 from clearance.kernels.face_pair import limit_of, may_meet, nearest_of_faces
 from clearance.kernels.face_planes import plane_of, unit
-from clearance.kernels.predicates import faces_meet, room_for_exact
-from clearance.kernels.refine import Ask, common_points, error_of, nothing_refined, refine_faces
+from clearance.kernels.meeting import common_point_at
+from clearance.kernels.predicates import meeting, room_for_exact
+from clearance.kernels.refine import error_of, nothing_refined, refine_near
 from clearance.kernels.surface import Surface
 from clearance.kernels.vec3 import Rigid, Vec3, cross, dot, row, sub
 
@@ -142,7 +144,7 @@ def _fill(surface, points, first, origin, scale):
 def _frames():
     still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
     zero = Wide(0.0, 0.0)
-    return Frames(still, still, still, Wide3(zero, zero, zero), 0.0)
+    return Frames(still, still, still, Wide3(zero, zero, zero), 0.0, True, True)
 
 
 @inlined
@@ -153,12 +155,13 @@ def _measure(a, b, frames, margin, exact):
     if (
         lower_bound_faces_in_sight(a, 0, b, 0, sight) <= margin
         and may_meet(a, 0, b, 0, frames.m, margin)
-        and faces_meet(a, 0, b, 0, frames, exact)
     ):
-        common = common_points(a, 0, b, 0, frames)
-        return 0.0, 0.0, rounded(common.p), rounded(common.q), True
+        found = meeting(a, 0, b, 0, frames, exact)
+        if found.found:
+            common = common_point_at(a, 0, b, 0, frames, found)
+            return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
-    refined = refine_faces(a, 0, b, 0, frames, Ask(limit, margin), nothing_refined())
+    refined = refine_near(a, 0, b, 0, frames, near, Ask(limit, margin), nothing_refined())
     distance = root(refined.gap_sq).hi
     error = error_of(refined, distance)
     if distance < UNDERFLOWN:  # its square is not a number any more

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
-from clearance.kernels.double_double import is_still, size
+from clearance.jit import inlined, kernel, merged
+from clearance.kernels.double_double import size
 from clearance.kernels.expansion import grow, grow_product, sign_of, two_sum
-from clearance.kernels.vec3 import Rigid, Vec3, row, sub, turn
+from clearance.kernels.vec3 import Vec3, dot, row, sub
 
 ROOM = 512
 """Terms an expansion can grow to; compressed ones have at most 40 (2100 bits of 53 each)."""
@@ -31,6 +31,7 @@ class Exact(NamedTuple):
         sides: (9, ROOM), lengths: (9,): three difference vectors as expansions.
         minor, total: (ROOM,).
         count: (1,) decisions that needed exact arithmetic.
+        poses: (2, 3, 3) the rotations of a and b. shift: (2, 3) origin of b minus origin of a, hi and lo.
     """
 
     sides: np.ndarray
@@ -38,14 +39,15 @@ class Exact(NamedTuple):
     minor: np.ndarray
     total: np.ndarray
     count: np.ndarray
+    poses: np.ndarray
+    shift: np.ndarray
 
 
 class Posed(NamedTuple):
-    """A vertex of one of two bodies: the rotation of its body, itself, and how many shifts to add (0 or 1)."""
+    """A vertex of one of two bodies, which is 0 for a and 1 for b: the number of shifts to add."""
 
-    pose: Rigid
     v: Vec3
-    shifts: float
+    body: int
 
 
 @inlined
@@ -57,6 +59,8 @@ def room_for_exact():
         np.empty(ROOM),
         np.empty(ROOM),
         np.zeros(1, dtype=np.int64),
+        np.empty((2, 3, 3)),
+        np.empty((2, 3)),
     )
 
 
@@ -97,33 +101,25 @@ def _add_products(out, n, e, n_e, f, n_f, sign):
 
 
 @inlined
-def _coordinate(out, ax, ay, az, p, bx, by, bz, q, hi, lo):
-    """Writes a . p - b . q + hi + lo as an expansion; its number of terms."""
-    n = grow_product(out, 0, ax, p.x)
-    n = grow_product(out, n, ay, p.y)
-    n = grow_product(out, n, az, p.z)
-    n = grow_product(out, n, -bx, q.x)
-    n = grow_product(out, n, -by, q.y)
-    n = grow_product(out, n, -bz, q.z)
-    n = grow(out, n, hi)
-    return compress(out, grow(out, n, lo))
+def _coordinate(exact, axis, p, q, out):
+    """Writes the coordinate of p - q as an expansion; its number of terms."""
+    turn_p, turn_q = exact.poses[p.body, axis], exact.poses[q.body, axis]
+    n = grow_product(out, 0, turn_p[0], p.v.x)
+    n = grow_product(out, n, turn_p[1], p.v.y)
+    n = grow_product(out, n, turn_p[2], p.v.z)
+    n = grow_product(out, n, -turn_q[0], q.v.x)
+    n = grow_product(out, n, -turn_q[1], q.v.y)
+    n = grow_product(out, n, -turn_q[2], q.v.z)
+    for part in range(2):
+        n = grow(out, n, (p.body - q.body) * exact.shift[part, axis])
+    return compress(out, n)
 
 
 @inlined
-def _difference(exact, i, p, q, shift):
+def _difference(exact, i, p, q):
     """Writes the vector p - q into the sides 3 i, 3 i + 1, 3 i + 2."""
-    a, b, f = p.pose, q.pose, p.shifts - q.shifts
-    out, n = exact.sides, exact.lengths
-    k = 3 * i
-    n[k] = _coordinate(
-        out[k], a.xx, a.xy, a.xz, p.v, b.xx, b.xy, b.xz, q.v, f * shift.x.hi, f * shift.x.lo
-    )
-    n[k + 1] = _coordinate(
-        out[k + 1], a.yx, a.yy, a.yz, p.v, b.yx, b.yy, b.yz, q.v, f * shift.y.hi, f * shift.y.lo
-    )
-    n[k + 2] = _coordinate(
-        out[k + 2], a.zx, a.zy, a.zz, p.v, b.zx, b.zy, b.zz, q.v, f * shift.z.hi, f * shift.z.lo
-    )
+    for axis in range(3):
+        exact.lengths[3 * i + axis] = _coordinate(exact, axis, p, q, exact.sides[3 * i + axis])
 
 
 @inlined
@@ -135,29 +131,43 @@ def _minor(exact, i, j):
 
 
 @inlined
-def approximate_difference(p, q, shift):
-    """(p - q rounded, error of each coordinate)."""
-    f = p.shifts - q.shifts
-    if f == 0.0:
-        d = sub(p.v, q.v)
-        return turn(p.pose, d), FILTER * size(d)
-    x = turn(p.pose, p.v)
-    y = turn(q.pose, q.v)
-    d = Vec3(
-        f * shift.x.hi + (x.x - y.x), f * shift.y.hi + (x.y - y.y), f * shift.z.hi + (x.z - y.z)
-    )
-    shifted = abs(shift.x.hi) + abs(shift.y.hi) + abs(shift.z.hi)
-    if shifted == 0.0 and is_still(p.pose) and is_still(q.pose):
-        return d, FILTER * size(d)
-    return d, FILTER * (size(p.v) + size(q.v) + shifted)
+def _turned(exact, p):
+    """R v of a posed vertex, rounded."""
+    m = exact.poses[p.body]
+    return Vec3(dot(row(m, 0), p.v), dot(row(m, 1), p.v), dot(row(m, 2), p.v))
 
 
 @inlined
-def orient_posed(a, b, c, d, shift, exact):
+def approximate_difference(p, q, exact):
+    """(p - q rounded, error of each coordinate)."""
+    if p.body == q.body:
+        d = sub(p.v, q.v)
+        return _turned(exact, Posed(d, p.body)), FILTER * size(d)
+    f = p.body - q.body
+    t = row(exact.shift, 0)
+    d = sub(_turned(exact, p), _turned(exact, q))
+    if size(t) == 0.0 and _are_still(exact):
+        return d, FILTER * size(d)
+    return Vec3(f * t.x + d.x, f * t.y + d.y, f * t.z + d.z), FILTER * (size(p.v) + size(q.v) + size(t))
+
+
+@inlined
+def _are_still(exact):
+    """True if both rotations are the identity."""
+    for body in range(2):
+        for i in range(3):
+            for j in range(3):
+                if exact.poses[body, i, j] != (1.0 if i == j else 0.0):
+                    return False
+    return True
+
+
+@inlined
+def orient_posed(a, b, c, d, exact):
     """The exact sign of det [a-d; b-d; c-d]; 0 where the four points are coplanar."""
-    p, e_p = approximate_difference(a, d, shift)
-    q, e_q = approximate_difference(b, d, shift)
-    r, e_r = approximate_difference(c, d, shift)
+    p, e_p = approximate_difference(a, d, exact)
+    q, e_q = approximate_difference(b, d, exact)
+    r, e_r = approximate_difference(c, d, exact)
     yz, zy, zx, xz = q.y * r.z, q.z * r.y, q.z * r.x, q.x * r.z
     xy, yx = q.x * r.y, q.y * r.x
     det = p.x * (yz - zy) + p.y * (zx - xz) + p.z * (xy - yx)
@@ -175,9 +185,9 @@ def orient_posed(a, b, c, d, shift, exact):
     if s_p + e_p == 0.0 or s_q + e_q == 0.0 or s_r + e_r == 0.0:
         return 0
     exact.count[0] += 1
-    _difference(exact, 0, a, d, shift)
-    _difference(exact, 1, b, d, shift)
-    _difference(exact, 2, c, d, shift)
+    _difference(exact, 0, a, d)
+    _difference(exact, 1, b, d)
+    _difference(exact, 2, c, d)
     n = 0
     for k in range(3):
         n_minor = _minor(exact, (k + 1) % 3, (k + 2) % 3)
@@ -188,10 +198,10 @@ def orient_posed(a, b, c, d, shift, exact):
 
 
 @inlined
-def _turn_along(a, b, c, axis, shift, exact):
+def turn_along(a, b, c, axis, exact):
     """The exact sign of (a - c) x (b - c) along a coordinate axis."""
-    p, e_p = approximate_difference(a, c, shift)
-    q, e_q = approximate_difference(b, c, shift)
+    p, e_p = approximate_difference(a, c, exact)
+    q, e_q = approximate_difference(b, c, exact)
     i = (axis + 1) % 3
     j = (axis + 2) % 3
     left, right = p[i] * q[j], p[j] * q[i]
@@ -202,126 +212,166 @@ def _turn_along(a, b, c, axis, shift, exact):
     if s_p + e_p == 0.0 or s_q + e_q == 0.0:
         return 0
     exact.count[0] += 1
-    _difference(exact, 1, a, c, shift)
-    _difference(exact, 2, b, c, shift)
+    _difference(exact, 1, a, c)
+    _difference(exact, 2, b, c)
     return sign_of(exact.minor, _minor(exact, i, j))
 
 
 @inlined
-def _side(a, b, axis, shift, exact):
+def side_along(a, b, axis, exact):
     """The exact sign of the coordinate of a - b."""
-    d, error = approximate_difference(a, b, shift)
+    d, error = approximate_difference(a, b, exact)
     if abs(d[axis]) > error:
         return 1 if d[axis] > 0.0 else -1
-    _difference(exact, 0, a, b, shift)
+    _difference(exact, 0, a, b)
     return sign_of(exact.sides[axis], exact.lengths[axis])
 
 
 @inlined
-def _boxes_meet(a, b, c, d, axis, shift, exact):
+def _boxes_meet(a, b, c, d, axis, exact):
     """True if the intervals of the segments a b and c d on an axis meet."""
-    ac = _side(a, c, axis, shift, exact)
-    ad = _side(a, d, axis, shift, exact)
-    bc = _side(b, c, axis, shift, exact)
-    bd = _side(b, d, axis, shift, exact)
+    ac = side_along(a, c, axis, exact)
+    ad = side_along(a, d, axis, exact)
+    bc = side_along(b, c, axis, exact)
+    bd = side_along(b, d, axis, exact)
     above = ac > 0 and ad > 0 and bc > 0 and bd > 0
     below = ac < 0 and ad < 0 and bc < 0 and bd < 0
     return not (above or below)
 
 
 @inlined
-def _segments_meet_along(a, b, c, d, axis, shift, exact):
+def _segments_meet_along(a, b, c, d, axis, exact):
     """True if the segments a b and c d, seen along an axis, have a point in common."""
-    if not _boxes_meet(a, b, c, d, (axis + 1) % 3, shift, exact):
+    if not _boxes_meet(a, b, c, d, (axis + 1) % 3, exact):
         return False
-    if not _boxes_meet(a, b, c, d, (axis + 2) % 3, shift, exact):
+    if not _boxes_meet(a, b, c, d, (axis + 2) % 3, exact):
         return False
     if (
-        _turn_along(a, b, c, axis, shift, exact) * _turn_along(a, b, d, axis, shift, exact) > 0
+        turn_along(a, b, c, axis, exact) * turn_along(a, b, d, axis, exact) > 0
     ):
         return False
-    return _turn_along(c, d, a, axis, shift, exact) * _turn_along(c, d, b, axis, shift, exact) <= 0
+    return turn_along(c, d, a, axis, exact) * turn_along(c, d, b, axis, exact) <= 0
 
 
 @inlined
-def segments_meet(a, b, c, d, shift, exact):
+def segments_meet(a, b, c, d, exact):
     """True if two segments have a point in common.
 
     They do if they are coplanar and meet along every axis: along one of them their plane (or line) is seen
     without loss, and the others are necessary.
     """
-    if orient_posed(a, b, c, d, shift, exact) != 0:
+    if orient_posed(a, b, c, d, exact) != 0:
         return False
     for axis in range(3):
-        if not _segments_meet_along(a, b, c, d, axis, shift, exact):
+        if not _segments_meet_along(a, b, c, d, axis, exact):
             return False
     return True
 
 
 @inlined
-def _holds_in_plane(a, b, c, x, shift, exact):
+def _holds_in_plane(a, b, c, x, exact):
     """True if the triangle a b c has area and holds x, which is in its plane."""
     for axis in range(3):
-        if _turn_along(a, b, c, axis, shift, exact) != 0:
-            i = _turn_along(a, b, x, axis, shift, exact)
-            j = _turn_along(b, c, x, axis, shift, exact)
-            k = _turn_along(c, a, x, axis, shift, exact)
+        if turn_along(a, b, c, axis, exact) != 0:
+            i = turn_along(a, b, x, axis, exact)
+            j = turn_along(b, c, x, axis, exact)
+            k = turn_along(c, a, x, axis, exact)
             return (i >= 0 and j >= 0 and k >= 0) or (i <= 0 and j <= 0 and k <= 0)
     return False
 
 
 @inlined
-def segment_meets_triangle(p, q, a, b, c, shift, exact):
+def segment_meets_triangle(p, q, a, b, c, exact):
     """True if the closed segment p q and the closed triangle a b c have a point in common."""
-    side_p = orient_posed(a, b, c, p, shift, exact)
-    side_q = orient_posed(a, b, c, q, shift, exact)
+    side_p = orient_posed(a, b, c, p, exact)
+    side_q = orient_posed(a, b, c, q, exact)
     if side_p * side_q > 0:
         return False
     if side_p != 0 or side_q != 0:
-        i = orient_posed(p, q, a, b, shift, exact)
-        j = orient_posed(p, q, b, c, shift, exact)
+        i = orient_posed(p, q, a, b, exact)
+        j = orient_posed(p, q, b, c, exact)
         if i * j < 0:
             return False
-        k = orient_posed(p, q, c, a, shift, exact)
+        k = orient_posed(p, q, c, a, exact)
         return i * k >= 0 and j * k >= 0
     return (
-        segments_meet(p, q, a, b, shift, exact)
-        or segments_meet(p, q, b, c, shift, exact)
-        or segments_meet(p, q, c, a, shift, exact)
-        or _holds_in_plane(a, b, c, p, shift, exact)
+        segments_meet(p, q, a, b, exact)
+        or segments_meet(p, q, b, c, exact)
+        or segments_meet(p, q, c, a, exact)
+        or _holds_in_plane(a, b, c, p, exact)
     )
 
 
 @inlined
-def _posed(surface, corner, pose, shifts):
-    return Posed(pose, row(surface.exact, surface.face_vertices[corner]), shifts)
+def _posed(surface, corner, body):
+    return Posed(row(surface.exact, surface.face_vertices[corner]), body)
+
+
+class Meeting(NamedTuple):
+    """Where two faces have a point in common.
+
+    Attributes:
+        found: False if they have none.
+        edge_of_a: True if the edge is a's and the triangle b's.
+        p, q: corners that the edge joins. k: middle corner of the fan's triangle; indices into `face_vertices`.
+    """
+
+    found: bool
+    edge_of_a: bool
+    p: int
+    q: int
+    k: int
 
 
 @inlined
-def _edges_meet_face(one, face_one, pose_one, shifts_one, two, face_two, pose_two, shifts_two, shift, exact):
-    """True if an edge of the fan of `face_one` meets a triangle of that of `face_two`."""
+def _edges_meet_face(one, face_one, two, face_two, edge_of_a, exact):
+    """Where an edge of the fan of `face_one` meets a triangle of that of `face_two`."""
     start, end = one.face_starts[face_one], one.face_starts[face_one + 1]
     other, last = two.face_starts[face_two], two.face_starts[face_two + 1]
-    a = _posed(two, other, pose_two, shifts_two)
-    first = _posed(one, start, pose_one, shifts_one)
+    body_one, body_two = (0, 1) if edge_of_a else (1, 0)
+    a = _posed(two, other, body_two)
     for k in range(other + 1, last - 1):
-        b = _posed(two, k, pose_two, shifts_two)
-        c = _posed(two, k + 1, pose_two, shifts_two)
-        for i in range(start + 1, end):
-            p = _posed(one, i, pose_one, shifts_one)
-            if segment_meets_triangle(first, p, a, b, c, shift, exact):
-                return True
-            if i + 1 < end:
-                q = _posed(one, i + 1, pose_one, shifts_one)
-                if segment_meets_triangle(p, q, a, b, c, shift, exact):
-                    return True
-    return False
+        b = _posed(two, k, body_two)
+        c = _posed(two, k + 1, body_two)
+        for n in range(2 * (end - start) - 3):
+            i = start + 1 + n // 2
+            j = start if n % 2 == 0 else i + 1
+            p = _posed(one, i, body_one)
+            q = _posed(one, j, body_one)
+            if segment_meets_triangle(q, p, a, b, c, exact):
+                return Meeting(True, edge_of_a, j, i, k)
+    return Meeting(False, edge_of_a, start, start, other + 1)
+
+
+@inlined
+def set_poses(frames, exact):
+    """Puts the poses of two bodies where the predicates look for them."""
+    poses = exact.poses
+    for body in range(2):
+        m = frames.a if body == 0 else frames.b
+        poses[body, 0, 0], poses[body, 0, 1], poses[body, 0, 2] = m.xx, m.xy, m.xz
+        poses[body, 1, 0], poses[body, 1, 1], poses[body, 1, 2] = m.yx, m.yy, m.yz
+        poses[body, 2, 0], poses[body, 2, 1], poses[body, 2, 2] = m.zx, m.zy, m.zz
+    t = frames.shift
+    exact.shift[0, 0], exact.shift[0, 1], exact.shift[0, 2] = t.x.hi, t.y.hi, t.z.hi
+    exact.shift[1, 0], exact.shift[1, 1], exact.shift[1, 2] = t.x.lo, t.y.lo, t.z.lo
 
 
 @kernel
+def meeting(a, face_a, b, face_b, frames, exact):
+    """Where two faces have a point in common, exactly: the first edge and triangle found to meet."""
+    set_poses(frames, exact)
+    one, face_one, two, face_two = a, face_a, b, face_b
+    found = Meeting(False, True, 0, 0, 0)
+    for side in range(2):
+        found = _edges_meet_face(one, face_one, two, face_two, side == 0, exact)
+        if found.found:
+            break
+        one, face_one, two, face_two = b, face_b, a, face_a
+    return found
+
+
+@merged
 def faces_meet(a, face_a, b, face_b, frames, exact):
     """True if two faces have a point in common, exactly."""
-    shift = frames.shift
-    return _edges_meet_face(
-        a, face_a, frames.a, 0.0, b, face_b, frames.b, 1.0, shift, exact
-    ) or _edges_meet_face(b, face_b, frames.b, 1.0, a, face_a, frames.a, 0.0, shift, exact)
+    return meeting(a, face_a, b, face_b, frames, exact).found

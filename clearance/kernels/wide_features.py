@@ -1,141 +1,167 @@
-"""Nearest points of segments and triangles in wide numbers: what the answer is made of."""
+"""Nearest points of two features in wide numbers: what the answer is made of.
 
-from clearance.jit import inlined
+A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: which features to ask
+(`face_pair`, `every_feature`) and whether the answer is the minimum (`refine`).
+"""
+
+import math
+from typing import NamedTuple
+
+from clearance.jit import inlined, kernel
 from clearance.kernels.double_double import (
     Wide,
     Wide3,
     along3,
     cross3,
     dot3,
-    less,
     minus,
     minus3,
+    negative3,
     over,
+    plus,
+    point_of_a,
+    point_of_b,
+    scaled3,
+    times,
     wide,
 )
-
-
-@inlined
-def wide_gap_sq(p, q):
-    """The squared distance of two points."""
-    d = minus3(p, q)
-    return dot3(d, d)
-
-
-@inlined
-def wide_on_segment(x, start, end):
-    """The point of a segment nearest to `x`, an end exactly where the foot is not inside."""
-    d = minus3(end, start)
-    length_sq = dot3(d, d)
-    s = dot3(minus3(x, start), d)
-    if not s.hi > 0.0 or not length_sq.hi > 0.0:
-        return start
-    from_end = minus(length_sq, s)
-    if not from_end.hi > 0.0:
-        return end
-    if less(from_end, s):
-        back = over(from_end, length_sq)
-        return along3(end, wide(0.0), d) if back.hi == 0.0 else minus3(end, _scaled(back, d))
-    return along3(start, over(s, length_sq), d)
-
-
-@inlined
-def _scaled(s, d):
-    zero = minus3(d, d)
-    return along3(zero, s, d)
-
-
-@inlined
-def wide_between_segments(p0, p1, q0, q1):
-    """(p, q): points of two segments next to their common perpendicular.
-
-    They are on the segments whatever the angle; the second is the foot of the first and then the first
-    that of the second, so that near parallelism costs nothing across them.
-    """
-    u = minus3(p1, p0)
-    v = minus3(q1, q0)
-    n = cross3(u, v)
-    n_sq = dot3(n, n)
-    if not n_sq.hi > 0.0:
-        return p0, wide_on_segment(p0, q0, q1)
-    s = over(dot3(cross3(minus3(q0, p0), v), n), n_sq)
-    p = along3(p0, s, u)
-    if not s.hi > 0.0:
-        p = p0
-    elif s.hi >= 1.0:
-        p = p1
-    q = wide_on_segment(p, q0, q1)
-    return wide_on_segment(q, p0, p1), q
-
-
-@inlined
-def _is_left(normal, start, end, x):
-    return dot3(normal, cross3(minus3(end, start), minus3(x, start))).hi >= 0.0
-
-
-@inlined
-def wide_normal(a, b, c):
-    """The normal of a triangle, as long as twice its area."""
-    return cross3(minus3(b, a), minus3(c, a))
-
-
-@inlined
-def wide_over_triangle(x, a, b, c, n):
-    """(over, foot): the foot of `x` on the plane of a triangle with normal `n`, if in the triangle."""
-    n_sq = dot3(n, n)
-    if not n_sq.hi > 0.0:
-        return False, x
-    if not (_is_left(n, a, b, x) and _is_left(n, b, c, x) and _is_left(n, c, a, x)):
-        return False, x
-    share = over(dot3(minus3(x, a), n), n_sq)
-    return True, minus3(x, _scaled(share, n))
-
-
-@inlined
-def wide_on_triangle(x, a, b, c, n):
-    """The point of a triangle with normal `n` that is nearest to `x`."""
-    inside, best = wide_over_triangle(x, a, b, c, n)
-    if inside:
-        return best
-    best = wide_on_segment(x, a, b)
-    other = wide_on_segment(x, b, c)
-    if less(wide_gap_sq(x, other), wide_gap_sq(x, best)):
-        best = other
-    other = wide_on_segment(x, c, a)
-    if less(wide_gap_sq(x, other), wide_gap_sq(x, best)):
-        best = other
-    return best
-
-
-@inlined
-def across(w, start, end):
-    """`w` without its part along a segment: perpendicular to it to the last digits, however short `w` is."""
-    d = minus3(end, start)
-    length_sq = dot3(d, d)
-    if not length_sq.hi > 0.0:
-        return w
-    return minus3(w, _scaled(over(dot3(w, d), length_sq), d))
-
-
-@inlined
-def toward(n, w):
-    """`n` or its opposite, whichever points along `w`."""
-    if dot3(n, w).hi < 0.0:
-        return Wide3(
-            Wide(-n.x.hi, -n.x.lo), Wide(-n.y.hi, -n.y.lo), Wide(-n.z.hi, -n.z.lo)
-        )
-    return n
-
-
-@inlined
-def across_both(w, p0, p1, q0, q1):
-    """The common perpendicular of two segments along `w`; near parallelism `w` made perpendicular to both."""
-    u, v = minus3(p1, p0), minus3(q1, q0)
-    n = cross3(u, v)
-    if dot3(n, n).hi > WELL_APART * dot3(u, u).hi * dot3(v, v).hi:
-        return toward(n, w)
-    return across(across(across(w, p0, p1), q0, q1), p0, p1)
-
+from clearance.kernels.vec3 import Vec3
 
 WELL_APART = 2.0**-40
 """Squared sine of the angle above which the vector product of two edges keeps 80 bits."""
+
+LONG = 2.0**-20
+"""Squared length of a connecting line, in those of the edge, above which it keeps 90 bits of direction."""
+
+
+class Simplex(NamedTuple):
+    """One to three corners [m] in the frame of their body; the others repeat the last."""
+
+    n: int
+    u: Vec3
+    v: Vec3
+    w: Vec3
+
+
+class Pair(NamedTuple):
+    """A point of each of two features, in the orientation of the world, from the origin of a.
+
+    Attributes:
+        gap_sq: [m^2] squared distance; infinite where a corner's foot is not in the triangle.
+        w: the direction from p to q, of any length, right to the last digits also where p and q nearly meet.
+        w_sq: its squared length.
+        o: a corner of a feature, from which to measure others: differences of corners are exact.
+    """
+
+    gap_sq: Wide
+    p: Wide3
+    q: Wide3
+    w: Wide3
+    w_sq: Wide
+    o: Wide3
+
+
+@inlined
+def _share(part, whole):
+    """part / whole between 0 and 1; 0 where `whole` is."""
+    if not part.hi > 0.0 or not whole.hi > 0.0:
+        return wide(0.0)
+    return over(part, whole) if minus(whole, part).hi > 0.0 else wide(1.0)
+
+
+@inlined
+def _across(w, d, d_sq):
+    """`w` without its part along `d`: perpendicular to it to the last digits, however short `w` is."""
+    if not d_sq.hi > 0.0:
+        return w
+    return minus3(w, scaled3(over(dot3(w, d), d_sq), d))
+
+
+@inlined
+def _point_and_segment(x, start, end):
+    """The pair of a point and its nearest point of a segment."""
+    r, d = minus3(start, x), minus3(end, start)
+    d_sq = dot3(d, d)
+    share = _share(dot3(negative3(r), d), d_sq)
+    w = along3(r, share, d)
+    w_sq = gap_sq = dot3(w, w)
+    if 0.0 < share.hi < 1.0 and gap_sq.hi < LONG * d_sq.hi:
+        w = _across(w, d, d_sq)
+        w_sq = dot3(w, w)
+    return Pair(gap_sq, x, along3(start, share, d), w, w_sq, x)
+
+
+@inlined
+def point_and_triangle(x, a, b, c):
+    """The pair of a point and its foot on a triangle's plane; infinitely far where it is not inside.
+
+    With the foot at a + beta u + gamma v: beta |n|^2 = (r x v) . n and gamma |n|^2 = (u x r) . n.
+    """
+    u, v, r = minus3(b, a), minus3(c, a), minus3(x, a)
+    n = cross3(u, v)
+    n_sq = dot3(n, n)
+    t = cross3(n, r)
+    beta, minus_gamma = dot3(v, t), dot3(u, t)
+    alpha = plus(minus(n_sq, beta), minus_gamma)
+    if not (n_sq.hi > 0.0 and beta.hi >= 0.0 and minus_gamma.hi <= 0.0 and alpha.hi >= 0.0):
+        return Pair(wide(math.inf), x, x, n, n_sq, x)
+    h = dot3(r, n)
+    share = over(h, n_sq)
+    foot = minus3(x, scaled3(share, n))
+    return Pair(times(h, share), x, foot, negative3(n) if h.hi > 0.0 else n, n_sq, x)
+
+
+@inlined
+def two_segments(p0, p1, q0, q1):
+    """The pair of the feet of the common perpendicular, clamped to the segments.
+
+    Near parallelism the second foot is that of the first and then the first that of the second, so that
+    their error is along the segments and not across them.
+    """
+    u, v, r = minus3(p1, p0), minus3(q1, q0), minus3(q0, p0)
+    n = cross3(u, v)
+    n_sq, u_sq, v_sq = dot3(n, n), dot3(u, u), dot3(v, v)
+    t = cross3(n, r)
+    at_p, at_q = dot3(v, t), dot3(u, t)
+    inside = at_p.hi >= 0.0 and minus(n_sq, at_p).hi >= 0.0 and at_q.hi >= 0.0
+    if inside and minus(n_sq, at_q).hi >= 0.0 and n_sq.hi > WELL_APART * u_sq.hi * v_sq.hi:
+        h = dot3(r, n)
+        gap_sq = times(h, over(h, n_sq))
+        p, q = along3(p0, over(at_p, n_sq), u), along3(q0, over(at_q, n_sq), v)
+        return Pair(gap_sq, p, q, negative3(n) if h.hi < 0.0 else n, n_sq, p0)
+    uv = dot3(u, v)
+    on_p = _share(at_p, n_sq)
+    on_q = _share(minus(times(on_p, uv), dot3(r, v)), v_sq)
+    on_p = _share(plus(times(on_q, uv), dot3(r, u)), u_sq)
+    w = minus3(along3(r, on_q, v), scaled3(on_p, u))
+    gap_sq = dot3(w, w)
+    if 0.0 < on_p.hi < 1.0:
+        w = _across(w, u, u_sq)
+    if 0.0 < on_q.hi < 1.0:
+        w = _across(w, v, v_sq)
+    if 0.0 < on_p.hi < 1.0:
+        w = _across(w, u, u_sq)
+    return Pair(gap_sq, along3(p0, on_p, u), along3(q0, on_q, v), w, dot3(w, w), p0)
+
+
+@kernel
+def wide_feature(frames, one, two):
+    """The pair of a simplex of a and one of b, of which one is a corner or both are edges."""
+    x = point_of_a(frames, one.u)
+    y = point_of_b(frames, two.u)
+    if one.n == 1 and two.n == 1:
+        w = minus3(y, x)
+        w_sq = dot3(w, w)
+        return Pair(w_sq, x, y, w, w_sq, x)
+    if one.n == 2 and two.n == 2:
+        return two_segments(x, point_of_a(frames, one.v), y, point_of_b(frames, two.v))
+    swapped = one.n > 1
+    if swapped:
+        x, y = y, x
+        n, v, w = one.n, point_of_a(frames, one.v), point_of_a(frames, one.w)
+    else:
+        n, v, w = two.n, point_of_b(frames, two.v), point_of_b(frames, two.w)
+    found = _point_and_segment(x, y, v) if n == 2 else point_and_triangle(x, y, v, w)
+    if swapped:
+        return Pair(found.gap_sq, found.q, found.p, negative3(found.w), found.w_sq, x)
+    return found

@@ -1,0 +1,126 @@
+"""A few queries for processes with other compiler settings (`test_lanes`): prints their answers as JSON.
+
+`answers`: polygon pairs as hexadecimal floats. `meetings`: where faces of boxes meet. `rules`: bodies with
+each pruning rule off in turn, which needs functions that can be replaced, hence the JIT off.
+"""
+
+import json
+import os
+import sys
+
+import numba
+import numpy as np
+
+from clearance import Polyhedron, distance, polygon_distance
+from tests.strategies import BOX_FACES, FAMILIES, rotations
+
+CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
+NAMES = ("anywhere", "needles", "coplanar", "shared_edge", "vertex_on_face", "parallel_faces", "crossing_plates")
+
+
+def told(near):
+    """An answer without its counters, every bit of it."""
+    numbers = [near.distance, near.error_bound, *near.point_a, *near.point_b]
+    return [float(x).hex() for x in numbers] + [near.face_a, near.face_b, near.contact]
+
+
+def polygon_answers(n):
+    """`n` pairs a family."""
+    pairs = [
+        pair for name in NAMES for pair in zip(*FAMILIES[name](np.random.default_rng(41), n), strict=True)
+    ]
+    return [told(polygon_distance(p, q)) for p, q in pairs]
+
+
+def body_pairs(n):
+    """`n` pairs of boxes: apart, crossing and one in the other."""
+    random = np.random.default_rng(42)
+    for i in range(n):
+        pose = np.eye(4)
+        pose[:3, :3] = rotations(random, 1)[0]
+        pose[:3, 3] = random.normal(size=3) * (2.0, 0.7, 0.01)[i % 3]
+        scale = (0.5, 0.5, 0.1)[i % 3]
+        yield Polyhedron(CORNERS, BOX_FACES), Polyhedron(CORNERS * scale, BOX_FACES), pose
+
+
+def body_answers(n):
+    """Their answers."""
+    return [told(distance(a, b, pose_b=pose)) for a, b, pose in body_pairs(n)]
+
+
+def answers_without_rules(n):
+    """For each rule, the answers without it, and how many pairs of faces more were looked at."""
+    from clearance.kernels import body_pair, descent
+
+    rules = {
+        "lower_bound_boxes_sq": lambda *_: 0.0,
+        "lower_bound_boxes_in_sight": lambda *_: -np.inf,
+        "lower_bound_faces_in_sight": lambda *_: -np.inf,
+        "may_meet": lambda *_: True,
+    }
+    found = {}
+    for name, never in rules.items():
+        if not hasattr(descent, name):
+            continue
+        rule = getattr(descent, name)
+        setattr(descent, name, never)
+        found[name] = body_answers(n)
+        setattr(descent, name, rule)
+    assert body_pair.descend is descent.descend
+    return found
+
+
+def meetings(n):
+    """Which faces of two boxes meet, straight from the kernels: planes, tree and predicates."""
+    from clearance.geometry.tree import surface_of
+    from clearance.kernels.double_double import frames_of
+    from clearance.kernels.predicates import meeting, room_for_exact
+    from clearance.kernels.vec3 import rigid
+
+    exact, found = room_for_exact(), []
+    for a, b, pose in body_pairs(n):
+        frames = frames_of(rigid(np.eye(4)), rigid(pose))
+        one, two = surface_of(a), surface_of(b)
+        for i in range(6):
+            for j in range(6):
+                at = meeting(one, i, two, j, frames, exact)
+                found.append([bool(at.found), *(int(x) for x in at[1:])])
+    return found
+
+
+def n_compiled():
+    """How many forms of the kernel of `meetings` were compiled in this process, none of them from a cache."""
+    from clearance.kernels.predicates import meeting
+
+    return sum(meeting.stats.cache_misses.values()) - sum(meeting.stats.cache_hits.values())
+
+
+def out_of_bounds_is_seen():
+    """True if reading past an array is an error here."""
+
+    @numba.njit
+    def read(array, i):
+        return array[i]
+
+    try:
+        read(np.zeros(3), 5)
+    except IndexError:
+        return True
+    return False
+
+
+def main():
+    """Prints what is asked for."""
+    os.environ.setdefault("PYTHONHASHSEED", "0")
+    np.seterr(all="ignore")
+    if sys.argv[1] == "rules":
+        told_now = {"all": body_answers(12), "without": answers_without_rules(12)}
+    elif sys.argv[1] == "meetings":
+        told_now = {"meetings": meetings(12), "bounds": out_of_bounds_is_seen(), "compiled": n_compiled()}
+    else:
+        told_now = {"polygons": polygon_answers(int(sys.argv[2])), "bounds": out_of_bounds_is_seen()}
+    print(json.dumps(told_now))
+
+
+if __name__ == "__main__":
+    main()

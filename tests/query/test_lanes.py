@@ -1,0 +1,57 @@
+"""The same kernels with every index checked, and as plain Python: same answers, bit for bit."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import lane
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def run_lane(*asked, **settings):
+    """What `lane.py` prints in a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **settings}
+    ran = subprocess.run(
+        [sys.executable, str(ROOT / "tests" / "query" / "lane.py"), *asked],
+        env=environment, cwd=ROOT, capture_output=True, text=True, timeout=600, check=False,
+    )  # fmt: skip
+    assert ran.returncode == 0, ran.stderr[-2000:]
+    return json.loads(ran.stdout)
+
+
+def plain(answers):
+    return json.loads(json.dumps(answers))
+
+
+def test_with_every_index_checked(tmp_path):
+    """Its own cache folder, so that nothing compiled without checks is used; level 0 to compile quickly."""
+    found = run_lane("meetings", NUMBA_BOUNDSCHECK="1", NUMBA_OPT="0", NUMBA_CACHE_DIR=str(tmp_path))
+    assert found["bounds"], "indices were not checked"
+    assert found["compiled"] == 1, "the kernel was not compiled there"
+    assert found["meetings"] == plain(lane.meetings(12))
+    assert any(at[0] for at in found["meetings"])
+
+
+def test_with_the_jit_off():
+    found = run_lane("answers", "2", NUMBA_DISABLE_JIT="1")
+    assert found["bounds"]  # numpy itself checks
+    assert found["polygons"] == plain(lane.polygon_answers(2))
+
+
+@pytest.fixture(scope="module")
+def rules():
+    return run_lane("rules", NUMBA_DISABLE_JIT="1")
+
+
+def test_bodies_with_the_jit_off(rules):
+    assert rules["all"] == plain(lane.body_answers(12))
+
+
+def test_no_pruning_rule_changes_an_answer(rules):
+    assert len(rules["without"]) >= 3
+    for name, answers in rules["without"].items():
+        assert answers == rules["all"], name
