@@ -1,4 +1,4 @@
-"""One polytope cut by others: the working state of `kernels.polytope_clip`.
+"""One polytope cut by others: the working state of `kernels.polytope_cut`.
 
 Coordinates are taken about a common inner point before anything is computed, so that thin regions keep
 their digits. Not for: deciding whether there is a region (`common_point`).
@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_clip import (
+from clearance.kernels.polytope_clip import cut_by_body
+from clearance.kernels.polytope_cut import (
     BROKEN,
     CUT,
     FREE,
@@ -20,8 +21,7 @@ from clearance.kernels.polytope_clip import (
     N_ROWS,
     PLANES,
     STAMP,
-    cut_by_body,
-    cut_by_half_space,
+    cut_by_planes,
 )
 from clearance.kernels.polytope_patch import lay_patch, mark_patch
 from clearance.kernels.polytope_surface import face_rings, trivalent_moments
@@ -107,10 +107,18 @@ class Cutting:
         Raises:
             Broken: see there.
         """
-        status = cut_by_half_space(
-            self.spots, self.mesh, self.state, self.work, self.rim, self.table,
-            *self.task.bodies[0].packed, side * ACROSS_ALL, self.task.seam,
-        )  # fmt: skip
+        plane = np.append(side * ACROSS_ALL, 0.0)[None, :]
+        status = cut_by_planes(
+            self.spots,
+            self.mesh,
+            self.state,
+            self.work,
+            self.rim,
+            self.table,
+            plane,
+            self.task.seam,
+            0.0,
+        )
         if status != CUT:
             raise Broken
 

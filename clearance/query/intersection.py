@@ -92,9 +92,12 @@ class Intersection:
     def _surface(self) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
         if isinstance(self._cuttings, Region):
             return self._cuttings.surface()
-        whole = len(self._cuttings) == 1
-        region = Region.of(self._cuttings[0]) if whole else Region.sewn(self._cuttings)
-        return region.surface()
+        if len(self._cuttings) == 2:
+            corners, rings, provenance = Region.sewn(self._cuttings).surface()
+            if 2 * (len(corners) + len(rings) - 2) == sum(map(len, rings)):
+                return corners, rings, provenance
+            return Region.of(cut_down(self._cuttings[0].task)).surface()
+        return Region.of(self._cuttings[0]).surface()
 
 
 def intersect(
