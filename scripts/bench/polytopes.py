@@ -1,6 +1,6 @@
 """Shared regions and common points against the peers: the table of `clearance/query/POLYTOPES.md`, and a CSV.
 
-Run from the repository's root: `PYTHONPATH=. python scripts/bench/polytopes.py [--largest N] [--csv FILE]`.
+Run from the repository's root: `python scripts/bench/polytopes.py [--largest N] [--seconds S] [--csv FILE]`.
 Fixed seed, bodies prepared outside the clock, warmed up, peers in the same process. The least of the
 repetitions is reported with their median and the least processor time (of all threads together): on a busy
 machine the first two drift apart, and the third is what can be compared.
@@ -10,12 +10,15 @@ from __future__ import annotations
 
 import argparse
 import csv
+import sys
 import time
 from pathlib import Path
 
 import numpy as np
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
+
+sys.path.insert(0, str(Path(__file__).parents[2]))  # so that it runs from the root without an installation
 
 from clearance.geometry.polytope import Polytope
 from clearance.query.common_point import common_point
@@ -29,7 +32,7 @@ def ball(rng: np.random.Generator, n: int, centre: np.ndarray) -> Polytope:
     return Polytope(v / np.linalg.norm(v, axis=1)[:, None] + centre).prepared()
 
 
-def timed(call, budget: float = 0.5) -> tuple[float, float, float]:
+def timed(call, budget: float) -> tuple[float, float, float]:
     """(least, median, least processor) time of a call [ms]; the first counts only if it takes a second."""
     rows, end = [], None
     while True:
@@ -65,7 +68,7 @@ def manifold_of(bodies: list[Polytope]):
     return lambda: manifold3d.Manifold.batch_boolean(solids, both).volume()
 
 
-def rows_of(m: int, n: int) -> list[list]:
+def rows_of(m: int, n: int, budget: float) -> list[list]:
     """(what, m, n, least ms, median ms, least processor ms) of ours and the peers on one family of balls."""
     rng = np.random.default_rng([m, n])
     spread = 0.4 if m == 2 else 0.05
@@ -81,10 +84,10 @@ def rows_of(m: int, n: int) -> list[list]:
     peer = manifold_of(bodies)
     if peer:
         calls["manifold3d"] = peer
-    return [[what, m, n, *timed(call)] for what, call in calls.items()]
+    return [[what, m, n, *timed(call, budget)] for what, call in calls.items()]
 
 
-def trajectory_row(n: int = 50, n_poses: int = 200) -> list:
+def trajectory_row(budget: float, n: int = 50, n_poses: int = 200) -> list:
     """A pose of two bodies that pass each other, each common point begun with the last one's faces."""
     bodies = [ball(np.random.default_rng(i), n, np.zeros(3)) for i in range(2)]
     poses = np.tile(np.eye(4), (n_poses, 2, 1, 1))
@@ -98,19 +101,25 @@ def trajectory_row(n: int = 50, n_poses: int = 200) -> list:
         for pair in poses:
             warm = common_point(bodies, pair, warm).warm
 
-    return ["common_point, warm, a pose", 2, n, *(value / n_poses for value in timed(follow))]
+    return [
+        "common_point, warm, a pose",
+        2,
+        n,
+        *(value / n_poses for value in timed(follow, budget)),
+    ]
 
 
 def main() -> None:
     """Prints a line a measurement and writes them all."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--largest", type=int, default=5000, help="largest number of corners")
+    parser.add_argument("--seconds", type=float, default=0.5, help="how long each is repeated")
     parser.add_argument("--csv", type=Path, default=None, help="where to write the rows")
     given = parser.parse_args()
     sizes = [(m, n) for m in (2, 64) for n in (50, 1000, 5000) if n <= given.largest]
-    table = [trajectory_row()]
+    table = [trajectory_row(given.seconds)]
     for m, n in sizes:
-        table += rows_of(m, n)
+        table += rows_of(m, n, given.seconds)
         for what, _, _, least, median, work in (line for line in table if line[1:3] == [m, n]):
             print(
                 f"m {m:3d}  n {n:5d}  {what:28s} {least:10.4f} ms  (median {median:.4f}, cpu {work:.4f})"
