@@ -165,18 +165,8 @@ def cut_by_body(
                 if table[base + face, USED] == 1 or above <= tolerance:
                     state[STAMP] += 2
                     face = other_face(
-                        numbers,
-                        indices,
-                        face,
-                        origin,
-                        spots,
-                        v,
-                        table,
-                        tolerance,
-                        state[STAMP],
-                        base,
-                        work,
-                    )
+                        numbers, indices, face, origin, spots, v, table, tolerance, state[STAMP], base, work
+                    )  # fmt: skip
                     if face < 0:
                         continue
                     plane = plane_of(numbers, face, origin)
@@ -192,21 +182,9 @@ def cut_by_body(
                     continue
                 top = v if turn == 0 else climb(spots, mesh, v, plane, noise, state, work)
                 status, n_new = cut_by_plane(
-                    spots,
-                    mesh,
-                    state,
-                    work,
-                    rim,
-                    table,
-                    top,
-                    plane,
-                    base + face,
-                    tolerance,
-                    numbers,
-                    indices,
-                    base,
-                    origin,
-                )
+                    spots, mesh, state, work, rim, table, top, plane, base + face, tolerance,
+                    numbers, indices, base, origin,
+                )  # fmt: skip
                 if status != CUT:
                     return status, n_cuts
                 table[base + face, USED] = 1
