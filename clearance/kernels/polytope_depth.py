@@ -22,6 +22,8 @@ TURN = 4
 """Faces of one body at a time: settling one body fully before the next takes 5 times as long for 5000 corners."""
 
 BOUND, INVERSE, POINT, SHARE = 4, 5, 9, 10
+LEVEL = 12
+"""Rounds in which the depth does not fall before the method is said to turn in a circle."""
 COLD, WARM, ON = 0, 1, 2
 
 
@@ -197,11 +199,16 @@ def deepen_two(
     if begin == COLD or (begin == WARM and not solve(basis)):
         start_around(basis, names, 16.0 * (numbers_a[13] + numbers_b[13]))
     n_entered = 0
+    n_level = 0
     for i_pass in range(1, passes + 1):
+        before = basis[POINT, 3]
         one, n_one = deepen(numbers_a, indices_a, pose_a, a, origin, basis, names, margin)
         other, n_other = deepen(numbers_b, indices_b, pose_b, b, origin, basis, names, margin)
         n_entered += n_one + n_other
         far = basis[POINT, 3] < -1e-6 and min(names[0], names[1], names[2], names[3]) >= 0
         if n_one + n_other == 0 or far:
             return one and other, n_entered, i_pass
+        n_level = 0 if before - basis[POINT, 3] > margin else n_level + 1
+        if n_level == LEVEL:
+            return False, n_entered, i_pass
     return False, n_entered, passes

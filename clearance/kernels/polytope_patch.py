@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.polytope_clip import (
+from clearance.kernels.polytope_cut import (
     FIRST,
     FREE,
     LATENT,

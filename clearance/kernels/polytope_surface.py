@@ -1,6 +1,6 @@
 """The faces of a trivalent polytope in order, and the volume and centroid inside a closed surface.
 
-Not for: changing the polytope (`polytope_clip`).
+Not for: changing the polytope (`polytope_cut`).
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ import numpy as np
 
 from clearance.jit import kernel, merged
 from clearance.kernels.expansion import two_sum
-from clearance.kernels.polytope_clip import FIRST, PLANES, SEEN
+from clearance.kernels.polytope_cut import FIRST, PLANES, SEEN
 
 
 @kernel
@@ -79,7 +79,7 @@ def trivalent_moments(places, mesh, n_rows, table, stamp):
     """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate, about the origin of `places`.
 
     Each edge of each face makes a tetrahedron with the face's first corner met and the origin. Arrays as in
-    `polytope_clip`; `stamp`: a number that `table` does not hold.
+    `polytope_cut`; `stamp`: a number that `table` does not hold.
     """
     sums = np.zeros(8)
     moments = np.zeros(5)

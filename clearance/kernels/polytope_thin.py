@@ -12,7 +12,6 @@ import numpy as np
 from clearance.jit import kernel
 from clearance.kernels.double_double import Wide3, cross3, difference, dot3, wide
 from clearance.kernels.expansion import N_TERMS, orient3d
-from clearance.kernels.polytope_clip import CUT, N_ROWS, cut_by_plane, over
 from clearance.kernels.vec3 import row
 
 
@@ -61,26 +60,3 @@ def stretched_planes(corners, origin, frame):
         for c in range(4):
             planes[i, c] /= most
     return planes
-
-
-@kernel
-def cut_by_planes(spots, mesh, state, work, rim, table, planes, tolerance):
-    """The status after cutting a small polytope by planes (k, 4) in turn; plane i is number 6 + i."""
-    nothing = np.zeros(8, dtype=np.int32)
-    for i in range(len(planes)):
-        plane = (planes[i, 0], planes[i, 1], planes[i, 2], planes[i, 3])
-        top = -1
-        most = tolerance
-        for v in range(state[N_ROWS]):
-            if mesh[v, 0] >= 0 and over(spots, v, plane) > most:
-                most = over(spots, v, plane)
-                top = v
-        if top < 0:
-            continue
-        status, _ = cut_by_plane(
-            spots, mesh, state, work, rim, table, top, plane, 6 + i, tolerance, planes[0], nothing,
-            len(table), planes[0],
-        )  # fmt: skip
-        if status != CUT:
-            return status
-    return CUT

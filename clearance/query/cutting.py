@@ -1,4 +1,4 @@
-"""One polytope cut by others: the working state of `kernels.polytope_clip`.
+"""One polytope cut by others: the working state of `kernels.polytope_cut`.
 
 Coordinates are taken about a common inner point before anything is computed, so that thin regions keep
 their digits. Not for: deciding whether there is a region (`common_point`).
@@ -11,17 +11,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_clip import (
+from clearance.kernels.polytope_clip import cut_by_body
+from clearance.kernels.polytope_cut import (
     BROKEN,
     CUT,
     FREE,
     FULL,
+    LOOKED,
     N_FREE,
     N_ROWS,
     PLANES,
     STAMP,
-    cut_by_body,
-    cut_by_half_space,
+    cut_by_planes,
 )
 from clearance.kernels.polytope_patch import lay_patch, mark_patch
 from clearance.kernels.polytope_surface import face_rings, trivalent_moments
@@ -29,19 +30,19 @@ from clearance.kernels.polytope_surface import face_rings, trivalent_moments
 ON_PLANE = 8 * 2.0**-53
 """[-] How far from a plane counts as on it, relative to the greatest coordinate about the inner point."""
 
-
 NOISE = 1e5
 """[-] How far rounding may make a false top stand out, in tolerances: corners slide along edges nearly parallel
 to a cut; up to 1e-13 has been seen, and level ground of 2 roundings missed a plane (4e-7 of a volume)."""
 
-
 ACROSS_ALL = np.array([0.53, 0.61, 0.59]) / np.linalg.norm([0.53, 0.61, 0.59])
 """[-] Normal of the plane that parts two halves: no face or edge of bodies as people place them lies in it."""
-
 
 PATCHED_FROM = 2000
 """Faces from which on the second body's inner surface is put in as a whole: a third less time at 10000 faces,
 none gained at 2000."""
+
+ROOM = 4
+"""Rows at first for each vertex of the body that is cut; doubled when they are full."""
 
 
 class Broken(Exception):
@@ -79,8 +80,8 @@ class Cutting:
         form = body.trivalent
         n = len(form.corner)
         self.task = task
-        self.spots = np.empty((3 * n + 64, 4))
-        self.mesh = np.empty((3 * n + 64, 8), dtype=np.int32)
+        self.spots = np.empty((ROOM * n, 4))
+        self.mesh = np.empty((ROOM * n, 8), dtype=np.int32)
         self.spots[:n, :3] = (body.vertices - task.origin)[form.corner]
         self.mesh[:n] = form.mesh
         self.mesh[:n, PLANES : PLANES + 3] += np.int32(task.bases[i_first])
@@ -98,6 +99,7 @@ class Cutting:
         free = self.work[FREE, : self.state[N_FREE]]
         self.spots = np.concatenate([self.spots, np.empty_like(self.spots)])
         self.mesh = np.concatenate([self.mesh, np.empty_like(self.mesh)])
+        self.mesh[:, LOOKED] = 0  # a call that came to no end may have put vertices off
         self._room()
         self.work[FREE, : len(free)] = free
 
@@ -107,9 +109,9 @@ class Cutting:
         Raises:
             Broken: see there.
         """
-        status = cut_by_half_space(
-            self.spots, self.mesh, self.state, self.work, self.rim, self.table,
-            *self.task.bodies[0].packed, side * ACROSS_ALL, self.task.seam,
+        plane = np.append(side * ACROSS_ALL, 0.0)[None, :]
+        status = cut_by_planes(
+            self.spots, self.mesh, self.state, self.work, self.rim, self.table, plane, self.task.seam, 0.0
         )  # fmt: skip
         if status != CUT:
             raise Broken

@@ -1,9 +1,9 @@
 """The region that convex polytopes share, with its volume and where each of its faces comes from.
 
-Two ways: cutting the smallest body by the faces of the others ("cut", several threads work on halves of the
-bodies), and the paper's duals about the common point with one hull over all half-spaces by Qhull ("dual").
-Cutting is the faster at every size measured (`POLYTOPES.md`); the dual way is what is left where rounding
-breaks it. Not for: concave bodies.
+Two ways: cutting the smallest body by the faces of the others ("cut", two threads take the halves on either
+side of a plane), and the paper's duals about the common point with one hull over all half-spaces by Qhull
+("dual"). Cutting is the faster at every size measured (`POLYTOPES.md`); the dual way is what is left where
+rounding breaks it. Not for: concave bodies.
 """
 
 from __future__ import annotations
@@ -92,9 +92,12 @@ class Intersection:
     def _surface(self) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
         if isinstance(self._cuttings, Region):
             return self._cuttings.surface()
-        whole = len(self._cuttings) == 1
-        region = Region.of(self._cuttings[0]) if whole else Region.sewn(self._cuttings)
-        return region.surface()
+        if len(self._cuttings) == 2:
+            corners, rings, provenance = Region.sewn(self._cuttings).surface()
+            if 2 * (len(corners) + len(rings) - 2) == sum(map(len, rings)):
+                return corners, rings, provenance
+            return Region.of(cut_down(self._cuttings[0].task)).surface()
+        return Region.of(self._cuttings[0]).surface()
 
 
 def intersect(
@@ -130,7 +133,9 @@ def intersect(
     return Intersection("touch", 0.0, touching.mean(axis=0), met, "none", None, touching)
 
 
-def _region(task: Task, method: str, threads: int) -> tuple[Region | None, np.ndarray, str]:
+def _region(
+    task: Task, method: str, threads: int
+) -> tuple[list[Cutting] | Region | None, np.ndarray, str]:
     """(the region, its moments, the way)."""
     if method != "dual":
         try:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.geometry.edges import rings_of
 from clearance.kernels.polytope_surface import ring_moments
 from clearance.query.cutting import Cutting, Task, cut_down
 
@@ -60,15 +61,13 @@ class Region:
     def surface(self) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
         """(corners (n, 3) [m], corners of each face, (f, 2) body and face each comes from).
 
-        Corners no farther apart than rounding become one; faces left with fewer than three go.
+        Edges no longer than rounding become a corner; faces left with fewer than three corners go.
         """
-        from scipy.spatial import cKDTree
-
         rows, index = np.unique(self.corners, return_inverse=True)
         places = self.places[rows]
-        near = 8.0 * self.task.tolerance
-        pairs = cKDTree(places).query_pairs(near, output_type="ndarray")
-        merged = _least_of_each_cluster(len(rows), pairs)
+        ends = np.column_stack([index, index[rings_of(self.starts).ahead]])
+        lengths = np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1)
+        merged = _least_of_each_cluster(len(rows), ends[lengths <= 8.0 * self.task.tolerance])
         kept, number = np.unique(merged, return_inverse=True)
         rings, names = [], []
         for name, ring in zip(self.planes, np.split(number[index], self.starts[1:-1]), strict=True):

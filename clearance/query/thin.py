@@ -12,9 +12,9 @@ import functools
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_clip import CUT, N_ROWS
+from clearance.kernels.polytope_cut import CUT, N_ROWS, cut_by_planes
 from clearance.kernels.polytope_surface import face_rings, trivalent_moments
-from clearance.kernels.polytope_thin import cut_by_planes, stretched_planes, supporting_triples
+from clearance.kernels.polytope_thin import stretched_planes, supporting_triples
 from clearance.query.cutting import ON_PLANE, Task
 from clearance.query.region import Region
 
@@ -106,7 +106,7 @@ def _cut_box(planes: np.ndarray):
     spots[:8, :3], mesh[:8] = _box()
     state, table = np.array([0, 0, 8]), np.zeros((6 + len(planes), 3), dtype=np.int32)
     work, rim = np.empty((4, rows), dtype=np.int32), np.empty((rows, 4), dtype=np.int32)
-    if cut_by_planes(spots, mesh, state, work, rim, table, planes, ON_PLANE) != CUT:
+    if cut_by_planes(spots, mesh, state, work, rim, table, planes, 6, ON_PLANE) != CUT:
         return None
     moments = trivalent_moments(spots, mesh, state[N_ROWS], table, state[1] + 2)
     return spots[:, :3], face_rings(mesh, state[N_ROWS]), moments[:4]

@@ -49,6 +49,18 @@ def test_error_time_finds_ours_exact_and_balls_wrong(tmp_path):
     assert "run time against error" in said
 
 
+def test_polytopes_measures_ours_and_the_peers(tmp_path):
+    out = tmp_path / "rows.csv"
+    said = ran("polytopes.py", "--largest", 50, "--seconds", 0.01, "--csv", out)
+    rows = rows_of(out)
+    assert all(0.0 < float(row["least_ms"]) <= float(row["median_ms"]) for row in rows)
+    assert {(row["m"], row["n"]) for row in rows} == {("2", "50"), ("64", "50")}
+    assert {"intersect", "common_point", "intersect, 2 threads", "common_point, warm, a pose"} <= {
+        row["what"] for row in rows
+    }
+    assert "LP + Qhull" in said
+
+
 @pytest.mark.parametrize("name", ["error_time.svg", "polygon_families.svg"])
 def test_pictures_are_drawn(tmp_path, name):
     pytest.importorskip("matplotlib")

@@ -138,6 +138,30 @@ def test_patches_and_halves_change_nothing(name, monkeypatch):
         assert sorted(map(len, found.faces)) == sorted(map(len, before.faces))
 
 
+def test_growing_on_the_way_forgets_no_vertex(monkeypatch):
+    families = [cluster(m, n) for m, n in ((2, 60), (2, 900), (9, 40))]
+    points = np.random.default_rng(8).normal(size=(90, 3))
+    families.append(
+        [Polytope(points + shift * np.array([1e-12, 2e-12, 0.0])) for shift in range(4)]
+    )
+    families.append(
+        [Polytope(CUBE), Polytope(2.9 * np.vstack([np.eye(3), -np.eye(3)]))]
+    )  # cuts one corner
+    plain = [intersect(bodies) for bodies in families]
+    monkeypatch.setattr(cutting, "ROOM", 1)
+    grown = []
+    monkeypatch.setattr(
+        cutting.Cutting,
+        "_grown",
+        lambda self, grow=cutting.Cutting._grown: (grown.append(1), grow(self)),
+    )
+    for bodies, before in zip(families, plain, strict=True):
+        found = intersect(bodies)
+        assert found.volume == pytest.approx(before.volume, rel=1e-14)
+        assert {tuple(row) for row in found.provenance} == {tuple(row) for row in before.provenance}
+    assert len(grown) >= len(families)
+
+
 def test_no_plane_is_missed_where_rounding_makes_a_false_top():
     rng = np.random.default_rng(1)
     rng.normal(size=(100, 3))
