@@ -9,6 +9,10 @@ import sys
 
 import numpy as np
 
+SEARCH = {"mcts_nodes": 10, "mcts_iterations": 60, "mcts_max_depth": 2, "resolution": 1000}
+"""A search half as wide and deep as CoACD's default: the ways out that it leads to are the same on what
+`query/CONTACT.md` measures, lower bounds up to 1 % of the depth weaker; a pipe takes 0.5 s of processor time."""
+
 
 def _main() -> None:
     import coacd
@@ -21,6 +25,7 @@ def _main() -> None:
         threshold=float(given["threshold"]),
         preprocess_mode="off",
         seed=0,
+        **SEARCH,
     )
     written = io.BytesIO()
     np.savez(written, *[np.asarray(corners, dtype=np.float64) for corners, _ in parts])

@@ -21,8 +21,8 @@ THRESHOLDS = (0.05, 0.02, 0.01)
 """[-] The concavity that CoACD leaves uncut, its default first: finer costs parts, and depth is sharpened by
 distance queries on the bodies themselves. The finer ones are for long thin bodies that it leaves whole."""
 
-MOST_WORK = 30
-"""[s] of processor time after which CoACD is given up: ten times what most links take. On some meshes it
+MOST_WORK = 15
+"""[s] of processor time after which CoACD is given up: many times what most links take. On some meshes it
 cuts for ever."""
 
 LONGEST = 10.0 * MOST_WORK
