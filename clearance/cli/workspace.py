@@ -32,7 +32,9 @@ MOST_LINKS = 8
     help="How coarse the pieces of the sweep are; smaller is tighter, slower.  [default: 5]",
 )
 @click.option(
-    "--convex-parts", is_flag=True, help="Cut concave links into convex parts: tighter, slower."
+    "--convex-parts",
+    is_flag=True,
+    help="Cut the links whose hulls meet into convex parts: tighter, slower.",
 )
 @click.option(
     "--limit-litres",

@@ -21,8 +21,12 @@ THRESHOLDS = (0.05, 0.02, 0.01)
 """[-] The concavity that CoACD leaves uncut, its default first: finer costs parts, and depth is sharpened by
 distance queries on the bodies themselves. The finer ones are for long thin bodies that it leaves whole."""
 
-LONGEST = 120.0
-"""[s] After which CoACD is given up: a thousand times what the links of industrial arms take."""
+MOST_WORK = 15
+"""[s] of processor time after which CoACD is given up: many times what most links take. On some meshes it
+cuts for ever."""
+
+LONGEST = 10.0 * MOST_WORK
+"""[s] of the clock, should the other limit not hold."""
 
 _PROCESS = Path(__file__).with_name("coacd_process.py")
 
@@ -48,7 +52,7 @@ def cut_into_hulls(
     if not available():
         raise Unavailable("CoACD is not installed", valid=INSTALL)
     sent = io.BytesIO()
-    np.savez(sent, vertices=vertices, triangles=triangles, threshold=threshold)
+    np.savez(sent, vertices=vertices, triangles=triangles, threshold=threshold, seconds=MOST_WORK)
     try:
         done = subprocess.run(
             [sys.executable, str(_PROCESS)],
@@ -60,7 +64,12 @@ def cut_into_hulls(
         with np.load(io.BytesIO(done.stdout)) as parts:
             hulls = [parts[name] for name in parts.files]
     except (subprocess.SubprocessError, OSError, ValueError) as error:
-        raise BadPolygon(f"CoACD came to no end ({type(error).__name__})") from None
+        raise BadPolygon(f"CoACD came to no end ({_reason(error)})") from None
     if not hulls:
         raise BadPolygon("CoACD makes no parts of the mesh", valid="a closed mesh")
     return hulls
+
+
+def _reason(error: Exception) -> str:
+    code = getattr(error, "returncode", None)
+    return type(error).__name__ if code is None else f"exit code {code}"

@@ -7,7 +7,7 @@ is far tighter.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -54,12 +54,14 @@ class SweptPiece:
         return Polytope((corners[:, None] + cube[None]).reshape(-1, 3))
 
 
-def swept_pieces(motion: Motion, within: float, cut_concave: bool) -> list[SweptPiece]:
+def swept_pieces(
+    motion: Motion, within: float, cut_links: Collection[str] = ()
+) -> list[SweptPiece]:
     """Pieces that together hold every measured link at every moment, joints moving linearly between steps.
 
     Args:
         within: [m] a stretch ends before a point of the link can leave the chord over it by more.
-        cut_concave: concave links by their convex parts instead of their hull; takes seconds a link.
+        cut_links: links to take by their convex parts instead of their hull; takes seconds a link.
 
     Exactness: an upper bound. Over one interval of the joints' linear motion a point leaves its chord by at
         most 1/8 max |x''| <= 1/8 (sum_k d_k rho_k (d_k + 2 sum_{j above k} d_j) + 2 sum_{k sliding} d_k sum_{j
@@ -75,7 +77,7 @@ def swept_pieces(motion: Motion, within: float, cut_concave: bool) -> list[Swept
             continue
         i_link = placed.robot.link_names.index(body.name)
         bend = _Bend.of(motion, i_link, body.shape)
-        parts = _parts(body.shape, cut_concave)
+        parts = _parts(body.shape, body.name in cut_links)
         for first, last in _stretches(turns, bend, within):
             leaves = max((bend.at_most(turns[i]) for i in range(first, last)), default=0.0)
             chosen = poses[first : last + 1, i_link]
@@ -95,9 +97,9 @@ def _corners_of_hull(points: np.ndarray) -> np.ndarray:
         return points
 
 
-def _parts(shape: Polyhedron, cut_concave: bool) -> list[np.ndarray]:
+def _parts(shape: Polyhedron, cut: bool) -> list[np.ndarray]:
     """The corners (k, 3) [m] of convex bodies that hold a link."""
-    if cut_concave:
+    if cut:
         return [part.vertices for part in convex_parts(shape).outer]
     return [Polytope(shape.vertices[np.unique(shape.face_vertices)]).vertices]
 

@@ -71,7 +71,7 @@ def shared_workspace(
 
     Args:
         within: [m] see `swept_pieces`; smaller is tighter and slower.
-        cut_concave: concave links by their convex parts instead of their hulls.
+        cut_concave: links whose hulls meet by their convex parts.
 
     Raises:
         BadInput: fewer than two robots; an obstacle of one name stands elsewhere in another case (another
@@ -88,8 +88,13 @@ def shared_workspace(
     _require_one_cell(cases)
     _require_different_places(named)
     motions = tuple(kinematic_motion(placed) for _, placed in named)
-    swept = [swept_pieces(motion, within, cut_concave) for motion in motions]
-    meeting, links = _meeting([name for name, _ in named], swept)
+    names = [name for name, _ in named]
+    swept = [swept_pieces(motion, within) for motion in motions]
+    meeting, links = _meeting(names, swept)
+    if cut_concave and links:  # only what meets as hulls
+        meet = [{piece.link for piece in pieces} for pieces in meeting]
+        swept = [swept_pieces(m, within, cut) for m, cut in zip(motions, meet, strict=True)]
+        meeting, links = _meeting(names, swept)
     return Workspace(
         robots=tuple(name for name, _ in named),
         region=_shared_region([[solid_of(piece.body) for piece in rows] for rows in meeting]),

@@ -79,7 +79,7 @@ def test_timing_does_not_matter_and_apart_is_empty():
 def test_the_pieces_hold_the_links_between_the_samples(within):
     case = swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6)
     motion = kinematic_motion(case.robots[0])
-    pieces = swept_pieces(motion, within, cut_concave=False)
+    pieces = swept_pieces(motion, within)
     n = motion.n_steps
     fine = np.linspace(0.0, n - 1.0, 20 * (n - 1) + 1)
     between = [np.interp(fine, np.arange(n), column) for column in motion.positions.T]
@@ -101,17 +101,17 @@ def test_the_pieces_hold_the_links_between_the_samples(within):
 def test_finer_stretches_are_shorter_and_never_leave_a_gap():
     motion = kinematic_motion(swinging("arm", np.eye(4)).robots[0])
     for within in (1e-5, 5e-3, 0.5):
-        pieces = [p for p in swept_pieces(motion, within, False) if p.link == "gripper"]
+        pieces = [p for p in swept_pieces(motion, within) if p.link == "gripper"]
         assert pieces[0].first == 0 and pieces[-1].last == motion.n_steps - 1
         assert all(a.last == b.first for a, b in zip(pieces, pieces[1:], strict=False))
-    assert len(swept_pieces(motion, 1e-5, False)) > len(swept_pieces(motion, 0.5, False))
+    assert len(swept_pieces(motion, 1e-5)) > len(swept_pieces(motion, 0.5))
 
 
 @WITH_MANIFOLD
 def test_the_region_of_two_arms_is_what_pairs_of_pieces_share():
     one, two = swinging("left", moved(0.0)), swinging("right", moved(0.2, 1.0))
     found = shared_workspace([one, two], within=0.05)
-    swept = [swept_pieces(kinematic_motion(c.robots[0]), 0.05, False) for c in (one, two)]
+    swept = [swept_pieces(kinematic_motion(c.robots[0]), 0.05) for c in (one, two)]
     pieces = [cl.intersect([p.body, q.body]) for p in swept[0] for q in swept[1]]
     parts = [shared for shared in pieces if shared.volume > 0.0]
     assert found.volume <= sum(part.volume for part in parts) * (1 + 1e-9)
@@ -119,6 +119,23 @@ def test_the_region_of_two_arms_is_what_pairs_of_pieces_share():
     points = np.concatenate([part.centroid[None] for part in parts])
     low, high = found.region.vertices.min(axis=0), found.region.vertices.max(axis=0)
     assert (points >= low).all() and (points <= high).all()
+
+
+@WITH_MANIFOLD
+def test_concave_links_can_be_taken_by_their_parts():
+    """An L that slides over a cube's way: its hull meets the cube, its parts do not."""
+    rim = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
+    points = 0.1 * np.array([(x, y, z) for z in (0.0, 1.0) for x, y in rim])
+    caps = [[6, 7, 8, 9], [6, 9, 10, 11], [3, 2, 1, 0], [5, 4, 3, 0]]
+    shape = cl.Polyhedron(
+        points, caps + [[i, (i + 1) % 6, (i + 1) % 6 + 6, i + 6] for i in range(6)]
+    )
+    one = slider("one", (0, 0, 1), -1.0, 1.0)
+    robot = dataclasses.replace(one.robots[0].robot, bodies=(Body("cube", shape),))
+    one = dataclasses.replace(one, robots=(dataclasses.replace(one.robots[0], robot=robot),))
+    two = slider("two", (0, 0, 1), -1.0, 1.0, base=(0.235, 0.235, 0.0))
+    assert shared_workspace([one, two]).volume > 1e-6
+    assert shared_workspace([one, two], cut_concave=True).region.is_empty
 
 
 @WITH_MANIFOLD
