@@ -28,10 +28,10 @@ ROUNDED_UP = 1.0 + 2.0**-51
 SURELY = 1e-7
 """[-] A matrix that is off orthonormal by less is a rotation; of one that is off by more this is not said."""
 
-FAR = 0.5
-"""Bodies that move farther than this share of the smaller one's size are searched from the roots again."""
+FAR = 1.0
+"""Bodies that move farther than this share of the smaller one's breadth are searched from the roots again."""
 
-MOVED, FLOOR = 0, 1
+MOVED, FLOOR, STRIDE = 0, 1, 2
 
 _FIELDS = ("a", "b", "scratch", "fronts", "poses", "seeds", "carried")
 
@@ -44,7 +44,8 @@ class HeldPair(NamedTuple):
         scratch, fronts: room for the search, and where the last one ended.
         poses: (2, 4, 4) of both bodies at the last search [m].
         seeds: (2,) the faces that were nearest, or NO_FACE.
-        carried: (2,) [m] what both bodies have moved in all, and a lower bound on their distance plus that.
+        carried: (3,) [m] what both bodies have moved in all; a lower bound on their distance, plus that; how
+            far they may move at once before a search from the roots is better.
     """
 
     a: object
@@ -74,12 +75,21 @@ if not numba.config.DISABLE_JIT:
     structref.define_constructor(HeldPair, HeldPairType, _FIELDS)
 
 
+@inlined
+def _breadth(surface):
+    """[m] the greatest extent of a body along an axis of its frame."""
+    most = 0.0
+    for axis in range(3):
+        most = max(most, surface.vertices[:, axis].max() - surface.vertices[:, axis].min())
+    return most
+
+
 @kernel
 def hold_pair(a, b):
     """A pair of surfaces of which nothing is known yet."""
     return HeldPair(
-        a, b, new_scratch(), no_fronts(1, ROOM), np.zeros((2, 4, 4)),
-        np.array([NO_FACE, NO_FACE]), np.array([0.0, -np.inf]),
+        a, b, new_scratch(), no_fronts(1, ROOM), np.zeros((2, 4, 4)), np.array([NO_FACE, NO_FACE]),
+        np.array([0.0, -np.inf, FAR * min(_breadth(a), _breadth(b))]),
     )  # fmt: skip
 
 
@@ -102,24 +112,20 @@ def _is_surely_rigid(pose):
 
 
 @inlined
-def _size(surface):
-    """[m] the length of the diagonal of a body's box."""
-    half = surface.halves[surface.roots[0]]
-    return 2.0 * np.sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2])
-
-
-@inlined
 def _travel(held, pose_a, pose_b, frames):
-    """[m] an upper bound on what the points of both bodies have moved in all, by the time of these poses."""
+    """[m] an upper bound on what the points of both bodies have moved in all, by the time of these poses.
+
+    Infinite where they may have come to touch, or where little of what is known can be of use: from a front, the
+    first contact can take a hundred times the search that it takes from the roots, and then that one as well.
+    """
     a, b = held.a, held.b
     way = displacement(a, a.roots[0], held.poses[0], pose_a)
     way += displacement(b, b.roots[0], held.poses[1], pose_b)
-    if not way <= FAR * min(_size(a), _size(b)):
-        forget(held.fronts, 0)
-        held.carried[FLOOR] = -np.inf
-        return 0.0
+    if not way <= held.carried[STRIDE]:
+        return np.inf
     way += rounding_slack(a, a.roots[0], b, b.roots[0], frames)  # where motions cancel
-    return (held.carried[MOVED] + way) * ROUNDED_UP
+    moved = (held.carried[MOVED] + way) * ROUNDED_UP
+    return moved if held.carried[FLOOR] > moved else np.inf
 
 
 @inlined
@@ -127,16 +133,17 @@ def _measure(held, pose_a, pose_b):
     """The nearest points of a held pair, as `measure_pair` gives them."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _travel(held, pose_a, pose_b, frames)
-    apart = held.carried[FLOOR] > moved
-    asked = Asked(np.inf, np.inf, held.seeds[0], held.seeds[1], apart)
+    asked = Asked(np.inf, np.inf, held.seeds[0], held.seeds[1], True)
+    if moved == np.inf:
+        moved = 0.0
+        asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
+        forget(held.fronts, 0)
     measured = measure_pair(
         held.a, 0, held.b, 0, frames, asked, held.fronts, 0, moved, held.scratch
     )
     held.carried[MOVED] = moved
     held.carried[FLOOR] = (measured.lower_bound + moved) * KEPT_DOWN
     held.seeds[0], held.seeds[1] = measured.face_a, measured.face_b
-    if measured.face_a < 0:  # one inside the other: which contact comes next must not depend on this front
-        forget(held.fronts, 0)
     held.poses[0], held.poses[1] = pose_a, pose_b
     return measured
 

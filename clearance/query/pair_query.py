@@ -17,6 +17,8 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.pair_query import hold_pair, nearest_at_poses
 from clearance.query.result import Nearest
 
+_AT_REST = np.eye(4)
+
 
 @dataclass(frozen=True, eq=False)
 class NearestAtPoses:
@@ -49,8 +51,10 @@ class Query:
         self.a, self.b = a, b
         self._lock = threading.Lock()
         self._held = hold_pair(surface_of(a), surface_of(b))
-        self._poses = np.empty((1, 4, 4)), np.empty((1, 4, 4))
-        self._numbers, self._points, self._counts = _rows(1)
+        poses, rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), _rows(1)
+        self._asked = (self._held, *poses, False, *rows)
+        (self._pose_a,), (self._pose_b,) = poses
+        (self._number,), (self._point,), (self._count,) = rows
 
     def distance(
         self, world_from_a: np.ndarray | None = None, world_from_b: np.ndarray | None = None
@@ -67,13 +71,12 @@ class Query:
         """
         pose_a, pose_b = _pose(world_from_a), _pose(world_from_b)
         with self._lock:
-            self._poses[0][0], self._poses[1][0] = pose_a, pose_b
-            rows = self._numbers, self._points, self._counts
-            if nearest_at_poses(self._held, *self._poses, False, *rows) >= 0:
+            self._pose_a[...], self._pose_b[...] = pose_a, pose_b
+            if nearest_at_poses(*self._asked) >= 0:
                 validated_pose(pose_a), validated_pose(pose_b)
-                nearest_at_poses(self._held, *self._poses, True, *rows)
-            (distance, error), points = self._numbers[0].tolist(), self._points[0].copy()
-            face_a, face_b, n_nodes, n_faces, n_exact = self._counts[0].tolist()
+                nearest_at_poses(*self._asked[:3], True, *self._asked[4:])
+            (distance, error), points = self._number.tolist(), self._point.copy()
+            face_a, face_b, n_nodes, n_faces, n_exact = self._count.tolist()
         return Nearest(
             distance, points[0], points[1], face_a, face_b, distance == 0.0, error,
             {"nodes": n_nodes, "polygons": n_faces, "exact_decisions": n_exact},
@@ -114,7 +117,7 @@ def _rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _pose(given: np.ndarray | None) -> np.ndarray:
     """A (4, 4) array that is not yet known to be a pose."""
     if given is None:
-        return np.eye(4)
+        return _AT_REST
     try:
         pose = np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError):
