@@ -10,6 +10,7 @@ from typing import Any
 
 from clearance.report.background import certainty, loaded, provenance, unmeasured
 from clearance.report.markup import Html, element, section, step_link, table
+from clearance.report.profiles import profiles
 from clearance.report.wording import count, joint_value, limit_mm, mm, seconds
 
 MAX_EVENT_ROWS = 200
@@ -55,8 +56,8 @@ def _cross_check_word(check: dict[str, Any] | None) -> str:
     return f"agrees with {check['peer']}" if check["agrees"] else f"disagrees with {check['peer']}"
 
 
-def sections(summary: dict[str, Any]) -> Html:
-    """All sections under the replay."""
+def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
+    """All sections under the replay; `pictures`: SVG of each profile by its name."""
     return Html(
         "".join(
             [
@@ -66,6 +67,7 @@ def sections(summary: dict[str, Any]) -> Html:
                     element("div", events(summary), certainty(summary)),
                     class_="columns",
                 ),
+                profiles(summary, pictures),
                 matrix(summary),
                 unmeasured(summary),
                 loaded(summary),
