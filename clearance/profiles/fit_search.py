@@ -27,14 +27,16 @@ class Search:
         self.samples = drawn.pieces.spread(SAMPLES)
         self.tiny = 1e-12 * shape.size
 
-    def run(self, start: np.ndarray) -> Found | None:
-        """The shape that the search ends with; None where it is not what was asked."""
+    def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:
+        """The shape that the search ends with; None where it is not what was asked, or no better than the
+        score `beat` once it has come near.
+        """
         here = self.shape.at(start)
         if here is None:
             return None
         if self.target.mode == "nearest":
             return self._minimax(self._least_squares(here))
-        return self._bounded(here)
+        return self._bounded(here, beat)
 
     # --- nearest ---
 
@@ -116,12 +118,14 @@ class Search:
 
     # --- outside and inside ---
 
-    def _bounded(self, here: Placed) -> Found | None:
+    def _bounded(self, here: Placed, beat: float) -> Found | None:
         """Least (outside) or greatest (inside) area with every gap at least the margin, then certified."""
         target, wanted = self.target, self.target.margin
         extra, samples = np.zeros((0, 2)), self.samples
         for k in range(7):
             here, rows, marginals, used = self._area_steps(here, wanted, samples, extra)
+            if k == 0 and target.score(here) > beat + 1e-6 * abs(beat):
+                return None
             gap, least = target.clearance(here)
             if gap >= target.margin and (gap > 0.0 or target.margin > 0.0):
                 return Found(here, target.score(here), gap, rows, marginals, *used)
@@ -142,9 +146,10 @@ class Search:
             merit = target.score(here) + price * max(0.0, wanted - float(rows.distance.min()))
             chosen = np.sort(np.argsort(rows.distance, kind="stable")[:MOST_ROWS])
             rows = Rows(*(column[chosen] for column in rows))
-            change = self._area_slope(here)
+            sign = 1.0 if target.mode == "outside" else -1.0
+            change = sign * np.array([slope.area for slope in slopes])
             step, predicted, marginals = self._area_program(rows, change, wanted, reach, price)
-            if predicted <= 1e-11 * self.shape.size**2 or reach < 1e-10:
+            if predicted <= 1e-10 * self.shape.size**2 or reach < 1e-10:
                 break
             moved = self.shape.at(here.numbers + step)
             gained = -np.inf
@@ -158,17 +163,6 @@ class Search:
             else:
                 reach *= 0.25
         return here, rows, marginals, (samples, given, chosen)
-
-    def _area_slope(self, here: Placed) -> np.ndarray:
-        """(n,) how the score changes with each number; where the shape stands changes no area."""
-        found = np.zeros(len(here.numbers))
-        for i in range(len(self.shape.free)):
-            step = 1e-6 * self.shape.scale[i] * (np.arange(len(found)) == i)
-            ahead, behind = self.shape.at(here.numbers + step), self.shape.at(here.numbers - step)
-            if ahead is not None and behind is not None:
-                change = self.target.score(ahead) - self.target.score(behind)
-                found[i] = change / (2.0 * step[i])
-        return found
 
     def _area_program(
         self, rows: Rows, change: np.ndarray, wanted: float, reach: float, price: float
