@@ -95,7 +95,7 @@ def fit(
     *,
     free: Sequence[str] | None = None,
     margin: float = 0.0,
-    starts: int = 6,
+    starts: int = 4,
 ) -> Fit:
     """The sketch whose free dimensions, and place where nothing holds it, suit an outline best.
 

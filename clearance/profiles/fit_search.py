@@ -15,6 +15,9 @@ from clearance.profiles.fit_target import Found, Places, Target
 MOST_ROWS = 300
 """Rows of a linear program: those nearest to mattering."""
 
+MOST_NEAR = 60
+"""Places of the outline whose pieces are looked at more closely once the shape is near them."""
+
 SAMPLES = 16
 """Places on each piece of the shape."""
 
@@ -123,7 +126,8 @@ class Search:
         target, wanted = self.target, self.target.margin
         extra, samples = np.zeros((0, 2)), self.samples
         for k in range(7):
-            here, rows, marginals, used = self._area_steps(here, wanted, samples, extra)
+            reach = 0.1 if k == 0 else 1e-3
+            here, rows, marginals, used = self._area_steps(here, wanted, samples, extra, reach)
             if k == 0 and target.score(here) > beat + 1e-6 * abs(beat):
                 return None
             gap, least = target.clearance(here)
@@ -131,16 +135,18 @@ class Search:
                 return Found(here, target.score(here), gap, rows, marginals, *used)
             if gap < 0.0 and least.distance > 1e-6 * self.shape.size:
                 return None
-            extra = np.vstack([extra, least.point_b])
+            extra = np.vstack([extra, least.point_b, self._near_points(here, wanted)])
             samples = self._with_places(here, least.point_a[None], samples)
             wanted += 1.05 * (target.margin - max(gap, 0.0)) + 4.0**k * 1e-9 * self.shape.size
         return None
 
-    def _area_steps(self, here: Placed, wanted: float, samples: Places, extra: np.ndarray):
+    def _area_steps(
+        self, here: Placed, wanted: float, samples: Places, extra: np.ndarray, reach: float
+    ):
         """Linear programs until none promises more; with the rows of the last and which they are."""
-        target, reach, price = self.target, 0.1, 10.0 * self.shape.size
+        target, price = self.target, 10.0 * self.shape.size
         given = np.vstack([target.given, extra])
-        for _ in range(50):
+        for _ in range(30):
             slopes = self.shape.slopes(here)
             rows = target.gaps(target.rows(here.pieces, slopes, samples, given))
             merit = target.score(here) + price * max(0.0, wanted - float(rows.distance.min()))
@@ -184,6 +190,18 @@ class Search:
         missing = max(0.0, wanted - float(rows.distance.min()))
         predicted = price * missing - solved.fun * size**2 * reach
         return solved.x[:n] * reach * self.shape.scale, predicted, solved.ineqlin.marginals
+
+    def _near_points(self, here: Placed, wanted: float) -> np.ndarray:
+        """Many points of those pieces of the outline that come near the shape: where it may touch."""
+        outline = self.target.pieces
+        piece, share = outline.spread(2)
+        points = outline.point(piece, share)
+        _, _, foot = here.pieces.feet(points)
+        off = np.hypot(*(points - foot).T)
+        near = piece[np.argsort(off, kind="stable")[:MOST_NEAR]]
+        near = np.unique(near[np.sort(off)[:MOST_NEAR] <= wanted + 2e-3 * self.shape.size])
+        dense = np.tile((np.arange(24) + 0.5) / 24.0, len(near))
+        return outline.point(np.repeat(near, 24), dense)
 
     # --- both ---
 
