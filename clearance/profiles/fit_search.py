@@ -12,7 +12,7 @@ from clearance.profiles.fit_rows import Rows, Slope, joined_rows
 from clearance.profiles.fit_shape import Placed, SketchShape
 from clearance.profiles.fit_target import Found, Places, Target
 
-MOST_ROWS = 300
+MOST_ROWS = 700
 """Rows of a linear program: those nearest to mattering."""
 
 MOST_NEAR = 60
