@@ -20,7 +20,15 @@ def dxf_text(profile: Profile) -> str:
     """The text of a DXF R2010 drawing; the same profile gives the same text."""
     import ezdxf
 
-    drawing = ezdxf.new("R2010", setup=False)
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    try:  # else the file would hold the time of writing and fresh GUIDs
+        ezdxf.options.write_fixed_meta_data_for_testing = True
+        return _text_of(ezdxf.new("R2010", setup=False), profile)
+    finally:
+        ezdxf.options.write_fixed_meta_data_for_testing = before
+
+
+def _text_of(drawing, profile: Profile) -> str:
     drawing.header["$INSUNITS"] = METRES
     drawing.header["$MEASUREMENT"] = 1
     drawing.header["$LUPREC"] = 8
@@ -28,12 +36,7 @@ def dxf_text(profile: Profile) -> str:
         drawing.layers.add(layer_name(layer))
         _draw(drawing, part, layer_name(layer))
     out = io.StringIO()
-    before = ezdxf.options.write_fixed_meta_data_for_testing
-    try:  # else the header would hold the time of writing and fresh GUIDs
-        ezdxf.options.write_fixed_meta_data_for_testing = True
-        drawing.write(out)
-    finally:
-        ezdxf.options.write_fixed_meta_data_for_testing = before
+    drawing.write(out)
     return out.getvalue()
 
 

@@ -95,7 +95,7 @@ def fit(
     *,
     free: Sequence[str] | None = None,
     margin: float = 0.0,
-    starts: int = 6,
+    starts: int = 4,
 ) -> Fit:
     """The sketch whose free dimensions, and place where nothing holds it, suit an outline best.
 
@@ -172,7 +172,7 @@ def _starts(shape: SketchShape, outline: Drawn, mode: str, count: int) -> list[n
         if shape.turns:
             shaken[-1] += 0.5 * np.pi * rng.integers(0, 4) + rng.uniform(-0.3, 0.3)
         found.append(shaken)
-    return found
+    return found[: max(1, count)]
 
 
 def _centred(shape: SketchShape, numbers: np.ndarray, box: np.ndarray) -> np.ndarray:
@@ -190,7 +190,7 @@ def _best(search: Search, starts: list[np.ndarray]):
     best, tried = None, 0
     for start in starts:
         tried += 1
-        found = search.run(start)
+        found = search.run(start, np.inf if best is None else best.score)
         if found is None:
             continue
         if best is None or search.target.better(found, best):

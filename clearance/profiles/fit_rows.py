@@ -23,11 +23,13 @@ class Rows(NamedTuple):
 
 
 class Slope(NamedTuple):
-    """Two neighbouring shapes and how far apart one of their numbers is (0 where it cannot change)."""
+    """Two neighbouring shapes, how far apart one of their numbers is (0 where it cannot change), and the change
+    of the area for each unit of it."""
 
     behind: Pieces
     ahead: Pieces
     width: float
+    area: float = 0.0
 
 
 def sides_of(pieces: Pieces, region: Region) -> np.ndarray:
@@ -78,7 +80,7 @@ def _measured(curve: Pieces, sides: np.ndarray, points: np.ndarray):
 def _slope(slopes: list[Slope], places, normal: np.ndarray) -> np.ndarray:
     """(k, n) how fixed places of the shape move along `normal`."""
     columns = []
-    for behind, ahead, width in slopes:
+    for behind, ahead, width, _ in slopes:
         moved = ahead.point(*places) - behind.point(*places) if width else np.zeros_like(normal)
         columns.append((moved * normal).sum(axis=1) / (width or 1.0))
     return np.stack(columns, axis=1)

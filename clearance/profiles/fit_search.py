@@ -12,8 +12,11 @@ from clearance.profiles.fit_rows import Rows, Slope, joined_rows
 from clearance.profiles.fit_shape import Placed, SketchShape
 from clearance.profiles.fit_target import Found, Places, Target
 
-MOST_ROWS = 300
+MOST_ROWS = 700
 """Rows of a linear program: those nearest to mattering."""
+
+MOST_NEAR = 60
+"""Places of the outline whose pieces are looked at more closely once the shape is near them."""
 
 SAMPLES = 16
 """Places on each piece of the shape."""
@@ -27,14 +30,16 @@ class Search:
         self.samples = drawn.pieces.spread(SAMPLES)
         self.tiny = 1e-12 * shape.size
 
-    def run(self, start: np.ndarray) -> Found | None:
-        """The shape that the search ends with; None where it is not what was asked."""
+    def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:
+        """The shape that the search ends with; None where it is not what was asked, or no better than the
+        score `beat` once it has come near.
+        """
         here = self.shape.at(start)
         if here is None:
             return None
         if self.target.mode == "nearest":
             return self._minimax(self._least_squares(here))
-        return self._bounded(here)
+        return self._bounded(here, beat)
 
     # --- nearest ---
 
@@ -116,35 +121,41 @@ class Search:
 
     # --- outside and inside ---
 
-    def _bounded(self, here: Placed) -> Found | None:
+    def _bounded(self, here: Placed, beat: float) -> Found | None:
         """Least (outside) or greatest (inside) area with every gap at least the margin, then certified."""
         target, wanted = self.target, self.target.margin
         extra, samples = np.zeros((0, 2)), self.samples
         for k in range(7):
-            here, rows, marginals, used = self._area_steps(here, wanted, samples, extra)
+            reach = 0.1 if k == 0 else 1e-3
+            here, rows, marginals, used = self._area_steps(here, wanted, samples, extra, reach)
+            if k == 0 and target.score(here) > beat + 1e-6 * abs(beat):
+                return None
             gap, least = target.clearance(here)
             if gap >= target.margin and (gap > 0.0 or target.margin > 0.0):
                 return Found(here, target.score(here), gap, rows, marginals, *used)
             if gap < 0.0 and least.distance > 1e-6 * self.shape.size:
                 return None
-            extra = np.vstack([extra, least.point_b])
+            extra = np.vstack([extra, least.point_b, self._near_points(here, wanted)])
             samples = self._with_places(here, least.point_a[None], samples)
             wanted += 1.05 * (target.margin - max(gap, 0.0)) + 4.0**k * 1e-9 * self.shape.size
         return None
 
-    def _area_steps(self, here: Placed, wanted: float, samples: Places, extra: np.ndarray):
+    def _area_steps(
+        self, here: Placed, wanted: float, samples: Places, extra: np.ndarray, reach: float
+    ):
         """Linear programs until none promises more; with the rows of the last and which they are."""
-        target, reach, price = self.target, 0.1, 10.0 * self.shape.size
+        target, price = self.target, 10.0 * self.shape.size
         given = np.vstack([target.given, extra])
-        for _ in range(50):
+        for _ in range(30):
             slopes = self.shape.slopes(here)
             rows = target.gaps(target.rows(here.pieces, slopes, samples, given))
             merit = target.score(here) + price * max(0.0, wanted - float(rows.distance.min()))
             chosen = np.sort(np.argsort(rows.distance, kind="stable")[:MOST_ROWS])
             rows = Rows(*(column[chosen] for column in rows))
-            change = self._area_slope(here)
+            sign = 1.0 if target.mode == "outside" else -1.0
+            change = sign * np.array([slope.area for slope in slopes])
             step, predicted, marginals = self._area_program(rows, change, wanted, reach, price)
-            if predicted <= 1e-11 * self.shape.size**2 or reach < 1e-10:
+            if predicted <= 1e-10 * self.shape.size**2 or reach < 1e-10:
                 break
             moved = self.shape.at(here.numbers + step)
             gained = -np.inf
@@ -158,17 +169,6 @@ class Search:
             else:
                 reach *= 0.25
         return here, rows, marginals, (samples, given, chosen)
-
-    def _area_slope(self, here: Placed) -> np.ndarray:
-        """(n,) how the score changes with each number; where the shape stands changes no area."""
-        found = np.zeros(len(here.numbers))
-        for i in range(len(self.shape.free)):
-            step = 1e-6 * self.shape.scale[i] * (np.arange(len(found)) == i)
-            ahead, behind = self.shape.at(here.numbers + step), self.shape.at(here.numbers - step)
-            if ahead is not None and behind is not None:
-                change = self.target.score(ahead) - self.target.score(behind)
-                found[i] = change / (2.0 * step[i])
-        return found
 
     def _area_program(
         self, rows: Rows, change: np.ndarray, wanted: float, reach: float, price: float
@@ -190,6 +190,18 @@ class Search:
         missing = max(0.0, wanted - float(rows.distance.min()))
         predicted = price * missing - solved.fun * size**2 * reach
         return solved.x[:n] * reach * self.shape.scale, predicted, solved.ineqlin.marginals
+
+    def _near_points(self, here: Placed, wanted: float) -> np.ndarray:
+        """Many points of those pieces of the outline that come near the shape: where it may touch."""
+        outline = self.target.pieces
+        piece, share = outline.spread(2)
+        points = outline.point(piece, share)
+        _, _, foot = here.pieces.feet(points)
+        off = np.hypot(*(points - foot).T)
+        near = piece[np.argsort(off, kind="stable")[:MOST_NEAR]]
+        near = np.unique(near[np.sort(off)[:MOST_NEAR] <= wanted + 2e-3 * self.shape.size])
+        dense = np.tile((np.arange(24) + 0.5) / 24.0, len(near))
+        return outline.point(np.repeat(near, 24), dense)
 
     # --- both ---
 

@@ -155,11 +155,10 @@ class SketchShape:
         numbers = here.numbers.copy()
         numbers[i] += step
         there = self.at(numbers)
-        return (
-            None
-            if there is None
-            else Slope(here.pieces, there.pieces, float(numbers[i] - here.numbers[i]))
-        )
+        if there is None:
+            return None
+        width = float(numbers[i] - here.numbers[i])
+        return Slope(here.pieces, there.pieces, width, (there.area - here.area) / width)
 
     def placed_sketch(self, numbers: np.ndarray, original: Sketch) -> Sketch:
         """The sketch itself at these numbers, free dimensions driven as they were."""

@@ -21,7 +21,6 @@ import numpy as np
 
 from clearance.errors import Unavailable
 from clearance.report.markup import element
-from clearance.report.profiles import profiles
 from clearance.report.sections import header, sections
 from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
@@ -47,7 +46,7 @@ def page_of(
         style=_own("page.css"),
         header=header(summary),
         stage_note=_stage_note(replay),
-        sections=sections(summary) + profiles(summary, pictures or {}),
+        sections=sections(summary, pictures or {}),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
         data=_json_inside_script(_data(summary, replay)),
         plotly=_inside_script(_plotly()),

@@ -11,6 +11,7 @@ from typing import Any
 from clearance.report.background import certainty, loaded, provenance, unmeasured
 from clearance.report.contact import contacts
 from clearance.report.markup import Html, element, section, step_link, table
+from clearance.report.profiles import profiles
 from clearance.report.wording import count, joint_value, limit_mm, mm, seconds
 
 MAX_EVENT_ROWS = 200
@@ -68,8 +69,8 @@ def _cross_check_word(check: dict[str, Any] | None) -> str:
     return f"agrees with {check['peer']}" if check["agrees"] else f"disagrees with {check['peer']}"
 
 
-def sections(summary: dict[str, Any]) -> Html:
-    """All sections under the replay."""
+def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
+    """All sections under the replay; `pictures`: SVG of each profile by its name."""
     return Html(
         "".join(
             [
@@ -80,6 +81,7 @@ def sections(summary: dict[str, Any]) -> Html:
                     class_="columns",
                 ),
                 contacts(summary),
+                profiles(summary, pictures),
                 matrix(summary),
                 unmeasured(summary),
                 loaded(summary),

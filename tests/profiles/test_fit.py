@@ -17,6 +17,9 @@ from tests.profiles.moving import rows, slab, turning
 SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
 
 
+SQUARE = cl.Curve.polyline([[0, 0], [1, 0], [1, 1], [0, 1]], closed=True)
+
+
 def rectangle(width, depth, *, driven=("width", "depth"), fixed=False):
     """A rectangle with its lower left corner at the origin."""
     s = cl.Sketch()
@@ -125,7 +128,7 @@ def test_the_same_answer_each_time():
 def test_the_sketch_itself_is_left_alone_and_a_copy_is_the_same():
     sketch = cl.Sketch.load(SKETCHES / "d_cell.yaml")
     before = [e.position.tolist() for e in sketch.entities.values() if e.what == "point"]
-    cl.fit(sketch, cl.Curve.circle([0.1, 0.0], 0.3), "outside", starts=1)
+    cl.fit(sketch, SQUARE, "outside", starts=2)
     assert before == [e.position.tolist() for e in sketch.entities.values() if e.what == "point"]
     again = copied(sketch)
     assert list(again.entities) == list(sketch.entities)
@@ -136,9 +139,6 @@ def contradictory():
     s = rectangle(1.0, 0.5, driven=("depth",))
     s.distance(s.entity("p3"), s.entity("p2"), 1.2, name="other_width")
     return s
-
-
-SQUARE = cl.Curve.polyline([[0, 0], [1, 0], [1, 1], [0, 1]], closed=True)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,224 @@
+"""Profiles through files and the command line, two compared, and what `check` says of a case's profiles."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import clearance as cl
+from clearance.cli.commands import clearance as command
+from clearance.errors import BadInput, BadShape, BadSyntax, UnknownLink
+from clearance.load.case_file import load_case
+from clearance.profiles.compare import as_data, compare
+from clearance.profiles.outline_file import Drawn, read_outline, read_profile
+from clearance.profiles.profile_file import write_profile
+from tests.profiles.moving import rows, slab, turning
+
+SCENES = Path(__file__).parents[2] / "scenes"
+
+
+@pytest.fixture(scope="module")
+def profile():
+    return cl.swept_profile(
+        turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 3.2, 6.4]), per_link=True
+    )
+
+
+def test_our_yaml_keeps_every_bit(profile, tmp_path):
+    write_profile(profile, tmp_path / "p.yaml")
+    again = read_profile(tmp_path / "p.yaml")
+    assert rows(again) == rows(profile)
+    for name in ("name", "plane", "bound", "tolerance", "facets", "n_steps", "section", "notes"):
+        assert getattr(again, name) == getattr(profile, name)
+    assert [again.maker(i) for i in range(again.n_pieces)] == [
+        profile.maker(i) for i in range(profile.n_pieces)
+    ]
+    assert list(again.parts) == list(profile.parts)
+
+
+def test_dxf_keeps_the_curve_and_opens_elsewhere(profile, tmp_path):
+    import trimesh
+
+    one = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 3.2, 6.4]))
+    path = tmp_path / "p.dxf"
+    write_profile(one, path)
+    found = cl.hausdorff(cl.Curve.from_dxf(str(path)), one.curve)
+    assert found.distance + found.error_bound <= 1e-12
+    other = trimesh.load_path(str(path))  # its own reader of the format
+    assert len(other.entities) >= 2
+    points = one.contours[0].flattened(1e-4)
+    assert np.allclose(other.bounds, [points.min(axis=0), points.max(axis=0)], atol=2e-3)
+    write_profile(one, tmp_path / "q.dxf")
+    assert path.read_bytes() == (tmp_path / "q.dxf").read_bytes()
+
+
+def test_geojson_is_a_valid_polygon_with_its_hole(profile, tmp_path):
+    from shapely.geometry import shape
+
+    write_profile(profile, tmp_path / "p.geojson")
+    (feature,) = json.loads((tmp_path / "p.geojson").read_text())["features"]
+    polygon = shape(feature["geometry"])
+    assert polygon.is_valid and polygon.area == pytest.approx(profile.area, rel=1e-5)
+    assert len(polygon.geoms[0].interiors) == 1
+
+
+def test_svg_has_every_piece(profile, tmp_path):
+    write_profile(profile, tmp_path / "p.svg")
+    text = (tmp_path / "p.svg").read_text()
+    assert text.count("A") + text.count("L") >= profile.n_pieces - 1 and "evenodd" in text
+
+
+def test_area_and_length_of_arcs_are_those_of_fine_chords(profile):
+    ring = profile.contours[0]
+    points = ring.flattened(1e-9)
+    x, y = points.T
+    u, v = np.roll(points, -1, axis=0).T
+    assert ring.area == pytest.approx(0.5 * np.sum(x * v - u * y), rel=1e-7)
+    assert ring.length == pytest.approx(np.hypot(u - x, v - y).sum(), rel=1e-7)
+
+
+def test_compare_agrees_with_the_distance_and_names_the_maker():
+    one = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 0.5, 1.0]))
+    two = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 0.5, 1.2]))
+    found = compare(Drawn("one", one.curve, one), Drawn("two", two.curve, two), limit=0.01)
+    whole = cl.hausdorff(one.curve, two.curve)
+    assert found.found.distance == whole.distance
+    assert found.lost <= 1e-4 < found.gained
+    assert found.gained == pytest.approx(0.1 * (0.6**2 + 0.01 - 0.09), rel=0.02)
+    assert (
+        not found.within_limit and found.makers["b"][0] == "l1" and found.makers["b"][1] in (1, 2)
+    )
+    assert found.beyond and max(b.distance for b in found.beyond) <= whole.distance + 1e-9
+    json.dumps(as_data(found))
+    same = compare(Drawn("one", one.curve, one), Drawn("one", one.curve, one), limit=1e-9)
+    assert same.found.distance <= 1e-15 and same.gained == 0.0 and not same.beyond
+
+
+def test_open_outlines_can_be_compared_but_have_no_area():
+    open_line = Drawn("line", cl.Curve.line([0, 0], [1, 0]))
+    assert compare(open_line, open_line).gained is None
+    with pytest.raises(BadShape, match="is open"):
+        _ = open_line.region
+
+
+def test_the_commands_from_sweep_to_picture(tmp_path):
+    case, zone = SCENES / "profiles" / "keep_in.yaml", SCENES / "sketches" / "keep_in_zone.yaml"
+    run = CliRunner().invoke
+    swept, fitted = tmp_path / "swept.yaml", tmp_path / "zone.yaml"
+    arguments = ["--links", "gripper,wrist_pitch", "--tolerance", "2", "--out", str(swept)]
+    out = run(command, ["profile", "sweep", str(case), *arguments])
+    assert out.exit_code == 0 and "contains all that is swept" in out.output, out.output
+    arguments = [str(zone), str(swept), "--outside", "--margin-mm", "5", "--out", str(fitted)]
+    out = run(command, ["profile", "fit", *arguments])
+    assert out.exit_code == 0 and "proven gap 5" in out.output, out.output
+    out = run(
+        command,
+        [
+            "profile",
+            "compare",
+            str(swept),
+            str(fitted),
+            "--limit-mm",
+            "1",
+            "--out",
+            str(tmp_path / "d"),
+        ],
+    )
+    assert out.exit_code == 1 and "beyond" in out.output, out.output
+    assert {path.name for path in (tmp_path / "d").iterdir()} == {
+        "comparison.json",
+        "comparison.png",
+        "comparison.svg",
+    }
+    out = run(command, ["profile", "compare", str(swept), str(swept), "--limit-mm", "0.001"])
+    assert out.exit_code == 0 and "within" in out.output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["sweep", "CASE", "--out", "x.png"], "a profile file with .png"),
+        (["sweep", "CASE", "--plane", "xyz", "--out", "x.yaml"], "plane: 'xyz'"),
+        (["sweep", "CASE", "--links", "hand", "--out", "x.yaml"], "unknown link 'hand'"),
+        (["sweep", "CASE", "--section", "9", "--out", "x.yaml"], "cuts no link"),
+        (
+            ["sweep", "CASE", "--links", "", "--obstacles", "wal", "--out", "x.yaml"],
+            "unknown obstacle",
+        ),
+        (["fit", "ZONE", "none.yaml", "--out", "x.yaml"], "no such file"),
+        (["fit", "OPENING", "ZONE", "--out", "x.yaml"], "no free dimension"),
+    ],
+)
+def test_refusals_of_the_commands_are_one_line(arguments, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    sketches = SCENES / "sketches"
+    known = {
+        "CASE": SCENES / "profiles" / "keep_in.yaml",
+        "ZONE": sketches / "keep_in_zone.yaml",
+        "OPENING": sketches / "port_opening.yaml",
+    }
+    out = CliRunner().invoke(
+        command, ["profile", *(str(known.get(word, word)) for word in arguments)]
+    )
+    fault = out.exception
+    assert isinstance(fault, BadInput) and said in str(fault) and "\n" not in str(fault)
+    assert not (tmp_path / "x.yaml").exists()
+
+
+def test_check_says_how_close_the_sweep_comes_to_its_sketch():
+    kept = cl.check(load_case(SCENES / "profiles" / "keep_in.yaml"))
+    (answer,) = kept.record.profiles
+    assert kept.passed and kept.status == "clear" and answer.contained
+    swept = cl.swept_profile(kept, answer.plane, section=answer.section)
+    zone = kept.record.case.profiles[0].sketch.curves()
+    assert answer.gap == pytest.approx(cl.minimum_distance(swept.curve, zone).distance, abs=1e-9)
+
+
+def test_a_sweep_beyond_its_sketch_violates_the_case_and_the_page_shows_it(tmp_path):
+    broken = cl.check(load_case(SCENES / "profiles" / "port_fails.yaml"))
+    assert not broken.passed and broken.status == "violated"
+    assert broken.record.profiles[0].gap < -0.03
+    broken.save(tmp_path)
+    told = json.loads((tmp_path / "summary.json").read_text())
+    assert told["verdict"] == "violated" and told["profiles"][0]["passed"] is False
+    assert "picture" not in told["profiles"][0]
+    page = (tmp_path / "report.html").read_text()
+    assert "<h2>Profiles</h2>" in page and "data:image/svg+xml" in page
+
+
+@pytest.mark.parametrize(
+    ("entry", "fault", "said"),
+    [
+        ("{name: a, sketch: none.yaml}", BadInput, "profiles[0]: sketch: there is no file"),
+        ("{name: a, sketch: SKETCH, mode: around}", BadInput, "profiles[0].mode"),
+        ("{name: a, sketch: SKETCH, links: [hand]}", UnknownLink, "profiles[0]: links"),
+        ("{name: a, sketch: BAR_LENGTH}", BadInput, "profiles[0]: sketch"),
+    ],
+)
+def test_refusals_of_a_case_name_the_profile(entry, fault, said, tmp_path):
+    text = (SCENES / "profiles" / "keep_in.yaml").read_text()
+    text = text[: text.index("profiles:")] + f"profiles: [{entry}]\n"
+    text = text.replace("../../robots", str(SCENES.parent / "robots")).replace(
+        "../hot_cell", str(SCENES / "hot_cell")
+    )
+    text = text.replace("SKETCH", str(SCENES / "sketches" / "keep_in_zone.yaml"))
+    text = text.replace("BAR_LENGTH", str(SCENES / "sketches" / "bar_length.yaml"))
+    text = text.replace("floor.yaml", str(SCENES / "profiles" / "floor.yaml"))
+    (tmp_path / "case.yaml").write_text(text)
+    with pytest.raises(fault) as caught:
+        load_case(tmp_path / "case.yaml")
+    assert said in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_broken_profile_file_is_refused(tmp_path):
+    path = tmp_path / "p.yaml"
+    path.write_text(
+        "format: clearance-profile-1\ncontours: [[[0, 0, 0], [1, 0, 2.0], [1, 1, 0]]]\n"
+    )
+    with pytest.raises(BadSyntax, match="bulge of 1 or more"):
+        read_outline(path)
+    path.write_text("format: other\ncontours: []\n")
+    with pytest.raises(BadSyntax, match="clearance-profile-1"):
+        read_outline(path)
