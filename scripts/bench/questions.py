@@ -57,9 +57,17 @@ def polygon_questions(n: int) -> list[Question]:
 
 
 def _polygon_question(family: str, p: np.ndarray, q: np.ndarray) -> Question:
+    p, q = _from_least_corner(p), _from_least_corner(q)
     size = max(np.ptp(p, axis=0).max(), np.ptp(q, axis=0).max())
     true_sq = oracle.polygon_distance_sq(p, q)
     return Question(family, fan("p", p), fan("q", q, True), np.eye(4), np.eye(4), float(size), true_sq)
+
+
+def _from_least_corner(polygon: np.ndarray) -> np.ndarray:
+    """The polygon read so that all take the same fan of triangles, where rounding has bent it."""
+    doubled = [tuple(x) for x in polygon.tolist()] * 2
+    n = len(polygon)
+    return np.roll(polygon, -min(range(n), key=lambda i: doubled[i : i + n]), axis=0)
 
 
 def fan(name: str, corners: np.ndarray, stands: bool = False) -> Solid:
