@@ -10,7 +10,7 @@ from clearance.kernels.containment import contained
 from clearance.kernels.descent import Tally, descend, margin_of, new_scratch, nothing_yet
 from clearance.kernels.double_double import Wide3, frames_of, plus3, root, rounded, wide
 from clearance.kernels.face_pair import Hit, nearest_of_faces
-from clearance.kernels.front import no_fronts
+from clearance.kernels.front import forget, no_fronts
 from clearance.kernels.refine import common_points, error_of
 from clearance.kernels.vec3 import move, rigid
 
@@ -94,8 +94,9 @@ def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scrat
     if found.meet:
         return _contact(a, b, frames, found, tally)
     if not asked.apart:
-        inside, x = contained(a, body_a, b, body_b, frames.m)
+        inside, x = contained(a, body_a, b, body_b, frames)
         if inside:
+            forget(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)
             return Measured(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
     floor = max(0.0, found.floor - slack - 2.0 * margin)

@@ -10,7 +10,7 @@ Edelsbrunner & Mücke 1990, simulation of simplicity.
 
 from clearance.jit import inlined, kernel
 from clearance.kernels.bounds import LEAN
-from clearance.kernels.double_double import frames_of, size
+from clearance.kernels.double_double import size
 from clearance.kernels.predicates import (
     FILTER,
     Posed,
@@ -21,7 +21,7 @@ from clearance.kernels.predicates import (
     turn_along,
 )
 from clearance.kernels.surface import box_of
-from clearance.kernels.vec3 import Rigid, Vec3, dot, move, move_back, row, sub
+from clearance.kernels.vec3 import dot, move, move_back, row, sub
 
 AXIS = 2
 """The ray's coordinate axis."""
@@ -98,7 +98,7 @@ def winding_number(surface, body, is_b, x, exact):
 
 
 @kernel
-def contained_at(a, body_a, b, body_b, frames):
+def contained(a, body_a, b, body_b, frames):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
 
     Exactness: right for the float vertices under the float poses of `frames`.
@@ -118,10 +118,3 @@ def contained_at(a, body_a, b, body_b, frames):
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a
     return False, frames.m.t
-
-
-@kernel
-def contained(a, body_a, b, body_b, m):
-    """The same for the motion `a_from_b` as it is, which is rounded unless a stands at the origin."""
-    still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
-    return contained_at(a, body_a, b, body_b, frames_of(still, m))

@@ -230,27 +230,30 @@ def side_along(a, b, axis, exact):
 @inlined
 def _boxes_meet(a, b, c, d, axis, exact):
     """True if the intervals of the segments a b and c d on an axis meet."""
-    ac = side_along(a, c, axis, exact)
-    ad = side_along(a, d, axis, exact)
-    bc = side_along(b, c, axis, exact)
-    bd = side_along(b, d, axis, exact)
-    above = ac > 0 and ad > 0 and bc > 0 and bd > 0
-    below = ac < 0 and ad < 0 and bc < 0 and bd < 0
-    return not (above or below)
+    ends, others = (a, b), (c, d)
+    n_above, n_below = 0, 0
+    for i in range(4):
+        side = side_along(ends[i // 2], others[i % 2], axis, exact)
+        n_above += side > 0
+        n_below += side < 0
+    return n_above < 4 and n_below < 4
 
 
 @inlined
 def _segments_meet_along(a, b, c, d, axis, exact):
     """True if the segments a b and c d, seen along an axis, have a point in common."""
-    if not _boxes_meet(a, b, c, d, (axis + 1) % 3, exact):
-        return False
-    if not _boxes_meet(a, b, c, d, (axis + 2) % 3, exact):
-        return False
-    if (
-        turn_along(a, b, c, axis, exact) * turn_along(a, b, d, axis, exact) > 0
-    ):
-        return False
-    return turn_along(c, d, a, axis, exact) * turn_along(c, d, b, axis, exact) <= 0
+    for k in range(1, 3):
+        if not _boxes_meet(a, b, c, d, (axis + k) % 3, exact):
+            return False
+    corners = (a, b, c, d)
+    for i in range(2):
+        j = 2 - 2 * i
+        product = 1
+        for k in range(2):
+            product *= turn_along(corners[2 * i], corners[2 * i + 1], corners[j + k], axis, exact)
+        if product > 0:
+            return False
+    return True
 
 
 @inlined
@@ -271,35 +274,46 @@ def segments_meet(a, b, c, d, exact):
 @inlined
 def _holds_in_plane(a, b, c, x, exact):
     """True if the triangle a b c has area and holds x, which is in its plane."""
+    tails, heads, thirds = (a, a, b, c), (b, b, c, a), (c, x, x, x)
     for axis in range(3):
-        if turn_along(a, b, c, axis, exact) != 0:
-            i = turn_along(a, b, x, axis, exact)
-            j = turn_along(b, c, x, axis, exact)
-            k = turn_along(c, a, x, axis, exact)
-            return (i >= 0 and j >= 0 and k >= 0) or (i <= 0 and j <= 0 and k <= 0)
+        n_left, n_right = 0, 0
+        for i in range(4):
+            turn = turn_along(tails[i], heads[i], thirds[i], axis, exact)
+            if i == 0 and turn == 0:
+                break  # seen along this axis the triangle has no area
+            if i > 0:
+                n_left += turn > 0
+                n_right += turn < 0
+        else:
+            return n_left == 0 or n_right == 0
     return False
 
 
 @inlined
 def segment_meets_triangle(p, q, a, b, c, exact):
-    """True if the closed segment p q and the closed triangle a b c have a point in common."""
-    side_p = orient_posed(a, b, c, p, exact)
-    side_q = orient_posed(a, b, c, q, exact)
-    if side_p * side_q > 0:
+    """True if the closed segment p q and the closed triangle a b c have a point in common.
+
+    Loops instead of a call for each sign: the predicates are long, and each call may be merged.
+    """
+    ends, ring = (p, q), (a, b, c, a)
+    n_above, n_below = 0, 0
+    for i in range(2):
+        side = orient_posed(a, b, c, ends[i], exact)
+        n_above += side > 0
+        n_below += side < 0
+    if n_above == 2 or n_below == 2:
         return False
-    if side_p != 0 or side_q != 0:
-        i = orient_posed(p, q, a, b, exact)
-        j = orient_posed(p, q, b, c, exact)
-        if i * j < 0:
-            return False
-        k = orient_posed(p, q, c, a, exact)
-        return i * k >= 0 and j * k >= 0
-    return (
-        segments_meet(p, q, a, b, exact)
-        or segments_meet(p, q, b, c, exact)
-        or segments_meet(p, q, c, a, exact)
-        or _holds_in_plane(a, b, c, p, exact)
-    )
+    if n_above + n_below > 0:
+        n_left, n_right = 0, 0
+        for i in range(3):
+            turn = orient_posed(p, q, ring[i], ring[i + 1], exact)
+            n_left += turn > 0
+            n_right += turn < 0
+        return n_left == 0 or n_right == 0
+    for i in range(3):
+        if segments_meet(p, q, ring[i], ring[i + 1], exact):
+            return True
+    return _holds_in_plane(a, b, c, p, exact)
 
 
 @inlined

@@ -14,7 +14,7 @@ from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_slack
 from clearance.kernels.descent import new_scratch, nothing_yet
 from clearance.kernels.double_double import frames_of
-from clearance.kernels.front import KEPT_DOWN, POOL, no_fronts
+from clearance.kernels.front import KEPT_DOWN, POOL, forget, no_fronts
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
@@ -196,6 +196,8 @@ def sweep(surface, world, steps, goal, rows, pair_rows, tally):
                 tally[0] += 1
                 continue
             limit = gap + LOOK_AHEAD * moved / max(1, row)
+            if floor <= 0.0:
+                forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
             asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
             measured = measure_pair(
                 surface, body_a, surface, body_b, pair_frames(world, pair, row), asked,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from clearance import Polyhedron, distance
 from clearance.geometry.tree import surface_of
-from clearance.kernels.containment import contained_at
+from clearance.kernels.containment import contained
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.vec3 import rigid
 from tests import oracle
@@ -82,7 +82,7 @@ def test_an_open_box_holds_nothing():
 
 
 def test_both_poses_are_taken_exactly():
-    """Far from the origin the motion between the bodies is not a float; `contained_at` does not round it."""
+    """Far from the origin the motion between the bodies is not a float; `contained` does not round it."""
     random = np.random.default_rng(31)
     a, b = surface_of(cube(1.0)), surface_of(cube(2.0**-60))
     for _ in range(60):
@@ -95,7 +95,7 @@ def test_both_poses_are_taken_exactly():
             CORNERS, BOX_FACES, CORNERS * 2.0**-60, BOX_FACES, pose_a, pose_b
         ) == 0:
             continue
-        found, _ = contained_at(a, 0, b, 0, frames_of(rigid(pose_a), rigid(pose_b)))
+        found, _ = contained(a, 0, b, 0, frames_of(rigid(pose_a), rigid(pose_b)))
         corner = [pose_b[:3, 3].tolist()[k] for k in range(3)]
         assert found == oracle.contains(
             [Fraction(x) + Fraction(2) ** -60 for x in corner], CORNERS, BOX_FACES, pose_a
