@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
+from clearance.jit import inlined, kernel, spliced
 from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.containment import contained
 from clearance.kernels.descent import Tally, descend, margin_of, new_scratch, nothing_yet
@@ -67,7 +67,7 @@ def _contact(a, b, frames, found, tally):
     return Measured(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
 
 
-@inlined
+@spliced
 def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch):
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
 
@@ -83,14 +83,19 @@ def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scrat
     best = nothing_yet(limit * limit)
     if asked.face_a >= 0:
         best = nearest_of_faces(a, asked.face_a, b, asked.face_b, frames.m, margin, best).best
-    found = descend(
-        a, root_a, b, root_b, frames, best, asked.wanted, slack, fronts, pair, moved, scratch
-    )
-    tally = found.tally
-    if found.meet and (asked.face_a >= 0 or asked.limit < np.inf):
+    wanted = asked.wanted
+    resumed = asked.face_a >= 0 or asked.limit < np.inf
+    for _ in range(2):
+        found = descend(
+            a, root_a, b, root_b, frames, best, wanted, slack, fronts, pair, moved, scratch
+        )
+        if not (found.meet and resumed):
+            break
         # which of several contacts is found must not depend on where the search began
         best = nothing_yet(np.inf)
-        found = descend(a, root_a, b, root_b, frames, best, np.inf, slack, fronts, pair, moved, scratch)
+        wanted = np.inf
+        resumed = False
+    tally = found.tally
     if found.meet:
         return _contact(a, b, frames, found, tally)
     if not asked.apart:

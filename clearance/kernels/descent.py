@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, merged
+from clearance.jit import inlined, merged, spliced
 from clearance.kernels.bounds import (
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
@@ -147,7 +147,7 @@ def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
     return n_kept, n_waiting, floor - moved
 
 
-@inlined
+@spliced
 def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair, moved, scratch):
     """All face pairs of two bodies that can be nearest within the distance of `best`, near node pairs first.
 
