@@ -68,6 +68,7 @@ def swept_pieces(
         above k} d_j), with d_k what joint k turns or slides and rho_k how far the link reaches from joint k in
         any pose. Source: as `certify` (Schwarzer, Saha & Latombe 2005), second derivatives of the chain.
     """
+    motion.require_linear("a shared workspace")
     placed = motion.placed
     turns = np.abs(np.diff(positions_by_link(placed.robot, motion.positions), axis=0))
     poses = motion.poses()
