@@ -5,7 +5,7 @@ import os
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
@@ -319,6 +319,7 @@ def test_within_stops_at_the_first_point_beyond():
 
 
 @settings(max_examples=60, deadline=None)
+@example(one=[(0, -1), (0, 0), (0, 1), (0, 1)], two=[(0, 0)] * 4)
 @given(points, points)
 def test_trimming_is_safe(one, two):
     a, b = curve_of(one), curve_of(two)
@@ -326,6 +327,7 @@ def test_trimming_is_safe(one, two):
     bound = 0.9 * directed.distance
     kept = kept_intervals(a, b, bound)
     u = np.linspace(a.limits[0, 0], a.limits[-1, 1], 301)
+    u = u[((a.limits[:, :1] <= u) & (u <= a.limits[:, 1:])).any(axis=0)]  # pieces of no length are left out
     trimmed = (
         ~((kept[:, :1] <= u) & (u <= kept[:, 1:])).any(axis=0)
         if len(kept)
