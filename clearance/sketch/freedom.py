@@ -94,16 +94,8 @@ def _part_freedom(problem: Problem, x: np.ndarray, part: int, suspicious: bool) 
     vertices = np.flatnonzero(problem.part == part) if suspicious else np.zeros(0)
     if not suspicious or vertices.size > FACTORED // 2:
         return int(problem.free[part])
-    rows = rows_of(problem, part, independent=False)
-    matrix, _, _ = derivative(problem, _aside(problem, x), part, rows)
+    matrix, _, _ = derivative(problem, x, part, rows_of(problem, part, independent=False))
     return matrix.shape[1] - rank_of(matrix)
-
-
-def _aside(problem: Problem, x: np.ndarray) -> np.ndarray:
-    """Variables a thousandth off: equations that only touch at the solution, as of a fillet and its edge, are
-    independent there; those that follow from one another are not."""
-    noise = np.random.default_rng(0).uniform(-1e-3, 1e-3, x.shape)
-    return x + noise * np.where(problem.system.kind[problem.system.vertex_of] == TURN, 1.0, problem.size)
 
 
 def whole_placement(problem: Problem, x: np.ndarray) -> int:
@@ -145,7 +137,7 @@ def redundant_rows(problem: Problem, x: np.ndarray, solved: bool) -> list[int]:
         mine = rows_of(problem, part, independent=True)
         if mine.size == 0 or mine.size > FACTORED:
             continue
-        matrix, _, _ = derivative(problem, _aside(problem, x), part, mine)
+        matrix, _, _ = derivative(problem, x, part, mine)
         rows += [mine[k] for k in _dependent_rows(matrix)]
     return sorted(int(r) for r in rows)
 
