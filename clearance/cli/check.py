@@ -2,35 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.options import Millimetres, motion_option
 
 if TYPE_CHECKING:
     from clearance.run import Run
     from clearance.world.case import Limits
-
-
-class Millimetres(click.ParamType):
-    """A length in millimetres, finite and not negative; handed on in metres."""
-
-    name = "mm"
-
-    def convert(
-        self, value: str, param: click.Parameter | None, ctx: click.Context | None
-    ) -> float:
-        """The length [m]."""
-        try:
-            length = float(value)
-        except ValueError:
-            length = math.nan
-        if not (math.isfinite(length) and length >= 0.0):
-            self.fail(f"{value!r} is not a length; a number of millimetres, 0 or more", param, ctx)
-        return length / 1000.0
 
 
 @click.command()
@@ -61,13 +43,7 @@ class Millimetres(click.ParamType):
     show_default=True,
     help="exact: the true minimum. paper: the first paper's algorithm, without guarantee.",
 )
-@click.option(
-    "--motion",
-    type=click.Choice(["kinematic", "simulated"]),
-    default="kinematic",
-    show_default=True,
-    help="kinematic: the trajectory itself. simulated: what a controlled robot makes of it.",
-)
+@motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=click.Path(path_type=Path), help="Write JUnit XML.")
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.check import Millimetres
+from clearance.cli.options import Millimetres
 from clearance.cli.profile_fit import fit
 from clearance.cli.profile_sweep import sweep
 

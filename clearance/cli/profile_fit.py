@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.check import Millimetres
+from clearance.cli.options import Millimetres
 
 
 @click.command()

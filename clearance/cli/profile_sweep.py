@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.check import Millimetres
+from clearance.cli.options import Millimetres, motion_option
 
 
 @click.command()
@@ -22,13 +22,7 @@ from clearance.cli.check import Millimetres
 @click.option("--section", type=float, help="Cut at this height [m] along the normal, not project.")
 @click.option("--tolerance", type=Millimetres(), help="[mm] How far it may exceed.  [default: 0.5]")
 @click.option("--per-link", is_flag=True, help="Each link's own profile as well.")
-@click.option(
-    "--motion",
-    type=click.Choice(["kinematic", "simulated"]),
-    default="kinematic",
-    show_default=True,
-    help="kinematic: the trajectory itself. simulated: what a controlled robot makes of it.",
-)
+@motion_option
 @click.option(
     "--out",
     required=True,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.check import Millimetres
+from clearance.cli.options import Millimetres
 
 if TYPE_CHECKING:
     from clearance.simulate.workspace import Workspace

@@ -85,6 +85,11 @@ class _Sweep:
     def n_pairs(self) -> int:
         return len(self.layout.pairs)
 
+    @property
+    def quiet(self) -> _Sweep:
+        """The same without progress, for passes beside the one that is counted."""
+        return replace(self, progress=None)
+
     def step_rows(
         self, steps: np.ndarray, within: float = np.inf, *, lasting: bool = False
     ) -> StepRows:
@@ -151,7 +156,7 @@ def measure(
     if need == "limit":
         return _within_limit(work, case.limits.warn)
     rows = work.step_rows(np.arange(work.n_steps))
-    return _measurement(work, rows, lambda: _pair_minima(work))
+    return _measurement(work, rows, lambda: _pair_minima(work.quiet))
 
 
 def _every_pair(work: _Sweep) -> Measurement:
@@ -174,7 +179,7 @@ def _within_limit(work: _Sweep, limit: float) -> Measurement:
     rows.floor[far] = np.maximum(rows.floor[far], limit)  # all that could be within it was sought
     if (rows.pair >= 0).any():
         return _measurement(work, rows, None)
-    least = _minimum(work)
+    least = _minimum(work.quiet)
     return replace(least, lower_bound=np.maximum(least.lower_bound, rows.floor))
 
 
@@ -189,7 +194,7 @@ def _pair_minima(work: _Sweep) -> Minima:
 
 def _first_least(work: _Sweep) -> float:
     """[m] a clearance that some step has, or a little more."""
-    rows = work.step_rows(_first_steps(work.n_steps), lasting=True)
+    rows = work.quiet.step_rows(_first_steps(work.n_steps), lasting=True)
     return float(rows.clearance.min()) * NOT_LESS
 
 

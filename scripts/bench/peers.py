@@ -66,10 +66,8 @@ class Fcl:
         return self.fcl.distance(a, b, self._request, self.fcl.DistanceResult())
 
 
-class FclShapes(Fcl):
-    """python-fcl with its own sphere and cylinder, iterated by GJK, where the body is one."""
-
-    name = "FCL shapes"
+class _OwnRoundShapes:
+    """In front of FCL or Coal, which name shapes alike: their own sphere and cylinder if a body is one."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -80,8 +78,9 @@ class FclShapes(Fcl):
         if given.round_shape is None:
             return super().body(given)
         radius, length, centre = given.round_shape
-        shape = self.fcl.Cylinder(radius, length) if length > 0.0 else self.fcl.Sphere(radius)
-        made = self.fcl.CollisionObject(shape)
+        shapes = self.shapes
+        shape = shapes.Cylinder(radius, length) if length > 0.0 else shapes.Sphere(radius)
+        made = shapes.CollisionObject(shape)
         self._centres[id(made)] = centre
         return made
 
@@ -89,6 +88,17 @@ class FclShapes(Fcl):
         """Sets the object's transform, moved to the centre of a primitive."""
         centre = self._centres.get(id(body))
         super().place(body, pose if centre is None else about(pose, centre))
+
+
+class FclShapes(_OwnRoundShapes, Fcl):
+    """python-fcl with its own sphere and cylinder, iterated by GJK, where the body is one."""
+
+    name = "FCL shapes"
+
+    @property
+    def shapes(self) -> Any:
+        """The module that has the shapes."""
+        return self.fcl
 
 
 class Coal:
@@ -128,29 +138,15 @@ class Coal:
         return self.coal.distance(a, b, self._request, self._result)
 
 
-class CoalShapes(Coal):
+class CoalShapes(_OwnRoundShapes, Coal):
     """Coal with its own sphere and cylinder, iterated by GJK, where the body is one."""
 
     name = "Coal shapes"
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._centres: dict[int, np.ndarray] = {}
-
-    def body(self, given: Solid) -> Any:
-        """A primitive, or else the model of the triangles."""
-        if given.round_shape is None:
-            return super().body(given)
-        radius, length, centre = given.round_shape
-        shape = self.coal.Cylinder(radius, length) if length > 0.0 else self.coal.Sphere(radius)
-        made = self.coal.CollisionObject(shape)
-        self._centres[id(made)] = centre
-        return made
-
-    def place(self, body: Any, pose: np.ndarray) -> None:
-        """Sets the object's transform, moved to the centre of a primitive."""
-        centre = self._centres.get(id(body))
-        super().place(body, pose if centre is None else about(pose, centre))
+    @property
+    def shapes(self) -> Any:
+        """The module that has the shapes."""
+        return self.coal
 
 
 class Klampt:

@@ -13,6 +13,7 @@ from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
+from tests.simulate.certified import assert_as_tight_as_asked, assert_never_above_samples
 
 SCENES = Path(__file__).parents[2] / "scenes"
 GAP = 1e-4
@@ -147,23 +148,11 @@ def finer(case, first, n_parts):
 
 
 def test_the_bound_is_never_above_a_thousand_samples(certified):
-    certificate = certified.record.certificate
-    rng = np.random.default_rng(4)
-    n_intervals = len(certificate.lower_bound) - 1
-    worst = np.argsort(certificate.lower_bound[:-1])[:2]
-    for first in {*worst.tolist(), *rng.choice(n_intervals, 2).tolist()}:
-        sampled = cl.check(finer(certified.record.case, first, 1000)).record.clearances.min()
-        assert certificate.lower_bound[first] <= sampled
-        assert sampled <= certificate.upper_bound[first] + 1e-4
+    assert_never_above_samples(certified, finer, 2)
 
 
 def test_the_bound_is_as_tight_as_asked(certified):
-    certificate = certified.record.certificate
-    assert (certificate.upper_bound - certificate.lower_bound).max() <= certificate.gap
-    clearances = certified.record.clearances
-    assert (certificate.lower_bound <= clearances).all()
-    assert (certificate.lower_bound[:-1] <= clearances[1:]).all()
-    assert certificate.lower_bound[-1] == clearances[-1]
+    assert_as_tight_as_asked(certified)
 
 
 def test_linear_motion_is_not_what_was_certified(certified):

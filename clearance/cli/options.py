@@ -1,0 +1,34 @@
+"""What several commands take from the command line: lengths in millimetres, and which motion is meant."""
+
+from __future__ import annotations
+
+import math
+
+import click
+
+
+class Millimetres(click.ParamType):
+    """A length in millimetres, finite and not negative; handed on in metres."""
+
+    name = "mm"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """The length [m]."""
+        try:
+            length = float(value)
+        except ValueError:
+            length = math.nan
+        if not (math.isfinite(length) and length >= 0.0):
+            self.fail(f"{value!r} is not a length; a number of millimetres, 0 or more", param, ctx)
+        return length / 1000.0
+
+
+motion_option = click.option(
+    "--motion",
+    type=click.Choice(["kinematic", "simulated"]),
+    default="kinematic",
+    show_default=True,
+    help="kinematic: the trajectory itself. simulated: what a controlled robot makes of it.",
+)
