@@ -1,8 +1,11 @@
-"""The one decorator for compiled kernels, with a cache that notices every change.
+"""How kernels are compiled, with a cache that notices every change.
 
 numba's own cache looks only at the file of the function itself and would silently return old code when a
 callee in another kernel file has changed. Here the cache folder's name is a hash of the kernel's file and
 of every kernel file it imports, so that an edit recompiles what depends on it and nothing else.
+
+A kernel that calls another one is optimised together with all that lies below it, level by level. Large ones
+are therefore kept `apart` and called by address, compiled once for all their callers (`kernel_table`).
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numba
+from numba.extending import register_jitable
 
 _PACKAGE = Path(__file__).parent
 _KERNEL_IMPORT = re.compile(r"^\s*from clearance\.(kernels(?:\.\w+)+) import", re.MULTILINE)
@@ -38,14 +42,35 @@ def kernel(function: Callable) -> Callable:
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(folder)
         try:
-            return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+            return numba.njit(cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True)(
+                function
+            )
         finally:
             numba.config.CACHE_DIR = before
 
 
+def _for_kernels(function: Callable, **options: object) -> Callable:
+    """A function without a way in from Python, which would take a third of the time to compile it.
+
+    A call from Python would go to no address; so it is refused.
+    """
+    if numba.config.DISABLE_JIT:
+        return function
+    compiled = numba.njit(
+        nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
+    )(function)
+
+    def refuse(*args: object, **named: object) -> None:
+        raise TypeError(f"{function.__module__}.{function.__name__} can be called by kernels only")
+
+    compiled._insert = lambda *entry: None  # nothing for Python to find
+    compiled._compile_for_args = refuse
+    return compiled
+
+
 def inlined(function: Callable) -> Callable:
     """A small function compiled into each kernel that calls it; it has no cache entry of its own."""
-    return numba.njit(nogil=True, error_model="numpy")(function)
+    return _for_kernels(function)
 
 
 def spliced(function: Callable) -> Callable:
@@ -53,7 +78,7 @@ def spliced(function: Callable) -> Callable:
 
     Each level of calls is optimised again with all that lies below it; this takes a level out.
     """
-    return numba.njit(nogil=True, error_model="numpy", inline="always")(function)
+    return _for_kernels(function, inline="always")
 
 
 def merged(function: Callable) -> Callable:
@@ -62,7 +87,12 @@ def merged(function: Callable) -> Callable:
     For what inner loops call: a call that is not merged passes every array of a `Surface` by value, some
     two hundred numbers, which costs more than most of these functions do.
     """
-    return numba.njit(nogil=True, error_model="numpy", forceinline=True)(function)
+    return _for_kernels(function, forceinline=True)
+
+
+def shared(function: Callable) -> Callable:
+    """A small function that kernels compile in, and that Python runs as it stands."""
+    return register_jitable(error_model="numpy")(function)
 
 
 @functools.cache

@@ -5,14 +5,25 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel, spliced
+from clearance.kernel_table import SEARCH, apart, at_address, table_like
 from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.containment import contained
 from clearance.kernels.descent import Tally, descend, margin_of, new_scratch, nothing_yet
-from clearance.kernels.double_double import Wide3, frames_of, plus3, root, rounded, wide
+from clearance.kernels.double_double import (
+    FRAMES_AT_REST,
+    Wide3,
+    frames_of,
+    plus3,
+    root,
+    rounded,
+    wide,
+)
 from clearance.kernels.face_pair import Hit, nearest_of_faces
 from clearance.kernels.front import forget, no_fronts
-from clearance.kernels.refine import common_points, error_of
-from clearance.kernels.vec3 import move, rigid
+from clearance.kernels.meeting import common_point_of
+from clearance.kernels.refine import error_of
+from clearance.kernels.surface import surface_like
+from clearance.kernels.vec3 import Vec3, move, rigid
 
 NO_FACE = -1
 
@@ -59,16 +70,29 @@ def _in_world(frames, x):
     return rounded(plus3(x, Wide3(wide(t.x), wide(t.y), wide(t.z))))
 
 
-@inlined
-def _contact(a, b, frames, found, tally):
+@spliced
+def _contact(a, b, frames, found, tally, table):
     face_a, face_b = found.hit.face_a, found.hit.face_b
-    common = common_points(a, face_a, b, face_b, frames)
+    common = common_point_of(table, a, face_a, b, face_b, frames, found.meeting)
     p, q = _in_world(frames, common.p), _in_world(frames, common.q)
     return Measured(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
 
 
-@spliced
-def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch):
+NOWHERE = Vec3(0.0, 0.0, 0.0)
+
+NOTHING_MEASURED = Measured(
+    Hit(np.inf, NO_FACE, NO_FACE, NOWHERE, NOWHERE), 0.0, 0.0, NO_FACE, NO_FACE, Tally(0, 0, 0)
+)
+
+
+def _like():
+    asked = Asked(0.0, 0.0, 0, 0, False)
+    searched = no_fronts(1, 0), 0, 0.0, new_scratch(), table_like()
+    return surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, asked, *searched
+
+
+@apart(SEARCH, _like)
+def search(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, table):
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
 
     Args:
@@ -87,19 +111,19 @@ def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scrat
     resumed = asked.face_a >= 0 or asked.limit < np.inf
     for _ in range(2):
         found = descend(
-            a, root_a, b, root_b, frames, best, wanted, slack, fronts, pair, moved, scratch
+            a, root_a, b, root_b, frames, best, wanted, slack, fronts, pair, moved, scratch, table
         )
-        if not (found.meet and resumed):
+        if not (found.meeting.found and resumed):
             break
         # which of several contacts is found must not depend on where the search began
         best = nothing_yet(np.inf)
         wanted = np.inf
         resumed = False
     tally = found.tally
-    if found.meet:
-        return _contact(a, b, frames, found, tally)
+    if found.meeting.found:
+        return _contact(a, b, frames, found, tally, table)
     if not asked.apart:
-        inside, x = contained(a, body_a, b, body_b, frames)
+        inside, x = contained(a, body_a, b, body_b, frames, table)
         if inside:
             forget(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)
@@ -124,9 +148,20 @@ def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scrat
     return Measured(hit, floor, error, refined.face_a, refined.face_b, tally)
 
 
+@spliced
+def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, table):
+    """The same by address."""
+    return at_address(
+        table,
+        SEARCH,
+        NOTHING_MEASURED,
+        (a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, table),
+    )
+
+
 @kernel
-def nearest_bodies(a, b, world_from_a, world_from_b):
+def nearest_bodies(a, b, world_from_a, world_from_b, table):
     """The nearest points of two bodies at given (4, 4) poses, in the world."""
     frames = frames_of(rigid(world_from_a), rigid(world_from_b))
     asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
-    return measure_pair(a, 0, b, 0, frames, asked, no_fronts(1, 0), 0, 0.0, new_scratch())
+    return measure_pair(a, 0, b, 0, frames, asked, no_fronts(1, 0), 0, 0.0, new_scratch(), table)

@@ -30,7 +30,7 @@ from clearance.kernels.drift import (
 from clearance.kernels.face_pair import may_meet, nearest_of_faces
 from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
-from clearance.kernels.predicates import faces_meet
+from clearance.kernels.predicates import meeting_of
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
@@ -112,7 +112,7 @@ def allowed_gap(least, gap, fail):
 
 
 @inlined
-def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, scratch, tally):
+def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, scratch, tally, table):
     """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
 
     The search is given up where that cannot be proven, unless the body stands still.
@@ -154,7 +154,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
                 own = sight_along(near.p, near.q, m)
                 apart = lower_bound_faces_in_sight(a, face_a, b, face_b, own) - slack
-                if apart <= 0.0 and _meet(a, face_a, b, face_b, frames, margin, scratch):
+                if apart <= 0.0 and _meet(a, face_a, b, face_b, frames, margin, scratch, table):
                     return Held(0.0, 0.0, True, face_a, face_b)
                 bound = max(bound, apart - drift_of_face_along(a, face_a, own.u, drift))
                 seen = math.sqrt(near.gap_sq)
@@ -185,11 +185,11 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
 
 
 @inlined
-def _meet(a, face_a, b, face_b, frames, margin, scratch):
+def _meet(a, face_a, b, face_b, frames, margin, scratch, table):
     """True if two faces have a point in common, by exact signs."""
-    return may_meet(a, face_a, b, face_b, frames.m, margin) and faces_meet(
-        a, face_a, b, face_b, frames, scratch.exact
-    )
+    if not may_meet(a, face_a, b, face_b, frames.m, margin):
+        return False
+    return meeting_of(table, a, face_a, b, face_b, frames, scratch.exact).found
 
 
 @inlined
@@ -214,7 +214,7 @@ def _go_to(chain, path, step, low, high, middle):
 
 
 @inlined
-def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tally):
+def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tally, table):
     """`hold` of a pair at the state in `middle`."""
     body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
     link = asked.links[pair]
@@ -225,7 +225,7 @@ def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tal
     tally[1] += 1
     held = hold(
         surface, body_a, surface, body_b, frames, drift, least, gap, fail,
-        seeds[pair, 0], seeds[pair, 1], middle.scratch, tally,
+        seeds[pair, 0], seeds[pair, 1], middle.scratch, tally, table,
     )  # fmt: skip
     seeds[pair, 0], seeds[pair, 1] = held.face_a, held.face_b
     return held
@@ -233,7 +233,7 @@ def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tal
 
 @kernel
 def certify(
-    surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally
+    surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally, table
 ):
     """Fills `lower` [m] for the motion between the steps `first` to `last`, and lowers `upper`.
 
@@ -246,6 +246,7 @@ def certify(
         fail: [m] the limit that is to be decided, if need be with a smaller gap.
     """
     n_pairs = len(asked.bodies)
+    tally[:] = 0
     n_links = path.positions.shape[1]
     middle = Middle(
         np.empty((1, n_links)), np.empty(n_links), np.empty(n_links),
@@ -267,7 +268,7 @@ def certify(
                 low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
                 _go_to(chain, path, step, low, high, middle)
                 held = _hold_pair(
-                    surface, chain, asked, pair, middle, least, gap, fail, seeds, tally
+                    surface, chain, asked, pair, middle, least, gap, fail, seeds, tally, table
                 )
                 least = held.least
                 if least <= 0.0:

@@ -8,9 +8,10 @@ the predicates (`predicates`) then follow from coordinates, so that no ray is a 
 Edelsbrunner & Mücke 1990, simulation of simplicity.
 """
 
-from clearance.jit import inlined, kernel
+from clearance.jit import inlined, spliced
+from clearance.kernel_table import WINDING_NUMBER, apart, at_address
 from clearance.kernels.bounds import LEAN
-from clearance.kernels.double_double import size
+from clearance.kernels.double_double import FRAMES_AT_REST, size
 from clearance.kernels.predicates import (
     FILTER,
     Posed,
@@ -20,8 +21,8 @@ from clearance.kernels.predicates import (
     side_along,
     turn_along,
 )
-from clearance.kernels.surface import box_of
-from clearance.kernels.vec3 import dot, move, move_back, row, sub
+from clearance.kernels.surface import box_of, surface_like
+from clearance.kernels.vec3 import Vec3, dot, move, move_back, row, sub
 
 AXIS = 2
 """The ray's coordinate axis."""
@@ -75,16 +76,19 @@ def _beside(exact, a, b, c, x):
     return False
 
 
-@inlined
-def winding_number(surface, body, is_b, x, exact):
+@apart(WINDING_NUMBER, lambda: (surface_like(), 0, True, Vec3(0.0, 0.0, 0.0), FRAMES_AT_REST))
+def winding_number(surface, body, is_b, vertex, frames):
     """How often the closed components of a body wind round a point that is not on its surface, exactly.
 
     Args:
-        x: `Posed`, a vertex of the other body.
-        exact: with the poses set.
+        is_b: True if the body is b.
+        vertex: of the other body, in its frame.
     """
+    exact = room_for_exact()
+    set_poses(frames, exact)
     number = 0
     side = 1 if is_b else 0
+    x = Posed(vertex, 1 - side)
     for i in range(surface.solid_starts[body], surface.solid_starts[body + 1]):
         face = surface.solid_faces[i]
         start = surface.face_starts[face]
@@ -97,8 +101,8 @@ def winding_number(surface, body, is_b, x, exact):
     return number
 
 
-@kernel
-def contained(a, body_a, b, body_b, frames):
+@spliced
+def contained(a, body_a, b, body_b, frames, table):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
 
     Exactness: right for the float vertices under the float poses of `frames`.
@@ -111,10 +115,8 @@ def contained(a, body_a, b, body_b, frames):
             v = row(one.vertices, one.probes[i])
             x = move_back(frames.m, v) if is_a else move(frames.m, v)
             if _in_box(two, two.roots[body_two], x, far + size(v)):
-                exact = room_for_exact()
-                set_poses(frames, exact)
-                probe = Posed(row(one.exact, one.probes[i]), side)
-                if winding_number(two, body_two, is_a, probe, exact) != 0:
+                probe = row(one.exact, one.probes[i])
+                if at_address(table, WINDING_NUMBER, 0, (two, body_two, is_a, probe, frames)) != 0:
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a
     return False, frames.m.t

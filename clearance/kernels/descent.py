@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, merged, spliced
+from clearance.jit import inlined, merged, shared, spliced
 from clearance.kernels.bounds import (
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
@@ -17,18 +17,23 @@ from clearance.kernels.bounds import (
 )
 from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_faces
 from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, keep
-from clearance.kernels.predicates import Exact, faces_meet, room_for_exact
-from clearance.kernels.refine import Refined, nothing_refined, settle, shed
+from clearance.kernels.predicates import NO_MEETING, Exact, Meeting, meeting_of, room_for_exact
+from clearance.kernels.refine import (
+    N_WAITING,
+    NOTHING_REFINED,
+    Refined,
+    Waiting,
+    put,
+    room_for_waiting,
+    settle,
+    shed,
+)
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import Vec3
 
 STACK_DEPTH = 8192
 """Node pairs that can wait: each split adds one, so twice the depths of both trees and a front is enough;
 trees of a million faces split at the mean are below 200 deep, and `descend` checks."""
-
-
-N_WAITING = 64
-"""Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
 
 
 class Scratch(NamedTuple):
@@ -38,8 +43,7 @@ class Scratch(NamedTuple):
     bounds: np.ndarray  # (STACK_DEPTH,)
     left: np.ndarray  # (LONGEST + 2, 2) int32, node pairs that were left
     floors: np.ndarray  # (LONGEST + 2,)
-    pairs: np.ndarray  # (N_WAITING, 2) int64
-    near_sq: np.ndarray  # (N_WAITING,)
+    waiting: Waiting
     exact: Exact
 
 
@@ -55,13 +59,13 @@ class Found(NamedTuple):
     """The outcome of a descent.
 
     Attributes:
-        meet: True if the bodies have a common point, in the faces of `hit`.
+        meeting: whether and where the bodies have a common point, in the faces of `hit`.
         hit: the best pair of points in doubles, no worse than what was given.
         floor: [m] a lower bound on the distance of the face pairs that were not refined.
         refined: the answer in wide numbers, if there is one within the limit.
     """
 
-    meet: bool
+    meeting: Meeting
     hit: Hit
     floor: float
     refined: Refined
@@ -91,7 +95,7 @@ def _bound(p, q, m, sight, slack, cut):
     return lower_bound_boxes(p, q, m, slack)
 
 
-@inlined
+@shared
 def new_scratch():
     """Room for one search at a time."""
     return Scratch(
@@ -99,8 +103,7 @@ def new_scratch():
         np.empty(STACK_DEPTH),
         np.empty((LONGEST + 2, 2), dtype=np.int32),
         np.empty(LONGEST + 2),
-        np.empty((N_WAITING, 2), dtype=np.int64),
-        np.empty(N_WAITING),
+        room_for_waiting(),
         room_for_exact(),
     )
 
@@ -111,7 +114,7 @@ def margin_of(slack):
     return 4.0 * slack
 
 
-@merged
+@spliced
 def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
     """Splits the front of a pair: what is still far stays in it, the rest waits. (kept, waiting, floor)"""
     start = fronts.spans[pair, 0]
@@ -148,7 +151,7 @@ def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
 
 
 @spliced
-def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair, moved, scratch):
+def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair, moved, scratch, table):
     """All face pairs of two bodies that can be nearest within the distance of `best`, near node pairs first.
 
     Args:
@@ -157,6 +160,7 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
         slack: [m] of `rounding_slack`.
         fronts, pair: where the front of the pair is kept.
         moved: [m] what both bodies have moved in all.
+        table: of `kernel_table`.
 
     A pair of nodes or faces is left only if a lower bound exceeds the best distance by more than its own
     error, so that every face pair that attains the minimum is refined, and the answer does not depend on
@@ -167,12 +171,12 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
     best_gap = math.sqrt(best.gap_sq)
     cut = best_gap + margin
     sight = sight_along(best.p, best.q, m)
-    refined = nothing_refined()
+    refined = NOTHING_REFINED
     n_nodes = 1
     n_faces = 0
     n_exact = scratch.exact.count[0]
     n_pairs = 0
-    meet = False
+    met = NO_MEETING
     n_left = 0
     measured = math.inf
     if fronts.spans[pair, 1] > 0:
@@ -207,23 +211,22 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
                     sight = sight_along(best.p, best.q, m)
                     in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
                 if bound == 0.0 and in_sight <= 0.0 and may_meet(a, face_a, b, face_b, m, margin):
-                    meet = faces_meet(a, face_a, b, face_b, frames, scratch.exact)
-                    if meet:
+                    met = meeting_of(table, a, face_a, b, face_b, frames, scratch.exact)
+                    if met.found:
                         best = Hit(0.0, face_a, face_b, m.t, m.t)
                         break
-                if near.near_sq < math.inf:
+                if near.seen.near_sq < math.inf:
                     if n_pairs == N_WAITING:
-                        n_pairs = shed(a, b, best_gap, margin, scratch.pairs, scratch.near_sq, n_pairs)
+                        n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
                         if n_pairs > N_WAITING // 2:
                             refined = settle(
                                 a, b, frames, min(best_gap, wanted_gap), margin,
-                                scratch.pairs, scratch.near_sq, n_pairs, refined,
+                                scratch.waiting, n_pairs, refined, table,
                             )
                             n_pairs = 0
-                    scratch.pairs[n_pairs, 0], scratch.pairs[n_pairs, 1] = face_a, face_b
-                    scratch.near_sq[n_pairs] = near.near_sq
+                    put(scratch.waiting, n_pairs, face_a, face_b, near.seen)
                     n_pairs += 1
-                    gap = math.sqrt(near.near_sq)
+                    gap = math.sqrt(near.seen.near_sq)
                     measured = min(measured, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
             else:
                 floor = min(floor, in_sight)
@@ -255,13 +258,12 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
         scratch.nodes[n_waiting + 1, 1] = b1
         scratch.bounds[n_waiting + 1] = second
         n_waiting += 2
-    if meet:
+    if met.found:
         forget(fronts, pair)
     else:
         refined = settle(
-            a, b, frames, min(best_gap, wanted_gap), margin,
-            scratch.pairs, scratch.near_sq, n_pairs, refined,
+            a, b, frames, min(best_gap, wanted_gap), margin, scratch.waiting, n_pairs, refined, table
         )
         keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
     tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)
-    return Found(meet, best, min(floor, min(measured, cut)), refined, tally)
+    return Found(met, best, min(floor, min(measured, cut)), refined, tally)

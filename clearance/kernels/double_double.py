@@ -54,6 +54,16 @@ class Frames(NamedTuple):
     still_b: bool
 
 
+def _frames_at_rest():
+    still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
+    zero = Wide(0.0, 0.0)
+    return Frames(still, still, still, Wide3(zero, zero, zero), 0.0, True, True)
+
+
+FRAMES_AT_REST = _frames_at_rest()
+"""Two bodies that stand in one frame."""
+
+
 @inlined
 def _renormal(hi, lo):
     s = hi + lo

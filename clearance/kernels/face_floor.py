@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, merged
+from clearance.jit import inlined, merged, spliced
 from clearance.kernels.double_double import (
     NOISE,
     Wide,
@@ -77,7 +77,7 @@ def corners_of(surface, face, part):
     return Corners(surface.exact, surface.face_vertices, start, part.low, part.high)
 
 
-@inlined
+@spliced
 def _greatest_share(corners, frames, is_a, pair):
     """(share, reach): the greatest of w . (x - o), for b of w . (o - x), and what its rounding is relative to.
 
@@ -107,7 +107,7 @@ def _greatest_share(corners, frames, is_a, pair):
     return share, spread if frames.still_a and frames.still_b else spread + reach
 
 
-@inlined
+@spliced
 def floor_along(frames, a, b, pair):
     """[m] a lower bound on the distance of the hulls of corners of a and b: their gap along a pair's direction."""
     if not pair.w_sq.hi > 0.0:
@@ -150,7 +150,7 @@ def _beyond(surface, face, corner, third, w):
     return along(w, tilt, aside)
 
 
-@inlined
+@spliced
 def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
     """True if all of a bent fan but the triangle with middle corner `k` is farther than `least` for certain."""
     n = rounded(pair.w)
@@ -177,7 +177,7 @@ def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
     return True
 
 
-@merged
+@spliced
 def floor_of(a, face_a, b, face_b, frames, feature, pair, margin):
     """[m] a lower bound on the distance of two faces, tight where `pair` is the nearest."""
     part_a, part_b = whole(a, face_a), whole(b, face_b)

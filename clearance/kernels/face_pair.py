@@ -8,7 +8,7 @@ both; each is a candidate here, over the features that the two faces own. Not fo
 import math
 from typing import NamedTuple
 
-from clearance.jit import merged
+from clearance.jit import merged, spliced
 from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
 from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
 
@@ -36,19 +36,28 @@ CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES = range(6)
 """Kinds of feature pairs, that of a first."""
 
 
-class Near(NamedTuple):
-    """The best pair so far, and the nearest features seen in a face pair that could be the minimum.
+class Seen(NamedTuple):
+    """The nearest features seen of a face pair that could be the minimum.
 
     Attributes:
         near_sq: [m^2] their squared distance.
         kind, i, j: what they are: indices of vertices or of owned edges; not used for a face.
     """
 
-    best: Hit
     near_sq: float
     kind: int
     i: int
     j: int
+
+
+NOTHING_SEEN = Seen(math.inf, CORNERS, 0, 0)
+
+
+class Near(NamedTuple):
+    """The best pair so far, and what was seen of the face pair at hand."""
+
+    best: Hit
+    seen: Seen
 
 
 @merged
@@ -69,9 +78,9 @@ def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
     best = near.best
     if upper_sq < best.gap_sq:
         best = Hit(upper_sq, face_a, face_b, p, q)
-    if found_sq < near.near_sq:
-        return Near(best, found_sq, kind, i, j)
-    return Near(best, near.near_sq, near.kind, near.i, near.j)
+    if found_sq < near.seen.near_sq:
+        return Near(best, Seen(found_sq, kind, i, j))
+    return Near(best, near.seen)
 
 
 @merged
@@ -118,7 +127,7 @@ def _upper_sq(surface, face, h, margin):
     return upper * upper
 
 
-@merged
+@spliced
 def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
     if has_plane(b, face_b):
@@ -134,7 +143,7 @@ def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@merged
+@spliced
 def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
     flat = has_plane(a, face_a)
@@ -158,7 +167,7 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@merged
+@spliced
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`."""
     for e in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
@@ -183,7 +192,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
     return near
 
 
-@merged
+@spliced
 def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with owned vertices against owned vertices."""
     for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
@@ -208,14 +217,14 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     """
     limit = limit_of(a, face_a, b, face_b, math.sqrt(best.gap_sq), margin)
     limit_sq = limit * limit
-    near = Near(best, math.inf, CORNERS, 0, 0)
+    near = Near(best, NOTHING_SEEN)
     near = vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near)
     near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
     near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)
     return edges_to_edges(a, face_a, b, face_b, m, limit_sq, near)
 
 
-@merged
+@spliced
 def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
     """True if all corners of the other face are clearly on one side of the plane of `face`."""
     least, most = math.inf, -math.inf
@@ -230,14 +239,12 @@ def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
 def may_meet(a, face_a, b, face_b, m, margin):
     """False only if one face is clearly on one side of the other's plane."""
     far = margin / (512.0 * 2.0**-53)
-    if has_plane(a, face_a):
-        blunt = a.blunt[face_a]
-        tolerance = 2.0 * a.width[face_a] + margin + ROUGH * blunt * blunt * far
-        if _on_one_side(a, face_a, b, face_b, m, True, tolerance):
-            return False
-    if has_plane(b, face_b):
-        blunt = b.blunt[face_b]
-        tolerance = 2.0 * b.width[face_b] + margin + ROUGH * blunt * blunt * far
-        if _on_one_side(b, face_b, a, face_a, m, False, tolerance):
-            return False
+    one, face_one, two, face_two = a, face_a, b, face_b
+    for side in range(2):
+        if has_plane(one, face_one):
+            blunt = one.blunt[face_one]
+            tolerance = 2.0 * one.width[face_one] + margin + ROUGH * blunt * blunt * far
+            if _on_one_side(one, face_one, two, face_two, m, side == 0, tolerance):
+                return False
+        one, face_one, two, face_two = b, face_b, a, face_a
     return True

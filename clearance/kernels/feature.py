@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from clearance.jit import inlined, merged
+from clearance.jit import inlined, merged, spliced
 from clearance.kernels.face_pair import CORNER_EDGE, CORNER_FACE, EDGE_CORNER, EDGES, FACE_CORNER
 from clearance.kernels.vec3 import cross, dot, move, move_back, row, sub
 from clearance.kernels.wide_features import Simplex
@@ -76,20 +76,20 @@ def _middle_under(surface, face, y):
     return k
 
 
-@merged
-def nearest_feature(a, face_a, b, face_b, m, near):
+@spliced
+def nearest_feature(a, face_a, b, face_b, m, seen):
     """The feature pair that the search in doubles found the nearest."""
-    n_a, i, n_b, j = 1, near.i, 1, near.j
-    if near.kind == CORNER_FACE:
+    n_a, i, n_b, j = 1, seen.i, 1, seen.j
+    if seen.kind == CORNER_FACE:
         n_b, j = 3, b.face_starts[face_b] + 1
         if b.face_starts[face_b + 1] > j + 2:
             j = _middle_under(b, face_b, move_back(m, row(a.vertices, i)))
-    elif near.kind == FACE_CORNER:
+    elif seen.kind == FACE_CORNER:
         n_a, i = 3, a.face_starts[face_a] + 1
         if a.face_starts[face_a + 1] > i + 2:
             i = _middle_under(a, face_a, move(m, row(b.vertices, j)))
-    if near.kind in (CORNER_EDGE, EDGES):
+    if seen.kind in (CORNER_EDGE, EDGES):
         n_b, j = 2, j - b.edge_starts[face_b]
-    if near.kind in (EDGE_CORNER, EDGES):
+    if seen.kind in (EDGE_CORNER, EDGES):
         n_a, i = 2, i - a.edge_starts[face_a]
     return Feature(n_a, i, n_b, j)

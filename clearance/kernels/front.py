@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, merged
+from clearance.jit import inlined, merged, shared
 
 POOL = 1 << 17
 """Node pairs that are kept in all (16 bytes each), whatever the number of pairs and steps."""
@@ -40,7 +40,7 @@ class Fronts(NamedTuple):
     used: np.ndarray
 
 
-@inlined
+@shared
 def no_fronts(n_pairs, pool):
     """Fronts of length 0; those of single queries have no pool."""
     return Fronts(

@@ -55,7 +55,9 @@ def forward(world_from_base, parents, kinds, parent_from_joint, axes, positions,
         for link in range(poses.shape[1]):
             out = poses[step, link]
             if link == 0:
-                out[:3] = world_from_base[:3]
+                for r in range(3):
+                    for c in range(4):
+                        out[r, c] = world_from_base[r, c]
             else:
                 _joint_motion(kinds[link], axes[link], positions[step, link], moved)
                 _compose(poses[step, parents[link]], parent_from_joint[link], placed)

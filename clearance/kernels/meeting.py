@@ -5,8 +5,11 @@ Not for: whether they meet (`predicates`).
 
 from typing import NamedTuple
 
-from clearance.jit import inlined, kernel
+from clearance.jit import kernel, spliced
+from clearance.kernel_table import COMMON_POINT, apart, at_address
 from clearance.kernels.double_double import (
+    FRAMES_AT_REST,
+    Wide,
     Wide3,
     along3,
     cross3,
@@ -18,7 +21,8 @@ from clearance.kernels.double_double import (
     point_of_a,
     point_of_b,
 )
-from clearance.kernels.predicates import meeting, room_for_exact
+from clearance.kernels.predicates import NO_MEETING
+from clearance.kernels.surface import surface_like
 from clearance.kernels.vec3 import row
 from clearance.kernels.wide_features import point_and_triangle, two_segments
 
@@ -50,8 +54,8 @@ def _of_edge_and_triangle(p, q, x, y, z):
     return Common(best.p, best.q)
 
 
-@inlined
-def common_point_at(a, face_a, b, face_b, frames, found):
+@apart(COMMON_POINT, lambda: (surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, NO_MEETING))
+def common_point(a, face_a, b, face_b, frames, found):
     """The points of two faces nearest to coinciding, where an edge was found to meet a triangle."""
     if found.edge_of_a:
         p = point_of_a(frames, row(a.exact, a.face_vertices[found.p]))
@@ -69,8 +73,11 @@ def common_point_at(a, face_a, b, face_b, frames, found):
     return Common(common.q, common.p)
 
 
-@kernel
-def common_points(a, face_a, b, face_b, frames):
-    """The points of two faces that meet which are nearest to coinciding."""
-    found = meeting(a, face_a, b, face_b, frames, room_for_exact())
-    return common_point_at(a, face_a, b, face_b, frames, found)
+_ZERO = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
+_NOWHERE = Common(_ZERO, _ZERO)
+
+
+@spliced
+def common_point_of(table, a, face_a, b, face_b, frames, found):
+    """The same by address."""
+    return at_address(table, COMMON_POINT, _NOWHERE, (a, face_a, b, face_b, frames, found))

@@ -129,17 +129,18 @@ def _travel(held, pose_a, pose_b, frames):
 
 
 @inlined
-def _measure(held, pose_a, pose_b):
+def _measure(held, pose_a, pose_b, table):
     """The nearest points of a held pair, as `measure_pair` gives them."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _travel(held, pose_a, pose_b, frames)
+    held.carried[FLOOR] = -np.inf  # until the search has come to its end
     asked = Asked(np.inf, np.inf, held.seeds[0], held.seeds[1], True)
     if moved == np.inf:
         moved = 0.0
         asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
         forget(held.fronts, 0)
     measured = measure_pair(
-        held.a, 0, held.b, 0, frames, asked, held.fronts, 0, moved, held.scratch
+        held.a, 0, held.b, 0, frames, asked, held.fronts, 0, moved, held.scratch, table
     )
     held.carried[MOVED] = moved
     held.carried[FLOOR] = (measured.lower_bound + moved) * KEPT_DOWN
@@ -149,7 +150,7 @@ def _measure(held, pose_a, pose_b):
 
 
 @kernel
-def nearest_at_poses(held, poses_a, poses_b, checked, numbers, points, counts):
+def nearest_at_poses(held, poses_a, poses_b, checked, numbers, points, counts, table):
     """Fills a row for each pose and returns -1, or nothing and the first row with a pose that is in doubt.
 
     Args:
@@ -164,7 +165,7 @@ def nearest_at_poses(held, poses_a, poses_b, checked, numbers, points, counts):
         if not (_is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])):
             return i
     for i in range(len(numbers)):
-        measured = _measure(held, poses_a[min(i, last_a)], poses_b[min(i, last_b)])
+        measured = _measure(held, poses_a[min(i, last_a)], poses_b[min(i, last_b)], table)
         hit, tally = measured.hit, measured.tally
         numbers[i, 0], numbers[i, 1] = np.sqrt(hit.gap_sq), measured.error
         for axis in range(3):

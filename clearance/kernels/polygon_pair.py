@@ -8,15 +8,15 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
 from clearance.kernels.descent import nothing_yet
-from clearance.kernels.double_double import Frames, Wide, Wide3, minus3, root, rounded
+from clearance.kernels.double_double import FRAMES_AT_REST, minus3, root, rounded
 from clearance.kernels.every_feature import Ask
 from clearance.kernels.face_pair import limit_of, may_meet, nearest_of_faces
 from clearance.kernels.face_planes import plane_of, unit
-from clearance.kernels.meeting import common_point_at
-from clearance.kernels.predicates import meeting, room_for_exact
-from clearance.kernels.refine import error_of, nothing_refined, refine_near
+from clearance.kernels.meeting import common_point_of
+from clearance.kernels.predicates import meeting_of, room_for_exact
+from clearance.kernels.refine import NOTHING_REFINED, error_of, refined_of
 from clearance.kernels.surface import Surface
-from clearance.kernels.vec3 import Rigid, Vec3, cross, dot, row, sub
+from clearance.kernels.vec3 import Vec3, cross, dot, row, sub
 
 UNDERFLOWN = 2.0**-400
 """Distance at our scale below which squares underflow: 10^-180 of the polygons' size."""
@@ -141,14 +141,7 @@ def _fill(surface, points, first, origin, scale):
 
 
 @inlined
-def _frames():
-    still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
-    zero = Wide(0.0, 0.0)
-    return Frames(still, still, still, Wide3(zero, zero, zero), 0.0, True, True)
-
-
-@inlined
-def _measure(a, b, frames, margin, exact):
+def _measure(a, b, frames, margin, exact, table):
     """(distance, error, p, q, contact) of the two polygons that are filled in."""
     near = nearest_of_faces(a, 0, b, 0, frames.m, margin, nothing_yet(np.inf))
     sight = sight_along(near.best.p, near.best.q, frames.m)
@@ -156,12 +149,12 @@ def _measure(a, b, frames, margin, exact):
         lower_bound_faces_in_sight(a, 0, b, 0, sight) <= margin
         and may_meet(a, 0, b, 0, frames.m, margin)
     ):
-        found = meeting(a, 0, b, 0, frames, exact)
+        found = meeting_of(table, a, 0, b, 0, frames, exact)
         if found.found:
-            common = common_point_at(a, 0, b, 0, frames, found)
+            common = common_point_of(table, a, 0, b, 0, frames, found)
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
-    refined = refine_near(a, 0, b, 0, frames, near, Ask(limit, margin), nothing_refined())
+    refined = refined_of(table, a, 0, b, 0, frames, near.seen, Ask(limit, margin), NOTHING_REFINED)
     distance = root(refined.gap_sq).hi
     error = error_of(refined, distance)
     if distance < UNDERFLOWN:  # its square is not a number any more
@@ -176,10 +169,10 @@ def _measure(a, b, frames, margin, exact):
 
 
 @kernel
-def nearest_polygons(ps, qs, answers):
+def nearest_polygons(ps, qs, answers, table):
     """Fills `answers` for each pair `ps[k]`, `qs[k]`."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
-    frames = _frames()
+    frames = FRAMES_AT_REST
     exact = room_for_exact()
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
@@ -193,7 +186,7 @@ def nearest_polygons(ps, qs, answers):
         a, b = a_p, b_q
         if not in_order:
             a, b = b_q, a_p
-        distance, error, p, q, contact = _measure(a, b, frames, margin, exact)
+        distance, error, p, q, contact = _measure(a, b, frames, margin, exact, table)
         if not in_order:
             p, q = q, p
         answers.distance[k] = distance * unscale

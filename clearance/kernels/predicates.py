@@ -11,9 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel, merged
-from clearance.kernels.double_double import size
+from clearance.jit import inlined, shared, spliced
+from clearance.kernel_table import MEETING, apart, at_address
+from clearance.kernels.double_double import FRAMES_AT_REST, size
 from clearance.kernels.expansion import grow, grow_product, sign_of, two_sum
+from clearance.kernels.surface import surface_like
 from clearance.kernels.vec3 import Vec3, dot, row, sub
 
 ROOM = 512
@@ -50,7 +52,7 @@ class Posed(NamedTuple):
     body: int
 
 
-@inlined
+@shared
 def room_for_exact():
     """Room for one exact decision at a time."""
     return Exact(
@@ -322,7 +324,7 @@ def _posed(surface, corner, body):
 
 
 class Meeting(NamedTuple):
-    """Where two faces have a point in common.
+    """Where two faces have a point in common, if they do.
 
     Attributes:
         found: False if they have none.
@@ -335,6 +337,9 @@ class Meeting(NamedTuple):
     p: int
     q: int
     k: int
+
+
+NO_MEETING = Meeting(False, True, 0, 0, 0)
 
 
 @inlined
@@ -371,12 +376,12 @@ def set_poses(frames, exact):
     exact.shift[1, 0], exact.shift[1, 1], exact.shift[1, 2] = t.x.lo, t.y.lo, t.z.lo
 
 
-@kernel
+@apart(MEETING, lambda: (surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, room_for_exact()))
 def meeting(a, face_a, b, face_b, frames, exact):
     """Where two faces have a point in common, exactly: the first edge and triangle found to meet."""
     set_poses(frames, exact)
     one, face_one, two, face_two = a, face_a, b, face_b
-    found = Meeting(False, True, 0, 0, 0)
+    found = NO_MEETING
     for side in range(2):
         found = _edges_meet_face(one, face_one, two, face_two, side == 0, exact)
         if found.found:
@@ -385,7 +390,7 @@ def meeting(a, face_a, b, face_b, frames, exact):
     return found
 
 
-@merged
-def faces_meet(a, face_a, b, face_b, frames, exact):
-    """True if two faces have a point in common, exactly."""
-    return meeting(a, face_a, b, face_b, frames, exact).found
+@spliced
+def meeting_of(table, a, face_a, b, face_b, frames, exact):
+    """The same by address."""
+    return at_address(table, MEETING, NO_MEETING, (a, face_a, b, face_b, frames, exact))

@@ -9,8 +9,12 @@ wins, ties go to the least faces, and the lower bound tells how far the answer c
 import math
 from typing import NamedTuple
 
-from clearance.jit import inlined, kernel, merged
+import numpy as np
+
+from clearance.jit import inlined, merged, shared, spliced
+from clearance.kernel_table import REFINE, REFINE_EVERY, apart, at_address, table_like
 from clearance.kernels.double_double import (
+    FRAMES_AT_REST,
     NOISE,
     Wide,
     Wide3,
@@ -21,16 +25,14 @@ from clearance.kernels.double_double import (
 )
 from clearance.kernels.every_feature import Ask, nearest_of_every
 from clearance.kernels.face_floor import SURE, UNSURE, floor_of
-from clearance.kernels.face_pair import Hit, limit_of, nearest_of_faces
+from clearance.kernels.face_pair import NOTHING_SEEN, Seen, limit_of
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
-from clearance.kernels.meeting import common_points
-from clearance.kernels.vec3 import Vec3
+from clearance.kernels.surface import surface_like
 from clearance.kernels.wide_features import wide_feature
 
-__all__ = [
-    "Refined", "common_points", "error_of", "nothing_refined", "refine_faces", "refine_near", "settle", "shed",
-]  # fmt: skip
+N_WAITING = 64
+"""Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
 
 
 class Refined(NamedTuple):
@@ -48,12 +50,10 @@ class Refined(NamedTuple):
     floor: Wide
 
 
-@inlined
-def nothing_refined():
-    """What any pair of points beats."""
-    zero = wide(0.0)
-    nowhere = Wide3(zero, zero, zero)
-    return Refined(wide(math.inf), 2**62, 2**62, nowhere, nowhere, wide(math.inf))
+_ZERO = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
+
+NOTHING_REFINED = Refined(Wide(math.inf, 0.0), 2**62, 2**62, _ZERO, _ZERO, Wide(math.inf, 0.0))
+"""What any pair of points beats."""
 
 
 @inlined
@@ -83,8 +83,12 @@ def _better(best, pair, face_a, face_b, floor):
     return Refined(best.gap_sq, best.face_a, best.face_b, best.p, best.q, floor)
 
 
-@kernel
-def _refine_every(a, face_a, b, face_b, frames, ask, best):
+def _two_faces_like():
+    return surface_like(), 0, surface_like(), 0, FRAMES_AT_REST
+
+
+@apart(REFINE_EVERY, lambda: (*_two_faces_like(), Ask(0.0, 0.0), NOTHING_REFINED))
+def refine_every(a, face_a, b, face_b, frames, ask, best):
     """`best`, or better: all features of two faces within the limit."""
     chosen = nearest_of_every(a, face_a, b, face_b, frames, ask)
     if chosen.gap_sq.hi == math.inf:
@@ -100,11 +104,14 @@ def _refine_every(a, face_a, b, face_b, frames, ask, best):
     return _better(best, pair, face_a, face_b, floor)
 
 
-@merged
-def refine_near(a, face_a, b, face_b, frames, near, ask, best):
-    """`best`, or better: two faces of which the search in doubles found the nearest features."""
-    if near.near_sq < math.inf:
-        feature = nearest_feature(a, face_a, b, face_b, frames.m, near)
+@apart(
+    REFINE,
+    lambda: (*_two_faces_like(), NOTHING_SEEN, Ask(0.0, 0.0), NOTHING_REFINED, table_like()),
+)
+def refine(a, face_a, b, face_b, frames, seen, ask, best, table):
+    """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
+    if seen.near_sq < math.inf:
+        feature = nearest_feature(a, face_a, b, face_b, frames.m, seen)
         one = simplex_here(a, face_a, feature.n_a, feature.i)
         two = simplex_here(b, face_b, feature.n_b, feature.j)
         pair = wide_feature(frames, one, two)
@@ -112,38 +119,72 @@ def refine_near(a, face_a, b, face_b, frames, near, ask, best):
             floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
             if not less(floor, _enough(pair.gap_sq, ask.margin)):
                 return _better(best, pair, face_a, face_b, floor)
-    return _refine_every(a, face_a, b, face_b, frames, ask, best)
+    return at_address(table, REFINE_EVERY, NOTHING_REFINED, (a, face_a, b, face_b, frames, ask, best))
 
 
-@kernel
-def refine_faces(a, face_a, b, face_b, frames, ask, best):
-    """`best`, or better: two faces that come within the limit."""
-    nowhere = Vec3(0.0, 0.0, 0.0)
-    start = Hit(ask.limit * ask.limit, 2**62, 2**62, nowhere, nowhere)
-    near = nearest_of_faces(a, face_a, b, face_b, frames.m, ask.margin, start)
-    return refine_near(a, face_a, b, face_b, frames, near, ask, best)
+@spliced
+def refined_of(table, a, face_a, b, face_b, frames, seen, ask, best):
+    """The same by address."""
+    return at_address(
+        table, REFINE, NOTHING_REFINED, (a, face_a, b, face_b, frames, seen, ask, best, table)
+    )
+
+
+class Waiting(NamedTuple):
+    """Face pairs that wait to be refined, as a `Seen` each.
+
+    Attributes:
+        faces: (n, 2) int64. near_sq: (n,) [m^2]. features: (n, 3) int64 kind, i, j.
+    """
+
+    faces: np.ndarray
+    near_sq: np.ndarray
+    features: np.ndarray
+
+
+@shared
+def room_for_waiting():
+    """Room for `N_WAITING` face pairs."""
+    return Waiting(
+        np.empty((N_WAITING, 2), dtype=np.int64), np.empty(N_WAITING), np.empty((N_WAITING, 3), dtype=np.int64)
+    )
 
 
 @merged
-def settle(a, b, frames, best_gap, margin, pairs, near_sq, n_pairs, best):
+def put(waiting, at, face_a, face_b, seen):
+    """Lets a face pair wait at a place."""
+    waiting.faces[at, 0], waiting.faces[at, 1] = face_a, face_b
+    waiting.near_sq[at] = seen.near_sq
+    features = waiting.features
+    features[at, 0], features[at, 1], features[at, 2] = seen.kind, seen.i, seen.j
+
+
+@merged
+def settle(a, b, frames, best_gap, margin, waiting, n_waiting, best, table):
     """`best` after all waiting face pairs that can still win."""
-    for i in range(n_pairs):
-        limit = limit_of(a, pairs[i, 0], b, pairs[i, 1], best_gap, margin)
-        if near_sq[i] <= limit * limit:
-            ask = Ask(limit, margin)
-            best = refine_faces(a, pairs[i, 0], b, pairs[i, 1], frames, ask, best)
+    for i in range(n_waiting):
+        face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
+        limit = limit_of(a, face_a, b, face_b, best_gap, margin)
+        near_sq = waiting.near_sq[i]
+        if near_sq <= limit * limit:
+            features = waiting.features
+            seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
+            best = refined_of(table, a, face_a, b, face_b, frames, seen, Ask(limit, margin), best)
     return best
 
 
 @merged
-def shed(a, b, best_gap, margin, pairs, near_sq, n_pairs):
+def shed(a, b, best_gap, margin, waiting, n_waiting):
     """Drops the waiting face pairs that cannot win any more; how many are left."""
     kept = 0
-    for i in range(n_pairs):
-        limit = limit_of(a, pairs[i, 0], b, pairs[i, 1], best_gap, margin)
-        if near_sq[i] <= limit * limit:
-            pairs[kept, 0], pairs[kept, 1] = pairs[i, 0], pairs[i, 1]
-            near_sq[kept] = near_sq[i]
+    for i in range(n_waiting):
+        limit = limit_of(a, waiting.faces[i, 0], b, waiting.faces[i, 1], best_gap, margin)
+        if waiting.near_sq[i] <= limit * limit:
+            waiting.near_sq[kept] = waiting.near_sq[i]
+            for k in range(2):
+                waiting.faces[kept, k] = waiting.faces[i, k]
+            for k in range(3):
+                waiting.features[kept, k] = waiting.features[i, k]
             kept += 1
     return kept
 

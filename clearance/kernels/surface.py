@@ -58,6 +58,18 @@ class Surface(NamedTuple):
     solid_faces: np.ndarray
 
 
+def surface_like():
+    """A surface of nothing, by its types."""
+    points, numbers = np.empty((0, 3)), np.empty(0)
+    indices, pairs = np.empty(0, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
+    return Surface(
+        points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
+        indices, indices, indices, pairs,
+        points, np.empty((0, 12), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
+        indices, indices, indices, indices, indices,
+    )  # fmt: skip
+
+
 class Box(NamedTuple):
     """All points centre + r x + s y + t z, |r|, |s|, |t| at most the half sizes; x, y, z almost orthonormal."""
 

@@ -159,13 +159,14 @@ def _write_pair(row, step, pair, hit, pair_rows):
 
 
 @kernel
-def sweep(surface, world, steps, goal, rows, pair_rows, tally):
-    """Fills `rows` for `steps` (k,) and adds to `tally`: pairs skipped, queries, nodes, faces.
+def sweep(surface, world, steps, goal, rows, pair_rows, tally, table):
+    """Fills `rows` for `steps` (k,) and `tally`: pairs skipped, queries, nodes, faces.
 
     Ties go to the least pair. What is exact in the rows does not depend on where a sweep starts. Without
     `goal.each`, `pair_rows` is not touched.
     """
     n_pairs = len(world.pairs)
+    tally[:] = 0
     travel = np.zeros(len(world.frames))
     within = goal.within.copy()
     floors = np.empty(n_pairs)  # carried bound plus the travel of both bodies when it was found
@@ -201,7 +202,7 @@ def sweep(surface, world, steps, goal, rows, pair_rows, tally):
             asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
             measured = measure_pair(
                 surface, body_a, surface, body_b, pair_frames(world, pair, row), asked,
-                fronts, pair, moved, scratch,
+                fronts, pair, moved, scratch, table,
             )  # fmt: skip
             lowest = min(lowest, measured.lower_bound)
             floors[pair] = (measured.lower_bound + moved) * KEPT_DOWN

@@ -62,9 +62,8 @@ def _principal_axes(points, starts, order, first, last, v, c):
     v[:] = 0.0
     v[0, 0] = v[1, 1] = v[2, 2] = 1.0
     for _ in range(6):
-        _rotate(c, v, 0, 1)
-        _rotate(c, v, 0, 2)
-        _rotate(c, v, 1, 2)
+        for turn in range(3):
+            _rotate(c, v, turn // 2, min(turn + 1, 2))
 
 
 @inlined
@@ -158,7 +157,10 @@ def build_tree(points, starts, centres, boxes, children):
         _principal_axes(points, starts, order, first, last, v, c)
         area = _fit(points, starts, order, first, last, v, low, high)
         if _fit(points, starts, order, first, last, body, low_body, high_body) <= area:
-            v[:], low[:], high[:] = body, low_body, high_body
+            for i in range(3):
+                low[i], high[i] = low_body[i], high_body[i]
+                for k in range(3):
+                    v[i, k] = body[i, k]
         _store(v, low, high, centres[node], boxes[node])
         if last - first == 1:
             children[node, 0] = order[first]

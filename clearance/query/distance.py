@@ -10,6 +10,7 @@ from clearance.errors import BadInput, BadShape, NotFinite
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
+from clearance.kernel_table import call
 from clearance.kernels.body_pair import nearest_bodies
 from clearance.kernels.polygon_pair import Answers, nearest_polygons
 from clearance.query.paper import distance_paper, polygon_distance_paper
@@ -46,7 +47,7 @@ def distance(
     world_from_a, world_from_b = _pose(pose_a), _pose(pose_b)
     if _checked(method) == "paper":
         return distance_paper(a, b, world_from_a, world_from_b)
-    found = nearest_bodies(surface_of(a), surface_of(b), world_from_a, world_from_b)
+    found = call(nearest_bodies, surface_of(a), surface_of(b), world_from_a, world_from_b)
     hit = found.hit
     return Nearest(
         distance=math.sqrt(hit.gap_sq),
@@ -104,7 +105,7 @@ def _measured(ps: np.ndarray, qs: np.ndarray) -> Answers:
     k = len(ps)
     flags = np.empty(k, dtype=np.bool_), np.empty(k, dtype=np.bool_)
     answers = Answers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
-    nearest_polygons(ps, qs, answers)
+    call(nearest_polygons, ps, qs, answers)
     return answers
 
 

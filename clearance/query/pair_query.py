@@ -14,6 +14,7 @@ from clearance.errors import BadShape, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
+from clearance.kernel_table import call
 from clearance.kernels.pair_query import hold_pair, nearest_at_poses
 from clearance.query.result import Nearest
 
@@ -72,9 +73,9 @@ class Query:
         pose_a, pose_b = _pose(world_from_a), _pose(world_from_b)
         with self._lock:
             self._pose_a[...], self._pose_b[...] = pose_a, pose_b
-            if nearest_at_poses(*self._asked) >= 0:
+            if call(nearest_at_poses, *self._asked) >= 0:
                 validated_pose(pose_a), validated_pose(pose_b)
-                nearest_at_poses(*self._asked[:3], True, *self._asked[4:])
+                call(nearest_at_poses, *self._asked[:3], True, *self._asked[4:])
             (distance, error), points = self._number.tolist(), self._point.copy()
             face_a, face_b, n_nodes, n_faces, n_exact = self._count.tolist()
         return Nearest(
@@ -100,10 +101,10 @@ class Query:
             raise BadShape(f"{len(poses_a)} poses of a and {len(poses_b)} of b", valid="as many of each")
         numbers, points, counts = _rows(lengths.pop() if lengths else 1)
         with self._lock:
-            if nearest_at_poses(self._held, poses_a, poses_b, False, numbers, points, counts) >= 0:
+            if call(nearest_at_poses, self._held, poses_a, poses_b, False, numbers, points, counts) >= 0:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
-                nearest_at_poses(self._held, poses_a, poses_b, True, numbers, points, counts)
+                call(nearest_at_poses, self._held, poses_a, poses_b, True, numbers, points, counts)
         return NearestAtPoses(
             numbers[:, 0].copy(), points, counts[:, :2].copy(), numbers[:, 1].copy()
         )

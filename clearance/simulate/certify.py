@@ -11,6 +11,7 @@ import numpy as np
 
 from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
+from clearance.kernel_table import call
 from clearance.kernels.certify import Asked, certify
 from clearance.kernels.drift import Chain
 from clearance.kernels.joint_path import JointPath
@@ -61,8 +62,8 @@ def certify_motion(
             lower=robot_lower, upper=robot_upper,
         ) -> tuple[int, np.ndarray]:  # fmt: skip
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
-            certify(
-                surface, chain, asked, path, order, span.start, span.stop, found.clearance,
+            call(
+                certify, surface, chain, asked, path, order, span.start, span.stop, found.clearance,
                 gap, case.limits.fail, lower, upper, counts,
             )  # fmt: skip
             return span.stop, counts

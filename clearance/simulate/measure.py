@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.kernel_table import call
 from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
 from clearance.simulate.layout import Layout, lay_out
 from clearance.simulate.parts import in_order, parts, usable_cores
@@ -122,7 +123,7 @@ class _Sweep:
             found = PairRows(every[span] if keep_every else every, *_no_minima(self.n_pairs))
             tally = np.zeros(len(COUNTERS), dtype=np.int64)
             part = StepRows(*(column[span] for column in rows))
-            sweep(self.layout.surface, world, steps[span], goal, part, found, tally)
+            call(sweep, self.layout.surface, world, steps[span], goal, part, found, tally)
             return span.stop, found, tally
 
         for done, found, tally in in_order(run_part, parts(n_rows), self.jobs):

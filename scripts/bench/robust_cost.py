@@ -18,6 +18,7 @@ import numpy as np
 
 from clearance.kernels.bounds import SLACK
 from clearance.kernels.descent import nothing_yet
+from clearance.kernels.double_double import FRAMES_AT_REST
 from clearance.kernels.face_pair import nearest_of_faces
 from clearance.kernels.polygon_pair import (
     Answers,
@@ -25,7 +26,6 @@ from clearance.kernels.polygon_pair import (
     _empty_surface,
     _fill,
     _first_corner,
-    _frames,
     _scale_of,
 )
 from clearance.query.distance import _measured
@@ -38,7 +38,7 @@ CORNERS = ((3, 3), (4, 3), (4, 4), (6, 6), (8, 8), (12, 12), (16, 16), (32, 32),
 def plain(ps, qs, answers):
     """`nearest_polygons` without what makes it exact."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
-    frames = _frames()
+    frames = FRAMES_AT_REST
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
         in_order = _comes_first(ps[k], first_p, qs[k], first_q)

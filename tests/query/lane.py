@@ -12,6 +12,7 @@ import numba
 import numpy as np
 
 from clearance import Polyhedron, distance, polygon_distance
+from tests.reached import reached
 from tests.strategies import BOX_FACES, FAMILIES, rotations
 
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
@@ -79,7 +80,7 @@ def meetings(n):
 
     exact, found = room_for_exact(), []
     for a, b, pose in body_pairs(n):
-        frames = frames_of(rigid(np.eye(4)), rigid(pose))
+        frames = reached(frames_of)(reached(rigid)(np.eye(4)), reached(rigid)(pose))
         one, two = surface_of(a), surface_of(b)
         for i in range(6):
             for j in range(6):

@@ -1,0 +1,128 @@
+"""Large kernels that others reach by address: each is compiled once, and only when a run first needs it.
+
+A kernel that is called in the usual way is compiled into each of its callers, again at every level of calls. One
+that is `apart` is not: its callers find its address in a table that is handed to them. Where the table has no
+address yet, the caller stops with `NotCompiled`; `call` then compiles what is missing and asks again.
+So a scene in which nothing touches never compiles the predicates that decide contact.
+
+Beside each address stands a stamp of the types it was compiled for, so that no caller can use another's.
+"""
+
+from __future__ import annotations
+
+import threading
+import zlib
+from collections.abc import Callable
+
+import numba
+import numpy as np
+from numba.core import cgutils, types
+from numba.extending import intrinsic
+
+from clearance.jit import kernel
+
+REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH = range(6)
+"""The places of the table."""
+
+_table = np.zeros((6, 2), dtype=np.int64)  # address, stamp
+_apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
+_compiling = threading.Lock()
+
+
+def table_like() -> np.ndarray:
+    """A table, by its type."""
+    return np.zeros_like(_table)
+
+
+class NotCompiled(Exception):
+    """A kernel has come to a call of one that is not compiled; the argument is its place in the table."""
+
+
+def apart(place: int, like: Callable[[], tuple]) -> Callable:
+    """Decorates a kernel that is called by `at_address`.
+
+    Args:
+        place: its own place in the table.
+        like: gives arguments of the types that it is called with.
+    """
+
+    def register(function: Callable) -> Callable:
+        compiled = kernel(function)
+        _apart[place] = (compiled, like)
+        return compiled
+
+    return register
+
+
+def call(function: Callable, *args: object) -> object:
+    """`function(*args, table)`, a kernel that writes all its results anew however often it is called."""
+    compiled = -1
+    while True:
+        try:
+            return function(*args, _table)
+        except NotCompiled as missing:
+            (place,) = missing.args
+            if place == compiled:
+                raise TypeError(f"{_apart[place][0]} is called with other types than `like` says") from None
+            compiled = place
+            _compile(place)
+
+
+def _compile(place: int) -> None:
+    function, like = _apart[place]
+    argument_types = tuple(numba.typeof(argument) for argument in like())
+    with _compiling:
+        function.compile(argument_types)
+        compiled = function.overloads[argument_types]
+        address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+        _table[place] = address, _stamp(compiled.signature.return_type, argument_types)
+
+
+def _stamp(result: types.Type, arguments: tuple[types.Type, ...]) -> int:
+    return 1 + zlib.crc32(f"{result}{arguments}".encode())
+
+
+def _plain(kind: types.Type) -> types.Type:
+    """The type without what the compiler knows of the value."""
+    if isinstance(kind, types.BaseTuple):
+        return types.BaseTuple.from_types(
+            tuple(_plain(item) for item in kind), getattr(kind, "instance_class", None)
+        )
+    return types.unliteral(kind)
+
+
+@intrinsic(prefer_literal=True)
+def _at_address(typing_context, table, place, result, args):
+    argument_types = tuple(_plain(kind) for kind in args)
+    result_type = _plain(result)
+    stamp = _stamp(result_type, argument_types)
+
+    def emit(context, builder, signature, values):
+        rows = context.make_array(signature.args[0])(context, builder, values[0]).data
+        index = 2 * place.literal_value
+        found = builder.load(cgutils.gep_inbounds(builder, rows, index + 1))
+        with builder.if_then(builder.icmp_signed("!=", found, found.type(stamp)), likely=False):
+            context.call_conv.return_user_exc(builder, NotCompiled, (place.literal_value,))
+        address = builder.load(cgutils.gep_inbounds(builder, rows, index))
+        function_type = context.call_conv.get_function_type(result_type, argument_types)
+        status, value = context.call_conv.call_function(
+            builder,
+            builder.inttoptr(address, function_type.as_pointer()),
+            result_type,
+            argument_types,
+            cgutils.unpack_tuple(builder, values[3]),
+        )
+        with cgutils.if_unlikely(builder, status.is_error):
+            context.call_conv.return_status_propagate(builder, status)
+        return value
+
+    return result_type(table, place, result, args), emit
+
+
+def _at_no_address(table, place, result, args):
+    return _apart[place][0](*args)
+
+
+at_address = _at_no_address if numba.config.DISABLE_JIT else _at_address
+"""`at_address(table, place, result, args)`: what the kernel at that place of the table gives for `args`, a tuple;
+`result` is any value of the type of its result."""
