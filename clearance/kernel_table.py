@@ -5,6 +5,9 @@ that is `apart` is not: its callers find its address in a table that is handed t
 address yet, the caller stops with `NotCompiled`; `call` then compiles what is missing and asks again.
 So a scene in which nothing touches never compiles the predicates that decide contact.
 
+What is large, some hundred numbers as the arrays of a `Surface` are, is best lent to such a kernel: written down
+once by the caller (`lend`), and handed over as one address (`borrow`).
+
 Beside each address stands a stamp of the types it was compiled for, so that no caller can use another's.
 """
 
@@ -17,6 +20,7 @@ from collections.abc import Callable
 import numba
 import numpy as np
 from numba.core import cgutils, types
+from numba.core.imputils import impl_ret_borrowed
 from numba.extending import intrinsic
 
 from clearance.jit import kernel
@@ -36,6 +40,13 @@ def table_like() -> np.ndarray:
 
 class NotCompiled(Exception):
     """A kernel has come to a call of one that is not compiled; the argument is its place in the table."""
+
+
+class Lent:
+    """Stands for the type of what `lend` gives, among arguments that show types."""
+
+    def __init__(self, value: tuple) -> None:
+        self.value = value
 
 
 def apart(place: int, like: Callable[[], tuple]) -> Callable:
@@ -70,12 +81,18 @@ def call(function: Callable, *args: object) -> object:
 
 def _compile(place: int) -> None:
     function, like = _apart[place]
-    argument_types = tuple(numba.typeof(argument) for argument in like())
+    argument_types = tuple(_type_of(argument) for argument in like())
     with _compiling:
         function.compile(argument_types)
         compiled = function.overloads[argument_types]
         address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
         _table[place] = address, _stamp(compiled.signature.return_type, argument_types)
+
+
+def _type_of(value: object) -> types.Type:
+    if isinstance(value, Lent):
+        return types.CPointer(numba.typeof(value.value))
+    return numba.typeof(value)
 
 
 def _stamp(result: types.Type, arguments: tuple[types.Type, ...]) -> int:
@@ -119,6 +136,26 @@ def _at_address(typing_context, table, place, result, args):
     return result_type(table, place, result, args), emit
 
 
+@intrinsic
+def _lend(typing_context, value):
+    kind = types.CPointer(_plain(value))
+
+    def emit(context, builder, signature, values):
+        place = cgutils.alloca_once_value(builder, values[0])
+        return builder.bitcast(place, context.get_value_type(kind))
+
+    return kind(value), emit
+
+
+@intrinsic
+def _borrow(typing_context, lent):
+    def emit(context, builder, signature, values):
+        place = builder.bitcast(values[0], context.get_value_type(lent.dtype).as_pointer())
+        return impl_ret_borrowed(context, builder, lent.dtype, builder.load(place))
+
+    return lent.dtype(lent), emit
+
+
 def _at_no_address(table, place, result, args):
     return _apart[place][0](*args)
 
@@ -126,3 +163,13 @@ def _at_no_address(table, place, result, args):
 at_address = _at_no_address if numba.config.DISABLE_JIT else _at_address
 """`at_address(table, place, result, args)`: what the kernel at that place of the table gives for `args`, a tuple;
 `result` is any value of the type of its result."""
+
+def _as_it_is(value):
+    return value
+
+
+lend = _as_it_is if numba.config.DISABLE_JIT else _lend
+"""`lend(value)`: where a tuple lies while the caller runs; something else must hold its arrays for as long."""
+
+borrow = _as_it_is if numba.config.DISABLE_JIT else _borrow
+"""`borrow(lent)`: the tuple."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel, spliced
-from clearance.kernel_table import SEARCH, apart, at_address, table_like
+from clearance.kernel_table import SEARCH, Lent, apart, at_address, borrow, lend, table_like
 from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.containment import contained
 from clearance.kernels.descent import Tally, descend, margin_of, new_scratch, nothing_yet
@@ -88,11 +88,11 @@ NOTHING_MEASURED = Measured(
 def _like():
     asked = Asked(0.0, 0.0, 0, 0, False)
     searched = no_fronts(1, 0), 0, 0.0, new_scratch(), table_like()
-    return surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, asked, *searched
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, asked, *searched
 
 
 @apart(SEARCH, _like)
-def search(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, table):
+def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
 
     Args:
@@ -100,6 +100,7 @@ def search(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, ta
         asked: what is wanted and known, an `Asked`.
         fronts, pair, moved: of `descend`.
     """
+    a, b = borrow(lent_a), borrow(lent_b)
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
@@ -111,7 +112,7 @@ def search(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, ta
     resumed = asked.face_a >= 0 or asked.limit < np.inf
     for _ in range(2):
         found = descend(
-            a, root_a, b, root_b, frames, best, wanted, slack, fronts, pair, moved, scratch, table
+            lent_a, root_a, lent_b, root_b, frames, best, wanted, slack, fronts, pair, moved, scratch, table
         )
         if not (found.meeting.found and resumed):
             break
@@ -149,13 +150,13 @@ def search(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, ta
 
 
 @spliced
-def measure_pair(a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, table):
+def measure_pair(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
     """The same by address."""
     return at_address(
         table,
         SEARCH,
         NOTHING_MEASURED,
-        (a, body_a, b, body_b, frames, asked, fronts, pair, moved, scratch, table),
+        (lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table),
     )
 
 
@@ -164,4 +165,4 @@ def nearest_bodies(a, b, world_from_a, world_from_b, table):
     """The nearest points of two bodies at given (4, 4) poses, in the world."""
     frames = frames_of(rigid(world_from_a), rigid(world_from_b))
     asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
-    return measure_pair(a, 0, b, 0, frames, asked, no_fronts(1, 0), 0, 0.0, new_scratch(), table)
+    return measure_pair(lend(a), 0, lend(b), 0, frames, asked, no_fronts(1, 0), 0, 0.0, new_scratch(), table)

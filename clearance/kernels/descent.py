@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, merged, shared, spliced
+from clearance.kernel_table import borrow
 from clearance.kernels.bounds import (
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
@@ -151,7 +152,9 @@ def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
 
 
 @spliced
-def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair, moved, scratch, table):
+def descend(
+    lent_a, root_a, lent_b, root_b, frames, best, wanted_gap, slack, fronts, pair, moved, scratch, table
+):
     """All face pairs of two bodies that can be nearest within the distance of `best`, near node pairs first.
 
     Args:
@@ -166,6 +169,7 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
     error, so that every face pair that attains the minimum is refined, and the answer does not depend on
     the order of the search. It stops at the first contact.
     """
+    a, b = borrow(lent_a), borrow(lent_b)
     m = frames.m
     margin = margin_of(slack)
     best_gap = math.sqrt(best.gap_sq)
@@ -220,7 +224,7 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
                         n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
                         if n_pairs > N_WAITING // 2:
                             refined = settle(
-                                a, b, frames, min(best_gap, wanted_gap), margin,
+                                lent_a, lent_b, frames, min(best_gap, wanted_gap), margin,
                                 scratch.waiting, n_pairs, refined, table,
                             )
                             n_pairs = 0
@@ -262,7 +266,8 @@ def descend(a, root_a, b, root_b, frames, best, wanted_gap, slack, fronts, pair,
         forget(fronts, pair)
     else:
         refined = settle(
-            a, b, frames, min(best_gap, wanted_gap), margin, scratch.waiting, n_pairs, refined, table
+            lent_a, lent_b, frames, min(best_gap, wanted_gap), margin,
+            scratch.waiting, n_pairs, refined, table,
         )
         keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
     tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)

@@ -12,6 +12,7 @@ import numpy as np
 from numba.core import types
 
 from clearance.jit import inlined, kernel
+from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, rounding_slack
 from clearance.kernels.descent import new_scratch
@@ -140,7 +141,7 @@ def _measure(held, pose_a, pose_b, table):
         asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
         forget(held.fronts, 0)
     measured = measure_pair(
-        held.a, 0, held.b, 0, frames, asked, held.fronts, 0, moved, held.scratch, table
+        lend(held.a), 0, lend(held.b), 0, frames, asked, held.fronts, 0, moved, held.scratch, table
     )
     held.carried[MOVED] = moved
     held.carried[FLOOR] = (measured.lower_bound + moved) * KEPT_DOWN

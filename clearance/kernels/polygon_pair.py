@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel
+from clearance.kernel_table import borrow, lend
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import FRAMES_AT_REST, minus3, root, rounded
@@ -141,8 +142,9 @@ def _fill(surface, points, first, origin, scale):
 
 
 @inlined
-def _measure(a, b, frames, margin, exact, table):
+def _measure(lent_a, lent_b, frames, margin, exact, table):
     """(distance, error, p, q, contact) of the two polygons that are filled in."""
+    a, b = borrow(lent_a), borrow(lent_b)
     near = nearest_of_faces(a, 0, b, 0, frames.m, margin, nothing_yet(np.inf))
     sight = sight_along(near.best.p, near.best.q, frames.m)
     if (
@@ -154,7 +156,7 @@ def _measure(a, b, frames, margin, exact, table):
             common = common_point_of(table, a, 0, b, 0, frames, found)
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
-    refined = refined_of(table, a, 0, b, 0, frames, near.seen, Ask(limit, margin), NOTHING_REFINED)
+    refined = refined_of(table, lent_a, 0, lent_b, 0, frames, near.seen, Ask(limit, margin), NOTHING_REFINED)
     distance = root(refined.gap_sq).hi
     error = error_of(refined, distance)
     if distance < UNDERFLOWN:  # its square is not a number any more
@@ -173,6 +175,7 @@ def nearest_polygons(ps, qs, answers, table):
     """Fills `answers` for each pair `ps[k]`, `qs[k]`."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
     frames = FRAMES_AT_REST
+    lent_p, lent_q = lend(a_p), lend(b_q)
     exact = room_for_exact()
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
@@ -183,9 +186,9 @@ def nearest_polygons(ps, qs, answers, table):
         reach += _fill(b_q, qs[k], first_q, origin, scale)
         margin = 4.0 * SLACK * reach
         before = exact.count[0]
-        a, b = a_p, b_q
+        a, b = lent_p, lent_q
         if not in_order:
-            a, b = b_q, a_p
+            a, b = lent_q, lent_p
         distance, error, p, q, contact = _measure(a, b, frames, margin, exact, table)
         if not in_order:
             p, q = q, p

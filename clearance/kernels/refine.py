@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, merged, shared, spliced
-from clearance.kernel_table import REFINE, REFINE_EVERY, apart, at_address, table_like
+from clearance.kernel_table import REFINE, REFINE_EVERY, Lent, apart, at_address, borrow, table_like
 from clearance.kernels.double_double import (
     FRAMES_AT_REST,
     NOISE,
@@ -84,12 +84,13 @@ def _better(best, pair, face_a, face_b, floor):
 
 
 def _two_faces_like():
-    return surface_like(), 0, surface_like(), 0, FRAMES_AT_REST
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST
 
 
 @apart(REFINE_EVERY, lambda: (*_two_faces_like(), Ask(0.0, 0.0), NOTHING_REFINED))
-def refine_every(a, face_a, b, face_b, frames, ask, best):
+def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best):
     """`best`, or better: all features of two faces within the limit."""
+    a, b = borrow(lent_a), borrow(lent_b)
     chosen = nearest_of_every(a, face_a, b, face_b, frames, ask)
     if chosen.gap_sq.hi == math.inf:
         return best
@@ -108,8 +109,9 @@ def refine_every(a, face_a, b, face_b, frames, ask, best):
     REFINE,
     lambda: (*_two_faces_like(), NOTHING_SEEN, Ask(0.0, 0.0), NOTHING_REFINED, table_like()),
 )
-def refine(a, face_a, b, face_b, frames, seen, ask, best, table):
+def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
     """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
+    a, b = borrow(lent_a), borrow(lent_b)
     if seen.near_sq < math.inf:
         feature = nearest_feature(a, face_a, b, face_b, frames.m, seen)
         one = simplex_here(a, face_a, feature.n_a, feature.i)
@@ -119,14 +121,16 @@ def refine(a, face_a, b, face_b, frames, seen, ask, best, table):
             floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
             if not less(floor, _enough(pair.gap_sq, ask.margin)):
                 return _better(best, pair, face_a, face_b, floor)
-    return at_address(table, REFINE_EVERY, NOTHING_REFINED, (a, face_a, b, face_b, frames, ask, best))
+    return at_address(
+        table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best)
+    )
 
 
 @spliced
-def refined_of(table, a, face_a, b, face_b, frames, seen, ask, best):
+def refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best):
     """The same by address."""
     return at_address(
-        table, REFINE, NOTHING_REFINED, (a, face_a, b, face_b, frames, seen, ask, best, table)
+        table, REFINE, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table)
     )
 
 
@@ -160,8 +164,9 @@ def put(waiting, at, face_a, face_b, seen):
 
 
 @merged
-def settle(a, b, frames, best_gap, margin, waiting, n_waiting, best, table):
+def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, best, table):
     """`best` after all waiting face pairs that can still win."""
+    a, b = borrow(lent_a), borrow(lent_b)
     for i in range(n_waiting):
         face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
         limit = limit_of(a, face_a, b, face_b, best_gap, margin)
@@ -169,7 +174,7 @@ def settle(a, b, frames, best_gap, margin, waiting, n_waiting, best, table):
         if near_sq <= limit * limit:
             features = waiting.features
             seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
-            best = refined_of(table, a, face_a, b, face_b, frames, seen, Ask(limit, margin), best)
+            best = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, Ask(limit, margin), best)
     return best
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, kernel
+from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_slack
 from clearance.kernels.descent import new_scratch, nothing_yet
@@ -174,6 +175,7 @@ def sweep(surface, world, steps, goal, rows, pair_rows, tally, table):
     for pair in range(n_pairs):
         floors[pair] = root_bound(surface, world, pair, 0)
     winner = np.argmin(floors)
+    lent = lend(surface)
     scratch = new_scratch()
     fronts = no_fronts(n_pairs, POOL)
     for row in range(len(steps)):
@@ -201,7 +203,7 @@ def sweep(surface, world, steps, goal, rows, pair_rows, tally, table):
                 forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
             asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
             measured = measure_pair(
-                surface, body_a, surface, body_b, pair_frames(world, pair, row), asked,
+                lent, body_a, lent, body_b, pair_frames(world, pair, row), asked,
                 fronts, pair, moved, scratch, table,
             )  # fmt: skip
             lowest = min(lowest, measured.lower_bound)
