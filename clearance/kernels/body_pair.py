@@ -14,7 +14,6 @@ from clearance.kernels.double_double import (
     Wide3,
     frames_of,
     plus3,
-    root,
     rounded,
     wide,
 )
@@ -136,7 +135,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     refined = found.refined
     if refined.face_a == 2**62:
         return Measured(nothing_yet(asked.wanted * asked.wanted), floor, 0.0, face_a, face_b, tally)
-    distance = root(refined.gap_sq).hi
+    distance = refined.length.hi
     error = error_of(refined, distance)
     hit = Hit(
         distance * distance,

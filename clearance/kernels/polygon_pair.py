@@ -9,7 +9,7 @@ from clearance.jit import inlined, kernel
 from clearance.kernel_table import borrow, lend
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
 from clearance.kernels.descent import nothing_yet
-from clearance.kernels.double_double import FRAMES_AT_REST, minus3, root, rounded
+from clearance.kernels.double_double import FRAMES_AT_REST, minus3, rounded
 from clearance.kernels.every_feature import Ask
 from clearance.kernels.face_pair import limit_of, may_meet, nearest_of_faces
 from clearance.kernels.face_planes import plane_of, unit
@@ -157,7 +157,7 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
     refined = refined_of(table, lent_a, 0, lent_b, 0, frames, near.seen, Ask(limit, margin), NOTHING_REFINED)
-    distance = root(refined.gap_sq).hi
+    distance = refined.length.hi
     error = error_of(refined, distance)
     if distance < UNDERFLOWN:  # its square is not a number any more
         d = rounded(minus3(refined.q, refined.p))

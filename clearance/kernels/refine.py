@@ -29,7 +29,7 @@ from clearance.kernels.face_pair import NOTHING_SEEN, Seen, limit_of
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.surface import surface_like
-from clearance.kernels.wide_features import wide_feature
+from clearance.kernels.wide_features import wide_feature, wide_feature_here
 
 N_WAITING = 64
 """Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
@@ -39,10 +39,12 @@ class Refined(NamedTuple):
     """The best pair of points so far, in the orientation of the world, from the origin of a.
 
     Attributes:
+        length: [m] their distance, the root of `gap_sq`.
         floor: [m] a lower bound on the distance of all face pairs refined so far.
     """
 
     gap_sq: Wide
+    length: Wide
     face_a: int
     face_b: int
     p: Wide3
@@ -52,7 +54,9 @@ class Refined(NamedTuple):
 
 _ZERO = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
 
-NOTHING_REFINED = Refined(Wide(math.inf, 0.0), 2**62, 2**62, _ZERO, _ZERO, Wide(math.inf, 0.0))
+_FAR = Wide(math.inf, 0.0)
+
+NOTHING_REFINED = Refined(_FAR, _FAR, 2**62, 2**62, _ZERO, _ZERO, _FAR)
 """What any pair of points beats."""
 
 
@@ -67,20 +71,19 @@ def _wins(found_sq, face_a, face_b, best):
 
 
 @inlined
-def _enough(gap_sq, margin):
+def _enough(length, margin):
     """[m] the floor that proves a distance."""
-    length = root(gap_sq)
     return minus(length, wide(SURE * length.hi + UNSURE * margin))
 
 
 @inlined
-def _better(best, pair, face_a, face_b, floor):
+def _better(best, pair, length, face_a, face_b, floor):
     """`best` after a face pair."""
     if less(best.floor, floor):
         floor = best.floor
     if _wins(pair.gap_sq, face_a, face_b, best):
-        return Refined(pair.gap_sq, face_a, face_b, pair.p, pair.q, floor)
-    return Refined(best.gap_sq, best.face_a, best.face_b, best.p, best.q, floor)
+        return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor)
+    return Refined(best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, floor)
 
 
 def _two_faces_like():
@@ -99,10 +102,11 @@ def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best):
     two = simplex(b, face_b, feature.n_b, feature.j)
     pair = wide_feature(frames, one, two)
     floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
-    enough = _enough(pair.gap_sq, ask.margin)
+    length = root(pair.gap_sq)
+    enough = _enough(length, ask.margin)
     if less(floor, enough) and (a.bent[face_a] or b.bent[face_b]):
         floor = floor_of_fans(a, face_a, b, face_b, frames, pair, enough, floor)
-    return _better(best, pair, face_a, face_b, floor)
+    return _better(best, pair, length, face_a, face_b, floor)
 
 
 @apart(
@@ -116,11 +120,12 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
         feature = nearest_feature(a, face_a, b, face_b, frames.m, seen)
         one = simplex_here(a, face_a, feature.n_a, feature.i)
         two = simplex_here(b, face_b, feature.n_b, feature.j)
-        pair = wide_feature(frames, one, two)
+        pair = wide_feature_here(frames, one, two)
         if pair.gap_sq.hi < math.inf:
             floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
-            if not less(floor, _enough(pair.gap_sq, ask.margin)):
-                return _better(best, pair, face_a, face_b, floor)
+            length = root(pair.gap_sq)
+            if not less(floor, _enough(length, ask.margin)):
+                return _better(best, pair, length, face_a, face_b, floor)
     return at_address(
         table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best)
     )
@@ -197,7 +202,6 @@ def shed(a, b, best_gap, margin, waiting, n_waiting):
 @inlined
 def error_of(refined, distance):
     """[m] a bound on |distance - true distance|, `distance` being the refined one rounded."""
-    length = root(refined.gap_sq)
-    short = minus(length, refined.floor)
-    below = abs(distance - length.hi) + abs(length.lo)
+    short = minus(refined.length, refined.floor)
+    below = abs(distance - refined.length.hi) + abs(refined.length.lo)
     return (below + max(0.0, short.hi)) * (1.0 + 2.0**-50) + NOISE * distance

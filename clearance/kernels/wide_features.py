@@ -7,7 +7,7 @@ A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: wh
 import math
 from typing import NamedTuple
 
-from clearance.jit import inlined, kernel
+from clearance.jit import inlined, kernel, spliced
 from clearance.kernels.double_double import (
     Wide,
     Wide3,
@@ -21,11 +21,12 @@ from clearance.kernels.double_double import (
     plus,
     point_of_a,
     point_of_b,
+    rounded,
     scaled3,
     times,
     wide,
 )
-from clearance.kernels.vec3 import Vec3
+from clearance.kernels.vec3 import Vec3, dot
 
 WELL_APART = 2.0**-40
 """Squared sine of the angle above which the vector product of two edges keeps 80 bits."""
@@ -120,16 +121,17 @@ def two_segments(p0, p1, q0, q1):
     """
     u, v, r = minus3(p1, p0), minus3(q1, q0), minus3(q0, p0)
     n = cross3(u, v)
-    n_sq, u_sq, v_sq = dot3(n, n), dot3(u, u), dot3(v, v)
+    n_sq = dot3(n, n)
     t = cross3(n, r)
     at_p, at_q = dot3(v, t), dot3(u, t)
     inside = at_p.hi >= 0.0 and minus(n_sq, at_p).hi >= 0.0 and at_q.hi >= 0.0
-    if inside and minus(n_sq, at_q).hi >= 0.0 and n_sq.hi > WELL_APART * u_sq.hi * v_sq.hi:
+    flat = WELL_APART * dot(rounded(u), rounded(u)) * dot(rounded(v), rounded(v))
+    if inside and minus(n_sq, at_q).hi >= 0.0 and n_sq.hi > flat:
         h = dot3(r, n)
         gap_sq = times(h, over(h, n_sq))
         p, q = along3(p0, over(at_p, n_sq), u), along3(q0, over(at_q, n_sq), v)
         return Pair(gap_sq, p, q, negative3(n) if h.hi < 0.0 else n, n_sq, p0)
-    uv = dot3(u, v)
+    uv, u_sq, v_sq = dot3(u, v), dot3(u, u), dot3(v, v)
     on_p = _share(at_p, n_sq)
     on_q = _share(minus(times(on_p, uv), dot3(r, v)), v_sq)
     on_p = _share(plus(times(on_q, uv), dot3(r, u)), u_sq)
@@ -144,8 +146,7 @@ def two_segments(p0, p1, q0, q1):
     return Pair(gap_sq, along3(p0, on_p, u), along3(q0, on_q, v), w, dot3(w, w), p0)
 
 
-@kernel
-def wide_feature(frames, one, two):
+def _wide_feature(frames, one, two):
     """The pair of a simplex of a and one of b, of which one is a corner or both are edges."""
     x = point_of_a(frames, one.u)
     y = point_of_b(frames, two.u)
@@ -165,3 +166,8 @@ def wide_feature(frames, one, two):
     if swapped:
         return Pair(found.gap_sq, found.q, found.p, negative3(found.w), found.w_sq, x)
     return found
+
+
+wide_feature = kernel(_wide_feature)
+wide_feature_here = spliced(_wide_feature)
+"""The same, copied into the caller."""
