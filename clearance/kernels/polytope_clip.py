@@ -26,7 +26,7 @@ from clearance.kernels.polytope_cut import (
     cut_by_plane,
     over,
 )
-from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in
+from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in, is_in_ball
 
 
 @merged
@@ -117,6 +117,15 @@ def is_copy(spots, mesh, v, base):
 
 
 @kernel
+def room_about(numbers, indices, origin):
+    """[m] The distance of the plane through which the ray from the centroid to `origin` leaves the body."""
+    x, y, z = origin[0] - numbers[0], origin[1] - numbers[1], origin[2] - numbers[2]
+    cell, _ = cell_of(numbers, indices, x, y, z)
+    face, gauge = exit_in(numbers, indices, cell, x, y, z)
+    return (1.0 - gauge) * numbers[HEAD + ROW * face + 7]
+
+
+@kernel
 def cut_by_body(
     spots, mesh, state, work, rim, table, numbers, indices, origin, base, tolerance, noise
 ):
@@ -141,8 +150,17 @@ def cut_by_body(
     for turn in range(2):
         row = 0
         while row < (n_rows if turn == 0 else n_later):
-            work[STACK, 0] = row if turn == 0 else work[LATER, row]
+            v = row if turn == 0 else work[LATER, row]
             row += 1
+            if turn == 0 and (
+                mesh[v, 0] < 0
+                or mesh[v, LOOKED] == base + 1
+                or is_in_ball(
+                    numbers, spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
+                )
+            ):
+                continue
+            work[STACK, 0] = v
             n_stack = 1
             while n_stack > 0:
                 n_stack -= 1

@@ -211,6 +211,38 @@ def cut_by_plane(
 
 
 @kernel
+def begin(spots, mesh, numbers, indices, corner, form, origin, base):
+    """Puts a body's trivalent form (`corner`, `form`) into the first rows, about `origin`."""
+    for v in range(len(corner)):
+        at = indices[4] + 3 * corner[v]
+        for c in range(3):
+            spots[v, c] = numbers[at + c] - origin[c]
+            mesh[v, c] = form[v, c]
+            mesh[v, PLANES + c] = form[v, PLANES + c] + base
+        mesh[v, MARK] = 0
+        mesh[v, LOOKED] = 0
+
+
+@kernel
+def close_up(spots, mesh, state, work):
+    """Moves the rows in use together, in their order, so that later bodies walk over no free ones."""
+    n_kept = 0
+    for v in range(state[N_ROWS]):
+        if mesh[v, 0] >= 0:
+            work[QUEUE, v] = n_kept
+            for c in range(8):
+                mesh[n_kept, c] = mesh[v, c]
+            for c in range(3):
+                spots[n_kept, c] = spots[v, c]
+            n_kept += 1
+    for v in range(n_kept):
+        for c in range(3):
+            mesh[v, c] = work[QUEUE, mesh[v, c]]
+    state[N_ROWS] = n_kept
+    state[N_FREE] = 0
+
+
+@kernel
 def cut_by_planes(spots, mesh, state, work, rim, table, planes, name, tolerance):
     """The status after cutting a small polytope, or a large one a few times, by planes (k, 4) in turn.
 

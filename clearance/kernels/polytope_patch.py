@@ -26,7 +26,7 @@ from clearance.kernels.polytope_cut import (
     USED,
     own_corner,
 )
-from clearance.kernels.polytope_exits import cell_of, exit_in
+from clearance.kernels.polytope_exits import cell_of, exit_in, is_in_ball
 
 INSIDE = 1.0 - 1e-9
 """[-] Greatest gauge of a corner that counts as wholly inside: the rest are left to the seam."""
@@ -42,6 +42,9 @@ def mark_patch(numbers_a, indices_a, numbers_b, indices_b, base, table):
         x = numbers_b[indices_b[4] + 3 * i] - numbers_a[0]
         y = numbers_b[indices_b[4] + 3 * i + 1] - numbers_a[1]
         z = numbers_b[indices_b[4] + 3 * i + 2] - numbers_a[2]
+        if is_in_ball(numbers_a, x, y, z):
+            inside[i] = True
+            continue
         cell, bound = cell_of(numbers_a, indices_a, x, y, z)
         inside[i] = bound < INSIDE or exit_in(numbers_a, indices_a, cell, x, y, z)[1] < INSIDE
     for face in range(indices_b[0]):

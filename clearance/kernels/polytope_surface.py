@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.jit import kernel, merged
+from clearance.jit import kernel
 from clearance.kernels.expansion import two_sum
 from clearance.kernels.polytope_cut import FIRST, PLANES, SEEN
 
@@ -67,13 +67,6 @@ def ring_moments(places, starts, corners, origin):
     return moments
 
 
-@merged
-def add_to(sums, i, value):
-    """Adds to sum `i`, keeping what rounding drops in `sums[4 + i]`."""
-    sums[i], rest = two_sum(sums[i], value)
-    sums[4 + i] += rest
-
-
 @kernel
 def trivalent_moments(places, mesh, n_rows, table, stamp):
     """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate, about the origin of `places`.
@@ -81,12 +74,13 @@ def trivalent_moments(places, mesh, n_rows, table, stamp):
     Each edge of each face makes a tetrahedron with the face's first corner met and the origin. Arrays as in
     `polytope_cut`; `stamp`: a number that `table` does not hold.
     """
-    sums = np.zeros(8)
-    moments = np.zeros(5)
+    most = volume = x = y = z = 0.0
+    rest = rest_x = rest_y = rest_z = 0.0  # what rounding drops of each sum
     for u in range(n_rows):
         if mesh[u, 0] < 0:
             continue
-        moments[4] = max(moments[4], abs(places[u, 0]), abs(places[u, 1]), abs(places[u, 2]))
+        bx, by, bz = places[u, 0], places[u, 1], places[u, 2]
+        most = max(most, abs(bx), abs(by), abs(bz))
         for k in range(3):
             name = mesh[u, PLANES + k]
             if table[name, SEEN] != stamp:
@@ -94,19 +88,20 @@ def trivalent_moments(places, mesh, n_rows, table, stamp):
                 table[name, FIRST] = u
                 continue
             o = table[name, FIRST]
-            w = mesh[u, (k + 1) % 3]
+            w = mesh[u, 0 if k == 2 else k + 1]
             if w == o:
                 continue
             ax, ay, az = places[o, 0], places[o, 1], places[o, 2]
-            bx, by, bz = places[u, 0], places[u, 1], places[u, 2]
             cx, cy, cz = places[w, 0], places[w, 1], places[w, 2]
             sixth = (
                 ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
             ) / 6.0
-            add_to(sums, 0, sixth)
-            add_to(sums, 1, sixth * (ax + bx + cx) * 0.25)
-            add_to(sums, 2, sixth * (ay + by + cy) * 0.25)
-            add_to(sums, 3, sixth * (az + bz + cz) * 0.25)
-    for i in range(4):
-        moments[i] = sums[i] + sums[4 + i]
-    return moments
+            volume, lost = two_sum(volume, sixth)
+            rest += lost
+            x, lost = two_sum(x, sixth * (ax + bx + cx) * 0.25)
+            rest_x += lost
+            y, lost = two_sum(y, sixth * (ay + by + cy) * 0.25)
+            rest_y += lost
+            z, lost = two_sum(z, sixth * (az + bz + cz) * 0.25)
+            rest_z += lost
+    return np.array([volume + rest, x + rest_x, y + rest_y, z + rest_z, most])

@@ -7,11 +7,12 @@ their digits. Not for: deciding whether there is a region (`common_point`).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_clip import cut_by_body
+from clearance.kernels.polytope_clip import cut_by_body, room_about
 from clearance.kernels.polytope_cut import (
     BROKEN,
     CUT,
@@ -20,8 +21,9 @@ from clearance.kernels.polytope_cut import (
     LOOKED,
     N_FREE,
     N_ROWS,
-    PLANES,
     STAMP,
+    begin,
+    close_up,
     cut_by_planes,
 )
 from clearance.kernels.polytope_patch import lay_patch, mark_patch
@@ -45,6 +47,10 @@ ROOM = 4
 """Rows at first for each vertex of the body that is cut; doubled when they are full."""
 
 
+SPARSE = 0.5
+"""[-] Part of the rows that may be free before those in use are moved together."""
+
+
 class Broken(Exception):
     """The rim of a cut was not one ring: rounding has broken the surface; another way must be taken."""
 
@@ -66,6 +72,15 @@ class Task:
         reach = float(np.abs(least.vertices - origin).max())
         return cls(bodies, origin, bases, ON_PLANE * reach)
 
+    @cached_property
+    def order(self) -> list[int]:
+        """The smallest body, then the others by the distance [m] of the nearest face from the origin."""
+        bodies = self.bodies
+        first = min(range(len(bodies)), key=lambda k: (bodies[k].volume, k))
+        rest = [k for k in range(len(bodies)) if k != first]
+        rooms = {k: room_about(*bodies[k].packed, self.origin) for k in rest} if rest[1:] else {}
+        return [first, *sorted(rest, key=lambda k: (rooms.get(k, 0.0), bodies[k].volume, k))]
+
     @property
     def seam(self) -> int:
         """The number of the plane that parts two halves, after all faces."""
@@ -82,9 +97,9 @@ class Cutting:
         self.task = task
         self.spots = np.empty((ROOM * n, 4))
         self.mesh = np.empty((ROOM * n, 8), dtype=np.int32)
-        self.spots[:n, :3] = (body.vertices - task.origin)[form.corner]
-        self.mesh[:n] = form.mesh
-        self.mesh[:n, PLANES : PLANES + 3] += np.int32(task.bases[i_first])
+        begin(
+            self.spots, self.mesh, *body.packed, form.corner, form.mesh, task.origin, task.bases[i_first]
+        )  # fmt: skip
         self.state = np.array([0, 0, n], dtype=np.int64)
         self.table = np.zeros((task.seam + 1, 3), dtype=np.int32)
         self.laid = False
@@ -134,6 +149,8 @@ class Cutting:
             self._grown()
         if status == BROKEN:
             raise Broken
+        if self.state[N_FREE] > SPARSE * self.state[N_ROWS]:
+            close_up(self.spots, self.mesh, self.state, self.work)
         return status == CUT
 
     def patched_by(self, i_first: int, i_body: int) -> bool:
@@ -173,12 +190,13 @@ class Cutting:
 def cut_down(task: Task, side: float = 0.0) -> Cutting | None:
     """What all bodies share, or its half on one `side` (1 or -1); None if rounding leaves nothing.
 
-    The smallest body is cut by the others, smaller ones first: it is small soon.
+    The smallest body is cut by the others, those first whose surface comes nearest to the common point: what
+    they leave is small soon.
 
     Raises:
         Broken: see there.
     """
-    members = sorted(range(len(task.bodies)), key=lambda k: (task.bodies[k].volume, k))
+    members = task.order
     cutting = Cutting(task, members[0])
     if side:
         cutting.halve(side)
