@@ -28,7 +28,7 @@ from clearance.geometry.polytope_hull import (
     corners_of_half_spaces,
     hull_faces,
 )
-from clearance.kernels.polytope_surface import ring_moments
+from clearance.kernels.polytope_surface import face_areas, ring_moments
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -116,6 +116,11 @@ class Polytope:
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
 
     @cached_property
+    def box(self) -> np.ndarray:
+        """(2, 3) [m] the least and the greatest coordinates."""
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @cached_property
     def normals(self) -> np.ndarray:
         """(f, 3) outward unit normals: Newell's sums about a corner of each face."""
         firsts = self.face_starts[:-1]
@@ -197,7 +202,12 @@ class Polytope:
         )
         return packed(self.vertices, rings, self.centroid, planes, self.face_graph[1])
 
+    @cached_property
+    def face_areas(self) -> np.ndarray:
+        """(f, 4) area [m^2] and centroid [m] of each face."""
+        return face_areas(*self.packed)
+
     def prepared(self) -> Self:
         """Itself, with all that intersections need made ahead."""
-        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.packed)
+        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.face_areas, self.box)
         return self

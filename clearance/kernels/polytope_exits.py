@@ -9,10 +9,11 @@ If rounding puts another face's plane in front, the listed one falls short of it
 of the body stand out of its own planes, relatively. Not for: deciding what a body's faces are.
 
 A body is two arrays. `numbers`: centroid (3), the linear map (9), greatest width, size, the square of the radius
-of a ball of the round frame that is wholly inside, one spare; eight a face: outward unit normal n, 1/w, a corner, the plane's distance w from the centroid; a bound for each cell; the
-corners, three each. `indices`: number of faces f, k, where the faces' starts begin, how much later than their
-corners their neighbours stand (the neighbour over an edge stands with the corner it leaves), where the corners
-begin in `numbers`, three spare; the cells' starts and faces; the faces' starts, corners, neighbours.
+of a ball of the round frame that is wholly inside, one spare; eight a face: outward unit normal n, 1/w, a corner,
+the plane's distance w from the centroid; a bound for each cell; the corners, three each. `indices`: number of
+faces f, k, where the faces' starts begin, how much later than their corners their neighbours stand (the
+neighbour over an edge stands with the corner it leaves), where the corners begin in `numbers`, three spare; the
+cells' starts and faces; the faces' starts, corners, neighbours.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ import math
 
 import numpy as np
 
-from clearance.jit import inlined, kernel, merged
+from clearance.jit import inlined, kernel, spliced
 
 HEAD = 16
 ROW = 8
@@ -31,7 +32,7 @@ BALL_SLACK = 4e-9
 """[-] How much less than its greatest possible radius the inner ball has: what lies in it is inside for all."""
 
 
-@merged
+@spliced
 def cell_at(x, y, z, k):
     """(cell, greatest coordinate's magnitude) of a direction in the round frame."""
     ax = abs(x)
@@ -51,7 +52,7 @@ def cell_at(x, y, z, k):
     return (side * k + i) * k + j, most
 
 
-@merged
+@spliced
 def cell_of(numbers, indices, x, y, z):
     """(cell, upper bound on the gauge) of the point (x, y, z) about the centroid."""
     u = numbers[3] * x + numbers[4] * y + numbers[5] * z
@@ -61,7 +62,7 @@ def cell_of(numbers, indices, x, y, z):
     return cell, most * numbers[HEAD + ROW * indices[0] + cell]
 
 
-@merged
+@spliced
 def is_in_ball(numbers, x, y, z):
     """True if (x, y, z) about the centroid lies in a ball of the round frame that is wholly inside the body."""
     u = numbers[3] * x + numbers[4] * y + numbers[5] * z
@@ -70,7 +71,7 @@ def is_in_ball(numbers, x, y, z):
     return u * u + v * v + w * w < numbers[14]
 
 
-@merged
+@spliced
 def exit_in(numbers, indices, cell, x, y, z):
     """(face, gauge): the face of the cell's list with the greatest n.v/w at (x, y, z) about the centroid."""
     best = -math.inf

@@ -69,7 +69,7 @@ class Task:
         """The task; the smallest body bounds all coordinates that remain."""
         bases = np.concatenate([[0], np.cumsum([body.n_faces for body in bodies])])
         least = min(bodies, key=lambda body: body.size)
-        reach = float(np.abs(least.vertices - origin).max())
+        reach = float(np.abs(least.box - origin).max())
         return cls(bodies, origin, bases, ON_PLANE * reach)
 
     @cached_property
@@ -102,7 +102,7 @@ class Cutting:
         )  # fmt: skip
         self.state = np.array([0, 0, n], dtype=np.int64)
         self.table = np.zeros((task.seam + 1, 3), dtype=np.int32)
-        self.laid = False
+        self.i_first = self.i_laid = i_first
         self._room()
 
     def _room(self) -> None:
@@ -161,13 +161,19 @@ class Cutting:
         """
         task, other = self.task, self.task.bodies[i_body]
         base = task.bases[i_body]
-        in_patch = mark_patch(*task.bodies[i_first].packed, *other.packed, base, self.table)
+        inside, in_patch = np.zeros((2, len(other.vertices)), dtype=bool)
+        mark_patch(
+            *task.bodies[i_first].packed, *other.packed, base, self.table, inside, in_patch
+        )  # fmt: skip
         if not self.by(i_body):
             return False
-        self.laid = lay_patch(
+        form = other.trivalent
+        laid = lay_patch(
             self.spots, self.mesh, self.state, self.work, self.rim, self.table,
-            *other.packed, *other.trivalent[:3], in_patch, task.origin, base,
+            *other.packed, form.corner, form.mesh, in_patch, np.empty(len(form.corner), dtype=np.int32),
+            task.origin, base,
         )  # fmt: skip
+        self.i_laid = i_body if laid else i_first
         return self.by(i_body)
 
     def places(self) -> np.ndarray:
@@ -182,9 +188,21 @@ class Cutting:
     def moments(self) -> np.ndarray:
         """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate [m], about the origin."""
         self.state[STAMP] += 2
-        return trivalent_moments(
-            self.spots, self.mesh, self.state[N_ROWS], self.table, self.state[STAMP]
-        )
+        task, (a, b) = self.task, (self.i_first, self.i_laid)
+        return np.array(trivalent_moments(
+            self.spots, self.mesh, self.state[N_ROWS], self.table, self.state[STAMP],
+            task.bases[a], task.bodies[a].packed.numbers, task.bodies[a].face_areas,
+            task.bases[b], task.bodies[b].packed.numbers, task.bodies[b].face_areas, task.origin,
+        ))  # fmt: skip
+
+
+def by_edges(spots: np.ndarray, mesh: np.ndarray, state: np.ndarray, table: np.ndarray) -> np.ndarray:
+    """As `Cutting.moments`, for a polytope that was made of no body."""
+    none = np.empty((0, 4))
+    return np.array(trivalent_moments(
+        spots, mesh, state[N_ROWS], table, state[STAMP] + 2,
+        0, none.ravel(), none, 0, none.ravel(), none, none.ravel(),
+    ))  # fmt: skip
 
 
 def cut_down(task: Task, side: float = 0.0) -> Cutting | None:
