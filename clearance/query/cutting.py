@@ -95,28 +95,32 @@ class Cutting:
         form = body.trivalent
         n = len(form.corner)
         self.task = task
-        self.spots = np.empty((ROOM * n, 4))
-        self.mesh = np.empty((ROOM * n, 8), dtype=np.int32)
+        self._room(ROOM * n)
         begin(
             self.spots, self.mesh, *body.packed, form.corner, form.mesh, task.origin, task.bases[i_first]
         )  # fmt: skip
         self.state = np.array([0, 0, n], dtype=np.int64)
         self.table = np.zeros((task.seam + 1, 3), dtype=np.int32)
         self.i_first = self.i_laid = i_first
-        self._room()
 
-    def _room(self) -> None:
-        """Working space for as many rows as there are."""
-        self.work = np.empty((4, len(self.spots)), dtype=np.int32)
-        self.rim = np.empty((len(self.spots), 4), dtype=np.int32)
+    def _room(self, n_rows: int) -> None:
+        """Working space for so many rows, in one block.
+
+        The allocator keeps what is freed only up to twice its largest block: in four blocks it gave the memory
+        back each time, and the 210 page faults of the next call took 0.5 ms.
+        """
+        block = np.empty(12 * n_rows)
+        self.spots = block[: 4 * n_rows].reshape(-1, 4)
+        self.mesh = block[4 * n_rows : 8 * n_rows].view(np.int32).reshape(-1, 8)
+        self.work = block[8 * n_rows : 10 * n_rows].view(np.int32).reshape(4, -1)
+        self.rim = block[10 * n_rows :].view(np.int32).reshape(-1, 4)
 
     def _grown(self) -> None:
-        free = self.work[FREE, : self.state[N_FREE]]
-        self.spots = np.concatenate([self.spots, np.empty_like(self.spots)])
-        self.mesh = np.concatenate([self.mesh, np.empty_like(self.mesh)])
-        self.mesh[:, LOOKED] = 0  # a call that came to no end may have put vertices off
-        self._room()
-        self.work[FREE, : len(free)] = free
+        spots, mesh, work, used = self.spots, self.mesh, self.work, self.state[N_ROWS]
+        self._room(2 * len(spots))
+        self.spots[:used], self.mesh[:used] = spots[:used], mesh[:used]
+        self.mesh[:used, LOOKED] = 0  # a call that came to no end may have put vertices off
+        self.work[FREE, : self.state[N_FREE]] = work[FREE, : self.state[N_FREE]]
 
     def halve(self, side: float) -> None:
         """Keeps what is on one side of a plane through the origin; `side` is 1 or -1.
