@@ -90,6 +90,24 @@ class Polytope:
             )
         return made
 
+    def moved(self, pose: np.ndarray) -> Self:
+        """The body after a rigid motion (4, 4): corners moved, faces the same; no hull is made again.
+
+        A merged face stays as flat as rounding of the corners leaves it.
+        """
+        made = object.__new__(type(self))
+        corners = np.ascontiguousarray(self.vertices @ pose[:3, :3].T + pose[:3, 3])
+        corners.setflags(write=False)
+        for name, value in (
+            ("vertices", corners),
+            ("face_starts", self.face_starts),
+            ("face_vertices", self.face_vertices),
+            ("trivalent", self.trivalent),
+            ("_twin", self._twin),
+        ):
+            object.__setattr__(made, name, value)
+        return made
+
     @property
     def n_faces(self) -> int:
         """Number of merged faces."""

@@ -98,3 +98,20 @@ def test_bodies_are_taken_by_the_room_they_leave():
     assert task.order[-1] == 0 and sorted(task.order) == [0, 1, 2, 3]
     assert task.order[0] == min(range(4), key=lambda k: bodies[k].volume)
     assert rooms[task.order[1]] <= rooms[task.order[2]] <= rooms[task.order[3]]
+
+
+def test_a_moved_body_is_the_hull_of_the_moved_corners():
+    rng = np.random.default_rng(5)
+    pose = np.eye(4)
+    pose[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    pose[:3, :3] *= np.linalg.det(pose[:3, :3])
+    pose[:3, 3] = rng.normal(size=3)
+    body, other = cluster(2, 60, 4)
+    moved = body.moved(pose)
+    again = Polytope(body.vertices @ pose[:3, :3].T + pose[:3, 3])
+    assert moved.volume == pytest.approx(again.volume, rel=1e-14)
+    assert moved.n_faces == again.n_faces
+    there = other.moved(pose)
+    assert intersect([moved, there]).volume == pytest.approx(
+        intersect([body, other]).volume, rel=1e-13
+    )
