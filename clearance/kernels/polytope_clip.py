@@ -54,7 +54,10 @@ def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp
     i = 0
     while i < n_queue:
         f = work[QUEUE, i]
-        if table[base + f, USED] % 2 == 0 and over(spots, v, plane_of(numbers, f, origin)) > tolerance:
+        if (
+            table[base + f, USED] % 2 == 0
+            and over(spots, v, plane_of(numbers, f, origin)) > tolerance
+        ):
             return f
         for at in range(indices[indices[2] + f], indices[indices[2] + f + 1]):
             g = indices[at + indices[3]]

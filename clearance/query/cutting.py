@@ -200,7 +200,9 @@ class Cutting:
         ))  # fmt: skip
 
 
-def by_edges(spots: np.ndarray, mesh: np.ndarray, state: np.ndarray, table: np.ndarray) -> np.ndarray:
+def by_edges(
+    spots: np.ndarray, mesh: np.ndarray, state: np.ndarray, table: np.ndarray
+) -> np.ndarray:
     """As `Cutting.moments`, for a polytope that was made of no body."""
     none = np.empty((0, 4))
     return np.array(trivalent_moments(
