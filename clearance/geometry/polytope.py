@@ -28,7 +28,7 @@ from clearance.geometry.polytope_hull import (
     corners_of_half_spaces,
     hull_faces,
 )
-from clearance.kernels.polytope_surface import ring_moments
+from clearance.kernels.polytope_surface import face_areas, ring_moments
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -90,6 +90,24 @@ class Polytope:
             )
         return made
 
+    def moved(self, pose: np.ndarray) -> Self:
+        """The body after a rigid motion (4, 4): corners moved, faces the same; no hull is made again.
+
+        A merged face stays as flat as rounding of the corners leaves it.
+        """
+        made = object.__new__(type(self))
+        corners = np.ascontiguousarray(self.vertices @ pose[:3, :3].T + pose[:3, 3])
+        corners.setflags(write=False)
+        for name, value in (
+            ("vertices", corners),
+            ("face_starts", self.face_starts),
+            ("face_vertices", self.face_vertices),
+            ("trivalent", self.trivalent),
+            ("_twin", self._twin),
+        ):
+            object.__setattr__(made, name, value)
+        return made
+
     @property
     def n_faces(self) -> int:
         """Number of merged faces."""
@@ -114,6 +132,11 @@ class Polytope:
     def size(self) -> float:
         """[m] the diagonal of the box around it."""
         return float(np.linalg.norm(np.ptp(self.vertices, axis=0)))
+
+    @cached_property
+    def box(self) -> np.ndarray:
+        """(2, 3) [m] the least and the greatest coordinates."""
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
     @cached_property
     def normals(self) -> np.ndarray:
@@ -197,7 +220,12 @@ class Polytope:
         )
         return packed(self.vertices, rings, self.centroid, planes, self.face_graph[1])
 
+    @cached_property
+    def face_areas(self) -> np.ndarray:
+        """(f, 4) area [m^2] and centroid [m] of each face."""
+        return face_areas(*self.packed)
+
     def prepared(self) -> Self:
         """Itself, with all that intersections need made ahead."""
-        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.packed)
+        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.face_areas, self.box)
         return self

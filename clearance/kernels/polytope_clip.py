@@ -9,7 +9,7 @@ Arrays as in `polytope_cut`. Not for: the order of the bodies (`query.cutting`).
 
 from __future__ import annotations
 
-from clearance.jit import inlined, kernel, merged
+from clearance.jit import borrowing, spliced
 from clearance.kernels.polytope_cut import (
     CUT,
     FULL,
@@ -26,10 +26,10 @@ from clearance.kernels.polytope_cut import (
     cut_by_plane,
     over,
 )
-from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in
+from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in, is_in_ball
 
 
-@merged
+@spliced
 def plane_of(numbers, face, origin):
     """(normal, offset [m]) of a face's plane about `origin`."""
     row = HEAD + ROW * face
@@ -40,7 +40,7 @@ def plane_of(numbers, face, origin):
     return x, y, z, offset
 
 
-@inlined
+@spliced
 def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp, base, work):
     """A face that has not cut yet and that `v` is above by more than `tolerance`, near `face`, or -1.
 
@@ -54,7 +54,10 @@ def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp
     i = 0
     while i < n_queue:
         f = work[QUEUE, i]
-        if table[base + f, USED] != 1 and over(spots, v, plane_of(numbers, f, origin)) > tolerance:
+        if (
+            table[base + f, USED] % 2 == 0
+            and over(spots, v, plane_of(numbers, f, origin)) > tolerance
+        ):
             return f
         for at in range(indices[indices[2] + f], indices[indices[2] + f + 1]):
             g = indices[at + indices[3]]
@@ -67,7 +70,7 @@ def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp
     return -1
 
 
-@inlined
+@spliced
 def flood_level(spots, mesh, start, plane, noise, stamp, work):
     """A vertex above `start` next to the level ground about it, or -1; level means within `noise`."""
     level = over(spots, start, plane)
@@ -92,7 +95,7 @@ def flood_level(spots, mesh, start, plane, noise, stamp, work):
     return -1
 
 
-@inlined
+@spliced
 def climb(spots, mesh, start, plane, noise, state, work):
     """The top vertex over the plane, uphill from `start`; level ground is searched by flooding.
 
@@ -107,7 +110,7 @@ def climb(spots, mesh, start, plane, noise, state, work):
     return top
 
 
-@merged
+@spliced
 def is_copy(spots, mesh, v, base):
     """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
     u = v - 1
@@ -116,7 +119,16 @@ def is_copy(spots, mesh, v, base):
     return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
 
 
-@kernel
+@borrowing
+def room_about(numbers, indices, origin):
+    """[m] The distance of the plane through which the ray from the centroid to `origin` leaves the body."""
+    x, y, z = origin[0] - numbers[0], origin[1] - numbers[1], origin[2] - numbers[2]
+    cell, _ = cell_of(numbers, indices, x, y, z)
+    face, gauge = exit_in(numbers, indices, cell, x, y, z)
+    return (1.0 - gauge) * numbers[HEAD + ROW * face + 7]
+
+
+@borrowing
 def cut_by_body(
     spots, mesh, state, work, rim, table, numbers, indices, origin, base, tolerance, noise
 ):
@@ -141,8 +153,17 @@ def cut_by_body(
     for turn in range(2):
         row = 0
         while row < (n_rows if turn == 0 else n_later):
-            work[STACK, 0] = row if turn == 0 else work[LATER, row]
+            v = row if turn == 0 else work[LATER, row]
             row += 1
+            if turn == 0 and (
+                mesh[v, 0] < 0
+                or mesh[v, LOOKED] == base + 1
+                or is_in_ball(
+                    numbers, spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
+                )
+            ):
+                continue
+            work[STACK, 0] = v
             n_stack = 1
             while n_stack > 0:
                 n_stack -= 1
@@ -162,7 +183,7 @@ def cut_by_body(
                     continue
                 plane = plane_of(numbers, face, origin)
                 above = over(spots, v, plane)
-                if table[base + face, USED] == 1 or above <= tolerance:
+                if table[base + face, USED] % 2 == 1 or above <= tolerance:
                     state[STAMP] += 2
                     face = other_face(
                         numbers, indices, face, origin, spots, v, table, tolerance, state[STAMP], base, work

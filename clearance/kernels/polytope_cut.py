@@ -8,8 +8,8 @@ new places are interpolated on edges and cannot run away.
 Arrays, a row a vertex: `spots` (c, 4) float64, its place [m] about the origin and its last height over a
 plane; `mesh` (c, 8) int32, columns `ACROSS` + k the vertex at the other end of the edge that leaves plane k
 (-1 first: a free row), `PLANES` + k the planes in order, a stamp, the last body it was held against. A row a
-plane: `table` (p, 3) int32, scratch, a stamp, 1 once it has cut and 2 if it is `LATENT`, to come in with a
-patch (`polytope_patch`). `state`: free rows, last stamp, rows used.
+plane: `table` (p, 3) int32, scratch, a stamp, 1 once it has cut, 2 if it is `LATENT`, to come in with a
+patch (`polytope_patch`), 3 once it has (`WHOLE`). `state`: free rows, last stamp, rows used.
 
 Not for: choosing the planes (`polytope_clip`).
 """
@@ -18,23 +18,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.jit import inlined, kernel, merged
+from clearance.jit import borrowing, kernel, spliced
 
 CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
 N_FREE, STAMP, N_ROWS = 0, 1, 2
 ACROSS, PLANES, MARK, LOOKED = 0, 3, 6, 7
 FIRST, SEEN, USED = 0, 1, 2
-LATENT = 2
+LATENT, WHOLE = 2, 3
 QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
 
 
-@merged
+@spliced
 def over(spots, v, plane):
     """[m] How far vertex `v` stands above the plane."""
     return plane[0] * spots[v, 0] + plane[1] * spots[v, 1] + plane[2] * spots[v, 2] - plane[3]
 
 
-@merged
+@spliced
 def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     """Number of connected vertices above the plane, from `top`; they are queued and marked `stamp`.
 
@@ -62,7 +62,7 @@ def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     return n_above
 
 
-@merged
+@spliced
 def has_corner(indices, face, corner):
     """True if the face has the corner."""
     for at in range(indices[indices[2] + face], indices[indices[2] + face + 1]):
@@ -71,7 +71,7 @@ def has_corner(indices, face, corner):
     return False
 
 
-@merged
+@spliced
 def own_corner(indices, base, a, b, c):
     """The corner of the body that its planes `a`, `b`, `c` share, or -1 if they are not its or share none."""
     n = indices[0]
@@ -85,7 +85,7 @@ def own_corner(indices, base, a, b, c):
     return -1
 
 
-@merged
+@spliced
 def put_rim(
     spots, mesh, state, n_above, stamp, name, work, rim, table, numbers, indices, base, origin
 ):
@@ -136,7 +136,7 @@ def put_rim(
     return n_rim
 
 
-@merged
+@spliced
 def rim_is_one_ring(rim, n_rim, table, stamp):
     """True if the rim's edges follow each other through their planes in one ring."""
     i = 0
@@ -150,7 +150,7 @@ def rim_is_one_ring(rim, n_rim, table, stamp):
     return False
 
 
-@merged
+@spliced
 def swap_rows(state, mesh, n_above, n_rim, work):
     """Takes the rows of the new vertices from the free ones and frees those above the plane."""
     taken = min(n_rim, state[N_FREE])
@@ -162,7 +162,7 @@ def swap_rows(state, mesh, n_above, n_rim, work):
         state[N_FREE] += 1
 
 
-@merged
+@spliced
 def close_rim(mesh, rim, n_rim, table):
     """Links the new vertices to the outside and to each other."""
     for i in range(n_rim):
@@ -175,7 +175,7 @@ def close_rim(mesh, rim, n_rim, table):
         mesh[after, 2] = v
 
 
-@inlined
+@spliced
 def cut_by_plane(
     spots,
     mesh,
@@ -208,6 +208,38 @@ def cut_by_plane(
     swap_rows(state, mesh, n_above, n_rim, work)
     close_rim(mesh, rim, n_rim, table)
     return CUT, n_rim
+
+
+@borrowing
+def begin(spots, mesh, numbers, indices, corner, form, origin, base):
+    """Puts a body's trivalent form (`corner`, `form`) into the first rows, about `origin`."""
+    for v in range(len(corner)):
+        at = indices[4] + 3 * corner[v]
+        for c in range(3):
+            spots[v, c] = numbers[at + c] - origin[c]
+            mesh[v, c] = form[v, c]
+            mesh[v, PLANES + c] = form[v, PLANES + c] + base
+        mesh[v, MARK] = 0
+        mesh[v, LOOKED] = 0
+
+
+@borrowing
+def close_up(spots, mesh, state, work):
+    """Moves the rows in use together, in their order, so that later bodies walk over no free ones."""
+    n_kept = 0
+    for v in range(state[N_ROWS]):
+        if mesh[v, 0] >= 0:
+            work[QUEUE, v] = n_kept
+            for c in range(8):
+                mesh[n_kept, c] = mesh[v, c]
+            for c in range(3):
+                spots[n_kept, c] = spots[v, c]
+            n_kept += 1
+    for v in range(n_kept):
+        for c in range(3):
+            mesh[v, c] = work[QUEUE, mesh[v, c]]
+    state[N_ROWS] = n_kept
+    state[N_FREE] = 0
 
 
 @kernel

@@ -6,33 +6,35 @@ at most four faces have nothing in common (Helly). The dual simplex basis has fo
 is the one through which the ray from c_k to x leaves the body, from its map of directions: none is missed.
 Not for: the region itself.
 
-The basis is one (11, 4) array: rows 0-3 the faces' (n, w), 4 their bounds, 5-8 the inverse, 9 the solution
-(x, t), 10 the multipliers; and four names, (body << 32) + face, below 0 for the walls of the start. All x are
-about a common origin.
+The basis is one (15, 4) array: rows 0-3 the faces' (n, w), 4 their bounds, 5-8 the inverse, 9 the solution
+(x, t), 10 the multipliers, 11-14 scratch; and four names, (body << 32) + face, below 0 for the walls of the
+start. All x are about a common origin.
 """
 
 from __future__ import annotations
 
 import math
 
-from clearance.jit import inlined, kernel
+from clearance.jit import borrowing, spliced
 from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, exit_in
 
 TURN = 4
 """Faces of one body at a time: settling one body fully before the next takes 5 times as long for 5000 corners."""
 
-BOUND, INVERSE, POINT, SHARE = 4, 5, 9, 10
+BOUND, INVERSE, POINT, SHARE, SCRATCH = 4, 5, 9, 10, 11
+N_ROWS = 15
 LEVEL = 12
 """Rounds in which the depth does not fall before the method is said to turn in a circle."""
 COLD, WARM, ON = 0, 1, 2
 
 
-@inlined
+@spliced
 def invert(basis):
     """True if the faces' matrix could be inverted, by Gauss-Jordan with row pivoting."""
-    a = basis[:4].copy()
+    a = basis[SCRATCH : SCRATCH + 4]
     for i in range(4):
         for j in range(4):
+            a[i, j] = basis[i, j]
             basis[INVERSE + i, j] = 1.0 if i == j else 0.0
     for c in range(4):
         p = c
@@ -58,7 +60,7 @@ def invert(basis):
     return True
 
 
-@inlined
+@spliced
 def solve(basis):
     """False if the faces' planes meet in no one point or a multiplier is below 0; else sets both."""
     if not invert(basis):
@@ -76,7 +78,7 @@ def solve(basis):
     return sound
 
 
-@inlined
+@spliced
 def start_around(basis, names, reach):
     """A tetrahedron far around the origin; t at its middle is 1."""
     side = 1.0 / math.sqrt(3.0)
@@ -90,7 +92,7 @@ def start_around(basis, names, reach):
     solve(basis)
 
 
-@inlined
+@spliced
 def put_face(basis, names, j, numbers, pose, away, body, face):
     """Puts a face at place `j` of the basis; `away` is from the origin to the body's centroid."""
     row = HEAD + ROW * face
@@ -108,7 +110,7 @@ def put_face(basis, names, j, numbers, pose, away, body, face):
     names[j] = (body << 32) + face
 
 
-@inlined
+@spliced
 def leaving(basis, numbers, pose, face):
     """The place in the basis that the ratio test gives to a face, or -1."""
     row = HEAD + ROW * face
@@ -134,7 +136,7 @@ def leaving(basis, numbers, pose, face):
     return leave
 
 
-@inlined
+@spliced
 def centre_of(numbers, pose, origin):
     """From the origin to the body's centroid in the world."""
     x, y, z = numbers[0], numbers[1], numbers[2]
@@ -145,7 +147,7 @@ def centre_of(numbers, pose, origin):
     )
 
 
-@inlined
+@spliced
 def deepen(numbers, indices, pose, body, origin, basis, names, margin):
     """(settled, faces brought in): brings in a body's worst faces, `TURN` at most, in widths by `margin` worse."""
     away = centre_of(numbers, pose, origin)
@@ -171,7 +173,7 @@ def deepen(numbers, indices, pose, body, origin, basis, names, margin):
     return False, TURN
 
 
-@inlined
+@spliced
 def recall(numbers, pose, body, origin, basis, names):
     """Puts the faces that the basis names of one body where they are now."""
     away = centre_of(numbers, pose, origin)
@@ -180,7 +182,7 @@ def recall(numbers, pose, body, origin, basis, names):
             put_face(basis, names, j, numbers, pose, away, body, names[j] & 0xFFFFFFFF)
 
 
-@kernel
+@borrowing
 def deepen_two(
     numbers_a, indices_a, pose_a, a, numbers_b, indices_b, pose_b, b, origin, basis, names, margin,
     begin, passes,

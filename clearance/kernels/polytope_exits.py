@@ -8,11 +8,12 @@ has a bound: the gauge is convex, hence at most its greatest value in the cell's
 If rounding puts another face's plane in front, the listed one falls short of it by no more than the corners
 of the body stand out of its own planes, relatively. Not for: deciding what a body's faces are.
 
-A body is two arrays. `numbers`: centroid (3), the linear map (9), greatest width, size, two spare; eight a face:
-outward unit normal n, 1/w, a corner, the plane's distance w from the centroid; a bound for each cell; the
-corners, three each. `indices`: number of faces f, k, where the faces' starts begin, how much later than their
-corners their neighbours stand (the neighbour over an edge stands with the corner it leaves), where the corners
-begin in `numbers`, three spare; the cells' starts and faces; the faces' starts, corners, neighbours.
+A body is two arrays. `numbers`: centroid (3), the linear map (9), greatest width, size, the square of the radius
+of a ball of the round frame that is wholly inside, one spare; eight a face: outward unit normal n, 1/w, a corner,
+the plane's distance w from the centroid; a bound for each cell; the corners, three each. `indices`: number of
+faces f, k, where the faces' starts begin, how much later than their corners their neighbours stand (the
+neighbour over an edge stands with the corner it leaves), where the corners begin in `numbers`, three spare; the
+cells' starts and faces; the faces' starts, corners, neighbours.
 """
 
 from __future__ import annotations
@@ -21,14 +22,17 @@ import math
 
 import numpy as np
 
-from clearance.jit import inlined, kernel, merged
+from clearance.jit import inlined, kernel, spliced
 
 HEAD = 16
 ROW = 8
 LEAD = 8
 
+BALL_SLACK = 4e-9
+"""[-] How much less than its greatest possible radius the inner ball has: what lies in it is inside for all."""
 
-@merged
+
+@spliced
 def cell_at(x, y, z, k):
     """(cell, greatest coordinate's magnitude) of a direction in the round frame."""
     ax = abs(x)
@@ -48,7 +52,7 @@ def cell_at(x, y, z, k):
     return (side * k + i) * k + j, most
 
 
-@merged
+@spliced
 def cell_of(numbers, indices, x, y, z):
     """(cell, upper bound on the gauge) of the point (x, y, z) about the centroid."""
     u = numbers[3] * x + numbers[4] * y + numbers[5] * z
@@ -58,7 +62,16 @@ def cell_of(numbers, indices, x, y, z):
     return cell, most * numbers[HEAD + ROW * indices[0] + cell]
 
 
-@merged
+@spliced
+def is_in_ball(numbers, x, y, z):
+    """True if (x, y, z) about the centroid lies in a ball of the round frame that is wholly inside the body."""
+    u = numbers[3] * x + numbers[4] * y + numbers[5] * z
+    v = numbers[6] * x + numbers[7] * y + numbers[8] * z
+    w = numbers[9] * x + numbers[10] * y + numbers[11] * z
+    return u * u + v * v + w * w < numbers[14]
+
+
+@spliced
 def exit_in(numbers, indices, cell, x, y, z):
     """(face, gauge): the face of the cell's list with the greatest n.v/w at (x, y, z) about the centroid."""
     best = -math.inf
@@ -195,14 +208,42 @@ def exit_cells(corners, starts, flat, k, pad):
     return cells[:n_found], faces[:n_found]
 
 
+@inlined
+def inner_radius_sq(numbers, n_faces, back, slack):
+    """The square of the radius of the ball in the round frame that every plane leaves room for, less `slack`.
+
+    The plane n.x = w stands w / |n back| from the centroid there.
+    """
+    least = math.inf
+    for face in range(n_faces):
+        row = HEAD + ROW * face
+        length_sq = 0.0
+        for c in range(3):
+            part = 0.0
+            for d in range(3):
+                part += numbers[row + d] * back[d, c]
+            length_sq += part * part
+        least = min(least, numbers[row + 7] * numbers[row + 7] / length_sq)
+    return least * max(0.0, 1.0 - slack) ** 2
+
+
 @kernel
 def bound_cells(numbers, indices, back):
-    """Fills in each cell's bound: the greatest gauge of its faces in its four corners.
+    """Fills in each cell's bound: the greatest gauge of its faces in its four corners; and the ball.
+
+    The bounds are raised by 1e-12, and by what rounding in the round frame may hide: 8 u |there| |back|.
 
     Args:
         back: (3, 3) from the round frame to the body's.
     """
     k = indices[1]
+    there_sq = 0.0
+    back_sq = 0.0
+    for c in range(9):
+        there_sq += numbers[3 + c] ** 2
+        back_sq += back[c // 3, c % 3] ** 2
+    hidden = 8.0 * 2.0**-53 * math.sqrt(there_sq * back_sq)
+    numbers[14] = inner_radius_sq(numbers, indices[0], back, BALL_SLACK + hidden)
     for side in range(6):
         axis = side // 2
         sign = 1.0 if side % 2 == 0 else -1.0
@@ -221,4 +262,4 @@ def bound_cells(numbers, indices, back):
                             + t * back[c, (axis + 2) % 3]
                         )
                     most = max(most, exit_in(numbers, indices, cell, d[0], d[1], d[2])[1])
-                numbers[HEAD + ROW * indices[0] + cell] = most * (1.0 + 1e-12)
+                numbers[HEAD + ROW * indices[0] + cell] = most * (1.0 + 1e-12 + hidden)

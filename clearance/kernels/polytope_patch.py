@@ -8,9 +8,7 @@ matched. Not for: deciding anything; if the edges do not match one to one, nothi
 
 from __future__ import annotations
 
-import numpy as np
-
-from clearance.jit import inlined, kernel
+from clearance.jit import borrowing, spliced
 from clearance.kernels.polytope_cut import (
     FIRST,
     FREE,
@@ -24,24 +22,29 @@ from clearance.kernels.polytope_cut import (
     SEEN,
     STAMP,
     USED,
+    WHOLE,
     own_corner,
 )
-from clearance.kernels.polytope_exits import cell_of, exit_in
+from clearance.kernels.polytope_exits import cell_of, exit_in, is_in_ball
 
 INSIDE = 1.0 - 1e-9
 """[-] Greatest gauge of a corner that counts as wholly inside: the rest are left to the seam."""
 
 
-@kernel
-def mark_patch(numbers_a, indices_a, numbers_b, indices_b, base, table):
-    """(n,) True for the corners of faces of B wholly inside A; these faces become `LATENT`."""
-    n = (len(numbers_b) - indices_b[4]) // 3
-    inside = np.zeros(n, dtype=np.bool_)
-    in_patch = np.zeros(n, dtype=np.bool_)
-    for i in range(n):
+@borrowing
+def mark_patch(numbers_a, indices_a, numbers_b, indices_b, base, table, inside, in_patch):
+    """Sets `in_patch` (n,) for the corners of faces of B wholly inside A; these faces become `LATENT`.
+
+    Args:
+        inside: (n,) scratch; in_patch: all False.
+    """
+    for i in range(len(inside)):
         x = numbers_b[indices_b[4] + 3 * i] - numbers_a[0]
         y = numbers_b[indices_b[4] + 3 * i + 1] - numbers_a[1]
         z = numbers_b[indices_b[4] + 3 * i + 2] - numbers_a[2]
+        if is_in_ball(numbers_a, x, y, z):
+            inside[i] = True
+            continue
         cell, bound = cell_of(numbers_a, indices_a, x, y, z)
         inside[i] = bound < INSIDE or exit_in(numbers_a, indices_a, cell, x, y, z)[1] < INSIDE
     for face in range(indices_b[0]):
@@ -52,10 +55,9 @@ def mark_patch(numbers_a, indices_a, numbers_b, indices_b, base, table):
             table[base + face, USED] = LATENT
             for at in range(indices_b[indices_b[2] + face], indices_b[indices_b[2] + face + 1]):
                 in_patch[indices_b[at]] = True
-    return in_patch
 
 
-@inlined
+@spliced
 def is_under_patch(mesh, v, indices, base, in_patch):
     """True for a vertex over the patch or in one of its corners."""
     if mesh[v, 0] < 0:
@@ -69,7 +71,7 @@ def is_under_patch(mesh, v, indices, base, in_patch):
     return corner >= 0 and in_patch[corner]
 
 
-@inlined
+@spliced
 def open_edges(mesh, state, stamp, n_gone, work, rim, table):
     """Number of edges that lead out of the marked vertices, or -1 if two lie on one plane."""
     n_rim = 0
@@ -96,53 +98,53 @@ def open_edges(mesh, state, stamp, n_gone, work, rim, table):
     return n_rim
 
 
-@inlined
-def matched(corner, planes, across, in_patch, base, rim, n_rim, table, stamp):
+@spliced
+def matched(corner, form, in_patch, base, rim, n_rim, table, stamp):
     """True if the patch's edges that lead out are those of `rim`, one to one."""
     n_out = 0
     for t in range(len(corner)):
         if not in_patch[corner[t]]:
             continue
         for k in range(3):
-            if in_patch[corner[across[t, k]]]:
+            if in_patch[corner[form[t, k]]]:
                 continue
-            a = base + planes[t, (k + 1) % 3]
+            a = base + form[t, PLANES + (k + 1) % 3]
             if table[a, SEEN] != stamp:
                 return False
             i = table[a, FIRST]
-            if rim[i, 2] != base + planes[t, (k + 2) % 3] or rim[i, 3] >= 0:
+            if rim[i, 2] != base + form[t, PLANES + (k + 2) % 3] or rim[i, 3] >= 0:
                 return False
             rim[i, 3] = 3 * t + k
             n_out += 1
     return n_out == n_rim
 
 
-@inlined
-def rows_for_patch(mesh, state, n_gone, work, corner, in_patch):
-    """(t,) the row for each vertex of the patch, the rows of those gone freed first; empty if too few."""
-    rows = np.full(len(corner), -1, dtype=np.int32)
+@spliced
+def rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows):
+    """True if each vertex of the patch got its row, -1 for the others; the rows of those gone are freed first."""
     n_patch = 0
     for t in range(len(corner)):
         n_patch += in_patch[corner[t]]
     if n_patch > state[N_FREE] + n_gone + len(mesh) - state[N_ROWS]:
-        return rows[:0]
+        return False
     for i in range(n_gone):
         mesh[work[QUEUE, i], 0] = -1
         work[FREE, state[N_FREE]] = work[QUEUE, i]
         state[N_FREE] += 1
     for t in range(len(corner)):
+        rows[t] = -1
         if not in_patch[corner[t]]:
             continue
-        if state[N_FREE] > 0:
-            state[N_FREE] -= 1
-            rows[t] = work[FREE, state[N_FREE]]
-        else:
+        if state[N_ROWS] < len(mesh):
             rows[t] = state[N_ROWS]
             state[N_ROWS] += 1
-    return rows
+        else:
+            state[N_FREE] -= 1
+            rows[t] = work[FREE, state[N_FREE]]
+    return True
 
 
-@kernel
+@borrowing
 def lay_patch(
     spots,
     mesh,
@@ -153,16 +155,17 @@ def lay_patch(
     numbers,
     indices,
     corner,
-    planes,
-    across,
+    form,
     in_patch,
+    rows,
     origin,
     base,
 ):
     """True if the patch took the place of the vertices over it; faces left `LATENT` may then cut or not.
 
     Args:
-        corner, planes, across: the body's trivalent form; in_patch: from `mark_patch`. Else as `cut_by_body`.
+        corner, form: the body's trivalent form; in_patch: from `mark_patch`;
+        rows: (t,) scratch. Else as `cut_by_body`.
     """
     state[STAMP] += 2
     stamp = state[STAMP]
@@ -173,16 +176,13 @@ def lay_patch(
             work[QUEUE, n_gone] = v
             n_gone += 1
     n_rim = open_edges(mesh, state, stamp, n_gone, work, rim, table)
-    laid = n_rim > 2 and matched(corner, planes, across, in_patch, base, rim, n_rim, table, stamp)
-    rows = (
-        rows_for_patch(mesh, state, n_gone, work, corner, in_patch)
-        if laid
-        else np.zeros(0, np.int32)
-    )
+    laid = n_rim > 2 and matched(corner, form, in_patch, base, rim, n_rim, table, stamp)
+    if laid:
+        laid = rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows)
     for face in range(indices[0]):
         if table[base + face, USED] == LATENT:
-            table[base + face, USED] = 1 if len(rows) > 0 else 0
-    if len(rows) == 0:
+            table[base + face, USED] = WHOLE if laid else 0
+    if not laid:
         return False
     for t in range(len(corner)):
         v = rows[t]
@@ -190,8 +190,8 @@ def lay_patch(
             continue
         for c in range(3):
             spots[v, c] = numbers[indices[4] + 3 * corner[t] + c] - origin[c]
-            mesh[v, PLANES + c] = base + planes[t, c]
-            mesh[v, c] = rows[across[t, c]]
+            mesh[v, PLANES + c] = base + form[t, PLANES + c]
+            mesh[v, c] = rows[form[t, c]]
         mesh[v, MARK] = 0
         mesh[v, LOOKED] = base + 1
     for i in range(n_rim):

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.jit import kernel, merged
+from clearance.jit import borrowing, kernel, spliced
 from clearance.kernels.expansion import two_sum
-from clearance.kernels.polytope_cut import FIRST, PLANES, SEEN
+from clearance.kernels.polytope_cut import FIRST, PLANES, SEEN, USED, WHOLE
+from clearance.kernels.polytope_exits import HEAD, ROW
 
 
 @kernel
@@ -67,46 +68,107 @@ def ring_moments(places, starts, corners, origin):
     return moments
 
 
-@merged
-def add_to(sums, i, value):
-    """Adds to sum `i`, keeping what rounding drops in `sums[4 + i]`."""
-    sums[i], rest = two_sum(sums[i], value)
-    sums[4 + i] += rest
-
-
 @kernel
-def trivalent_moments(places, mesh, n_rows, table, stamp):
-    """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate, about the origin of `places`.
+def face_areas(numbers, indices):
+    """(f, 4) area [m^2] and centroid [m] of each face of a packed body (`polytope_exits`)."""
+    areas = np.empty((indices[0], 4))
+    for face in range(indices[0]):
+        begin = indices[indices[2] + face]
+        o = indices[4] + 3 * indices[begin]
+        row = HEAD + ROW * face
+        twice = x = y = z = 0.0
+        for at in range(begin + 1, indices[indices[2] + face + 1] - 1):
+            b = indices[4] + 3 * indices[at]
+            c = indices[4] + 3 * indices[at + 1]
+            bx = numbers[b] - numbers[o]
+            by = numbers[b + 1] - numbers[o + 1]
+            bz = numbers[b + 2] - numbers[o + 2]
+            cx = numbers[c] - numbers[o]
+            cy = numbers[c + 1] - numbers[o + 1]
+            cz = numbers[c + 2] - numbers[o + 2]
+            part = numbers[row] * (by * cz - bz * cy)
+            part += numbers[row + 1] * (bz * cx - bx * cz)
+            part += numbers[row + 2] * (bx * cy - by * cx)
+            twice += part
+            x += part * (bx + cx)
+            y += part * (by + cy)
+            z += part * (bz + cz)
+        areas[face, 0] = 0.5 * twice
+        areas[face, 1] = numbers[o] + x / (3.0 * twice)
+        areas[face, 2] = numbers[o + 1] + y / (3.0 * twice)
+        areas[face, 3] = numbers[o + 2] + z / (3.0 * twice)
+    return areas
 
-    Each edge of each face makes a tetrahedron with the face's first corner met and the origin. Arrays as in
-    `polytope_cut`; `stamp`: a number that `table` does not hold.
+
+@spliced
+def whole_face(numbers, areas, face, origin):
+    """(volume, volume times centroid about `origin`) of the cone from `origin` over a body's face."""
+    row = HEAD + ROW * face
+    high = numbers[row] * (numbers[row + 4] - origin[0])
+    high += numbers[row + 1] * (numbers[row + 5] - origin[1])
+    high += numbers[row + 2] * (numbers[row + 6] - origin[2])
+    cone = areas[face, 0] * high / 3.0
+    x = 0.75 * cone * (areas[face, 1] - origin[0])
+    y = 0.75 * cone * (areas[face, 2] - origin[1])
+    z = 0.75 * cone * (areas[face, 3] - origin[2])
+    return cone, x, y, z
+
+
+@spliced
+def cone_over(places, o, u, w):
+    """(volume, volume times centroid) of the tetrahedron of the origin and three vertices."""
+    ax, ay, az = places[o, 0], places[o, 1], places[o, 2]
+    bx, by, bz = places[u, 0], places[u, 1], places[u, 2]
+    cx, cy, cz = places[w, 0], places[w, 1], places[w, 2]
+    cone = (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0
+    quarter = 0.25 * cone
+    return cone, quarter * (ax + bx + cx), quarter * (ay + by + cy), quarter * (az + bz + cz)
+
+
+@borrowing
+def trivalent_moments(
+    places, mesh, n_rows, table, stamp, base_a, numbers_a, areas_a, base_b, numbers_b, areas_b, origin
+):  # fmt: skip
+    """Volume [m^3], volume times centroid (3) [m^4], greatest coordinate, about the origin of `places`.
+
+    Each edge of each face makes a tetrahedron with the face's first corner met and the origin; a face that no
+    cut has touched is one cone. Arrays as in `polytope_cut`; `stamp`: a number that `table` does not hold.
+
+    Args:
+        base, numbers, areas: the body that was cut and the one whose patch was laid, with `face_areas`, none
+            (0, 4) to take all faces by their edges; origin: (3,) of `places` in the bodies' frame.
     """
-    sums = np.zeros(8)
-    moments = np.zeros(5)
+    most = volume = x = y = z = 0.0
+    rest = rest_x = rest_y = rest_z = 0.0  # what rounding drops of each sum
     for u in range(n_rows):
         if mesh[u, 0] < 0:
             continue
-        moments[4] = max(moments[4], abs(places[u, 0]), abs(places[u, 1]), abs(places[u, 2]))
+        most = max(most, abs(places[u, 0]), abs(places[u, 1]), abs(places[u, 2]))
         for k in range(3):
             name = mesh[u, PLANES + k]
             if table[name, SEEN] != stamp:
+                whole = table[name, SEEN] == 0
                 table[name, SEEN] = stamp
-                table[name, FIRST] = u
-                continue
-            o = table[name, FIRST]
-            w = mesh[u, (k + 1) % 3]
-            if w == o:
-                continue
-            ax, ay, az = places[o, 0], places[o, 1], places[o, 2]
-            bx, by, bz = places[u, 0], places[u, 1], places[u, 2]
-            cx, cy, cz = places[w, 0], places[w, 1], places[w, 2]
-            sixth = (
-                ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
-            ) / 6.0
-            add_to(sums, 0, sixth)
-            add_to(sums, 1, sixth * (ax + bx + cx) * 0.25)
-            add_to(sums, 2, sixth * (ay + by + cy) * 0.25)
-            add_to(sums, 3, sixth * (az + bz + cz) * 0.25)
-    for i in range(4):
-        moments[i] = sums[i] + sums[4 + i]
-    return moments
+                if whole and name >= base_a and name < base_a + len(areas_a):
+                    part = whole_face(numbers_a, areas_a, name - base_a, origin)
+                elif whole and table[name, USED] == WHOLE and len(areas_b) > 0:
+                    part = whole_face(numbers_b, areas_b, name - base_b, origin)
+                else:
+                    table[name, FIRST] = u
+                    continue
+                table[name, FIRST] = -1
+            else:
+                o = table[name, FIRST]
+                w = mesh[u, 0 if k == 2 else k + 1]
+                if o < 0 or w == o:
+                    continue
+                part = cone_over(places, o, u, w)
+            volume, lost = two_sum(volume, part[0])
+            rest += lost
+            x, lost = two_sum(x, part[1])
+            rest_x += lost
+            y, lost = two_sum(y, part[2])
+            rest_y += lost
+            z, lost = two_sum(z, part[3])
+            rest_z += lost
+    return volume + rest, x + rest_x, y + rest_y, z + rest_z, most

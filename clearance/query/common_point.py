@@ -14,10 +14,13 @@ import numpy as np
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_depth import COLD, ON, POINT, SHARE, WARM, deepen_two
+from clearance.kernels.polytope_depth import COLD, N_ROWS, ON, POINT, SHARE, WARM, deepen_two
 
 ROUNDING = 16 * 2.0**-53
 """[-] What counts as touching, relative to the bodies' size: a few roundings of the planes' offsets."""
+
+PLAINLY = 2.0 * ROUNDING
+"""[-] Depth beyond which bodies overlap whatever faces the point lies between, relative to all sizes together."""
 
 MARGIN = 1e-13
 """[-] How far beyond a face, in parts of its distance from the centroid, the deepest point may stay."""
@@ -120,7 +123,7 @@ def common_point(
         bodies[0].centroid if poses is None else frames[0][:3] @ np.append(bodies[0].centroid, 1.0)
     )
     known = len(bodies) < 3 and len(warm) == 4 and all(_names_a_face(bodies, name) for name in warm)
-    basis, names = np.empty((11, 4)), np.array(warm if known else (-4, -3, -2, -1))
+    basis, names = np.empty((N_ROWS, 4)), np.array(warm if known else (-4, -3, -2, -1))
     begin = WARM if known else COLD
     settled, n_faces, passes = _deepened(bodies, frames, origin, basis, names, begin)
     if not settled and basis[POINT, 3] > 0.0:
@@ -188,6 +191,9 @@ def _keep_what_is_sure(bodies, frames, origin, basis) -> None:
 
 def _judged(bodies, origin, basis, names: list[int], n_faces: int, passes: int) -> CommonPoint:
     shares, depth = basis[SHARE].tolist(), float(basis[POINT, 3])
+    if depth > PLAINLY * sum(shares) * sum([body.size for body in bodies]):
+        warm = tuple(names) if min(names) >= 0 else ()
+        return CommonPoint("overlap", basis[POINT, :3] + origin, depth, None, n_faces, passes, warm)
     most = 1e-9 * max(shares)
     real = [j for j in range(4) if names[j] >= 0 and shares[j] > most]
     limit = ROUNDING * max((bodies[names[j] >> 32].size for j in real), default=0.0) * sum(shares)

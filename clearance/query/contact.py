@@ -111,6 +111,16 @@ class BodyPair:
     parts_a: ConvexParts
     parts_b: ConvexParts
 
+    @cached_property
+    def hull_a(self) -> Polytope:
+        """The hull of a, in its own frame; prepared once for all poses."""
+        return _hull_of(self.parts_a)
+
+    @cached_property
+    def hull_b(self) -> Polytope:
+        """The hull of b."""
+        return _hull_of(self.parts_b)
+
     def contact(self, b_from_a: np.ndarray, witness: np.ndarray) -> Contact:
         """The overlap in the frame of b, of bodies that are in contact.
 
@@ -251,10 +261,7 @@ class _Placed:
         return max(shared, default=0.0)
 
     def _hulls(self) -> list[Polytope]:
-        corners = (
-            np.concatenate([p.vertices for p in parts]) for parts in (self.outer_a, self.outer_b)
-        )
-        return [Polytope(points) for points in corners]
+        return [self.pair.hull_a.moved(self.b_from_a), self.pair.hull_b]
 
     @property
     def _both_parts(self) -> tuple[ConvexParts, ConvexParts]:
@@ -285,6 +292,10 @@ def _shell_of(body: Polyhedron, pose: np.ndarray, region: ClosedMesh) -> float:
     near &= (corners.max(axis=1) >= low - reach).all(axis=1)
     sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return float(0.5 * np.linalg.norm(sides[near], axis=1).sum() * body.excess)
+
+
+def _hull_of(parts: ConvexParts) -> Polytope:
+    return Polytope(np.concatenate([part.vertices for part in parts.outer]))
 
 
 def _solid(parts: ConvexParts) -> Any:

@@ -164,5 +164,7 @@ def _cut(task: Task, threads: int) -> list[Cutting | None]:
         return [cut_down(task, side) for side in (1.0, -1.0)]
     for body in task.bodies:
         body.prepared()
-    with ThreadPoolExecutor(2) as pool:
-        return list(pool.map(lambda side: cut_down(task, side), (1.0, -1.0)))
+    _ = task.order  # once, ahead of both
+    with ThreadPoolExecutor(1) as pool:
+        other = pool.submit(cut_down, task, -1.0)
+        return [cut_down(task, 1.0), other.result()]

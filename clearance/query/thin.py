@@ -13,9 +13,9 @@ import numpy as np
 
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope_cut import CUT, N_ROWS, cut_by_planes
-from clearance.kernels.polytope_surface import face_rings, trivalent_moments
+from clearance.kernels.polytope_surface import face_rings
 from clearance.kernels.polytope_thin import stretched_planes, supporting_triples
-from clearance.query.cutting import ON_PLANE, Task
+from clearance.query.cutting import ON_PLANE, Task, by_edges
 from clearance.query.region import Region
 
 THIN = 0.02
@@ -108,7 +108,7 @@ def _cut_box(planes: np.ndarray):
     work, rim = np.empty((4, rows), dtype=np.int32), np.empty((rows, 4), dtype=np.int32)
     if cut_by_planes(spots, mesh, state, work, rim, table, planes, 6, ON_PLANE) != CUT:
         return None
-    moments = trivalent_moments(spots, mesh, state[N_ROWS], table, state[1] + 2)
+    moments = by_edges(spots, mesh, state, table)
     return spots[:, :3], face_rings(mesh, state[N_ROWS]), moments[:4]
 
 

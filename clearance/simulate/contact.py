@@ -57,6 +57,7 @@ class _Finder:
     pairs: tuple[Pair, ...]
     _parts: dict[int, ConvexParts | str] = field(default_factory=dict)
     _known: dict[tuple[int, bytes], Contact | None] = field(default_factory=dict)
+    _made: dict[int, BodyPair] = field(default_factory=dict)
     _told: dict[str, None] = field(default_factory=dict)
 
     def at(self, step: int, i_nearest: int) -> Iterator[StepContact]:
@@ -121,7 +122,8 @@ class _Finder:
         parts = self._cut(a, links[i_pair]), self._cut(b, obstacles[i_pair])
         if any(isinstance(part, str) for part in parts):
             return None
-        return BodyPair(a, b, *parts).contact(b_from_a, near.point_b)
+        pair = self._made.setdefault(i_pair, BodyPair(a, b, *parts))
+        return pair.contact(b_from_a, near.point_b)
 
     def _cut(self, body: Polyhedron, name: str) -> ConvexParts | str:
         if id(body) not in self._parts:
