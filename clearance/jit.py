@@ -37,7 +37,7 @@ def kernel(function: Callable) -> Callable:
     Division by zero yields inf or nan as in numpy instead of an exception. `NUMBA_DISABLE_JIT=1` leaves
     the Python function; `NUMBA_BOUNDSCHECK=1` checks every index. `NUMBA_CACHE_DIR` moves the cache.
     """
-    return _cached(function)
+    return _cached(function, _nrt=True)  # also where one that borrows calls it
 
 
 def borrowing(function: Callable) -> Callable:

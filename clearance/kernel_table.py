@@ -23,7 +23,7 @@ from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed
 from numba.extending import intrinsic
 
-from clearance.jit import kernel
+from clearance.jit import borrowing
 
 REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH = range(6)
 """The places of the table."""
@@ -50,7 +50,7 @@ class Lent:
 
 
 def apart(place: int, like: Callable[[], tuple]) -> Callable:
-    """Decorates a kernel that is called by `at_address`.
+    """Decorates a kernel that is called by `at_address`, and that makes no arrays.
 
     Args:
         place: its own place in the table.
@@ -58,7 +58,7 @@ def apart(place: int, like: Callable[[], tuple]) -> Callable:
     """
 
     def register(function: Callable) -> Callable:
-        compiled = kernel(function)
+        compiled = borrowing(function)
         _apart[place] = (compiled, like)
         return compiled
 

@@ -1,6 +1,7 @@
 """Functions that only kernels can call, reached from a test by a kernel of their own."""
 
 import functools
+import inspect
 
 import numba
 
@@ -10,4 +11,5 @@ def reached(function):
     """`function` as Python can call it."""
     if numba.config.DISABLE_JIT:
         return function
-    return numba.njit(error_model="numpy")(lambda *args: function(*args))
+    names = ", ".join(inspect.signature(function.py_func).parameters)
+    return numba.njit(error_model="numpy")(eval(f"lambda {names}: function({names})", {"function": function}))

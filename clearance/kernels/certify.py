@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
+from clearance.jit import borrowing, inlined, kernel
 from clearance.kernels.bounds import (
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
@@ -245,15 +245,28 @@ def certify(
         gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
         fail: [m] the limit that is to be decided, if need be with a smaller gap.
     """
-    n_pairs = len(asked.bodies)
-    tally[:] = 0
     n_links = path.positions.shape[1]
     middle = Middle(
         np.empty((1, n_links)), np.empty(n_links), np.empty(n_links),
         np.empty((1, n_links, 4, 4)), new_scratch(),
     )  # fmt: skip
-    seeds = np.full((n_pairs, 2), -1)
+    seeds = np.full((len(asked.bodies), 2), -1)
     waiting = np.empty((DEPTH, 2))
+    _certify(
+        surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally,
+        middle, seeds, waiting, table,
+    )  # fmt: skip
+
+
+@borrowing
+def _certify(
+    surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally,
+    middle, seeds, waiting, table,
+):  # fmt: skip
+    """`certify`, with room for the middle of an interval, the nearest faces, and parts that wait."""
+    n_pairs = len(asked.bodies)
+    for i in range(len(tally)):
+        tally[i] = 0
     for step in range(first, last):
         least = min(known[step], known[step + 1])
         floor = least  # 0 for a contact: then nothing is left to prove

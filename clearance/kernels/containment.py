@@ -76,15 +76,18 @@ def _beside(exact, a, b, c, x):
     return False
 
 
-@apart(WINDING_NUMBER, lambda: (surface_like(), 0, True, Vec3(0.0, 0.0, 0.0), FRAMES_AT_REST))
-def winding_number(surface, body, is_b, vertex, frames):
+def _like():
+    return surface_like(), 0, True, Vec3(0.0, 0.0, 0.0), FRAMES_AT_REST, room_for_exact()
+
+
+@apart(WINDING_NUMBER, _like)
+def winding_number(surface, body, is_b, vertex, frames, exact):
     """How often the closed components of a body wind round a point that is not on its surface, exactly.
 
     Args:
         is_b: True if the body is b.
         vertex: of the other body, in its frame.
     """
-    exact = room_for_exact()
     set_poses(frames, exact)
     number = 0
     side = 1 if is_b else 0
@@ -102,7 +105,7 @@ def winding_number(surface, body, is_b, vertex, frames):
 
 
 @spliced
-def contained(a, body_a, b, body_b, frames, table):
+def contained(a, body_a, b, body_b, frames, exact, table):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
 
     Exactness: right for the float vertices under the float poses of `frames`.
@@ -116,7 +119,8 @@ def contained(a, body_a, b, body_b, frames, table):
             x = move_back(frames.m, v) if is_a else move(frames.m, v)
             if _in_box(two, two.roots[body_two], x, far + size(v)):
                 probe = row(one.exact, one.probes[i])
-                if at_address(table, WINDING_NUMBER, 0, (two, body_two, is_a, probe, frames)) != 0:
+                asked = (two, body_two, is_a, probe, frames, exact)
+                if at_address(table, WINDING_NUMBER, 0, asked) != 0:
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a
     return False, frames.m.t

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
+from clearance.jit import borrowing, inlined, kernel
 from clearance.kernel_table import borrow, lend
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
 from clearance.kernels.descent import nothing_yet
@@ -170,13 +170,11 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
     return distance, error, rounded(refined.p), rounded(refined.q), False
 
 
-@kernel
-def nearest_polygons(ps, qs, answers, table):
-    """Fills `answers` for each pair `ps[k]`, `qs[k]`."""
-    a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
+@borrowing
+def _nearest_each(ps, qs, a_p, b_q, exact, answers, table):
+    """Fills `answers`, with room for one polygon of each side."""
     frames = FRAMES_AT_REST
     lent_p, lent_q = lend(a_p), lend(b_q)
-    exact = room_for_exact()
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
         in_order = _comes_first(ps[k], first_p, qs[k], first_q)
@@ -200,3 +198,10 @@ def nearest_polygons(ps, qs, answers, table):
         for axis in range(3):
             answers.points[k, 0, axis] = p[axis] * unscale
             answers.points[k, 1, axis] = q[axis] * unscale
+
+
+@kernel
+def nearest_polygons(ps, qs, answers, table):
+    """Fills `answers` for each pair `ps[k]`, `qs[k]`."""
+    a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
+    _nearest_each(ps, qs, a_p, b_q, room_for_exact(), answers, table)

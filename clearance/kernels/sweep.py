@@ -9,13 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
+from clearance.jit import borrowing, inlined, kernel
 from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_slack
-from clearance.kernels.descent import new_scratch, nothing_yet
+from clearance.kernels.descent import Scratch, new_scratch, nothing_yet
 from clearance.kernels.double_double import frames_of
-from clearance.kernels.front import KEPT_DOWN, POOL, forget, no_fronts
+from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
@@ -96,17 +96,17 @@ class PairRows(NamedTuple):
 
 @inlined
 def pose_of(world, body, row):
-    """The (4, 4) pose of a body at a row."""
+    """Where a body is at a row, as a `Rigid`."""
     if world.frames[body] < 0:
-        return world.standing[body]
-    return world.poses[row, world.frames[body]]
+        return rigid(world.standing[body])
+    return rigid(world.poses[row, world.frames[body]])
 
 
 @inlined
 def pair_frames(world, pair, row):
     """Where both bodies of a pair are at a row."""
-    a = rigid(pose_of(world, world.pairs[pair, 0], row))
-    b = rigid(pose_of(world, world.pairs[pair, 1], row))
+    a = pose_of(world, world.pairs[pair, 0], row)
+    b = pose_of(world, world.pairs[pair, 1], row)
     return frames_of(a, b)
 
 
@@ -159,6 +159,25 @@ def _write_pair(row, step, pair, hit, pair_rows):
         _write_points(hit, pair_rows.points[pair])
 
 
+class Known(NamedTuple):
+    """What is carried from step to step, and room for the search.
+
+    Attributes:
+        travel: (bodies,) [m] what each body has moved.
+        within: (p,) [m] as in `Goal`, less where that is found.
+        floors: (p,) [m] a bound on each pair's distance plus the travel of both bodies when it was found.
+        seeds: (p, 2) the faces that were nearest, or NO_FACE.
+        fronts, scratch: of `descend`.
+    """
+
+    travel: np.ndarray
+    within: np.ndarray
+    floors: np.ndarray
+    seeds: np.ndarray
+    fronts: Fronts
+    scratch: Scratch
+
+
 @kernel
 def sweep(surface, world, steps, goal, rows, pair_rows, tally, table):
     """Fills `rows` for `steps` (k,) and `tally`: pairs skipped, queries, nodes, faces.
@@ -167,17 +186,25 @@ def sweep(surface, world, steps, goal, rows, pair_rows, tally, table):
     `goal.each`, `pair_rows` is not touched.
     """
     n_pairs = len(world.pairs)
-    tally[:] = 0
-    travel = np.zeros(len(world.frames))
-    within = goal.within.copy()
-    floors = np.empty(n_pairs)  # carried bound plus the travel of both bodies when it was found
-    seeds = np.full((n_pairs, 2), NO_FACE)
+    known = Known(
+        np.zeros(len(world.frames)), goal.within.copy(), np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
+        no_fronts(n_pairs, POOL), new_scratch(),
+    )  # fmt: skip
+    _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table)
+
+
+@borrowing
+def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
+    """`sweep`, with room for what is known."""
+    travel, within, floors, seeds = known.travel, known.within, known.floors, known.seeds
+    fronts, scratch = known.fronts, known.scratch
+    n_pairs = len(world.pairs)
+    for i in range(len(tally)):
+        tally[i] = 0
     for pair in range(n_pairs):
         floors[pair] = root_bound(surface, world, pair, 0)
     winner = np.argmin(floors)
     lent = lend(surface)
-    scratch = new_scratch()
-    fronts = no_fronts(n_pairs, POOL)
     for row in range(len(steps)):
         if row > 0:
             _add_travel(surface, world, row, travel)

@@ -13,6 +13,7 @@ from clearance.jit import kernel
 from clearance.kernel_table import call
 from clearance.kernels.containment import contained
 from clearance.kernels.double_double import frames_of
+from clearance.kernels.predicates import room_for_exact
 from clearance.kernels.vec3 import rigid
 from tests import oracle
 from tests.strategies import BOX_FACES, QUARTER_TURNS, poses, rotations
@@ -26,7 +27,7 @@ OCTAHEDRON_FACES = [
 
 @kernel
 def is_contained(a, b, pose_a, pose_b, table):
-    return contained(a, 0, b, 0, frames_of(rigid(pose_a), rigid(pose_b)), table)[0]
+    return contained(a, 0, b, 0, frames_of(rigid(pose_a), rigid(pose_b)), room_for_exact(), table)[0]
 
 
 def cube(half):

@@ -11,6 +11,7 @@ from clearance.query import cutting
 from clearance.query.common_point import common_point
 from clearance.query.cutting import Cutting, Task, cut_down
 from clearance.query.intersection import intersect
+from tests.reached import reached
 
 SHAPES = [(1, 1, 1), (1, 1, 1e-3), (1, 1e-6, 1e-6), (1e6, 1, 1e-5)]
 
@@ -32,17 +33,17 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
     on_surface = rng.normal(size=(2000, 3)) * shape @ turn
     on_surface /= (on_surface @ (body.normals / body.face_widths[:, None]).T).max(axis=1)[:, None]
     for x in on_surface:
-        assert not is_in_ball(numbers, *(x * (1.0 - 1e-9)))
-        assert cell_of(numbers, indices, *x)[1] >= 1.0 - 1e-13
+        assert not reached(is_in_ball)(numbers, *(x * (1.0 - 1e-9)))
+        assert reached(cell_of)(numbers, indices, *x)[1] >= 1.0 - 1e-13
     if n == 300:
-        assert any(is_in_ball(numbers, *(0.9 * x)) for x in on_surface)
+        assert any(reached(is_in_ball)(numbers, *(0.9 * x)) for x in on_surface)
 
 
 def test_the_ball_touches_the_nearest_plane_of_a_cube():
     cube = Polytope(np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T * 1.0)
     numbers = cube.packed.numbers
-    assert is_in_ball(numbers, 1.0 - 1e-8, 0, 0) and not is_in_ball(numbers, 1.0 - 1e-9, 0, 0)
-    assert not is_in_ball(numbers, 0.6, 0.6, 0.6)
+    assert reached(is_in_ball)(numbers, 1.0 - 1e-8, 0, 0) and not reached(is_in_ball)(numbers, 1.0 - 1e-9, 0, 0)
+    assert not reached(is_in_ball)(numbers, 0.6, 0.6, 0.6)
     assert numbers[HEAD + 3] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
 
 
