@@ -53,10 +53,9 @@ def certify_motion(
     for i_robot, motion in enumerate(motions):
         work = _Work.of(case, motion, pairs, i_robot, found, gap)
         log = _Log(kept, f"certify{i_robot}", motion.n_steps, found)
-        spans = parts(motion.n_steps - 1)
-        results = in_order(work.certify(log), spans[log.done :], jobs or usable_cores())
+        results = in_order(work.certify(log), log.spans[log.done :], jobs or usable_cores())
         for i_part, (done, counts) in enumerate(results, start=log.done + 1):
-            log.note(i_part, counts, last=i_part == len(spans))
+            log.note(i_part, counts, last=i_part == len(log.spans))
             if progress:
                 progress(done + 1, motion.n_steps)
         tally += log.tally
@@ -76,7 +75,8 @@ class _Log:
         self.lower = kept.array(f"{name}.lower", (n_steps,))
         self.upper = kept.array(f"{name}.upper", (n_steps,))
         self.lower[-1] = self.upper[-1] = found.clearance[-1]
-        self._log = kept.log(name)
+        self.spans = parts(n_steps - 1)
+        self._log = kept.log(name, self.spans)
         self.done, self.tally = self._log.done, self._log.gathered.get("tally", _no_counts())
 
     def note(self, done: int, counts: np.ndarray, *, last: bool) -> None:

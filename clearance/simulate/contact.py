@@ -18,6 +18,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import inverse
 from clearance.query.contact import BodyPair, Contact
 from clearance.query.distance import distance
+from clearance.simulate.parts import blocks
 from clearance.simulate.record import StepContact
 from clearance.simulate.steps import pair_names
 from clearance.world.body import Body, Obstacle
@@ -43,8 +44,7 @@ def find_contacts(
         nearest: (n,) the pair that has it. It is in contact for sure; the others are asked.
     """
     finder = _Finder(case, tuple(motions), tuple(pairs))
-    touching = np.flatnonzero(clearance <= 0.0).tolist()
-    found = tuple(row for step in touching for row in finder.at(step, int(nearest[step])))
+    found = tuple(row for step in _touching(clearance) for row in finder.at(step, int(nearest[step])))
     return found, finder.notes()
 
 
@@ -134,6 +134,11 @@ class _Finder:
             if note:
                 self._told[f"contact: {name}: {note}"] = None
         return self._parts[id(body)]
+
+
+def _touching(clearance: np.ndarray) -> Iterator[int]:
+    for block in blocks(len(clearance)):
+        yield from (block.start + np.flatnonzero(clearance[block] <= 0.0)).tolist()
 
 
 def _meet(a: Box, b: Box) -> bool:

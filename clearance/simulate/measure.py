@@ -142,8 +142,8 @@ class _Sweep:
         every: np.ndarray | None = None,
     ) -> Minima:
         """Fills what rows are given, from the part on that an interrupted run had not reached."""
-        log = self.kept.log(name)
         spans = parts(len(steps))
+        log = self.kept.log(name, spans)
         least, tally = _gathered(log.gathered, self.n_pairs)
         nothing = np.empty((0, self.n_pairs))
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,7 @@ from clearance.world.motion import Motion
 
 if TYPE_CHECKING:
     from clearance.query.contact import Contact
+    from clearance.simulate.steps import EveryPair
 
 
 @dataclass(frozen=True)
@@ -145,10 +147,12 @@ class Record:
             of them, null without contact.
         pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
-        every_pair: one row a step and pair (step, link, obstacle, clearance), if `need` is "pairs".
+        every_pair: the clearance of every pair at every step, if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
         contacts: every pair in contact at every step, steps first.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
+        let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
+        room: a folder on the disk of the report for files on the way there, if there is one.
     """
 
     case: Case
@@ -162,10 +166,12 @@ class Record:
     cross_check: CrossCheck | None = None
     certificate: Certificate | None = None
     need: str = "steps"
-    every_pair: pa.Table | None = None
+    every_pair: EveryPair | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
     contacts: tuple[StepContact, ...] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
+    let_go: Callable[[], None] = lambda: None
+    room: Path | None = None
 
     @property
     def deepest(self) -> StepContact | None:

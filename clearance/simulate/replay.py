@@ -204,8 +204,18 @@ def _lines(record: Record, steps: pa.Table) -> np.ndarray:
 
 def codes_of(steps: pa.Table) -> np.ndarray:
     """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
-    code = {str(status): i for i, status in enumerate(STATUSES)}
-    return np.array([code.get(status, 0) for status in steps["status"].to_pylist()], dtype=np.uint8)
+    names = pa.array([str(status) for status in STATUSES])
+    return np.concatenate([_codes(part, names) for part in steps["status"].iterchunks()] or [_NO_CODES])
+
+
+_NO_CODES = np.empty(0, dtype=np.uint8)
+
+
+def _codes(statuses: pa.Array, names: pa.Array) -> np.ndarray:
+    import pyarrow.compute
+
+    found = pyarrow.compute.index_in(statuses, names).fill_null(0)
+    return found.to_numpy(zero_copy_only=False).astype(np.uint8)
 
 
 def kept_steps(record: Record, max_frames: int) -> np.ndarray:

@@ -8,15 +8,14 @@ done, in order. The rows are on disk before the state that counts them. Not for:
 from __future__ import annotations
 
 import io
-import json
 import math
 import mmap
 import os
 import shutil
 import time
 import zipfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -49,8 +48,8 @@ class Rows:
         """An array to be filled; its content is that of before if the run goes on."""
         return np.empty(shape, dtype=kind)
 
-    def log(self, name: str) -> PassLog:
-        """The log of the pass `name`, to be asked for after the arrays `name.…` of that pass."""
+    def log(self, name: str, spans: Sequence[slice]) -> PassLog:
+        """The log of the pass `name` in parts `spans`, to be asked for after the arrays `name.…` of that pass."""
         return PassLog()
 
     def let_go(self) -> None:
@@ -77,6 +76,7 @@ class Spool(Rows):
     say: Callable[[str], None] = lambda line: None
     _maps: dict[str, mmap.mmap] = field(default_factory=dict)
     _fresh: set[str] = field(default_factory=set)
+    _told: bool = False
 
     @property
     def folder(self) -> Path:
@@ -84,16 +84,13 @@ class Spool(Rows):
 
     def ask(self, fingerprint: str) -> None:
         question = self.place / _QUESTION
-        text = json.dumps({"format": 1, "fingerprint": fingerprint})
-        try:
-            known = question.read_text()
-        except FileNotFoundError:
-            known = None
-        if known != text:
-            if known is not None:
+        with _unwritable(self.place):
+            known = question.read_text() if question.exists() else fingerprint
+            if known != fingerprint:
                 self.say("starting anew: what an interrupted run has left is of other inputs")
-            self._clear()
-            _replace(question, text.encode())
+            if known != fingerprint or not question.exists():
+                self._clear()
+                _replace(question, fingerprint.encode())
 
     def _clear(self) -> None:
         for path in self.place.iterdir():
@@ -106,18 +103,23 @@ class Spool(Rows):
         if n_bytes == 0:
             return np.empty(shape, dtype=kind)
         path = self.place / f"{name}.rows"
-        with path.open("r+b" if path.exists() else "w+b") as file:
+        with _unwritable(self.place), path.open("r+b" if path.exists() else "w+b") as file:
             if os.fstat(file.fileno()).st_size != n_bytes:
                 _claim(file, n_bytes)
                 self._fresh.add(name.split(".")[0])
             self._maps[name] = mmap.mmap(file.fileno(), n_bytes)
         return np.frombuffer(self._maps[name], dtype=kind).reshape(shape)
 
-    def log(self, name: str) -> PassLog:
+    def log(self, name: str, spans: Sequence[slice]) -> PassLog:
         path = self.place / f"{name}.state"
         state = {} if name in self._fresh else _state(path)
         arrays = [self._maps[key] for key in self._maps if key.split(".")[0] == name]
-        return _SpooledLog(int(state.pop("done", 0)), state, path, arrays)
+        done = int(state.pop("done", 0))
+        if done and not self._told:
+            self._told = True
+            n_done, n_all = spans[done - 1].stop, spans[-1].stop
+            self.say(f"resuming: {n_done:,} of {n_all:,} steps are kept of an interrupted run")
+        return _SpooledLog(done, state, path, arrays)
 
     def let_go(self) -> None:
         for mapped in self._maps.values():
@@ -133,11 +135,12 @@ class _SpooledLog(PassLog):
     def note(self, done: int, gathered: dict[str, np.ndarray], *, last: bool) -> None:
         if not last and time.monotonic() - self._saved < SAVE_AFTER:
             return
-        for mapped in self.arrays:
-            mapped.flush()
         text = io.BytesIO()
         np.savez(text, done=done, **gathered)
-        _replace(self.path, text.getvalue())
+        with _unwritable(self.path.parent):
+            for mapped in self.arrays:
+                mapped.flush()
+            _replace(self.path, text.getvalue())
         self._saved = time.monotonic()
 
 
@@ -150,17 +153,23 @@ def open_spool(place: Path, say: Callable[[str], None]) -> Iterator[Spool]:
     """
     try:
         with _locked(place):
-            spool = Spool(place, say)
-            yield spool
+            yield Spool(place, say)
             shutil.rmtree(place, ignore_errors=True)
+    finally:
+        if not any(place.glob("*.state")):  # refused before anything was worth keeping
+            shutil.rmtree(place, ignore_errors=True)
+
+
+@contextmanager
+def _unwritable(place: Path) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         raise Unwritable(
             f"cannot write here: {error.strerror or error}",
             where=str(place),
             valid="a folder that can be written, on a disk with room, is needed",
         ) from error
-    finally:
-        _take_away_if_empty(place)
 
 
 def let_go(mapped: mmap.mmap) -> None:
@@ -172,39 +181,36 @@ def let_go(mapped: mmap.mmap) -> None:
 @contextmanager
 def _locked(place: Path) -> Iterator[None]:
     """Keeps other processes out of `place`, as long as this one lives."""
+    with ExitStack() as held:
+        while not _is_ours(place, held):
+            held.close()  # the run before has just finished, and taken its folder away
+        yield
+
+
+def _is_ours(place: Path, held: ExitStack) -> bool:
+    """Whether the lock in `place` is taken now; `held` keeps it.
+
+    Raises:
+        Unwritable: another process has it, or no file can be written there.
+    """
+    with _unwritable(place):
+        place.mkdir(parents=True, exist_ok=True)
+        file = held.enter_context((place / _LOCK).open("w"))
     try:
         import fcntl
+
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return os.path.samestat(os.fstat(file.fileno()), os.stat(place / _LOCK))
     except ImportError:  # a system without such locks
-        place.mkdir(parents=True, exist_ok=True)
-        yield
-        return
-    while True:
-        place.mkdir(parents=True, exist_ok=True)
-        with (place / _LOCK).open("w") as file:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise Unwritable(
-                    "another run is writing its report there",
-                    where=str(place),
-                    valid="wait for it, or choose another folder",
-                ) from None
-            try:
-                there = os.stat(place / _LOCK)
-            except FileNotFoundError:  # the run before has just finished
-                continue
-            if os.path.samestat(os.fstat(file.fileno()), there):
-                yield
-                return
-
-
-def _take_away_if_empty(place: Path) -> None:
-    """Removes what a run leaves that was refused before it kept anything."""
-    try:
-        if {path.name for path in place.iterdir()} <= {_LOCK}:
-            shutil.rmtree(place, ignore_errors=True)
-    except OSError:
-        return
+        return True
+    except FileNotFoundError:
+        return False
+    except BlockingIOError:
+        raise Unwritable(
+            "another run is writing its report there",
+            where=str(place),
+            valid="wait for it, or choose another folder",
+        ) from None
 
 
 def _claim(file: io.BufferedRandom, n_bytes: int) -> None:
