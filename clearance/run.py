@@ -14,6 +14,7 @@ from clearance.simulate.measure import NEEDS, Measurement, Progress, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.question import fingerprint
 from clearance.simulate.record import CrossCheck, Record, StepContact
+from clearance.simulate.spool import Rows
 from clearance.simulate.steps import (
     STATUSES,
     PairMinima,
@@ -21,7 +22,6 @@ from clearance.simulate.steps import (
     every_pair,
     step_table,
 )
-from clearance.simulate.spool import Rows
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion

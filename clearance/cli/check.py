@@ -65,8 +65,9 @@ def check(
 ) -> int:
     """Measures the least clearance of every step of CASE.yaml.
 
-    Without --out nothing is written. With it, the same command goes on where an interrupted one was. Exit code: 0 clear (or near), 1 a limit is violated, 2 bad
-    input, 3 the cross-check disagrees.
+    Without --out nothing is written. With it, the same command goes on where an interrupted one
+    was. Exit code: 0 clear (or near), 1 a limit is violated, 2 bad input, 3 the cross-check
+    disagrees.
     """
     from clearance.cli.places import require_file_place, require_folder_place
     from clearance.cli.progress import shown_progress

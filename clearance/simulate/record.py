@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
 
+from clearance.simulate.parts import BLOCK
 from clearance.world.case import Case, Unmeasured
 from clearance.world.motion import Motion
 
 if TYPE_CHECKING:
     from clearance.query.contact import Contact
-    from clearance.simulate.steps import EveryPair
 
 
 @dataclass(frozen=True)
@@ -101,6 +102,41 @@ class Certificate:
     def worst_interval(self) -> int:
         """The first interval of the least lower bound."""
         return int(np.argmin(self.lower_bound))
+
+
+@dataclass(frozen=True, eq=False)
+class EveryPair:
+    """The clearance of every pair at every step.
+
+    Attributes:
+        links, obstacles: (p,) names of each pair.
+        clearance: (n, p) [m].
+    """
+
+    links: list[str]
+    obstacles: list[str]
+    clearance: np.ndarray
+
+    @cached_property
+    def table(self) -> pa.Table:
+        """One row a step and pair: step, link, obstacle, clearance [m]."""
+        return pa.concat_tables(self.batches()).combine_chunks()
+
+    def batches(self) -> Iterator[pa.Table]:
+        """The rows of `table`, a block of steps at a time."""
+        n_steps, n_pairs = self.clearance.shape
+        size = max(1, BLOCK // n_pairs)
+        for start in range(0, n_steps, size):
+            part = self.clearance[start : start + size]
+            i_pair = pa.array(np.tile(np.arange(n_pairs, dtype=np.int32), len(part)))
+            yield pa.table(
+                {
+                    "step": pa.array(np.repeat(np.arange(start, start + len(part)), n_pairs)),
+                    "link": pa.DictionaryArray.from_arrays(i_pair, self.links),
+                    "obstacle": pa.DictionaryArray.from_arrays(i_pair, self.obstacles),
+                    "clearance": pa.array(part.reshape(-1)),
+                }
+            )
 
 
 @dataclass(frozen=True)

@@ -151,13 +151,13 @@ def open_spool(place: Path, say: Callable[[str], None]) -> Iterator[Spool]:
     Raises:
         Unwritable: another run is writing there, or there is no way or no room to write.
     """
-    try:
-        with _locked(place):
+    with _locked(place):
+        try:
             yield Spool(place, say)
             shutil.rmtree(place, ignore_errors=True)
-    finally:
-        if not any(place.glob("*.state")):  # refused before anything was worth keeping
-            shutil.rmtree(place, ignore_errors=True)
+        finally:
+            if not any(place.glob("*.state")):  # refused before anything was worth keeping
+                shutil.rmtree(place, ignore_errors=True)
 
 
 @contextmanager

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
@@ -12,8 +11,8 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.measure import Measurement
-from clearance.simulate.parts import BLOCK, blocks
-from clearance.simulate.record import Certificate, PairMinimum, StepContact
+from clearance.simulate.parts import blocks
+from clearance.simulate.record import Certificate, EveryPair, PairMinimum, StepContact
 from clearance.world.case import Case, Limits, Unmeasured
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -149,41 +148,6 @@ class PairMinima(Sequence[PairMinimum]):
             for i in np.argsort(found.clearance, kind="stable")
             if np.isfinite(found.clearance[i])  # the paper's rules can cut a pair at every step
         )
-
-
-@dataclass(frozen=True, eq=False)
-class EveryPair:
-    """The clearance of every pair at every step.
-
-    Attributes:
-        links, obstacles: (p,) names of each pair.
-        clearance: (n, p) [m].
-    """
-
-    links: list[str]
-    obstacles: list[str]
-    clearance: np.ndarray
-
-    @cached_property
-    def table(self) -> pa.Table:
-        """One row a step and pair: step, link, obstacle, clearance [m]."""
-        return pa.concat_tables(self.batches()).combine_chunks()
-
-    def batches(self) -> Iterator[pa.Table]:
-        """The rows of `table`, a block of steps at a time."""
-        n_steps, n_pairs = self.clearance.shape
-        size = max(1, BLOCK // n_pairs)
-        for start in range(0, n_steps, size):
-            part = self.clearance[start : start + size]
-            i_pair = pa.array(np.tile(np.arange(n_pairs, dtype=np.int32), len(part)))
-            yield pa.table(
-                {
-                    "step": pa.array(np.repeat(np.arange(start, start + len(part)), n_pairs)),
-                    "link": pa.DictionaryArray.from_arrays(i_pair, self.links),
-                    "obstacle": pa.DictionaryArray.from_arrays(i_pair, self.obstacles),
-                    "clearance": pa.array(part.reshape(-1)),
-                }
-            )
 
 
 def every_pair(case: Case, pairs: Sequence[Pair], found: Measurement) -> EveryPair | None:
