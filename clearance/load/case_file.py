@@ -23,7 +23,7 @@ from clearance.load.plausibility import limit_notes, motion_notes, obstacle_note
 from clearance.load.reserved import reserved_spaces
 from clearance.load.scene_file import make_obstacles
 from clearance.load.schema_errors import validated
-from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.trajectory_file import read_trajectory
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
 from clearance.world.case import Case, Limits, PlacedRobot
@@ -132,7 +132,7 @@ def _refuse_missing_folders(given: list[str], package_dirs: tuple[Path, ...]) ->
 def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
     with at("trajectory.file"):
         shown = meshes.files.shown(path)
-        trajectory = parse_trajectory(meshes.files.read(path), shown)
+        trajectory = read_trajectory(*meshes.files.unread(path), shown)
         with at(shown):
             check_joint_names(trajectory.joint_names, robot)
     return trajectory

@@ -33,11 +33,16 @@ def _slide(motion: Motion) -> float:
     robot = motion.placed.robot
     apart = sum(float(np.abs(joint.parent_from_joint[:3, 3]).sum()) for joint in robot.joints)
     slides = [i for i, joint in enumerate(robot.moving_joints) if joint.kind == "prismatic"]
-    positions = motion.positions
+    return apart + sum(_farthest(motion, i) for i in slides)
+
+
+def _farthest(motion: Motion, i_joint: int) -> float:
+    """[rad or m] the greatest magnitude of a joint's position, at the steps and between."""
+    column = slice(i_joint, i_joint + 1)
+    reached = [motion.positions[:, column]]
     if motion.velocities is not None:
-        least, greatest = extremes_between(motion.times, positions, motion.velocities)
-        positions = np.concatenate([positions, least, greatest])
-    return apart + float(np.abs(positions[:, slides]).max(axis=0, initial=0.0).sum())
+        reached += extremes_between(motion.times, reached[0], motion.velocities[:, column])
+    return max(float(max(part.max(), -part.min())) for part in reached if part.size)
 
 
 def _require(what: str, body: Body, origin: np.ndarray) -> None:
