@@ -6,6 +6,7 @@ import os
 import signal
 import subprocess
 import sys
+import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -15,8 +16,11 @@ import pytest
 
 import clearance as cl
 from clearance.errors import Unwritable
+from clearance.report.summary import summary_of
+from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
 from clearance.simulate import parts, spool
 from clearance.simulate.parts import in_order
+from clearance.simulate.replay import replay_of
 from clearance.simulate.spool import open_spool
 from clearance.world.case import Case
 
@@ -231,3 +235,39 @@ def test_few_results_wait_ahead() -> None:
     assert [next(results) for _ in range(10)] == list(range(10))
     assert len(started) <= 10 + 2 * parts.WAITING
     assert list(results) == list(range(10, 1000))
+
+
+def resampled(case: Case, n_steps: int) -> Case:
+    """The case with its joints moving through the same positions in so many steps."""
+    placed = case.robots[0]
+    asked = placed.trajectory
+    times = np.linspace(asked.times[0], asked.times[-1], n_steps)
+    columns = [np.interp(times, asked.times, column) for column in asked.positions.T]
+    moved = replace(asked, times=times, positions=np.column_stack(columns))
+    return replace(case, robots=(replace(placed, trajectory=moved),))
+
+
+def most_memory(case: Case, folder: Path) -> int:
+    """[bytes] numpy and Python take at most beside the case, from the sweep to the last file but the page."""
+    tracemalloc.start()
+    with open_spool(folder / "kept", print) as kept:
+        run = cl.check(case, need="pairs", certify=True, jobs=2, kept=kept)
+        write_parquet(step_batches(run.record), folder / "steps.parquet")
+        write_csv(lambda: step_batches(run.record), folder / "steps.csv")
+        write_parquet(pair_batches(run.record), folder / "pairs.parquet")
+        summary_of(run.record)
+        replay_of(run.record, 300)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return most
+
+
+def test_memory_does_not_grow_with_the_steps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten times the steps: at most the clearances once (8 bytes a step) and a few codes, never rows or poses."""
+    monkeypatch.setattr(parts, "LONGEST_PART", 128)
+    monkeypatch.setattr(parts, "BLOCK", 1000)
+    monkeypatch.setattr(spool, "SAVE_AFTER", 1.0)
+    case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
+    most_memory(resampled(case, 500), tmp_path)  # what is loaded once
+    short, long = (most_memory(resampled(case, n), tmp_path) for n in (4_000, 40_000))
+    assert (long - short) / 36_000 < 20.0, (short, long)
