@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -222,7 +222,7 @@ def _letting_go(batches: Iterator[pa.Table], kept: Rows) -> Iterator[pa.Table]:
 
 def _contacts(
     case: Case, motions: tuple[Motion, ...], pairs: list[Pair], found: Measurement
-) -> tuple[tuple[StepContact, ...], tuple[str, ...]]:
+) -> tuple[Sequence[StepContact], tuple[str, ...]]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
     if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
         return (), ()

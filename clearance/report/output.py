@@ -10,7 +10,7 @@ from clearance.report.folder import LAST, fill_folder
 from clearance.report.page import page_of
 from clearance.report.summary import summary_of
 from clearance.report.tables import (
-    contact_table,
+    contact_batches,
     pair_batches,
     step_batches,
     write_csv,
@@ -51,7 +51,7 @@ def write(record: Record, folder: str | Path) -> None:
         write_csv(lambda: step_batches(record), place / "steps.csv")
         if record.every_pair is not None:
             write_parquet(pair_batches(record), place / "pairs.parquet")
-        write_csv(lambda: [contact_table(record)], place / "contacts.csv")
+        write_csv(lambda: contact_batches(record), place / "contacts.csv")
         replay.save(place / FILE_NAME)
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")

@@ -3,20 +3,27 @@ again."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
 import pyarrow as pa
 
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import Record
+from clearance.simulate.record import Record, StepContact
+
+CONTACTS = 10_000
+"""Overlaps that are written at a time."""
 
 
-def contact_table(record: Record) -> pa.Table:
+def contact_batches(record: Record) -> Iterator[pa.Table]:
     """One row for each pair in contact at each step; lengths in metres, directions of the link, world frame."""
-    rows = record.contacts
-    found = [row.found for row in rows]
+    for start in range(0, max(1, len(record.contacts)), CONTACTS):
+        yield _contact_table(record.contacts[start : start + CONTACTS])
+
+
+def _contact_table(rows: Sequence[StepContact]) -> pa.Table:
+    found = [row.numbers for row in rows]
     columns = {
         "step": pa.array([row.step for row in rows], pa.int64()),
         "time": pa.array([row.time for row in rows], pa.float64()),

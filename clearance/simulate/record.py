@@ -34,13 +34,24 @@ class PairMinimum:
 
 @dataclass(frozen=True, eq=False)
 class StepContact:
-    """One link-obstacle pair that overlaps at one step; `found` is in the world frame, the link is its body a."""
+    """One link-obstacle pair that overlaps at one step.
+
+    Attributes:
+        numbers: the overlap in the world frame, the link its body a; without its region if there is `again`.
+        again: finds all of it once more.
+    """
 
     step: int
     time: float  # [s]
     link: str
     obstacle: str
-    found: Contact
+    numbers: Contact
+    again: Callable[[], Contact] | None = None
+
+    @cached_property
+    def found(self) -> Contact:
+        """The overlap with its region."""
+        return self.numbers if self.again is None else self.again()
 
 
 @dataclass(frozen=True)
@@ -204,15 +215,15 @@ class Record:
     need: str = "steps"
     every_pair: EveryPair | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
-    contacts: tuple[StepContact, ...] = ()
+    contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
     let_go: Callable[[], None] = lambda: None
     room: Path | None = None
 
-    @property
+    @cached_property
     def deepest(self) -> StepContact | None:
         """The first contact of greatest penetration; None without contact."""
-        return max(self.contacts, key=lambda row: row.found.penetration, default=None)
+        return max(self.contacts, key=lambda row: row.numbers.penetration, default=None)
 
     @property
     def clearances(self) -> np.ndarray:

@@ -104,8 +104,8 @@ def _contact_columns(block: slice, contacts: Sequence[StepContact]) -> dict[str,
     depth, volume, none = np.zeros(n_steps), np.zeros(n_steps), np.ones(n_steps, dtype=bool)
     for row in contacts:
         i = row.step - block.start
-        depth[i] = max(depth[i], row.found.penetration)
-        volume[i] += row.found.volume
+        depth[i] = max(depth[i], row.numbers.penetration)
+        volume[i] += row.numbers.volume
         none[i] = False
     return {"penetration": pa.array(depth, mask=none), "volume": pa.array(volume, mask=none)}
 
