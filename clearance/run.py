@@ -184,7 +184,7 @@ def check(
         notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
         contacts=contacts,
         let_go=let_go,
-        room=kept.folder,
+        room=lambda: kept.folder,
     )
     if case.profiles:
         from clearance.profiles.answer import answer_profiles

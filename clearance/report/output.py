@@ -56,7 +56,7 @@ def write(record: Record, folder: str | Path) -> None:
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")
 
-    fill_folder(Path(folder), fill, OWN, record.room)
+    fill_folder(Path(folder), fill, OWN, record.room())
 
 
 def json_text(summary: dict[str, Any]) -> str:

@@ -199,7 +199,7 @@ class Record:
         contacts: every pair in contact at every step, steps first.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
         let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
-        room: a folder on the disk of the report for files on the way there, if there is one.
+        room: tells a folder on the disk of the report for files on the way there, if there still is one.
     """
 
     case: Case
@@ -218,7 +218,7 @@ class Record:
     contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
     let_go: Callable[[], None] = lambda: None
-    room: Path | None = None
+    room: Callable[[], Path | None] = lambda: None
 
     @cached_property
     def deepest(self) -> StepContact | None:

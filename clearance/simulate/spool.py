@@ -77,10 +77,16 @@ class Spool(Rows):
     _maps: dict[str, mmap.mmap] = field(default_factory=dict)
     _fresh: set[str] = field(default_factory=set)
     _told: bool = False
+    _closed: bool = False
 
     @property
-    def folder(self) -> Path:
-        return self.place
+    def folder(self) -> Path | None:
+        return None if self._closed else self.place
+
+    def close(self) -> None:
+        """Takes the folder away; arrays that are in use stay, and later ones are in memory."""
+        self._closed = True
+        shutil.rmtree(self.place, ignore_errors=True)
 
     def ask(self, fingerprint: str) -> None:
         question = self.place / _QUESTION
@@ -100,7 +106,7 @@ class Spool(Rows):
 
     def array(self, name: str, shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
         n_bytes = math.prod(shape) * np.dtype(kind).itemsize
-        if n_bytes == 0:
+        if n_bytes == 0 or self._closed:
             return np.empty(shape, dtype=kind)
         path = self.place / f"{name}.rows"
         with _unwritable(self.place), path.open("r+b" if path.exists() else "w+b") as file:
@@ -111,6 +117,8 @@ class Spool(Rows):
         return np.frombuffer(self._maps[name], dtype=kind).reshape(shape)
 
     def log(self, name: str, spans: Sequence[slice]) -> PassLog:
+        if self._closed:
+            return PassLog()
         path = self.place / f"{name}.state"
         state = {} if name in self._fresh else _state(path)
         arrays = [self._maps[key] for key in self._maps if key.split(".")[0] == name]
@@ -153,8 +161,9 @@ def open_spool(place: Path, say: Callable[[str], None]) -> Iterator[Spool]:
     """
     with _locked(place):
         try:
-            yield Spool(place, say)
-            shutil.rmtree(place, ignore_errors=True)
+            spool = Spool(place, say)
+            yield spool
+            spool.close()
         finally:
             if not any(place.glob("*.state")):  # refused before anything was worth keeping
                 shutil.rmtree(place, ignore_errors=True)

@@ -106,8 +106,11 @@ def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
         with pytest.raises(Interrupted):
             progress = stopping_at(count)
             answer(case, tmp_path / "kept", said, jobs=1 + count % 2, progress=progress, **ASKED[name])
+    with pytest.raises(Interrupted), open_spool(tmp_path / "kept", said.append) as kept:
+        cl.check(case, kept=kept, **ASKED[name])  # all is measured, and then the report is interrupted
+        raise Interrupted
     assert answer(case, tmp_path / "kept", said, jobs=1, **ASKED[name]) == memory
-    assert len(said) == len(counts) and all(line.startswith("resuming: ") for line in said)
+    assert len(said) == 1 + len(counts) and all(line.startswith("resuming: ") for line in said)
 
 
 def test_a_report_from_disk_has_the_bytes_of_one_from_memory(
@@ -205,6 +208,14 @@ def test_a_second_run_to_the_same_place_is_refused(tmp_path: Path) -> None:
             pass
         assert (tmp_path / "kept").is_dir()
     assert not (tmp_path / "kept").exists()
+
+
+def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(case: Case, tmp_path: Path) -> None:
+    with open_spool(tmp_path / "kept", print) as kept:
+        run = cl.check(case, kept=kept)
+    assert list(run.record.pair_minima) == list(cl.check(case).record.pair_minima)
+    run.save(tmp_path / "out")
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
 def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
