@@ -90,7 +90,7 @@ class Spool(Rows):
 
     def ask(self, fingerprint: str) -> None:
         question = self.place / _QUESTION
-        with _unwritable(self.place):
+        with unwritable(self.place):
             known = question.read_text() if question.exists() else fingerprint
             if known != fingerprint:
                 self.say("starting anew: what an interrupted run has left is of other inputs")
@@ -109,7 +109,7 @@ class Spool(Rows):
         if n_bytes == 0 or self._closed:
             return np.empty(shape, dtype=kind)
         path = self.place / f"{name}.rows"
-        with _unwritable(self.place), path.open("r+b" if path.exists() else "w+b") as file:
+        with unwritable(self.place), path.open("r+b" if path.exists() else "w+b") as file:
             if os.fstat(file.fileno()).st_size != n_bytes:
                 _claim(file, n_bytes)
                 self._fresh.add(name.split(".")[0])
@@ -145,7 +145,7 @@ class _SpooledLog(PassLog):
             return
         text = io.BytesIO()
         np.savez(text, done=done, **gathered)
-        with _unwritable(self.path.parent):
+        with unwritable(self.path.parent):
             for mapped in self.arrays:
                 mapped.flush()
             _replace(self.path, text.getvalue())
@@ -170,7 +170,8 @@ def open_spool(place: Path, say: Callable[[str], None]) -> Iterator[Spool]:
 
 
 @contextmanager
-def _unwritable(place: Path) -> Iterator[None]:
+def unwritable(place: Path) -> Iterator[None]:
+    """Turns what the system says about writing in `place` into `Unwritable`."""
     try:
         yield
     except OSError as error:
@@ -202,7 +203,7 @@ def _is_ours(place: Path, held: ExitStack) -> bool:
     Raises:
         Unwritable: another process has it, or no file can be written there.
     """
-    with _unwritable(place):
+    with unwritable(place):
         place.mkdir(parents=True, exist_ok=True)
         file = held.enter_context((place / _LOCK).open("w"))
     try:
@@ -220,6 +221,8 @@ def _is_ours(place: Path, held: ExitStack) -> bool:
             where=str(place),
             valid="wait for it, or choose another folder",
         ) from None
+    except OSError:  # a file system without such locks
+        return True
 
 
 def _claim(file: io.BufferedRandom, n_bytes: int) -> None:

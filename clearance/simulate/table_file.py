@@ -11,15 +11,18 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from clearance.simulate.spool import let_go
+from clearance.simulate.spool import let_go, unwritable
 
 
 def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, Callable[[], None]]:
     """The batches as one table in the file `path`, and a way to free the memory that looking at it took.
 
     The file may be removed while the table is in use.
+
+    Raises:
+        Unwritable: there is no room for it.
     """
-    with pa.OSFile(str(path), "wb") as file:
+    with unwritable(path), pa.OSFile(str(path), "wb") as file:
         writer = None
         for batch in batches:
             writer = writer or pa.ipc.new_file(file, batch.schema)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import subprocess
@@ -98,6 +99,7 @@ def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
     case: Case, name: str, tmp_path: Path
 ) -> None:
     memory = told(cl.check(case, jobs=1, **ASKED[name]))
+    assert memory["tally"]["queries"] + memory["tally"]["pairs_skipped"] >= 160
     said: list[str] = []
     assert answer(case, tmp_path / "kept", said, jobs=2, **ASKED[name]) == memory
     assert said == []
@@ -216,6 +218,18 @@ def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(case: Case, tmp
     assert list(run.record.pair_minima) == list(cl.check(case).record.pair_minima)
     run.save(tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_full_disk_is_told_before_anything_is_mapped(
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "posix_fallocate", full)
+    with pytest.raises(Unwritable, match="No space left"):
+        answer(case, tmp_path / "kept", [])
+    assert not (tmp_path / "kept").exists()
 
 
 def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
