@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,12 +11,15 @@ from clearance.errors import BadInput
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import NEEDS, Measurement, Progress, measure
+from clearance.simulate.parts import blocks
+from clearance.simulate.question import fingerprint
 from clearance.simulate.record import CrossCheck, Record, StepContact
+from clearance.simulate.spool import Rows
 from clearance.simulate.steps import (
     STATUSES,
     PairMinima,
     cut_throughout,
-    every_pair_table,
+    every_pair,
     step_table,
 )
 from clearance.tolerance import CERTIFY_GAP
@@ -45,7 +49,8 @@ class Run:
     @property
     def pairs(self) -> pa.Table | None:
         """One row a step and pair: step, link, obstacle, clearance [m]; None unless that was asked for."""
-        return self.record.every_pair
+        every = self.record.every_pair
+        return None if every is None else every.table
 
     @property
     def worst(self) -> dict:
@@ -61,7 +66,7 @@ class Run:
     def status(self) -> str:
         """The worst status of any step: "clear", "near", "violated" or "contact"; "violated" where a sweep
         does not keep to a profile of the case."""
-        occurring = set(self.steps["status"].drop_null().unique().to_pylist())
+        occurring = set(self.steps["status"].unique().to_pylist())
         if not all(answer.passed for answer in self.record.profiles):
             occurring.add("violated")
         return str([status for status in STATUSES if status in occurring][-1])
@@ -94,6 +99,7 @@ def check(
     cross_check: bool = False,
     jobs: int | None = None,
     progress: Progress | None = None,
+    kept: Rows | None = None,
 ) -> Run:
     """The least clearance of every step of a case.
 
@@ -111,6 +117,8 @@ def check(
         cross_check: also ask FCL at every step.
         jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.
         progress: called with steps done and all steps.
+        kept: where the rows are kept; in memory by default. In a spool (`open_spool`) memory does not grow with
+            the steps, and the same question asked again goes on where an interrupted run was.
 
     Raises:
         BadInput: an unknown method, motion or need, or some that do not go together.
@@ -133,22 +141,24 @@ def check(
     pairs, unmeasured = measured_pairs(case)
     motions = _motions(case, motion)
     require_within_reach(case, motions)
+    kept = kept or Rows()
+    if kept.folder is not None:
+        options = (need, method, motion, certify, certify_gap)
+        kept.ask(fingerprint(case, motions, pairs, options))
     if method == "paper":
         from clearance.simulate.measure_paper import measure_paper
 
         found = measure_paper(case, motions, pairs, progress)
     else:
-        found = measure(case, motions, pairs, need, jobs=jobs, progress=progress)
+        found = measure(case, motions, pairs, need, jobs=jobs, progress=progress, kept=kept)
     certificate = None
     if certify:
         certificate = certify_motion(
-            case, motions, pairs, found, certify_gap, jobs=jobs, progress=progress
+            case, motions, pairs, found, certify_gap, jobs=jobs, progress=progress, kept=kept
         )
     contacts, contact_notes = _contacts(case, motions, pairs, found)
-    record = Record(
-        case=case,
-        motions=motions,
-        steps=step_table(
+    steps, let_go = _table(
+        step_table(
             case,
             motions,
             pairs,
@@ -157,16 +167,24 @@ def check(
             with_error=motion == "simulated",
             contacts=contacts,
         ),
+        kept,
+    )
+    record = Record(
+        case=case,
+        motions=motions,
+        steps=steps,
         pair_minima=PairMinima(case, motions, pairs, found),
         unmeasured=(*unmeasured, *cut_throughout(case, pairs, found)),
         tally=found.tally,
         method=method,
         motion_kind=motion,
         need=need,
-        every_pair=every_pair_table(case, pairs, found),
+        every_pair=every_pair(case, pairs, found),
         certificate=certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
         contacts=contacts,
+        let_go=let_go,
+        room=lambda: kept.folder,
     )
     if case.profiles:
         from clearance.profiles.answer import answer_profiles
@@ -179,11 +197,34 @@ def check(
     return Run(record)
 
 
+def _table(batches: Iterator[pa.Table], kept: Rows) -> tuple[pa.Table, Callable[[], None]]:
+    """The batches as one table, on disk if the rows are, and a way to free the memory that it takes there."""
+    import pyarrow as pa
+
+    if kept.folder is None:
+        return pa.concat_tables(batches), kept.let_go
+    from clearance.simulate.table_file import mapped_table
+
+    table, let_go = mapped_table(_letting_go(batches, kept), kept.folder / "steps.arrow")
+
+    def let_all_go() -> None:
+        kept.let_go()
+        let_go()
+
+    return table, let_all_go
+
+
+def _letting_go(batches: Iterator[pa.Table], kept: Rows) -> Iterator[pa.Table]:
+    for batch in batches:
+        yield batch
+        kept.let_go()
+
+
 def _contacts(
     case: Case, motions: tuple[Motion, ...], pairs: list[Pair], found: Measurement
-) -> tuple[tuple[StepContact, ...], tuple[str, ...]]:
+) -> tuple[Sequence[StepContact], tuple[str, ...]]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
-    if not (found.clearance <= 0.0).any():
+    if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
         return (), ()
     from clearance.simulate.contact import find_contacts
 

@@ -34,6 +34,10 @@ REACH = 1e6
 """[m] No body of a case may get farther from the origin: nothing that a robot works on does, and a value in the
 wrong unit, or a typing error in an exponent, does at once."""
 
+TURNS = 1000.0
+"""[turns] No joint turns farther between two samples: no machine is sampled so coarsely, an angle in the wrong
+unit or a typing error does at once, and proofs between the samples take as long as the way (2 to 6 ms a turn)."""
+
 CURVE_SIZES = 1e-100, 1e100
 """[-] A curve is larger than the first and smaller than the second: no square of a length leaves floats' range."""
 

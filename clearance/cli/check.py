@@ -65,8 +65,9 @@ def check(
 ) -> int:
     """Measures the least clearance of every step of CASE.yaml.
 
-    Without --out nothing is written. Exit code: 0 clear (or near), 1 a limit is violated, 2 bad
-    input, 3 the cross-check disagrees.
+    Without --out nothing is written. With it, the same command goes on where an interrupted one
+    was. Exit code: 0 clear (or near), 1 a limit is violated, 2 bad input, 3 the cross-check
+    disagrees.
     """
     from clearance.cli.places import require_file_place, require_folder_place
     from clearance.cli.progress import shown_progress
@@ -76,25 +77,28 @@ def check(
     require_file_place(junit)
     case = load_case(case_file)
     limits = _limits(case.limits, fail_mm, warn_mm)
+    from clearance.cli.kept import kept_rows
     from clearance.run import check as answer
     from clearance.tolerance import CERTIFY_GAP
 
     certify = certify or certify_mm is not None
     passes = ["measuring"] + ["certifying"] * certify + ["cross-checking"] * cross_check
-    with shown_progress(quiet or as_json, passes) as progress:
-        run = answer(
-            case,
-            need=need,
-            jobs=jobs,
-            method=method,
-            motion=motion,
-            limits=limits,
-            certify=certify,
-            certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
-            cross_check=cross_check,
-            progress=progress,
-        )
-    _write(run, out, junit)
+    with kept_rows(out, quiet) as kept:
+        with shown_progress(quiet or as_json, passes) as progress:
+            run = answer(
+                case,
+                need=need,
+                jobs=jobs,
+                method=method,
+                motion=motion,
+                limits=limits,
+                certify=certify,
+                certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
+                cross_check=cross_check,
+                progress=progress,
+                kept=kept,
+            )
+        _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return _exit_code(run)
 

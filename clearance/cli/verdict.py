@@ -15,7 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from clearance.report import summary_of
-from clearance.report.intervals import Interval, intervals
+from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.profiles import gap_text, plane_text
 from clearance.report.wording import certified_text, contact_text, count, limit_mm, mm, seconds
 from clearance.run import Run
@@ -99,9 +99,9 @@ def _interval_text(record: Record, level: str) -> str:
     found: list[Interval] = intervals(record)[level]
     if not found:
         return "never"
-    n_steps = sum(part.last_step - part.first_step + 1 for part in found)
+    n_intervals, n_steps = extent(record, level)
     times = [f"{part.start:.3f}-{seconds(part.end)}" for part in found[:_MOST_INTERVALS]]
-    more = len(found) - len(times)
+    more = n_intervals - len(times)
     tail = f" and {more} more" if more else ""
     return f"{count(n_steps, 'step')}: {', '.join(times)}{tail}"
 

@@ -19,15 +19,16 @@ from clearance.load.motion_names import (
     check_not_given_twice,
     note_on_joints_at_zero,
 )
-from clearance.load.plausibility import limit_notes, motion_notes, obstacle_notes
+from clearance.load.plausibility import limit_notes, motion_notes, obstacle_notes, pose_notes
 from clearance.load.reserved import reserved_spaces
 from clearance.load.scene_file import make_obstacles
 from clearance.load.schema_errors import validated
-from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.trajectory_file import read_trajectory
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
 from clearance.world.case import Case, Limits, PlacedRobot
 from clearance.world.pairs import measured_pairs
+from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
@@ -57,6 +58,7 @@ def load_case(path: str | Path) -> Case:
     notes = [
         *limit_notes(limits),
         *obstacle_notes(given.scene.obstacles),
+        *pose_notes("the robot's base", given.robot.base.xyz, given.robot.base.rpy),
         *motion_notes(placed),
         *note_on_joints_at_zero(robot, [*placed.trajectory.joint_names, *placed.fixed_positions]),
         *scene_notes,
@@ -132,9 +134,10 @@ def _refuse_missing_folders(given: list[str], package_dirs: tuple[Path, ...]) ->
 def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
     with at("trajectory.file"):
         shown = meshes.files.shown(path)
-        trajectory = parse_trajectory(meshes.files.read(path), shown)
+        trajectory = read_trajectory(*meshes.files.unread(path), shown)
         with at(shown):
             check_joint_names(trajectory.joint_names, robot)
+            require_few_turns(robot, trajectory.joint_names, trajectory)
     return trajectory
 
 

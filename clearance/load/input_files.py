@@ -10,7 +10,10 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.world.case import Source
@@ -49,6 +52,20 @@ class InputFiles:
             self._sources[path] = Source(self.shown(path), digest, len(data))
         return self._contents[path]
 
+    def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
+        """Opens a long file, again and again, and how many bytes it has; its checksum is remembered,
+        its content is not.
+
+        Raises:
+            MissingFile: it is not there, is a folder, or cannot be read.
+        """
+        path = Path(os.path.abspath(path))
+        with _openable(self.shown(path)), path.open("rb") as file:
+            n_bytes = os.fstat(file.fileno()).st_size
+            digest = hashlib.file_digest(file, "sha256").hexdigest()
+        self._sources[path] = Source(self.shown(path), digest, n_bytes)
+        return lambda: path.open("rb"), n_bytes
+
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         path = Path(os.path.abspath(path))
@@ -64,8 +81,14 @@ def read_bytes(path: Path, shown: str) -> bytes:
     Raises:
         MissingFile: it is not there, is a folder, or cannot be read.
     """
-    try:
+    with _openable(shown):
         return path.read_bytes()
+
+
+@contextmanager
+def _openable(shown: str) -> Iterator[None]:
+    try:
+        yield
     except FileNotFoundError:
         raise MissingFile(
             f"there is no file {shown!r}", valid="a path to a file is needed"

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh import LoadedMesh, mesh_from_bytes
+from clearance.load.plausibility import scale_notes
 
 Scale = tuple[float, float, float]
 
@@ -31,5 +33,6 @@ class MeshStore:
         key = (os.path.abspath(path), scale)
         if key not in self._loaded:
             data = self.files.read(path)
-            self._loaded[key] = mesh_from_bytes(data, self.files.shown(path), scale)
+            made = mesh_from_bytes(data, self.files.shown(path), scale)
+            self._loaded[key] = replace(made, notes=(*made.notes, *scale_notes(scale)))
         return self._loaded[key]

@@ -6,6 +6,8 @@ Not for: values that cannot be right (`schema`, `trajectory_file`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from clearance.load import schema
@@ -28,6 +30,12 @@ LARGE_TURN = 4 * np.pi
 """[rad] Two full turns: more than industrial wrists have, and passed at once by angles given in
 degrees.
 """
+
+FAR = 100.0
+"""[m] No cell is so large; in millimetres it is usual."""
+
+LARGE_SCALE = 100.0
+"""[-] Mesh files are in metres or finer units, so that scales are 1 or less: 1000 is mistaken for 0.001."""
 
 TOO_FAST = 10.0
 """Velocities that mean ten times the way of the positions: degrees are 57 times radians, millimetres 1000."""
@@ -60,7 +68,36 @@ def obstacle_notes(obstacles: list[schema.Obstacle]) -> list[str]:
                 f"CHECK UNITS: obstacle {obstacle.name!r} has a radius of {radius:g} m; "
                 "lengths are in metres, is this millimetres?"
             )
+        notes += pose_notes(f"obstacle {obstacle.name!r}", obstacle.pose.xyz, obstacle.pose.rpy)
     return notes
+
+
+def pose_notes(what: str, xyz: Sequence[float], rpy: Sequence[float] | None) -> list[str]:
+    """A note if a place looks like millimetres, and one if angles look like degrees."""
+    notes = []
+    farthest = max(map(abs, xyz))
+    if farthest > FAR:
+        notes.append(
+            f"CHECK UNITS: {what} stands {farthest:g} m away; lengths are in metres, is this millimetres?"
+        )
+    greatest = max(map(abs, rpy or [0.0]))
+    if greatest > 2.0 * np.pi:
+        notes.append(
+            f"CHECK UNITS: {what} has an angle of {greatest:g} rad in its rpy; angles are in radians, "
+            "is this degrees?"
+        )
+    return notes
+
+
+def scale_notes(scale: Sequence[float]) -> list[str]:
+    """A note if a mesh is made larger than any unit asks for."""
+    greatest = max(map(abs, scale))
+    if greatest < LARGE_SCALE:
+        return []
+    return [
+        f"CHECK UNITS: the mesh is scaled by {greatest:g}; lengths are in metres, and a file in millimetres "
+        "needs 0.001"
+    ]
 
 
 def motion_notes(placed: PlacedRobot) -> list[str]:

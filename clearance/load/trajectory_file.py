@@ -3,15 +3,17 @@
 A column `<joint>/velocity` [rad/s or m/s], named as ros2_control names its interfaces, gives the joint's velocity;
 all joints have one or none.
 
-The table is parsed by pyarrow in one pass; only when something is wrong is the text gone through
-again, slowly, to name the line. Not for: which joints the robot has (`trajectory_check`).
+The table is parsed by pyarrow in one pass, block by block, so that memory holds its numbers and never
+its text; only when something is wrong is the text gone through again, slowly, to name the line. Not
+for: which joints the robot has (`motion_names`).
 """
 
 from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, BinaryIO
 
 import numpy as np
 
@@ -28,14 +30,27 @@ from clearance.errors import (
 )
 from clearance.world.trajectory import Trajectory
 
+if TYPE_CHECKING:
+    import pyarrow as pa
+
 _TIME = "time"
 _VELOCITY = "/velocity"
 
 
+Opener = Callable[[], BinaryIO]
+"""Opens a file for reading from its start."""
+
+
 def parse_trajectory(data: bytes, shown: str) -> Trajectory:
+    """The samples in the content of a CSV file, as `read_trajectory` finds them in the file."""
+    return read_trajectory(lambda: io.BytesIO(data), len(data), shown)
+
+
+def read_trajectory(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
     """The samples in a CSV file; joints in the order of their position columns.
 
     Args:
+        opened: opens the file, `n_bytes` long, again and again.
         shown: the file's name in errors.
 
     Raises:
@@ -43,31 +58,43 @@ def parse_trajectory(data: bytes, shown: str) -> Trajectory:
         file. BadDimension: a velocity that no joint can have.
     """
     with at(shown):
-        names = _header(data)
-        table = _table(data, names)
-        _refuse_not_finite(table, names, data)
-        i_time = names.index(_TIME)
-        times = np.ascontiguousarray(table[:, i_time])
-        _refuse_standing_time(times, data)
+        names = _header(opened)
         joints = tuple(name for name in names if name != _TIME and not name.endswith(_VELOCITY))
-        positions = _columns(table, names, joints)
-        velocities = None
+        parts = [[_TIME], joints]
         if len(joints) < len(names) - 1:
-            velocities = _columns(table, names, [joint + _VELOCITY for joint in joints])
-        return Trajectory(times, joints, positions, velocities)
+            parts.append([joint + _VELOCITY for joint in joints])
+        times, *moving = _columns(opened, n_bytes, names, parts)
+        _refuse_standing_time(times[:, 0], opened)
+        return Trajectory(times[:, 0], joints, *moving)
 
 
-def _columns(table: np.ndarray, names: list[str], wanted: Iterable[str]) -> np.ndarray:
-    """(n, len(wanted)) the columns of these names."""
-    return np.ascontiguousarray(table[:, [names.index(name) for name in wanted]])
+def _columns(
+    opened: Opener, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
+) -> list[np.ndarray]:
+    """For each of `parts` the (n, len(part)) columns of its names."""
+    most = n_bytes // (2 * len(names)) + 2  # a cell is a digit and a comma; what is not filled takes no memory
+    tables = [np.empty((most, len(part))) for part in parts]
+    n_rows = 0
+    for batch in _batches(opened, names):
+        rows = slice(n_rows, n_rows + batch.num_rows)
+        for table, part in zip(tables, parts, strict=True):
+            for i, name in enumerate(part):
+                table[rows, i] = batch.column(names.index(name)).to_numpy()
+        n_rows = rows.stop
+    if not n_rows:
+        raise _no_rows()
+    for table in tables:
+        table.resize((n_rows, table.shape[1]), refcheck=False)  # gives the rest back, without a copy
+    _refuse_not_finite(tables, parts, names, opened)
+    return tables
 
 
-def _header(data: bytes) -> list[str]:
-    if not data.strip():
+def _header(opened: Opener) -> list[str]:
+    _, cells = next(_rows(opened), (0, []))
+    if not any(cell.strip() for cell in cells):
         raise BadSyntax(
             "the file is empty", valid=f"a header with {_TIME!r} and joint names is needed"
         )
-    _, cells = next(_rows(data))
     names = [cell.strip() for cell in cells]
     for i, name in enumerate(names):
         if not name:
@@ -102,8 +129,8 @@ def _refuse_unmatched_velocities(names: list[str]) -> None:
         )
 
 
-def _table(data: bytes, names: list[str]) -> np.ndarray:
-    """(n, k) all cells, columns as in the header."""
+def _batches(opened: Opener, names: list[str]) -> Iterator[pa.RecordBatch]:
+    """All rows, a few megabytes at a time; columns as in the header."""
     import pyarrow as pa
     from pyarrow import csv as arrow_csv
 
@@ -111,25 +138,21 @@ def _table(data: bytes, names: list[str]) -> np.ndarray:
     types = arrow_csv.ConvertOptions(
         column_types=dict.fromkeys(keys, pa.float64()), null_values=[], strings_can_be_null=False
     )
+    reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(opened))
     try:
-        read = arrow_csv.read_csv(
-            pa.py_buffer(data),
-            arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(data)),
-            convert_options=types,
-        )
+        with opened() as file:
+            yield from arrow_csv.open_csv(file, reading, convert_options=types)
     except pa.ArrowException as error:
-        raise _fault_in_rows(data, names) or BadSyntax(f"not a table of numbers: {error}") from None
-    if not len(read):
-        raise BadShape("there are no rows below the header", valid="at least one row is needed")
-    table = np.empty((len(read), len(names)))
-    for i, column in enumerate(read.columns):
-        table[:, i] = column.to_numpy()
-    return table
+        raise _fault_in_rows(opened, names) or BadSyntax(f"not a table of numbers: {error}") from None
 
 
-def _fault_in_rows(data: bytes, names: list[str]) -> ClearanceError | None:
+def _no_rows() -> ClearanceError:
+    return BadShape("there are no rows below the header", valid="at least one row is needed")
+
+
+def _fault_in_rows(opened: Opener, names: list[str]) -> ClearanceError | None:
     """The first row that is not as many numbers as the header has names."""
-    rows = _rows(data)
+    rows = _rows(opened)
     next(rows)
     n_rows = 0
     for line, cells in rows:
@@ -144,9 +167,7 @@ def _fault_in_rows(data: bytes, names: list[str]) -> ClearanceError | None:
                 return BadSyntax(
                     f"{cell.strip()!r} in column {name!r} is not a number", where=where
                 )
-    if n_rows == 0:
-        return BadShape("there are no rows below the header", valid="at least one row is needed")
-    return None
+    return None if n_rows else _no_rows()
 
 
 def _is_number(cell: str) -> bool:
@@ -157,52 +178,58 @@ def _is_number(cell: str) -> bool:
     return "_" not in cell
 
 
-def _refuse_not_finite(table: np.ndarray, names: list[str], data: bytes) -> None:
-    finite = np.isfinite(table)
-    if finite.all():
+def _refuse_not_finite(
+    tables: list[np.ndarray], parts: Sequence[Sequence[str]], names: list[str], opened: Opener
+) -> None:
+    bad = []
+    for table, part in zip(tables, parts, strict=True):
+        least = np.flatnonzero(~np.isfinite(table).all(axis=1))[:1].tolist()
+        bad += [(row, names.index(part[i]), table[row, i]) for row in least for i in range(len(part))]
+    wrong = [(row, column, value) for row, column, value in bad if not np.isfinite(value)]
+    if not wrong:
         return
-    i_row, i_column = (int(i) for i in np.argwhere(~finite)[0])
+    i_row, i_column, value = min(wrong, key=lambda cell: cell[:2])
     raise NotFinite(
-        f"{table[i_row, i_column]} in column {names[i_column]!r}",
-        where=f"line {_line_of_row(data, i_row)}",
+        f"{value} in column {names[i_column]!r}",
+        where=f"line {_line_of_row(opened, i_row)}",
         valid="a finite number is needed",
     )
 
 
-def _refuse_standing_time(times: np.ndarray, data: bytes) -> None:
+def _refuse_standing_time(times: np.ndarray, opened: Opener) -> None:
     late = np.flatnonzero(np.diff(times) <= 0)
     if not len(late):
         return
     i_row = int(late[0]) + 1
     raise BadTime(
         f"time {float(times[i_row])} follows {float(times[i_row - 1])}",
-        where=f"line {_line_of_row(data, i_row)}",
+        where=f"line {_line_of_row(opened, i_row)}",
         valid="time must increase from row to row",
     )
 
 
-def _rows(data: bytes) -> Iterator[tuple[int, list[str]]]:
+def _rows(opened: Opener) -> Iterator[tuple[int, list[str]]]:
     """(line number, cells) of every row that is not blank; lines count from 1."""
-    text = io.TextIOWrapper(io.BytesIO(data), encoding="utf-8-sig", newline="")
-    reader = csv.reader(text)
-    try:
-        for cells in reader:
-            if cells:
-                yield reader.line_num, cells
-    except UnicodeDecodeError:
-        raise BadSyntax("the file is not UTF-8 text", valid="a CSV file is needed") from None
-    except csv.Error as error:
-        raise BadSyntax(f"not CSV: {error}", where=f"line {reader.line_num}") from None
+    with opened() as file:
+        reader = csv.reader(io.TextIOWrapper(file, encoding="utf-8-sig", newline=""))
+        try:
+            for cells in reader:
+                if cells:
+                    yield reader.line_num, cells
+        except UnicodeDecodeError:
+            raise BadSyntax("the file is not UTF-8 text", valid="a CSV file is needed") from None
+        except csv.Error as error:
+            raise BadSyntax(f"not CSV: {error}", where=f"line {reader.line_num}") from None
 
 
-def _header_line(data: bytes) -> int:
+def _header_line(opened: Opener) -> int:
     """Number of lines up to and with the header."""
-    line, _ = next(_rows(data))
+    line, _ = next(_rows(opened))
     return line
 
 
-def _line_of_row(data: bytes, i_row: int) -> int:
-    rows = _rows(data)
+def _line_of_row(opened: Opener, i_row: int) -> int:
+    rows = _rows(opened)
     next(rows)
     for i, (line, _) in enumerate(rows):
         if i == i_row:

@@ -22,12 +22,13 @@ from clearance.load.mesh import LoadedMesh
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot_tree import links_from_root
-from clearance.load.urdf_elements import parse_document
+from clearance.load.urdf_elements import origin_notes, parse_document
 from clearance.world.body import Body
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
     import yourdfpy
+    from lxml.etree import _Element as Element
 
 Geometry = Literal["collision", "visual"]
 
@@ -56,8 +57,11 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
     shown = meshes.files.shown(request.path)
     data = meshes.files.read(request.path)
     with at(shown):
-        model = _model(data)
+        root = parse_document(data)
+        unit_notes = origin_notes(root)
+        model = _model(root)
         joints, notes = joints_from_model(model)
+        notes += [f"{shown}: {note}" for note in unit_notes]
         link_names, ordered = links_from_root([link.name for link in model.links], joints)
         by_name = {link.name: link for link in model.links}
         bodies = []
@@ -73,11 +77,10 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
     return Robot(model.name, link_names, ordered, tuple(bodies), tuple(notes))
 
 
-def _model(data: bytes) -> yourdfpy.Robot:
+def _model(root: Element) -> yourdfpy.Robot:
     import yourdfpy
     from lxml import etree
 
-    root = parse_document(data)
     root.set("name", root.get("name") or "robot")
     for element in root.iter("collision", "visual"):
         element.set("name", element.find("geometry")[0].tag)

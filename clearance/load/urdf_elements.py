@@ -11,6 +11,7 @@ import math
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite
+from clearance.load.plausibility import pose_notes
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -66,6 +67,22 @@ def parse_document(data: bytes) -> Element:
         for element in root.findall(kind):
             _check(element, f"{kind} {element.get('name')!r}")
     return root
+
+
+def origin_notes(root: Element) -> list[str]:
+    """Notes on places and angles in a checked document that look like a wrong unit."""
+    notes = []
+    for origin in root.iter("origin"):
+        owner = origin.getparent()
+        if owner.tag != "joint":
+            owner = owner.getparent()
+        xyz, rpy = (_numbers(origin.get(key)) for key in ("xyz", "rpy"))
+        notes += pose_notes(f"an origin of {owner.tag} {owner.get('name')!r}", xyz, rpy)
+    return notes
+
+
+def _numbers(text: str | None) -> list[float]:
+    return [float(word) for word in (text or "0 0 0").split()]
 
 
 def _root(data: bytes) -> Element:

@@ -21,15 +21,15 @@ def contact_of(record: Record) -> dict[str, Any] | None:
     for row in record.contacts:
         pair = (row.link, row.obstacle)
         n_steps[pair] = n_steps.get(pair, 0) + 1
-        if pair not in by_pair or row.found.penetration > by_pair[pair].found.penetration:
+        if pair not in by_pair or row.numbers.penetration > by_pair[pair].numbers.penetration:
             by_pair[pair] = row
-    deepest = sorted(by_pair.values(), key=lambda row: -row.found.penetration)
+    deepest = sorted(by_pair.values(), key=lambda row: -row.numbers.penetration)
     pairs = [_told(row) | {"n_steps": n_steps[row.link, row.obstacle]} for row in deepest]
     return {"deepest": _told(record.deepest), "pairs": pairs}
 
 
 def _told(row: StepContact) -> dict[str, Any]:
-    found = row.found
+    found = row.numbers
     return {
         "step": row.step,
         "time": row.time,

@@ -1,46 +1,77 @@
 """All or nothing: files that are either whole in their place or not there at all.
 
 Everything is first written beside its place, on the same file system, and moved there when the last
-byte is on disk. `LAST` moves last and, where an older report is replaced, is taken away first: a
-folder that holds it is whole. Should a move fail or be interrupted, the older report is put back.
+byte is on disk. A folder that holds nothing but an older report is exchanged as a whole, by one
+rename: a process killed at any moment leaves the older report or the new one. Where the folder
+holds other files too, files are exchanged one by one: `LAST` moves last and is taken away first, so
+that a folder that holds it is whole; should a move fail or be interrupted, the older report is put
+back.
 """
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
+import stat
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from clearance.errors import Unwritable
 
 LAST = "summary.json"
+_EXCHANGE = 2  # RENAME_EXCHANGE of Linux's renameat2
+_HERE = -100  # AT_FDCWD
 
 
-def fill_folder(folder: Path, fill: Callable[[Path], None]) -> None:
+def fill_folder(
+    folder: Path, fill: Callable[[Path], None], own: Collection[str], room: Path | None = None
+) -> None:
     """Calls `fill` with an empty folder and then moves what it wrote into `folder`.
 
     Other files in `folder` stay as they are.
+
+    Args:
+        own: the names of all files that such a report can have; what an older one had of them goes.
+        room: a folder to work in, on the same file system; beside or in `folder` by default.
 
     Raises:
         Unwritable: there is no way to write there; `folder` is then as it was.
     """
     with _unwritable(folder):
-        beside = folder if folder.is_dir() else folder.parent
+        folder = Path(os.path.realpath(folder))
+        as_a_whole = not folder.is_dir() or _is_only_a_report(folder, own)
+        beside = room or (folder.parent if as_a_whole else folder)
         beside.mkdir(parents=True, exist_ok=True)
         staging = Path(tempfile.mkdtemp(prefix=".report-", suffix=".partial", dir=beside))
         try:
             fresh = staging / "fresh"
             fresh.mkdir()
             fill(fresh)
-            if folder.is_dir():
-                _exchange(fresh, folder, staging / "older")
-            else:
+            if not folder.is_dir():
+                folder.parent.mkdir(parents=True, exist_ok=True)
                 os.rename(fresh, folder)
+            elif as_a_whole and _is_only_a_report(folder, own):
+                _exchange_whole(fresh, folder, staging / "older")
+            else:
+                _exchange_files(fresh, folder, staging / "older", own)
         finally:
             shutil.rmtree(staging, ignore_errors=True)
+
+
+def _is_only_a_report(folder: Path, own: Collection[str]) -> bool:
+    """True if `folder` can be replaced as a whole: nothing of anybody else is in it, and nobody stands in it."""
+    parent = folder.parent
+    mine = os.stat(folder)
+    return (
+        all(path.name in own and stat.S_ISREG(path.lstat().st_mode) for path in folder.iterdir())
+        and mine.st_dev == os.stat(parent).st_dev
+        and os.access(parent, os.W_OK)
+        and not os.path.samefile(folder, os.curdir)
+        and (not hasattr(os, "geteuid") or mine.st_uid == os.geteuid())
+    )
 
 
 def write_file(path: Path, content: bytes) -> None:
@@ -64,22 +95,44 @@ def write_file(path: Path, content: bytes) -> None:
             raise
 
 
-def _exchange(fresh: Path, folder: Path, older: Path) -> None:
-    """Replaces files of `folder` by those of the same name in `fresh`; puts all back if it cannot
-    finish."""
+def _exchange_whole(fresh: Path, folder: Path, older: Path) -> None:
+    """Replaces `folder` by `fresh`: at once where the system can; else there is no folder for a moment."""
+    os.chmod(fresh, stat.S_IMODE(os.stat(folder).st_mode))
+    if _exchanged(fresh, folder):
+        return
+    os.rename(folder, older)
+    try:
+        os.rename(fresh, folder)
+    except BaseException:
+        if not folder.exists():
+            os.rename(older, folder)
+        raise
+
+
+def _exchanged(one: Path, other: Path) -> bool:
+    """Whether the system has given each of two folders the other's name, in one step."""
+    call = getattr(ctypes.CDLL(None), "renameat2", None) if os.name == "posix" else None
+    names = os.fsencode(one), os.fsencode(other)
+    return call is not None and call(_HERE, names[0], _HERE, names[1], _EXCHANGE) == 0
+
+
+def _exchange_files(fresh: Path, folder: Path, older: Path, own: Collection[str]) -> None:
+    """Replaces files of `folder` by those of the same name in `fresh`, and takes away what else an older report
+    had; puts all back if it cannot finish."""
     older.mkdir()
     names = sorted((path.name for path in fresh.iterdir()), key=lambda name: name == LAST)
+    gone = sorted({*own} - {*names})
     try:
-        for name in reversed(names):
+        for name in [*reversed(names), *gone]:
             if (folder / name).exists():
                 os.replace(folder / name, older / name)
         for name in names:
             os.replace(fresh / name, folder / name)
     except BaseException:
-        for name in names:
+        for name in [*names, *gone]:
             if (older / name).exists():
                 os.replace(older / name, folder / name)
-            elif not (fresh / name).exists():
+            elif name in names and not (fresh / name).exists():
                 (folder / name).unlink(missing_ok=True)
         raise
 

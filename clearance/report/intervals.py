@@ -3,7 +3,6 @@ step."""
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +10,9 @@ import numpy as np
 from clearance.simulate.record import Record
 from clearance.simulate.replay import codes_of
 from clearance.simulate.steps import STATUSES
+
+MOST_LISTED = 10_000
+"""Most intervals of a level, and most events, that are listed; the steps tables have the status of every step."""
 
 LEVELS = {"below_warn": 1, "below_fail": 2, "contact": 3}
 """Each level and the least status code that belongs to it."""
@@ -67,50 +69,67 @@ def verdict(record: Record) -> str:
 
 
 def intervals(record: Record) -> dict[str, list[Interval]]:
-    """For each of `LEVELS` its intervals in order of time; none where only the least step is known."""
-    if record.need == "minimum":
-        return {level: [] for level in LEVELS}
-    codes = codes_of(record.steps)
+    """For each of `LEVELS` its first `MOST_LISTED` intervals in order of time; none where only the least step is
+    known."""
+    clearances = record.clearances
     return {
-        level: [_interval(record, a, b) for a, b in _runs(codes >= least)]
-        for level, least in LEVELS.items()
+        level: [_interval(record, clearances, int(a), int(b)) for a, b in runs[:MOST_LISTED]]
+        for level, runs in _level_runs(record).items()
     }
 
 
 def events(record: Record) -> list[Event]:
-    """Every entering and leaving of a level in order of time; on one step, entering the wider level
-    first. None where only the least step is known."""
-    if record.need == "minimum":
-        return []
-    found: list[tuple[int, int, Event]] = []
+    """The first `MOST_LISTED` enterings and leavings of a level in order of time; on one step, entering the wider
+    level first. None where only the least step is known."""
+    steps, order, what = [], [], []
+    for level, runs in _level_runs(record).items():
+        left = runs[runs[:, 1] < record.steps.num_rows, 1]
+        steps += [runs[:, 0], left]
+        order += [np.full(len(runs), LEVELS[level]), np.full(len(left), -LEVELS[level])]
+        what += [_ENTERED[level]] * len(runs) + [_LEFT[level]] * len(left)
+    step = np.concatenate(steps)
+    first = np.lexsort([np.concatenate(order), step])[:MOST_LISTED]
+    return [_event(record, int(step[i]), what[i]) for i in first]
+
+
+def not_listed(record: Record) -> dict[str, int]:
+    """How many intervals of each level and how many events `intervals` and `events` leave out."""
+    runs = _level_runs(record)
+    n_steps = record.steps.num_rows
+    n_events = sum(len(found) + int((found[:, 1] < n_steps).sum()) for found in runs.values())
+    counted = {level: len(found) for level, found in runs.items()} | {"events": n_events}
+    return {name: max(0, number - MOST_LISTED) for name, number in counted.items()}
+
+
+def extent(record: Record, level: str) -> tuple[int, int]:
+    """How many intervals of a level there are, and of how many steps."""
+    runs = _level_runs(record)[level]
+    return len(runs), int((runs[:, 1] - runs[:, 0]).sum())
+
+
+def _level_runs(record: Record) -> dict[str, np.ndarray]:
+    """For each of `LEVELS` (k, 2) first step and step after the last of its runs."""
     codes = codes_of(record.steps)
-    for level, least in LEVELS.items():
-        for start, stop in _runs(codes >= least):
-            found.append((start, least, _event(record, start, _ENTERED[level])))
-            if stop < len(codes):
-                found.append((stop, -least, _event(record, stop, _LEFT[level])))
-    return [event for *_, event in sorted(found, key=lambda item: item[:2])]
-
-
-def time_at(record: Record, level: str) -> float:
-    """[s] total length of the intervals of a level, from first to last step of each."""
-    return sum(interval.end - interval.start for interval in intervals(record)[level])
+    if record.need == "minimum":
+        codes = codes[:0]
+    return {level: _runs(codes >= least) for level, least in LEVELS.items()}
 
 
 def status_counts(record: Record) -> dict[str, int]:
     """How many steps have each status."""
-    counts = Counter(record.steps["status"].to_pylist())
-    return {str(name): counts[str(name)] for name in STATUSES}
+    counted = record.steps["status"].value_counts().to_pylist()
+    counts = {entry["values"]: entry["counts"] for entry in counted}
+    return {str(name): counts.get(str(name), 0) for name in STATUSES}
 
 
-def _runs(inside: np.ndarray) -> list[tuple[int, int]]:
-    """Half-open index ranges of the runs of True."""
+def _runs(inside: np.ndarray) -> np.ndarray:
+    """(k, 2) half-open index ranges of the runs of True."""
     change = np.flatnonzero(np.diff(np.concatenate([[False], inside, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in change.reshape(-1, 2)]
+    return change.reshape(-1, 2)
 
 
-def _interval(record: Record, start: int, stop: int) -> Interval:
-    worst = start + int(np.argmin(record.clearances[start:stop]))
+def _interval(record: Record, clearances: np.ndarray, start: int, stop: int) -> Interval:
+    worst = start + int(np.argmin(clearances[start:stop]))
     row = record.steps.slice(worst, 1).to_pylist()[0]
     times = record.steps["time"]
     return Interval(

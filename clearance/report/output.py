@@ -9,9 +9,26 @@ from typing import Any
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.page import page_of
 from clearance.report.summary import summary_of
-from clearance.report.tables import contact_table, write_csv, write_parquet
+from clearance.report.tables import (
+    contact_batches,
+    pair_batches,
+    step_batches,
+    write_csv,
+    write_parquet,
+)
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, replay_of
+
+OWN = (
+    "steps.parquet",
+    "steps.csv",
+    "pairs.parquet",
+    "contacts.csv",
+    FILE_NAME,
+    "report.html",
+    LAST,
+)
+"""All files that a report can have."""
 
 
 def write(record: Record, folder: str | Path) -> None:
@@ -21,6 +38,8 @@ def write(record: Record, folder: str | Path) -> None:
     The same record gives the same bytes. Other files in `folder` are left alone; an older report
     there is replaced as a whole, or, if anything goes wrong, kept as it was.
 
+    Memory does not grow with the steps: the tables are written a block at a time.
+
     Raises:
         Unwritable: `folder` cannot be written.
     """
@@ -28,16 +47,16 @@ def write(record: Record, folder: str | Path) -> None:
     page = page_of(summary, replay, {answer.name: answer.picture for answer in record.profiles})
 
     def fill(place: Path) -> None:
-        write_parquet(record.steps, place / "steps.parquet")
-        write_csv(record.steps, place / "steps.csv")
+        write_parquet(step_batches(record), place / "steps.parquet")
+        write_csv(lambda: step_batches(record), place / "steps.csv")
         if record.every_pair is not None:
-            write_parquet(record.every_pair, place / "pairs.parquet")
-        write_csv(contact_table(record), place / "contacts.csv")
+            write_parquet(pair_batches(record), place / "pairs.parquet")
+        write_csv(lambda: contact_batches(record), place / "contacts.csv")
         replay.save(place / FILE_NAME)
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")
 
-    fill_folder(Path(folder), fill)
+    fill_folder(Path(folder), fill, OWN, record.room())
 
 
 def json_text(summary: dict[str, Any]) -> str:

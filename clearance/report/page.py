@@ -28,6 +28,9 @@ from clearance.simulate.steps import STATUSES
 
 _HERE = Path(__file__).parent
 
+FINEST = 2000
+"""Parts of the time axis that can be told apart on a screen."""
+
 
 def page_of(
     summary: dict[str, Any], replay: Replay, pictures: dict[str, str] | None = None
@@ -61,7 +64,7 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
         "statuses": STATUSES,
         "limits": summary["limits"],
         "intervals": {
-            level: [[item["start"], item["end"]] for item in summary["intervals"][level]]
+            level: _bands(summary["intervals"][level], (summary["end"] - summary["start"]) / FINEST)
             for level in ("below_warn", "below_fail")
         },
         "bodies": [
@@ -98,6 +101,17 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
             for contact, (vertices, triangles) in zip(replay.contacts, replay.regions, strict=True)
         ],
     }
+
+
+def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:
+    """Start and end [s] of each interval; those that no screen can tell apart are one."""
+    bands: list[list[float]] = []
+    for item in intervals:
+        if bands and item["start"] - bands[-1][1] < apart:
+            bands[-1][1] = item["end"]
+        else:
+            bands.append([item["start"], item["end"]])
+    return bands
 
 
 def _stage_note(replay: Replay) -> str:

@@ -161,6 +161,9 @@ def events(summary: dict[str, Any]) -> Html:
     ]
     more = len(found) - len(rows)
     note = element("p", f"{count(more, 'more event')} in summary.json.") if more else Html("")
+    unlisted = summary["not_listed"]["events"]
+    if unlisted:
+        note += element("p", f"{count(unlisted, 'more event')} follow from the status in steps.csv.")
     heads = (">Time", ">Step", "What", ">mm", "Between")
     return section("Events", table(heads, rows, class_="clickable"), note)
 

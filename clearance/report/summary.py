@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from clearance.report.contact import contact_of
-from clearance.report.intervals import events, intervals, status_counts, verdict
+from clearance.report.intervals import events, intervals, not_listed, status_counts, verdict
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
 from clearance.simulate.replay import link_label
@@ -44,6 +44,7 @@ def summary_of(record: Record) -> dict[str, Any]:
             level: [asdict(i) for i in found] for level, found in intervals(record).items()
         },
         "events": [asdict(event) for event in events(record)],
+        "not_listed": not_listed(record),
         "pairs": [asdict(minimum) for minimum in record.pair_minima],
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
         "contact": contact_of(record),

@@ -3,17 +3,27 @@ again."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 import pyarrow as pa
 
-from clearance.simulate.record import Record
+from clearance.simulate.parts import blocks
+from clearance.simulate.record import Record, StepContact
+
+CONTACTS = 10_000
+"""Overlaps that are written at a time."""
 
 
-def contact_table(record: Record) -> pa.Table:
+def contact_batches(record: Record) -> Iterator[pa.Table]:
     """One row for each pair in contact at each step; lengths in metres, directions of the link, world frame."""
-    rows = record.contacts
-    found = [row.found for row in rows]
+    for start in range(0, max(1, len(record.contacts)), CONTACTS):
+        yield _contact_table(record.contacts[start : start + CONTACTS])
+
+
+def _contact_table(rows: Sequence[StepContact]) -> pa.Table:
+    found = [row.numbers for row in rows]
     columns = {
         "step": pa.array([row.step for row in rows], pa.int64()),
         "time": pa.array([row.time for row in rows], pa.float64()),
@@ -29,26 +39,47 @@ def contact_table(record: Record) -> pa.Table:
     return pa.table(columns)
 
 
-def write_parquet(steps: pa.Table, path: Path) -> None:
-    """Writes the steps table as Parquet."""
+def write_parquet(batches: Iterable[pa.Table], path: Path) -> None:
+    """Writes a table that comes in parts as Parquet, a row group of each part."""
     import pyarrow.parquet
 
-    pyarrow.parquet.write_table(steps, path)
+    with ExitStack() as opened:
+        writer = None
+        for batch in batches:
+            if writer is None:
+                writer = opened.enter_context(pyarrow.parquet.ParquetWriter(path, batch.schema))
+            writer.write_table(batch)
 
 
-def write_csv(steps: pa.Table, path: Path) -> None:
-    """Writes the steps table as CSV with a header; names are quoted only where one of them needs
+def write_csv(batches: Callable[[], Iterable[pa.Table]], path: Path) -> None:
+    """Writes a table that comes in parts as CSV with a header; names are quoted only where one of them needs
     it."""
     try:
-        _write_csv(steps, path, "none")
+        _write_csv(batches(), path, "none")
     except pa.ArrowInvalid:  # a name with a comma, a quote or a line break
-        _write_csv(steps, path, "needed")
+        _write_csv(batches(), path, "needed")
 
 
-def _write_csv(steps: pa.Table, path: Path, quoting: str) -> None:
+def _write_csv(batches: Iterable[pa.Table], path: Path, quoting: str) -> None:
     import pyarrow.csv
 
     body = pyarrow.csv.WriteOptions(include_header=False, quoting_style=quoting)
     with path.open("wb") as file:
-        file.write((",".join(steps.column_names) + "\n").encode())
-        pyarrow.csv.write_csv(steps, file, body)
+        for i, batch in enumerate(batches):
+            if i == 0:
+                file.write((",".join(batch.column_names) + "\n").encode())
+            pyarrow.csv.write_csv(batch, file, body)
+
+
+def step_batches(record: Record) -> Iterator[pa.Table]:
+    """The steps of a record, a block at a time; what a block took of memory is let go after it."""
+    for block in blocks(record.steps.num_rows):
+        yield record.steps.slice(block.start, block.stop - block.start).combine_chunks()
+        record.let_go()
+
+
+def pair_batches(record: Record) -> Iterator[pa.Table]:
+    """Every pair at every step of a record in the same way."""
+    for batch in record.every_pair.batches():
+        yield batch
+        record.let_go()

@@ -52,7 +52,4 @@ def write_workspace(workspace: Workspace, folder: Path) -> None:
             json_text(workspace_summary(workspace)), encoding="utf-8"
         )
 
-    fill_folder(folder, fill)
-    if region.is_empty:
-        for name in MESHES:
-            (folder / name).unlink(missing_ok=True)  # of an older, shared region
+    fill_folder(folder, fill, ("workspace.svg", "workspace.json", *MESHES))

@@ -18,12 +18,17 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import inverse
 from clearance.query.contact import BodyPair, Contact
 from clearance.query.distance import distance
+from clearance.simulate.contact_rows import ContactRows
+from clearance.simulate.parts import blocks
 from clearance.simulate.record import StepContact
 from clearance.simulate.steps import pair_names
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
+
+MOST_KNOWN = 1000
+"""Poses whose overlap is remembered, in case they occur again."""
 
 Box = tuple[np.ndarray, np.ndarray]
 """The least and the greatest coordinates (3,) [m]."""
@@ -35,7 +40,7 @@ def find_contacts(
     pairs: Sequence[Pair],
     clearance: np.ndarray,
     nearest: np.ndarray,
-) -> tuple[tuple[StepContact, ...], tuple[str, ...]]:
+) -> tuple[Sequence[StepContact], tuple[str, ...]]:
     """The overlap of every pair in contact, step by step and pair by pair; and notes, one line each.
 
     Args:
@@ -43,9 +48,12 @@ def find_contacts(
         nearest: (n,) the pair that has it. It is in contact for sure; the others are asked.
     """
     finder = _Finder(case, tuple(motions), tuple(pairs))
-    touching = np.flatnonzero(clearance <= 0.0).tolist()
-    found = tuple(row for step in touching for row in finder.at(step, int(nearest[step])))
-    return found, finder.notes()
+    names = list(zip(*pair_names(case, pairs), strict=True))
+    rows = ContactRows(names, motions[0].times, finder.once_more)
+    for step in _touching(clearance):
+        for i_pair, found in finder.at(step, int(nearest[step])):
+            rows.add(step, i_pair, found)
+    return (rows if len(rows) else ()), finder.notes()
 
 
 @dataclass(eq=False)
@@ -60,22 +68,24 @@ class _Finder:
     _made: dict[int, BodyPair] = field(default_factory=dict)
     _told: dict[str, None] = field(default_factory=dict)
 
-    def at(self, step: int, i_nearest: int) -> Iterator[StepContact]:
-        """The contacts of one step, in the order of the pairs."""
-        links, obstacles = self._names
-        time = float(self.motions[0].times[step])
+    def at(self, step: int, i_nearest: int) -> Iterator[tuple[int, Contact]]:
+        """The pairs in contact at one step, in order, each with its overlap in the world frame."""
         for i, world_from_link in self._near(step):
             world_from_obstacle = self._obstacle(i).world_from_body
             b_from_a = inverse(world_from_obstacle) @ world_from_link
             key = (i, b_from_a.tobytes())
             is_sure = i == i_nearest
             if key not in self._known or (is_sure and self._known[key] is None):
+                if len(self._known) >= MOST_KNOWN:
+                    del self._known[next(iter(self._known))]
                 self._known[key] = self._asked(i, b_from_a, is_sure)
             found = self._known[key]
             if found is not None:
-                yield StepContact(
-                    step, time, links[i], obstacles[i], found.placed(world_from_obstacle)
-                )
+                yield i, found.placed(world_from_obstacle)
+
+    def once_more(self, step: int, i_pair: int) -> Contact:
+        """The overlap of a pair that was found in contact at a step."""
+        return dict(self.at(step, i_pair))[i_pair]
 
     def _near(self, step: int) -> Iterator[tuple[int, np.ndarray]]:
         """The pairs whose boxes meet at one step, each with its link's pose."""
@@ -136,6 +146,11 @@ class _Finder:
             if note:
                 self._told[f"contact: {name}: {note}"] = None
         return self._parts[id(body)]
+
+
+def _touching(clearance: np.ndarray) -> Iterator[int]:
+    for block in blocks(len(clearance)):
+        yield from (block.start + np.flatnonzero(clearance[block] <= 0.0)).tolist()
 
 
 def _meet(a: Box, b: Box) -> bool:

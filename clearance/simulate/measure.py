@@ -1,8 +1,9 @@
 """Measures a motion exactly, as far as is asked: every step, every pair, what is near, or the minimum.
 
 The compiled sweep runs over parts of the steps, on several threads, so that progress can be shown and a run
-interrupted; how the steps are parted depends on their number alone, and so does every result. Not for: where
-the motion comes from (`kinematic`, `bullet`).
+interrupted; how the steps are parted depends on their number alone, and so does every result. Poses are made a
+part at a time; rows are kept in memory or on disk (`spool`). Not for: where the motion comes from (`kinematic`,
+`bullet`).
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import numpy as np
 from clearance.kernel_table import call
 from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
 from clearance.simulate.layout import Layout, lay_out
-from clearance.simulate.parts import in_order, parts, usable_cores
+from clearance.simulate.parts import blocks, in_order, parts, usable_cores
+from clearance.simulate.spool import Rows
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -31,7 +33,13 @@ with a lower bound for the others; the least of all steps only."""
 FIRST_LOOK = 24
 """Steps that are looked at first, evenly spread, where only the least of many is asked for."""
 
+Steps = np.ndarray | range
+"""(k,) increasing step indices."""
+
 COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
+
+HELD = 512
+"""Parts after which the memory of rows that are on disk is let go: 5 MB."""
 
 
 class Minima(NamedTuple):
@@ -75,6 +83,7 @@ class _Sweep:
     layout: Layout
     motions: Sequence[Motion]
     jobs: int
+    kept: Rows
     progress: Progress | None = None
     tally: np.ndarray = field(default_factory=lambda: np.zeros(len(COUNTERS), dtype=np.int64))
 
@@ -91,47 +100,101 @@ class _Sweep:
         """The same without progress, for passes beside the one that is counted."""
         return replace(self, progress=None)
 
-    def step_rows(
-        self, steps: np.ndarray, within: float = np.inf, *, lasting: bool = False
-    ) -> StepRows:
-        """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
-        goal = Goal(np.full(self.n_pairs, within), False, lasting)
-        return self._run(steps, goal, keep_every=False)[0]
+    @property
+    def aside(self) -> _Sweep:
+        """The same for a few steps, whose rows need no keeping."""
+        return replace(self, progress=None, kept=Rows())
 
-    def pair_rows(
-        self, steps: np.ndarray, within: np.ndarray, *, keep_every: bool
-    ) -> tuple[StepRows, PairRows]:
-        """Every pair by itself, within (p,) [m]: at every step, or only the least of each."""
-        return self._run(steps, Goal(within, True, not keep_every), keep_every=keep_every)
+    def step_rows(
+        self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False
+    ) -> KeptRows:
+        """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
+        rows = self._rows(name, len(steps))
+        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting), rows=rows)
+        return rows
+
+    def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
+        """The nearest pair of each step, every pair at every step, and the least of each."""
+        rows = self._rows(name, len(steps))
+        every = self.kept.array(f"{name}.every", (len(steps), self.n_pairs))
+        goal = Goal(np.full(self.n_pairs, np.inf), True, False)
+        return rows, every, self._run(name, steps, goal, rows=rows, every=every)
+
+    def least_rows(self, name: str, steps: Steps, within: np.ndarray) -> Minima:
+        """The least of every pair by itself, within (p,) [m]."""
+        return self._run(name, steps, Goal(within, True, True))
+
+    def _rows(self, name: str, n_rows: int) -> KeptRows:
+        array = self.kept.array
+        return KeptRows(
+            array(f"{name}.clearance", (n_rows,)),
+            array(f"{name}.floor", (n_rows,)),
+            array(f"{name}.pair", (n_rows,), np.int64),
+            array(f"{name}.points", (n_rows, 2, 3)),
+        )
 
     def _run(
-        self, steps: np.ndarray, goal: Goal, *, keep_every: bool
-    ) -> tuple[StepRows, PairRows]:
-        n_rows = len(steps)
-        rows = StepRows(
-            np.empty(n_rows),
-            np.empty(n_rows),
-            np.empty(n_rows, dtype=np.int64),
-            np.empty((n_rows, 2), dtype=np.int64),
-            np.empty((n_rows, 2, 3)),
-        )
-        every = np.empty((n_rows if keep_every else 0, self.n_pairs))
-        least = _no_minima(self.n_pairs)
+        self,
+        name: str,
+        steps: Steps,
+        goal: Goal,
+        *,
+        rows: KeptRows | None = None,
+        every: np.ndarray | None = None,
+    ) -> Minima:
+        """Fills what rows are given, from the part on that an interrupted run had not reached."""
+        spans = parts(len(steps))
+        log = self.kept.log(name, spans)
+        least, tally = _gathered(log.gathered, self.n_pairs)
+        nothing = np.empty((0, self.n_pairs))
 
         def run_part(span: slice) -> tuple[int, PairRows, np.ndarray]:
-            world = self.layout.world(self.motions, steps[span])
-            found = PairRows(every[span] if keep_every else every, *_no_minima(self.n_pairs))
-            tally = np.zeros(len(COUNTERS), dtype=np.int64)
-            part = StepRows(*(column[span] for column in rows))
-            call(sweep, self.layout.surface, world, steps[span], goal, part, found, tally)
-            return span.stop, found, tally
+            these = np.array(steps[span], dtype=np.int64)
+            world = self.layout.world(self.motions, these)
+            found = PairRows(nothing if every is None else every[span], *_no_minima(self.n_pairs))
+            counts = np.zeros(len(COUNTERS), dtype=np.int64)
+            call(sweep, self.layout.surface, world, these, goal, _rows_of(rows, span), found, counts)
+            return span.stop, found, counts
 
-        for done, found, tally in in_order(run_part, parts(n_rows), self.jobs):
+        results = in_order(run_part, spans[log.done :], self.jobs)
+        for i_part, (done, found, counts) in enumerate(results, start=log.done + 1):
             _take_lesser(least, found)
-            self.tally[:] += tally
+            tally += counts
+            log.note(i_part, {**least._asdict(), "tally": tally}, last=i_part == len(spans))
+            if i_part % HELD == 0:
+                self.kept.let_go()
             if self.progress:
-                self.progress(done, n_rows)
-        return rows, PairRows(every, *least)
+                self.progress(done, len(steps))
+        self.tally[:] += tally
+        return least
+
+
+class KeptRows(NamedTuple):
+    """What is kept of `StepRows`: (n,) clearance [m], floor [m], pair, and (n, 2, 3) points [m]."""
+
+    clearance: np.ndarray
+    floor: np.ndarray
+    pair: np.ndarray
+    points: np.ndarray
+
+
+def _rows_of(rows: KeptRows | None, span: slice) -> StepRows:
+    """Room for the rows of a part: of those that are kept, and for what is not."""
+    n_rows = span.stop - span.start
+    faces = np.empty((n_rows, 2), dtype=np.int64)
+    if rows is not None:
+        part = KeptRows(*(column[span] for column in rows))
+    else:
+        numbers, pair = np.empty((2, n_rows)), np.empty(n_rows, dtype=np.int64)
+        part = KeptRows(numbers[0], numbers[1], pair, np.empty((n_rows, 2, 3)))
+    return StepRows(part.clearance, part.floor, part.pair, faces, part.points)
+
+
+def _gathered(known: dict[str, np.ndarray], n_pairs: int) -> tuple[Minima, np.ndarray]:
+    """The minima and counters of the parts that are done."""
+    if not known:
+        return _no_minima(n_pairs), np.zeros(len(COUNTERS), dtype=np.int64)
+    return Minima(known["clearance"], known["step"], known["points"]), known["tally"]
 
 
 def measure(
@@ -142,60 +205,62 @@ def measure(
     *,
     jobs: int | None = None,
     progress: Progress | None = None,
+    kept: Rows | None = None,
 ) -> Measurement:
     """The exact clearances of `pairs` over `motions` (one for each robot, with the same steps).
 
     Args:
         need: one of `NEEDS`.
         jobs: threads; as many as the machine has to offer by default.
+        kept: where the rows are kept; in memory by default.
     """
-    work = _Sweep(lay_out(case, pairs), motions, jobs or usable_cores(), progress)
+    work = _Sweep(lay_out(case, pairs), motions, jobs or usable_cores(), kept or Rows(), progress)
     if need == "pairs":
         return _every_pair(work)
     if need == "minimum":
         return _minimum(work)
     if need == "limit":
         return _within_limit(work, case.limits.warn)
-    rows = work.step_rows(np.arange(work.n_steps))
+    rows = work.step_rows("steps", range(work.n_steps))
     return _measurement(work, rows, lambda: _pair_minima(work.quiet))
 
 
 def _every_pair(work: _Sweep) -> Measurement:
-    all_steps, infinite = np.arange(work.n_steps), np.full(work.n_pairs, np.inf)
-    rows, found = work.pair_rows(all_steps, infinite, keep_every=True)
-    minima = Minima(found.clearance, found.step, found.points)
-    return _measurement(work, rows, lambda: minima, every=found.every)
+    rows, every, minima = work.every_row("pairs", range(work.n_steps))
+    return _measurement(work, rows, lambda: minima, every=every)
 
 
 def _minimum(work: _Sweep) -> Measurement:
-    rows = work.step_rows(np.arange(work.n_steps), _first_least(work), lasting=True)
-    rows.pair[np.arange(work.n_steps) != np.argmin(rows.clearance)] = -1  # met on the way to the least
+    rows = work.step_rows("minimum", range(work.n_steps), _first_least(work), lasting=True)
+    least = int(np.nanargmin(rows.clearance))
+    rows.pair[:least] = rows.pair[least + 1 :] = -1  # what was met on the way to the least
     return _measurement(work, rows, None)
 
 
 def _within_limit(work: _Sweep, limit: float) -> Measurement:
     """The least of all is always known, so that a run has a worst step."""
-    rows = work.step_rows(np.arange(work.n_steps), limit * NOT_LESS)
-    far = rows.pair < 0
-    rows.floor[far] = np.maximum(rows.floor[far], limit)  # all that could be within it was sought
-    if (rows.pair >= 0).any():
+    rows = work.step_rows("limit", range(work.n_steps), limit * NOT_LESS)
+    for block in blocks(work.n_steps):
+        floor = rows.floor[block]  # all that could be within the limit was sought
+        np.maximum(floor, limit, out=floor, where=rows.pair[block] < 0)
+    if any((rows.pair[block] >= 0).any() for block in blocks(work.n_steps)):
         return _measurement(work, rows, None)
     least = _minimum(work.quiet)
-    return replace(least, lower_bound=np.maximum(least.lower_bound, rows.floor))
+    for block in blocks(work.n_steps):
+        np.maximum(least.lower_bound[block], rows.floor[block], out=least.lower_bound[block])
+    return least
 
 
 def _pair_minima(work: _Sweep) -> Minima:
     """The least of each pair: a first look at few steps, then only what could be nearer."""
-    first = _first_steps(work.n_steps)
     infinite = np.full(work.n_pairs, np.inf)
-    _, seen = work.pair_rows(first, infinite, keep_every=False)
-    _, found = work.pair_rows(np.arange(work.n_steps), seen.clearance * NOT_LESS, keep_every=False)
-    return Minima(found.clearance, found.step, found.points)
+    seen = work.aside.least_rows("first", _first_steps(work.n_steps), infinite)
+    return work.least_rows("minima", range(work.n_steps), seen.clearance * NOT_LESS)
 
 
 def _first_least(work: _Sweep) -> float:
     """[m] a clearance that some step has, or a little more."""
-    rows = work.quiet.step_rows(_first_steps(work.n_steps), lasting=True)
+    rows = work.aside.step_rows("first", _first_steps(work.n_steps), lasting=True)
     return float(rows.clearance.min()) * NOT_LESS
 
 
@@ -205,13 +270,15 @@ def _first_steps(n_steps: int) -> np.ndarray:
 
 def _measurement(
     work: _Sweep,
-    rows: StepRows,
+    rows: KeptRows,
     find_minima: Callable[[], Minima] | None,
     every: np.ndarray | None = None,
 ) -> Measurement:
-    unknown = rows.pair < 0
-    rows.clearance[unknown] = np.nan
-    rows.points[unknown] = np.nan
+    for block in blocks(work.n_steps):
+        unknown = rows.pair[block] < 0
+        rows.clearance[block][unknown] = np.nan
+        rows.points[block][unknown] = np.nan
+    work.kept.let_go()
     return Measurement(
         rows.clearance,
         rows.floor,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
@@ -11,6 +12,12 @@ Result = TypeVar("Result")
 
 LONGEST_PART = 128
 """Rows of a part at most; short enough to show progress, long enough for bounds to be carried."""
+
+WAITING = 8
+"""Parts a thread that are handed out ahead: so many results wait at most."""
+
+BLOCK = 2**16
+"""Rows that are looked at together where all rows are gone through: 0.5 MB of each number."""
 
 
 def usable_cores() -> int:
@@ -27,15 +34,27 @@ def parts(n_rows: int) -> list[slice]:
     return [slice(start, end) for start, end in zip(ends, ends[1:], strict=False)]
 
 
+def blocks(n_rows: int) -> Iterator[slice]:
+    """The rows in blocks of `BLOCK`; the last one is shorter."""
+    for start in range(0, n_rows, BLOCK):
+        yield slice(start, min(start + BLOCK, n_rows))
+
+
 def in_order(
     work: Callable[[slice], Result], spans: Sequence[slice], jobs: int
 ) -> Iterator[Result]:
     """The results of `work` for each span, in order, from as many threads as are asked for."""
-    if jobs == 1 or len(spans) == 1:
+    if jobs == 1 or len(spans) <= 1:
         yield from map(work, spans)
         return
     pool = ThreadPoolExecutor(min(jobs, len(spans)))
+    running = deque()
     try:
-        yield from pool.map(work, spans)
+        for span in spans:
+            running.append(pool.submit(work, span))
+            if len(running) >= WAITING * jobs:
+                yield running.popleft().result()
+        while running:
+            yield running.popleft().result()
     finally:
         pool.shutdown(cancel_futures=True)

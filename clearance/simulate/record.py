@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
 
+from clearance.simulate.parts import BLOCK
 from clearance.world.case import Case, Unmeasured
 from clearance.world.motion import Motion
 
@@ -31,13 +34,24 @@ class PairMinimum:
 
 @dataclass(frozen=True, eq=False)
 class StepContact:
-    """One link-obstacle pair that overlaps at one step; `found` is in the world frame, the link is its body a."""
+    """One link-obstacle pair that overlaps at one step.
+
+    Attributes:
+        numbers: the overlap in the world frame, the link its body a; without its region if there is `again`.
+        again: finds all of it once more.
+    """
 
     step: int
     time: float  # [s]
     link: str
     obstacle: str
-    found: Contact
+    numbers: Contact
+    again: Callable[[], Contact] | None = None
+
+    @cached_property
+    def found(self) -> Contact:
+        """The overlap with its region."""
+        return self.numbers if self.again is None else self.again()
 
 
 @dataclass(frozen=True)
@@ -101,6 +115,41 @@ class Certificate:
         return int(np.argmin(self.lower_bound))
 
 
+@dataclass(frozen=True, eq=False)
+class EveryPair:
+    """The clearance of every pair at every step.
+
+    Attributes:
+        links, obstacles: (p,) names of each pair.
+        clearance: (n, p) [m].
+    """
+
+    links: list[str]
+    obstacles: list[str]
+    clearance: np.ndarray
+
+    @cached_property
+    def table(self) -> pa.Table:
+        """One row a step and pair: step, link, obstacle, clearance [m]."""
+        return pa.concat_tables(self.batches()).combine_chunks()
+
+    def batches(self) -> Iterator[pa.Table]:
+        """The rows of `table`, a block of steps at a time."""
+        n_steps, n_pairs = self.clearance.shape
+        size = max(1, BLOCK // n_pairs)
+        for start in range(0, n_steps, size):
+            part = self.clearance[start : start + size]
+            i_pair = pa.array(np.tile(np.arange(n_pairs, dtype=np.int32), len(part)))
+            yield pa.table(
+                {
+                    "step": pa.array(np.repeat(np.arange(start, start + len(part)), n_pairs)),
+                    "link": pa.DictionaryArray.from_arrays(i_pair, self.links),
+                    "obstacle": pa.DictionaryArray.from_arrays(i_pair, self.obstacles),
+                    "clearance": pa.array(part.reshape(-1)),
+                }
+            )
+
+
 @dataclass(frozen=True)
 class ProfileAnswer:
     """Whether what the robot sweeps keeps to a reserved outline, and how close it comes.
@@ -145,10 +194,12 @@ class Record:
             of them, null without contact.
         pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
-        every_pair: one row a step and pair (step, link, obstacle, clearance), if `need` is "pairs".
+        every_pair: the clearance of every pair at every step, if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
         contacts: every pair in contact at every step, steps first.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
+        let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
+        room: tells a folder on the disk of the report for files on the way there, if there still is one.
     """
 
     case: Case
@@ -162,15 +213,17 @@ class Record:
     cross_check: CrossCheck | None = None
     certificate: Certificate | None = None
     need: str = "steps"
-    every_pair: pa.Table | None = None
+    every_pair: EveryPair | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
-    contacts: tuple[StepContact, ...] = ()
+    contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
+    let_go: Callable[[], None] = lambda: None
+    room: Callable[[], Path | None] = lambda: None
 
-    @property
+    @cached_property
     def deepest(self) -> StepContact | None:
         """The first contact of greatest penetration; None without contact."""
-        return max(self.contacts, key=lambda row: row.found.penetration, default=None)
+        return max(self.contacts, key=lambda row: row.numbers.penetration, default=None)
 
     @property
     def clearances(self) -> np.ndarray:

@@ -17,6 +17,7 @@ import pyarrow as pa
 
 from clearance.errors import BadSyntax, MissingFile
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
 from clearance.simulate.replay_contact import DrawnContact, drawn_contacts
 from clearance.simulate.steps import STATUSES
@@ -159,7 +160,7 @@ def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
     and the deepest contact."""
     kept = kept_steps(record, max_frames)
     contacts, regions = drawn_contacts(record, kept)
-    table = record.steps.take(kept)
+    table = _rows_at(record, kept)
     link_names, obstacle_names = table["link"].to_pylist(), table["obstacle"].to_pylist()
     bodies, shapes, poses = _drawn_bodies(record, kept)
     index = {(body.kind, body.name): i for i, body in enumerate(bodies)}
@@ -184,6 +185,17 @@ def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
     )
 
 
+def _rows_at(record: Record, kept: np.ndarray) -> pa.Table:
+    """The rows of some steps, block by block: taken at once, all rows would be put together first."""
+    taken = []
+    for block in blocks(record.steps.num_rows):
+        here = kept[np.searchsorted(kept, block.start) : np.searchsorted(kept, block.stop)]
+        rows = record.steps.slice(block.start, block.stop - block.start)
+        taken.append(rows.take(here - block.start))
+        record.let_go()
+    return pa.concat_tables(taken).combine_chunks()
+
+
 _LINE = ("link_x", "link_y", "link_z", "obstacle_x", "obstacle_y", "obstacle_z")
 
 
@@ -204,8 +216,18 @@ def _lines(record: Record, steps: pa.Table) -> np.ndarray:
 
 def codes_of(steps: pa.Table) -> np.ndarray:
     """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
-    code = {str(status): i for i, status in enumerate(STATUSES)}
-    return np.array([code.get(status, 0) for status in steps["status"].to_pylist()], dtype=np.uint8)
+    names = pa.array([str(status) for status in STATUSES])
+    return np.concatenate([_codes(part, names) for part in steps["status"].iterchunks()] or [_NO_CODES])
+
+
+_NO_CODES = np.empty(0, dtype=np.uint8)
+
+
+def _codes(statuses: pa.Array, names: pa.Array) -> np.ndarray:
+    import pyarrow.compute
+
+    found = pyarrow.compute.index_in(statuses, names).fill_null(0)
+    return found.to_numpy(zero_copy_only=False).astype(np.uint8)
 
 
 def kept_steps(record: Record, max_frames: int) -> np.ndarray:

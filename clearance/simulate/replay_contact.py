@@ -63,13 +63,20 @@ def drawn_contacts(
 
 
 def _thinned(rows: Sequence[StepContact], deepest: StepContact | None) -> list[StepContact]:
-    every = 1
+    every = max(1, -(-len(rows) // MOST_CONTACTS))
     while True:
-        chosen = [row for i, row in enumerate(rows) if i % every == 0 or row is deepest]
-        n_triangles = sum(len(row.found.region.triangles) for row in chosen)
-        if (len(chosen) <= MOST_CONTACTS and n_triangles <= MOST_TRIANGLES) or len(chosen) <= 2:
+        chosen = [row for i, row in enumerate(rows) if i % every == 0 or _same(row, deepest)]
+        if len(chosen) <= 2:
             return chosen
+        if len(chosen) <= MOST_CONTACTS:
+            n_triangles = sum(len(row.found.region.triangles) for row in chosen)
+            if n_triangles <= MOST_TRIANGLES:
+                return chosen
         every += 1
+
+
+def _same(row: StepContact, other: StepContact | None) -> bool:
+    return other is not None and (row.step, row.link, row.obstacle) == (other.step, other.link, other.obstacle)
 
 
 def _drawn(row: StepContact, frame: int) -> DrawnContact:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from functools import cached_property
 
@@ -10,7 +11,8 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.measure import Measurement
-from clearance.simulate.record import Certificate, PairMinimum, StepContact
+from clearance.simulate.parts import blocks
+from clearance.simulate.record import Certificate, EveryPair, PairMinimum, StepContact
 from clearance.world.case import Case, Limits, Unmeasured
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -29,15 +31,18 @@ STATUSES = tuple(Status)
 
 
 def status_codes(
-    clearance: np.ndarray, limits: Limits, certificate: Certificate | None = None
+    clearance: np.ndarray,
+    limits: Limits,
+    certificate: Certificate | None = None,
+    steps: slice = slice(None),
 ) -> np.ndarray:
-    """(n,) indices into `STATUSES`: contact at 0, violated below `fail`, near below `warn`.
+    """(n,) indices into `STATUSES` of `steps`: contact at 0, violated below `fail`, near below `warn`.
 
     With a certificate, row i judges the motion from step i to i + 1 by its lower bound; contact is what was
     really seen.
     """
-    seen = clearance if certificate is None else certificate.upper_bound
-    proven = clearance if certificate is None else certificate.lower_bound
+    seen = (clearance if certificate is None else certificate.upper_bound)[steps]
+    proven = (clearance if certificate is None else certificate.lower_bound)[steps]
     below = [seen <= 0.0, proven < limits.fail, proven < limits.warn]
     return np.select(below, [3, 2, 1], default=0)
 
@@ -51,41 +56,57 @@ def step_table(
     certificate: Certificate | None = None,
     with_error: bool = False,
     contacts: Sequence[StepContact] = (),
-) -> pa.Table:
-    """One row a step; columns as in `Record.steps`, null where only a bound is known."""
-    links, obstacles = pair_names(case, pairs)
+) -> Iterator[pa.Table]:
+    """One row a step; columns as in `Record.steps`, null where only a bound is known. In blocks of steps."""
+    names = pair_names(case, pairs)
+    n_steps = len(found.clearance)
+    bounded = any((found.pair[block] < 0).any() for block in blocks(n_steps))
+    first = [row.step for row in contacts]
+    for block in blocks(n_steps):
+        columns = _measured_columns(names, found, motions[0].times, block)
+        codes = status_codes(found.clearance, case.limits, certificate, block)
+        undecided = (found.pair[block] < 0) & (found.lower_bound[block] < case.limits.warn)
+        codes = np.where(undecided, -1, codes)
+        columns["status"] = _names([str(status) for status in STATUSES], codes)
+        if certificate is not None:
+            columns["lower_bound"] = pa.array(certificate.lower_bound[block])
+        elif bounded:
+            columns["lower_bound"] = pa.array(found.lower_bound[block])
+        if with_error:
+            errors = [motion.tracking_error[block] for motion in motions]
+            columns["tracking_error"] = pa.array(np.max(errors, axis=0))
+        touching = contacts[bisect_left(first, block.start) : bisect_left(first, block.stop)]
+        columns |= _contact_columns(block, touching)
+        yield pa.table(columns)
+
+
+def _measured_columns(
+    names: tuple[list[str], list[str]], found: Measurement, times: np.ndarray, block: slice
+) -> dict[str, pa.Array]:
+    links, obstacles = names
     columns = {
-        "step": pa.array(np.arange(len(found.clearance))),
-        "time": pa.array(motions[0].times),
-        "clearance": pa.array(found.clearance, from_pandas=True),
-        "link": _names(links, found.pair),
-        "obstacle": _names(obstacles, found.pair),
+        "step": pa.array(np.arange(block.start, block.stop)),
+        "time": pa.array(times[block]),
+        "clearance": pa.array(found.clearance[block], from_pandas=True),
+        "link": _names(links, found.pair[block]),
+        "obstacle": _names(obstacles, found.pair[block]),
     }
     for i_side, side in enumerate(("link", "obstacle")):
         for i_axis, axis in enumerate("xyz"):
-            columns[f"{side}_{axis}"] = pa.array(
-                found.points[:, i_side, i_axis], from_pandas=True
-            )
-    codes = status_codes(found.clearance, case.limits, certificate)
-    undecided = (found.pair < 0) & (found.lower_bound < case.limits.warn)
-    columns["status"] = _names([str(status) for status in STATUSES], np.where(undecided, -1, codes))
-    if certificate is not None:
-        columns["lower_bound"] = pa.array(certificate.lower_bound)
-    elif (found.pair < 0).any():
-        columns["lower_bound"] = pa.array(found.lower_bound)
-    if with_error:
-        columns["tracking_error"] = pa.array(np.max([m.tracking_error for m in motions], axis=0))
-    columns |= _contact_columns(len(found.clearance), contacts)
-    return pa.table(columns)
+            values = found.points[block, i_side, i_axis]
+            columns[f"{side}_{axis}"] = pa.array(values, from_pandas=True)
+    return columns
 
 
-def _contact_columns(n_steps: int, contacts: Sequence[StepContact]) -> dict[str, pa.Array]:
+def _contact_columns(block: slice, contacts: Sequence[StepContact]) -> dict[str, pa.Array]:
     """The penetration of the deepest pair and the volume of all, step by step; null without contact."""
+    n_steps = block.stop - block.start
     depth, volume, none = np.zeros(n_steps), np.zeros(n_steps), np.ones(n_steps, dtype=bool)
     for row in contacts:
-        depth[row.step] = max(depth[row.step], row.found.penetration)
-        volume[row.step] += row.found.volume
-        none[row.step] = False
+        i = row.step - block.start
+        depth[i] = max(depth[i], row.numbers.penetration)
+        volume[i] += row.numbers.volume
+        none[i] = False
     return {"penetration": pa.array(depth, mask=none), "volume": pa.array(volume, mask=none)}
 
 
@@ -129,21 +150,9 @@ class PairMinima(Sequence[PairMinimum]):
         )
 
 
-def every_pair_table(case: Case, pairs: Sequence[Pair], found: Measurement) -> pa.Table | None:
-    """One row a step and pair: step, link, obstacle, clearance [m]; None if that was not asked for."""
-    if found.every is None:
-        return None
-    n_steps, n_pairs = found.every.shape
-    i_pair = pa.array(np.tile(np.arange(n_pairs, dtype=np.int32), n_steps))
-    links, obstacles = pair_names(case, pairs)
-    return pa.table(
-        {
-            "step": pa.array(np.repeat(np.arange(n_steps), n_pairs)),
-            "link": pa.DictionaryArray.from_arrays(i_pair, links),
-            "obstacle": pa.DictionaryArray.from_arrays(i_pair, obstacles),
-            "clearance": pa.array(found.every.reshape(-1)),
-        }
-    )
+def every_pair(case: Case, pairs: Sequence[Pair], found: Measurement) -> EveryPair | None:
+    """The clearance of every pair at every step; None if that was not asked for."""
+    return None if found.every is None else EveryPair(*pair_names(case, pairs), found.every)
 
 
 def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Unmeasured]:

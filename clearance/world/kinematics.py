@@ -63,6 +63,8 @@ def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: n
         UnknownJoint: a name that is not a moving joint of the robot.
     """
     columns = {joint.name: i for i, joint in enumerate(placed.robot.moving_joints)}
+    if tuple(columns) == tuple(joint_names) and not placed.fixed_positions:
+        return np.ascontiguousarray(given, dtype=np.float64)
     positions = np.zeros((len(given), len(columns)))
     for name, value in placed.fixed_positions.items():
         positions[:, _column(columns, name)] = value

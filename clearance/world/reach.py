@@ -1,4 +1,7 @@
-"""Refuses a case whose bodies get farther away than anything a robot works on: a unit mistake, or overflow."""
+"""Refuses what no robot does: bodies far beyond any place it works at, joints that spin between two samples.
+
+Both are unit mistakes or typing errors, and would end in overflow or in work without end.
+"""
 
 from __future__ import annotations
 
@@ -7,25 +10,69 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadDimension
-from clearance.tolerance import REACH
+from clearance.tolerance import REACH, TURNS
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.cubic import extremes_between
 from clearance.world.motion import Motion
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
 
 
 def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
-    """Nothing, if every body stays within `tolerance.REACH` of the origin.
+    """Nothing, if every body stays within `tolerance.REACH` of the origin and no joint spins between two steps.
 
     Raises:
-        BadDimension: the first body that does not.
+        BadDimension: the first body or joint that does not.
     """
     for obstacle in case.obstacles:
         _require(f"obstacle {obstacle.name!r}", obstacle.body, obstacle.world_from_body[:3, 3])
     for motion in motions:
+        require_few_turns(motion.placed.robot, motion.joint_names, motion)
         farthest = np.abs(motion.placed.world_from_base[:3, 3]).max() + _slide(motion)
         for body in motion.placed.robot.bodies:
             _require(f"link {body.name!r}", body, np.array([farthest]))
+
+
+def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajectory) -> None:
+    """Nothing, if no joint turns more than `tolerance.TURNS` times between two steps.
+
+    Args:
+        names: of the columns of `moves`.
+
+    Raises:
+        BadDimension: the first joint that does, with the times between which it does.
+    """
+    for joint in robot.joints:
+        factor, name = _followed(robot, joint)
+        if joint.kind not in (JointKind.REVOLUTE, JointKind.CONTINUOUS) or name not in names:
+            continue
+        way = abs(factor) * _ways(moves, list(names).index(name))
+        if way.size and not way.max() <= TURNS * 2.0 * np.pi:
+            i = int(np.argmax(way))
+            raise BadDimension(
+                f"joint {joint.name!r} turns by {way[i]:g} rad between {moves.times[i]:g} s and "
+                f"{moves.times[i + 1]:g} s",
+                valid=f"{TURNS:g} turns or less from sample to sample; angles are in radians",
+            )
+
+
+def _ways(moves: Motion | Trajectory, i_joint: int) -> np.ndarray:
+    """(n - 1,) [rad or m] how far a joint goes between samples, or would at its speed at one of them."""
+    ways = np.abs(np.diff(moves.positions[:, i_joint]))
+    if moves.velocities is not None:
+        speeds = np.abs(moves.velocities[:, i_joint])
+        ways = np.maximum(ways, np.maximum(speeds[1:], speeds[:-1]) * np.diff(moves.times))
+    return ways
+
+
+def _followed(robot: Robot, joint: Joint) -> tuple[float, str]:
+    """How many times as far as which moving joint a joint goes."""
+    by_name = {other.name: other for other in robot.joints}
+    factor = 1.0
+    while joint.mimic is not None:
+        factor, joint = factor * joint.mimic.multiplier, by_name[joint.mimic.joint]
+    return factor, joint.name
 
 
 def _slide(motion: Motion) -> float:
@@ -33,11 +80,16 @@ def _slide(motion: Motion) -> float:
     robot = motion.placed.robot
     apart = sum(float(np.abs(joint.parent_from_joint[:3, 3]).sum()) for joint in robot.joints)
     slides = [i for i, joint in enumerate(robot.moving_joints) if joint.kind == "prismatic"]
-    positions = motion.positions
+    return apart + sum(_farthest(motion, i) for i in slides)
+
+
+def _farthest(motion: Motion, i_joint: int) -> float:
+    """[rad or m] the greatest magnitude of a joint's position, at the steps and between."""
+    column = slice(i_joint, i_joint + 1)
+    reached = [motion.positions[:, column]]
     if motion.velocities is not None:
-        least, greatest = extremes_between(motion.times, positions, motion.velocities)
-        positions = np.concatenate([positions, least, greatest])
-    return apart + float(np.abs(positions[:, slides]).max(axis=0, initial=0.0).sum())
+        reached += extremes_between(motion.times, reached[0], motion.velocities[:, column])
+    return max(float(max(part.max(), -part.min())) for part in reached if part.size)
 
 
 def _require(what: str, body: Body, origin: np.ndarray) -> None:

@@ -83,6 +83,48 @@ def test_report_and_junit_are_where_they_were_asked_for(folder):
     assert (folder / "junit.xml").read_bytes().startswith(b"<?xml")
 
 
+DISAGREEING = """
+import clearance.crosscheck.compare as compare
+from clearance import cli
+measure = compare.PeerRun.measure
+def off_by_a_micrometre(run, progress=None):
+    answers = measure(run, progress)
+    answers.clearances[1] += 1e-6
+    return answers
+compare.PeerRun.measure = off_by_a_micrometre
+cli.main()
+"""
+
+
+@pytest.mark.parametrize("limit", ["50", "150"])
+def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, limit):
+    command = [sys.executable, "-c", DISAGREEING, "check", "case.yaml", "--cross-check", "--fail-mm", limit]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (3, "")
+    assert "DISAGREES at 1 step" in done.stdout
+
+
+def test_a_killed_run_is_resumed_and_leaves_nothing_behind(folder):
+    """The command line's own: the same command again, one line on stderr, the bytes of a whole run."""
+    rows = (f"{i},{0.7 * (i % 1000) / 1000}" for i in range(60_000))
+    (folder / "path.csv").write_text("time,rail\n" + "\n".join(rows) + "\n")
+    command = [sys.executable, "-m", "clearance", "check", "case.yaml", "--out", "report"]
+    process = subprocess.Popen(command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)})
+    kept = folder / ".report.unfinished"
+    while process.poll() is None and not list(kept.glob("*.state")):
+        time.sleep(0.01)
+    process.kill()
+    assert process.wait() == -signal.SIGKILL
+    assert not (folder / "report").exists()
+    resumed = clearance(folder, "--out", "report")
+    assert resumed.returncode == 0, resumed.stderr
+    assert resumed.stderr.startswith("resuming: ") and resumed.stderr.count("\n") == 1
+    whole = clearance(folder, "--out", "whole")
+    assert whole.stderr == "" and files(folder / "report") == files(folder / "whole")
+    assert not kept.exists()
+
+
 BAD = {
     "unknown joint": ("path.csv", "time,rail", "time,rale", "rale"),
     "unknown link in allow": ("case.yaml", "allow: []", "allow: [[slidr, wall]]", "slidr"),

@@ -221,6 +221,50 @@ def test_what_looks_like_a_wrong_unit_is_noted_loudly(tmp_path):
     assert notes.count("CHECK UNITS") == 4
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("urdf: arm.urdf", "urdf: arm.urdf, base: {rpy: [0, 0, 90]}", "base has an angle of 90 rad"),
+        ("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [-1200, 0, 0]}", "base stands 1200 m away"),
+        ("xyz: [2, 0, 0]", "rpy: [0, -45, 0]", "obstacle 'post' has an angle of 45 rad"),
+        ("xyz: [2, 0, 0]", "xyz: [0, 0, 650]", "obstacle 'post' stands 650 m away"),
+    ],
+)
+def test_poses_in_degrees_and_millimetres_are_noted(tmp_path, old, new, says):
+    (note,) = load(tmp_path, changed(old, new)).notes
+    assert note.startswith("CHECK UNITS: ") and says in note
+
+
+def test_poses_at_the_edge_of_what_is_usual_are_not_noted(tmp_path):
+    text = changed("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [100, 0, 0], rpy: [6.28, 0, -6.28]}")
+    assert load(tmp_path, text).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('xyz="0 0 0.1" rpy="0 0 0"', 'rpy="0 0 90"', "joint 'shoulder' has an angle of 90 rad"),
+        ('xyz="0 0 0.5"', 'xyz="0 0 500"', "link 'upper' stands 500 m away"),
+        ('"upper.stl"', '"upper.stl" scale="1000 1000 1000"', "the mesh is scaled by 1000"),
+    ],
+)
+def test_origins_and_scales_in_other_units_are_noted(tmp_path, old, new, says):
+    assert old in ARM
+    (note, *_) = load(tmp_path, urdf=ARM.replace(old, new)).robots[0].robot.notes
+    assert "CHECK UNITS: " in note and says in note
+
+
+@pytest.mark.parametrize("turns", [1001.0, -1e7])
+def test_a_joint_that_spins_between_two_samples_is_refused(tmp_path, turns):
+    load(tmp_path, trajectory="time,shoulder\n0,0\n1,6283.18\n")
+    way = 0.1 + turns * 6.283185307179586
+    with pytest.raises(BadDimension) as caught:
+        load(tmp_path, trajectory=f"time,shoulder\n0,0\n1,0.1\n2.5,{way}\n")
+    told = str(caught.value)
+    assert "path.csv: joint 'shoulder' turns by" in told
+    assert "between 1 s and 2.5 s" in told and "\n" not in told
+
+
 def test_meshes_named_twice_are_made_once(tmp_path):
     text = CASE.replace(
         "trajectory:",

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
+import signal
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from clearance.errors import Unwritable
 from clearance.report import write
 from clearance.report.folder import fill_folder, write_file
+from clearance.report.output import OWN
 from tests.report.records import record
 
 NAMES = {
@@ -47,7 +51,7 @@ def test_the_same_record_gives_the_same_bytes_and_replaces_an_older_report(tmp_p
 
 def test_other_files_in_the_folder_stay(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
-    fill_folder(tmp_path, two_files("new"))
+    fill_folder(tmp_path, two_files("new"), OWN)
     assert contents(tmp_path) == {"mine.txt": b"mine", "steps.csv": b"new", "summary.json": b"new"}
 
 
@@ -63,14 +67,14 @@ def test_a_folder_below_a_file_is_refused_in_one_line(tmp_path):
 def test_a_full_disk_leaves_everything_as_it_was(tmp_path, older):
     folder = tmp_path / "out"
     if older:
-        fill_folder(folder, two_files("old"))
+        fill_folder(folder, two_files("old"), OWN)
 
     def fill(place: Path) -> None:
         two_files("new")(place)
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with pytest.raises(Unwritable, match="No space left"):
-        fill_folder(folder, fill)
+        fill_folder(folder, fill, OWN)
     left = contents(folder) if folder.exists() else {}
     assert left == ({"steps.csv": b"old", "summary.json": b"old"} if older else {})
     assert [path.name for path in tmp_path.iterdir()] == (["out"] if older else [])
@@ -79,8 +83,9 @@ def test_a_full_disk_leaves_everything_as_it_was(tmp_path, older):
 @pytest.mark.parametrize("fault", [OSError(errno.EIO, "worn out"), KeyboardInterrupt()])
 @pytest.mark.parametrize("i_move", range(4))
 def test_a_fault_at_any_move_puts_the_older_report_back(tmp_path, monkeypatch, fault, i_move):
-    """Two files need four moves: each older one away, each new one in."""
-    fill_folder(tmp_path / "out", two_files("old"))
+    """Two files beside a foreign one need four moves: each older one away, each new one in."""
+    fill_folder(tmp_path / "out", two_files("old"), OWN)
+    (tmp_path / "out" / "mine.txt").write_text("mine")
     moves = []
     replace = os.replace
 
@@ -92,25 +97,83 @@ def test_a_fault_at_any_move_puts_the_older_report_back(tmp_path, monkeypatch, f
 
     monkeypatch.setattr(os, "replace", faulty)
     with pytest.raises((Unwritable, KeyboardInterrupt)):
-        fill_folder(tmp_path / "out", two_files("new"))
+        fill_folder(tmp_path / "out", two_files("new"), OWN)
     assert len(moves) > i_move
-    assert contents(tmp_path / "out") == {"steps.csv": b"old", "summary.json": b"old"}
+    whole = {"steps.csv": b"old", "summary.json": b"old", "mine.txt": b"mine"}
+    assert contents(tmp_path / "out") == whole
 
 
 def test_a_folder_that_is_being_replaced_never_looks_whole(tmp_path, monkeypatch):
     """summary.json goes first and comes last: whenever it is there, all files are of one report."""
-    fill_folder(tmp_path, two_files("old"))
+    fill_folder(tmp_path, two_files("old"), OWN)
+    (tmp_path / "mine.txt").write_text("new")
     replace, seen = os.replace, []
 
     def watched(source, target):
         replace(source, target)
-        files = {p.name: p.read_text() for p in tmp_path.iterdir() if p.is_file()}
+        files = {p.name: p.read_text() for p in tmp_path.iterdir() if p.suffix in (".csv", ".json")}
         seen.append("summary.json" not in files or len(set(files.values())) == 1)
 
     monkeypatch.setattr(os, "replace", watched)
-    fill_folder(tmp_path, two_files("new"))
+    fill_folder(tmp_path, two_files("new"), OWN)
     assert len(seen) == 4
     assert all(seen)
+
+
+def test_a_file_that_only_the_older_report_had_goes(tmp_path):
+    def with_pairs(place: Path) -> None:
+        two_files("old")(place)
+        (place / "pairs.parquet").write_text("old")
+
+    for foreign in ("", "mine.txt"):
+        folder = tmp_path / f"out{foreign}"
+        fill_folder(folder, with_pairs, OWN)
+        if foreign:
+            (folder / foreign).write_text("mine")
+        fill_folder(folder, two_files("new"), OWN)
+        assert sorted(contents(folder)) == sorted(filter(None, [foreign, "steps.csv", "summary.json"]))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills a process of its own")
+@pytest.mark.parametrize("exchanges", [True, False])
+@pytest.mark.parametrize("i_move", range(3))
+def test_a_process_killed_at_any_move_leaves_one_report_or_none(tmp_path, exchanges, i_move):
+    """Where folders cannot be exchanged in one step, there is none between two renames; never files of two."""
+    out = tmp_path / "out"
+    fill_folder(out, two_files("old"), OWN)
+    child = os.fork()
+    if child == 0:
+        try:
+            die_at_move(i_move, exchanges)
+            fill_folder(out, two_files("new"), OWN)
+        finally:
+            os._exit(0)
+    killed = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == -signal.SIGKILL
+    assert killed == (i_move < (2 if exchanges else 3))
+    found = contents(out) if out.exists() else {}
+    assert {*found} in (set(), {"steps.csv", "summary.json"})
+    assert len({*found.values()}) <= 1
+    assert found or not exchanges
+
+
+def die_at_move(i_move: int, exchanges: bool) -> None:
+    """Kills this process before its move of that number; the last one is after all moves."""
+    from clearance.report import folder
+
+    moves = []
+
+    def counted(move):
+        def moved(*names, **options):
+            if len(moves) == i_move:
+                os.kill(os.getpid(), signal.SIGKILL)
+            moves.append(names)
+            return move(*names, **options)
+
+        return moved
+
+    folder._exchanged = counted(folder._exchanged) if exchanges else lambda one, other: False
+    folder.os = SimpleNamespace(**{**vars(os), "rename": counted(os.rename)})
+    folder.shutil = SimpleNamespace(rmtree=counted(shutil.rmtree))
 
 
 def test_one_file_is_whole_or_the_older_one(tmp_path, monkeypatch):

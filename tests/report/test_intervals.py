@@ -7,7 +7,15 @@ import dataclasses
 import pyarrow as pa
 import pytest
 
-from clearance.report.intervals import events, intervals, status_counts, verdict
+from clearance.report import intervals as room
+from clearance.report.intervals import (
+    events,
+    extent,
+    intervals,
+    not_listed,
+    status_counts,
+    verdict,
+)
 from tests.report.records import record
 
 GAPS = [0.03, 0.018, 0.004, 0.0, 0.0, 0.003, 0.012, 0.05, 0.015]
@@ -79,3 +87,14 @@ def test_the_verdict_is_the_worst_status(letters, expected):
 def test_counts():
     counts = status_counts(run_of(LETTERS, GAPS))
     assert counts == {"clear": 2, "near": 3, "violated": 2, "contact": 2}
+
+
+def test_a_run_that_never_rests_lists_its_first_intervals_and_says_how_many_more(monkeypatch):
+    whole = run_of(LETTERS, GAPS)
+    all_events, all_intervals = events(whole), intervals(whole)
+    assert set(not_listed(whole).values()) == {0}
+    monkeypatch.setattr(room, "MOST_LISTED", 1)
+    assert events(whole) == all_events[:1]
+    assert intervals(whole) == {level: found[:1] for level, found in all_intervals.items()}
+    assert not_listed(whole) == {"below_warn": 1, "below_fail": 0, "contact": 0, "events": 6}
+    assert extent(whole, "below_warn") == (2, 7)

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from clearance.report.page import page_of
+from clearance.report.page import _bands, page_of
 from clearance.report.sections import MAX_EVENT_ROWS, events
 from clearance.report.summary import summary_of
 from clearance.simulate.replay import replay_of
@@ -80,3 +80,11 @@ def test_a_long_run_is_thinned_and_says_so():
     replay = replay_of(run, max_frames=200)
     assert "Drawn are" in page_of(summary_of(run), replay)
     assert "Drawn are" not in page_of(summary_of(run), replay_of(run))
+
+
+def test_bands_that_no_screen_can_tell_apart_are_one():
+    spans = [(0.0, 1.0), (1.5, 2.0), (2.01, 3.0), (3.05, 3.1), (9.0, 9.0)]
+    found = [{"start": start, "end": end} for start, end in spans]
+    assert _bands(found, 0.1) == [[0.0, 1.0], [1.5, 3.1], [9.0, 9.0]]
+    assert _bands(found, 0.0) == [list(span) for span in spans]
+    assert _bands([], 0.1) == []

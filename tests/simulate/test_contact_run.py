@@ -12,6 +12,7 @@ from ruamel.yaml import YAML
 
 import clearance as cl
 from clearance.geometry import boolean
+from clearance.simulate import contact, contact_rows
 from clearance.simulate.contact import find_contacts
 from clearance.simulate.steps import pair_names
 from clearance.world.body import Body, Obstacle
@@ -203,3 +204,21 @@ def test_the_page_of_the_pushed_case_shows_the_region(pushed, tmp_path):
     red = (pixels[..., 0] > 170) & (pixels[..., 1] < 90) & (pixels[..., 2] < 90)
     assert red.sum() > 200
     assert len(drawn) == len([row for row in run.record.contacts if row.step == step])
+
+
+def test_regions_that_were_not_kept_are_found_again(
+    shelf: cl.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(contact_rows, "MOST_REGIONS", 3)
+    monkeypatch.setattr(contact, "MOST_KNOWN", 2)
+    few = cl.check(shelf.record.case)
+    assert few.steps.equals(shelf.steps)
+    assert len(few.record.contacts) == len(shelf.record.contacts) > 3
+    for kept, again in zip(shelf.record.contacts, few.record.contacts, strict=True):
+        assert (kept.step, kept.link, kept.obstacle) == (again.step, again.link, again.obstacle)
+        assert repr(kept.found) == repr(again.found)
+        assert (kept.found.region.vertices == again.found.region.vertices).all()
+    assert few.record.contacts[3].numbers.region.is_empty
+    deepest = few.record.deepest
+    assert deepest.numbers.penetration == max(few.record.contacts.penetrations)
+    assert (few.record.contacts.steps == [row.step for row in few.record.contacts]).all()

@@ -1,0 +1,44 @@
+"""Where the rows of a run with `--out` are kept while it runs: a hidden folder, gone when the report is there.
+
+Not for: the report itself (`report.folder`).
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from clearance.simulate.spool import Rows, open_spool
+
+SUFFIX = ".unfinished"
+
+
+@contextmanager
+def kept_rows(out: Path | None, quiet: bool) -> Iterator[Rows | None]:
+    """The spool for the report folder `out`; None where no report is wanted.
+
+    Raises:
+        Unwritable: another run is writing the same report, or there is no room.
+    """
+    if out is None:
+        yield None
+        return
+    with open_spool(place_of(out), (lambda line: None) if quiet else _say) as spool:
+        yield spool
+
+
+def place_of(out: Path) -> Path:
+    """The folder `.NAME.unfinished` beside `out`, or `.unfinished` in it where that is on no other disk."""
+    out = Path(os.path.realpath(out))
+    if not out.is_dir():
+        return out.parent / f".{out.name}{SUFFIX}"
+    parent = out.parent
+    beside = os.access(parent, os.W_OK) and os.stat(parent).st_dev == os.stat(out).st_dev
+    return parent / f".{out.name}{SUFFIX}" if beside and parent != out else out / SUFFIX
+
+
+def _say(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)

@@ -1,0 +1,73 @@
+"""What decides every row of a run, as one fingerprint: two runs that agree in it give the same bytes.
+
+Not for: provenance that people read (`report.provenance`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.world.case import Case
+from clearance.world.kinematics import chain_arrays
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+_PACKAGE = Path(__file__).parents[1]
+_ROOMS = ("kernels", "geometry", "query", "world", "simulate")
+
+
+def fingerprint(
+    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], options: tuple[object, ...]
+) -> str:
+    """sha256 of the bodies and where they stand, the chains and their motion, limits, options, and the program.
+
+    Args:
+        options: what else was asked for; told apart by their `repr`.
+    """
+    digest = hashlib.sha256()
+    digest.update(_program().encode())
+    told = (case.limits, tuple(pairs), options)
+    digest.update(repr(told).encode())
+    for motion in motions:
+        robot = motion.placed.robot
+        for body in robot.bodies:
+            digest.update(body.name.encode())
+            _add_shape(digest, body.shape)
+        arrays = [motion.placed.world_from_base, *chain_arrays(robot), motion.times, motion.positions]
+        _add(digest, *arrays, motion.tracking_error)
+        _add(digest, np.empty(0) if motion.velocities is None else motion.velocities)
+        digest.update(repr((robot.link_names, robot.joints)).encode())
+    for obstacle in case.obstacles:
+        digest.update(obstacle.name.encode())
+        _add_shape(digest, obstacle.body.shape)
+        _add(digest, obstacle.world_from_body)
+    return digest.hexdigest()
+
+
+def _add_shape(digest: hashlib._Hash, shape: Polyhedron) -> None:
+    _add(digest, shape.vertices, shape.face_starts, shape.face_vertices)
+
+
+def _add(digest: hashlib._Hash, *arrays: np.ndarray) -> None:
+    for array in arrays:
+        digest.update(repr((array.shape, array.dtype.str)).encode())
+        digest.update(np.ascontiguousarray(array).data)
+
+
+def _program() -> str:
+    """Sources, versions and machine: on another processor the last bits may differ."""
+    import llvmlite.binding
+    import numba
+
+    digest = hashlib.sha256()
+    sources = [path for room in _ROOMS for path in (_PACKAGE / room).glob("*.py")]
+    for path in sorted([*sources, _PACKAGE / "tolerance.py", _PACKAGE / "jit.py"]):
+        digest.update(path.name.encode() + path.read_bytes())
+    versions = (np.__version__, numba.__version__, platform.python_version(), platform.machine())
+    return f"{digest.hexdigest()} {versions} {llvmlite.binding.get_host_cpu_name()}"

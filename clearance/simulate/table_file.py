@@ -1,0 +1,34 @@
+"""Tables too long for memory: batches written to a file as they come, and mapped to be read as a table.
+
+Not for: what is in them (`steps`), nor the files of a report.
+"""
+
+from __future__ import annotations
+
+import mmap
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+import pyarrow as pa
+
+from clearance.simulate.spool import let_go, unwritable
+
+
+def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, Callable[[], None]]:
+    """The batches as one table in the file `path`, and a way to free the memory that looking at it took.
+
+    The file may be removed while the table is in use.
+
+    Raises:
+        Unwritable: there is no room for it.
+    """
+    with unwritable(path), pa.OSFile(str(path), "wb") as file:
+        writer = None
+        for batch in batches:
+            writer = writer or pa.ipc.new_file(file, batch.schema)
+            writer.write_table(batch)
+        writer.close()
+    with path.open("rb") as file:
+        mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    reader = pa.ipc.open_file(pa.BufferReader(pa.py_buffer(mapped)))
+    return reader.read_all(), lambda: let_go(mapped)

@@ -1,0 +1,298 @@
+"""A long run: its rows come part by part, go on after any interruption, and take the same memory at any length."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import tracemalloc
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import Unwritable
+from clearance.report.summary import summary_of
+from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
+from clearance.simulate import parts, spool
+from clearance.simulate.parts import in_order
+from clearance.simulate.replay import replay_of
+from clearance.simulate.spool import open_spool
+from clearance.world.case import Case
+
+ROOT = Path(__file__).parents[2]
+ASKED = {
+    "steps": {},
+    "pairs": {"need": "pairs"},
+    "limit": {"need": "limit"},
+    "minimum": {"need": "minimum"},
+    "certified": {"certify": True},
+    "far": {"need": "limit", "limits": cl.Limits(0.0, 1e-9)},
+}
+
+
+class Interrupted(BaseException):
+    """Stands for Ctrl-C."""
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    """The first 160 of the scene's steps: ten parts."""
+    whole = cl.load_case(ROOT / "scenes" / "box_pipe" / "case.yaml")
+    placed = whole.robots[0]
+    asked = placed.trajectory
+    short = replace(asked, times=asked.times[:160], positions=asked.positions[:160])
+    return replace(whole, robots=(replace(placed, trajectory=short),))
+
+
+@pytest.fixture(autouse=True)
+def saved_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(spool, "SAVE_AFTER", 0.0)
+    monkeypatch.setattr(parts, "LONGEST_PART", 16)
+
+
+def answer(case: Case, place: Path, said: list[str], **asked: object) -> dict[str, object]:
+    """All that a run found whose rows were kept in `place`, after that is gone."""
+    with open_spool(place, said.append) as kept:
+        run = cl.check(case, kept=kept, **asked)
+        run.record.let_go()
+        found = told(run)
+    assert not place.exists()
+    assert found == told(run)
+    return found
+
+
+def told(run: cl.Run) -> dict[str, object]:
+    """Everything in a record that depends on rows, bit for bit."""
+    record = run.record
+    found = {
+        "steps": [run.steps.schema.names, *(column.to_pylist() for column in run.steps.columns)],
+        "minima": list(record.pair_minima),
+        "pairs": None if run.pairs is None else run.pairs.to_pydict(),
+        "tally": record.tally,
+    }
+    if record.certificate is not None:
+        known = record.certificate
+        found["bounds"] = (known.lower_bound.tobytes(), known.upper_bound.tobytes(), known.tally)
+    return found
+
+
+def stopping_at(count: int) -> Callable[[int, int], None]:
+    """A progress that interrupts at its call of that number."""
+    calls = []
+
+    def progress(done: int, total: int) -> None:
+        calls.append(done)
+        if len(calls) == count:
+            raise Interrupted
+
+    return progress
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
+    case: Case, name: str, tmp_path: Path
+) -> None:
+    memory = told(cl.check(case, jobs=1, **ASKED[name]))
+    assert memory["tally"]["queries"] + memory["tally"]["pairs_skipped"] >= 160
+    said: list[str] = []
+    assert answer(case, tmp_path / "kept", said, jobs=2, **ASKED[name]) == memory
+    assert said == []
+    counts = (1, 2, 3)
+    for count in counts:
+        with pytest.raises(Interrupted):
+            progress = stopping_at(count)
+            answer(case, tmp_path / "kept", said, jobs=1 + count % 2, progress=progress, **ASKED[name])
+    with pytest.raises(Interrupted), open_spool(tmp_path / "kept", said.append) as kept:
+        cl.check(case, kept=kept, **ASKED[name])  # all is measured, and then the report is interrupted
+        raise Interrupted
+    assert answer(case, tmp_path / "kept", said, jobs=1, **ASKED[name]) == memory
+    assert len(said) == 1 + len(counts) and all(line.startswith("resuming: ") for line in said)
+
+
+def test_a_report_from_disk_has_the_bytes_of_one_from_memory(
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In one block of rows or in many, interrupted or not."""
+    monkeypatch.setattr(parts, "BLOCK", 100)
+    asked = {"need": "pairs", "certify": True}
+    cl.check(case, **asked).save(tmp_path / "memory")
+    with pytest.raises(Interrupted), open_spool(tmp_path / "kept", print) as kept:
+        cl.check(case, kept=kept, progress=stopping_at(15), **asked)
+    with open_spool(tmp_path / "kept", print) as kept:
+        cl.check(case, kept=kept, **asked).save(tmp_path / "disk")
+    names = sorted(path.name for path in (tmp_path / "memory").iterdir())
+    assert names == sorted(path.name for path in (tmp_path / "disk").iterdir())
+    for name in names:
+        assert (tmp_path / "disk" / name).read_bytes() == (tmp_path / "memory" / name).read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["disk", "memory"]
+
+
+def test_a_run_stopped_between_its_passes_goes_on(case: Case, tmp_path: Path) -> None:
+    """The second pass proves the bounds; the first is not repeated."""
+    whole = answer(case, tmp_path / "kept", [], certify=True)
+    n_steps = case.robots[0].trajectory.n_steps
+    n_parts, n_proven = len(parts.parts(n_steps)), len(parts.parts(n_steps - 1))
+    with pytest.raises(Interrupted):
+        answer(case, tmp_path / "kept", [], certify=True, progress=stopping_at(n_parts + 3))
+    calls: list[int] = []
+    said: list[str] = []
+    found = answer(
+        case, tmp_path / "kept", said, certify=True, progress=lambda done, total: calls.append(done)
+    )
+    assert found == whole
+    assert len(calls) == n_proven - 3
+    assert said == [f"resuming: {n_steps} of {n_steps} steps are kept of an interrupted run"]
+
+
+def nudged(case: Case, what: str) -> Case:
+    """The case with one number changed in its last bit."""
+    obstacle, placed = case.obstacles[0], case.robots[0]
+    if what == "obstacle":
+        pose = obstacle.world_from_body.copy()
+        pose[0, 3] += 1e-15
+        return replace(case, obstacles=(replace(obstacle, world_from_body=pose), *case.obstacles[1:]))
+    positions = placed.trajectory.positions.copy()
+    positions[-1, 0] = np.nextafter(positions[-1, 0], 1.0)
+    moved = replace(placed, trajectory=replace(placed.trajectory, positions=positions))
+    return replace(case, robots=(moved,))
+
+
+def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
+    for other, asked in [
+        (case, {"limits": cl.Limits(0.001, 0.002)}),
+        (case, {"need": "pairs"}),
+        (case, {"certify": True}),
+        (nudged(case, "obstacle"), {}),
+        (nudged(case, "joint"), {}),
+    ]:
+        with pytest.raises(Interrupted):
+            answer(case, tmp_path / "kept", [], progress=stopping_at(5))
+        said: list[str] = []
+        assert answer(other, tmp_path / "kept", said, **asked) == told(cl.check(other, **asked))
+        assert said == ["starting anew: what an interrupted run has left is of other inputs"]
+
+
+KILLED = """
+import os, pathlib, signal, sys
+import clearance as cl
+from clearance.simulate import parts, spool
+from clearance.simulate.spool import open_spool
+spool.SAVE_AFTER, parts.LONGEST_PART, calls = 0.0, 16, []
+def progress(done, total):
+    calls.append(done)
+    if len(calls) == 9:
+        os.kill(os.getpid(), signal.SIGKILL)
+with open_spool(pathlib.Path(sys.argv[2]), print) as kept:
+    cl.check(cl.load_case(sys.argv[1]), kept=kept, progress=progress)
+"""
+
+
+def test_a_killed_process_is_resumed(tmp_path: Path) -> None:
+    case = cl.load_case(ROOT / "scenes" / "box_pipe" / "case.yaml")
+    asked = [str(ROOT / "scenes" / "box_pipe" / "case.yaml"), str(tmp_path / "kept")]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", KILLED, *asked], env=environment, check=False)
+    assert done.returncode == -signal.SIGKILL
+    said: list[str] = []
+    assert answer(case, tmp_path / "kept", said) == told(cl.check(case))
+    assert len(said) == 1 and said[0].startswith("resuming: ")
+
+
+def test_a_second_run_to_the_same_place_is_refused(tmp_path: Path) -> None:
+    with open_spool(tmp_path / "kept", print):
+        with pytest.raises(Unwritable, match="another run is writing"), open_spool(tmp_path / "kept", print):
+            pass
+        assert (tmp_path / "kept").is_dir()
+    assert not (tmp_path / "kept").exists()
+
+
+def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(case: Case, tmp_path: Path) -> None:
+    with open_spool(tmp_path / "kept", print) as kept:
+        run = cl.check(case, kept=kept)
+    assert list(run.record.pair_minima) == list(cl.check(case).record.pair_minima)
+    run.save(tmp_path / "out")
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_full_disk_is_told_before_anything_is_mapped(
+    case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "posix_fallocate", full)
+    with pytest.raises(Unwritable, match="No space left"):
+        answer(case, tmp_path / "kept", [])
+    assert not (tmp_path / "kept").exists()
+
+
+def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="refused"), open_spool(tmp_path / "kept", print) as kept:
+        kept.ask("question")
+        kept.array("steps.clearance", (100,))
+        raise ValueError("refused")
+    assert not (tmp_path / "kept").exists()
+
+
+def test_a_state_whose_rows_are_gone_is_not_believed(case: Case, tmp_path: Path) -> None:
+    with pytest.raises(Interrupted):
+        answer(case, tmp_path / "kept", [], progress=stopping_at(5))
+    (tmp_path / "kept" / "steps.floor.rows").write_bytes(b"torn")
+    said: list[str] = []
+    assert answer(case, tmp_path / "kept", said) == told(cl.check(case))
+    assert said == []
+
+
+def test_few_results_wait_ahead() -> None:
+    started: list[int] = []
+
+    def work(span: slice) -> int:
+        started.append(span.start)
+        return span.start
+
+    results = in_order(work, [slice(i, i + 1) for i in range(1000)], 2)
+    assert [next(results) for _ in range(10)] == list(range(10))
+    assert len(started) <= 10 + 2 * parts.WAITING
+    assert list(results) == list(range(10, 1000))
+
+
+def resampled(case: Case, n_steps: int) -> Case:
+    """The case with its joints moving through the same positions in so many steps."""
+    placed = case.robots[0]
+    asked = placed.trajectory
+    times = np.linspace(asked.times[0], asked.times[-1], n_steps)
+    columns = [np.interp(times, asked.times, column) for column in asked.positions.T]
+    moved = replace(asked, times=times, positions=np.column_stack(columns))
+    return replace(case, robots=(replace(placed, trajectory=moved),))
+
+
+def most_memory(case: Case, folder: Path) -> int:
+    """[bytes] numpy and Python take at most beside the case, from the sweep to the last file but the page."""
+    tracemalloc.start()
+    with open_spool(folder / "kept", print) as kept:
+        run = cl.check(case, need="pairs", certify=True, jobs=2, kept=kept)
+        write_parquet(step_batches(run.record), folder / "steps.parquet")
+        write_csv(lambda: step_batches(run.record), folder / "steps.csv")
+        write_parquet(pair_batches(run.record), folder / "pairs.parquet")
+        summary_of(run.record)
+        replay_of(run.record, 300)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return most
+
+
+def test_memory_does_not_grow_with_the_steps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ten times the steps: at most the clearances once (8 bytes a step) and a few codes, never rows or poses."""
+    monkeypatch.setattr(parts, "LONGEST_PART", 128)
+    monkeypatch.setattr(parts, "BLOCK", 1000)
+    monkeypatch.setattr(spool, "SAVE_AFTER", 1.0)
+    case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
+    most_memory(resampled(case, 500), tmp_path)  # what is loaded once
+    short, long = (most_memory(resampled(case, n), tmp_path) for n in (4_000, 40_000))
+    assert (long - short) / 36_000 < 20.0, (short, long)
