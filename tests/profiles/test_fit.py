@@ -9,8 +9,9 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, BadShape
 from clearance.profiles.fit import NoFit
-from clearance.profiles.fit_shape import NoFreeDimension, SketchShape, copied
+from clearance.profiles.fit_shape import NoFreeDimension, SketchShape
 from clearance.profiles.outline_file import read_outline
+from clearance.profiles.sketch_copy import copied
 from tests.oracle.outlines import inside
 from tests.profiles.moving import rows, slab, turning
 
