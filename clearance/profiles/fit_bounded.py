@@ -8,21 +8,30 @@ from __future__ import annotations
 
 import numpy as np
 
+from clearance.profiles.fit_placed import Placed
 from clearance.profiles.fit_program import least_area
 from clearance.profiles.fit_rows import Gaps, Rows, rows_of
 from clearance.profiles.fit_search import MOST_ROWS, STEPS, Search
-from clearance.profiles.fit_shape import Placed
 from clearance.profiles.fit_target import Found, Places
 
 MOST_NEAR = 60
 """Places of the outline whose pieces are looked at more closely once the shape is near them."""
+
+ENDLESS = 3.0
+"""[-] A shape still growing after all steps, and so many times the outline's size, has nothing to stop it."""
 
 ROUNDS = 7
 """Times that a search is taken up again with the certified witnesses."""
 
 
 class Bounded(Search):
-    """The search for the least (outside) or greatest (inside) area with every gap at least the margin."""
+    """The search for the least (outside) or greatest (inside) area with every gap at least the margin.
+
+    Attributes:
+        endless: whether a shape grew beside the outline without end.
+    """
+
+    endless = False
 
     def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:
         """The shape that the search ends with; None where it is not what was asked, or no better than the
@@ -36,8 +45,9 @@ class Bounded(Search):
         extra, samples = np.zeros((0, 2)), self.samples
         for k in range(ROUNDS):
             reach = 0.1 if k == 0 else 1e-3
-            here, rows, marginals, used = self._steps(here, wanted, samples, extra, reach)
-            if float(rows.distance.min()) < wanted - near:
+            here, rows, marginals, used, grown = self._steps(here, wanted, samples, extra, reach)
+            self.endless |= grown
+            if grown or float(rows.distance.min()) < wanted - near:
                 return None
             if k == 0 and target.score(here) > beat + 1e-6 * abs(beat):
                 return None
@@ -51,10 +61,10 @@ class Bounded(Search):
             wanted += 1.05 * (target.margin - max(gap, 0.0)) + 4.0**k * 1e-9 * self.shape.size
         return None
 
-    def _steps(
-        self, here: Placed, wanted: float, samples: Places, extra: np.ndarray, reach: float
-    ):
-        """Linear programs until none promises more; with the rows of the last and which they are."""
+    def _steps(self, here: Placed, wanted: float, samples: Places, extra: np.ndarray, reach: float):
+        """Linear programs until none promises more: the shape, the rows of the last, which they are, and whether
+        it was still growing, far beyond the outline.
+        """
         target, size = self.target, self.shape.size
         price, given = 10.0 * size, np.vstack([target.given, extra])
         gaps = target.gaps(here.pieces, samples, given)
@@ -77,7 +87,14 @@ class Bounded(Search):
                 reach = min(0.5, reach * (2.0 if share > 0.7 else 1.0 if share > 0.2 else 0.4))
             else:
                 reach *= 0.25
-        return here, rows, found.marginals, (samples, given, chosen)
+        else:
+            far = here.pieces.size > ENDLESS * target.pieces.size
+            return here, rows, found.marginals, (samples, given, chosen), far and self._beside
+        return here, rows, found.marginals, (samples, given, chosen), False
+
+    @property
+    def _beside(self) -> bool:
+        return self.target.mode == "inside" and not self.target.room
 
     def _rows(self, here: Placed, gaps: Gaps) -> tuple[Rows, np.ndarray, np.ndarray]:
         """The rows nearest to mattering, which they are, and the change of the score by each number."""

@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.planar.hausdorff import Hausdorff, hausdorff
+from clearance.profiles.fit_placed import Placed
 from clearance.profiles.fit_program import least_greatest
 from clearance.profiles.fit_rows import Gaps, Rows, rows_of
 from clearance.profiles.fit_search import MOST_ROWS, STEPS, Search
-from clearance.profiles.fit_shape import Placed
-from clearance.profiles.fit_target import Found
+from clearance.profiles.fit_target import Found, Places
 
 
 class Nearest(Search):
@@ -47,8 +47,10 @@ class Nearest(Search):
 
     def _minimax(self, here: Placed) -> Found:
         """Linear programs for the least greatest distance; the distance itself is certified each time."""
-        whole, reach = self._distance(here), 0.05
-        rows, used = self._with_witness(here, whole)
+        whole, reach, looked = self._distance(here), 0.05, (self.samples, self.target.given)
+        slopes = self.shape.slopes(here)
+        looked = self._with_witness(here, whole, *looked)
+        rows, chosen = self._chosen_rows(here, slopes, *looked)
         for _ in range(STEPS):
             if whole.distance <= self.tiny or reach < 1e-9:
                 break
@@ -58,29 +60,33 @@ class Nearest(Search):
                 break
             moved = self.shape.at(here.numbers + step)
             there = None if moved is None else self._distance(moved)
-            if there is not None and there.distance < whole.distance:
-                gained = (whole.distance - there.distance) / hoped
+            if there is not None:
+                looked = self._with_witness(moved, there, *looked)
+            gained = -1.0 if there is None else (whole.distance - there.distance) / hoped
+            if gained > 0.0:
                 here, whole = moved, there
-                rows, used = self._with_witness(here, whole)
+                slopes = self.shape.slopes(here)
                 reach *= 2.0 if gained > 0.7 else 1.0 if gained > 0.2 else 0.4
             else:
                 reach *= 0.25
+            rows, chosen = self._chosen_rows(here, slopes, *looked)
         last = least_greatest(rows, self.shape.scale, *self.bounds(here, 1e-6))
-        return Found(here, whole.distance, None, rows, last.marginals, *used)
+        return Found(here, whole.distance, None, rows, last.marginals, *looked, chosen)
 
     def _distance(self, here: Placed) -> Hausdorff:
         return hausdorff(here.curve, self.target.outline.curve)
 
-    def _with_witness(self, here: Placed, whole: Hausdorff):
-        """The rows that matter most, the certified witnesses among them, and which they are."""
+    def _with_witness(self, here: Placed, whole: Hausdorff, samples: Places, given: np.ndarray):
+        """The places that are looked at and the certified witnesses: of steps that failed as well."""
         own = np.stack([whole.point_a, whole.directed["a_to_b"].point_a])
-        samples = self.with_places(here, own, self.samples)
         theirs = np.stack([whole.point_b, whole.directed["b_to_a"].point_a])
-        given = np.vstack([self.target.given, theirs])
+        return self.with_places(here, own, samples), np.vstack([given, theirs])
+
+    def _chosen_rows(self, here: Placed, slopes: list, samples: Places, given: np.ndarray):
+        """The rows that matter most, and which they are."""
         gaps = self.target.distances(here.pieces, samples, given)
         chosen = np.sort(np.argsort(-np.abs(gaps.distance), kind="stable")[:MOST_ROWS])
-        rows = rows_of(gaps.at(chosen), here.pieces, self.shape.slopes(here))
-        return rows, (samples, given, chosen)
+        return rows_of(gaps.at(chosen), here.pieces, slopes), chosen
 
     def _gaps(self, here: Placed) -> Gaps:
         return self.target.distances(here.pieces, self.samples, self.target.given)

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_shape import Placed, SketchShape
+from clearance.profiles.fit_placed import Placed, greatest_numbers, least_numbers
+from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_target import Places, Target
 
 MOST_ROWS = 700
@@ -30,9 +31,10 @@ class Search:
 
     def bounds(self, here: Placed, reach: float) -> tuple[np.ndarray, np.ndarray]:
         """(n,) each: least and greatest step, in units of the shape's scale, within `reach`."""
-        low = (self.shape.least(here.numbers) - here.numbers) / self.shape.scale
-        high = (self.shape.most(here.numbers) - here.numbers) / self.shape.scale
-        return np.maximum(low, -reach), np.minimum(high, reach)
+        shape, numbers = self.shape, here.numbers
+        low = least_numbers(shape.kinds, numbers, shape.size) - numbers
+        high = greatest_numbers(shape.kinds, numbers) - numbers
+        return np.maximum(low / shape.scale, -reach), np.minimum(high / shape.scale, reach)
 
     def with_places(self, here: Placed, points: np.ndarray, samples: Places) -> Places:
         """The samples and the places of more points of the shape."""

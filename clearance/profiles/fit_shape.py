@@ -8,58 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, ClearanceError, nearest_name
-from clearance.planar.curve import Curve
-from clearance.profiles.contour import Contour, joined
+from clearance.profiles.contour import Contour
 from clearance.profiles.drawn_chains import contours_of_chains, drawn_chains
+from clearance.profiles.fit_placed import Placed
 from clearance.profiles.fit_rows import Rigid, Slope
 from clearance.profiles.outline_file import require_closed, require_solved
-from clearance.profiles.pieces import Pieces
 from clearance.profiles.sketch_copy import copied
 from clearance.sketch import Sketch
-
-SHRINK = 0.05
-"""[-] What at least is left of a length after one step."""
-
-FLOOR = 1e-6
-"""[-] Lengths are not made shorter than this, relative to the sketch: it could not be drawn at 0."""
 
 
 class NoFreeDimension(BadInput):
     """A sketch to be fitted that has no dimension to change."""
-
-
-@dataclass(frozen=True, eq=False)
-class Placed:
-    """A shape: what the sketch draws, moved to where it stands.
-
-    Attributes:
-        numbers: (n,) the free dimensions, then x, y [m] and turn [rad] where they are free.
-        contours: closed; always the same pieces.
-    """
-
-    numbers: np.ndarray
-    contours: tuple[Contour, ...]
-
-    @cached_property
-    def pieces(self) -> Pieces:
-        """For the search."""
-        return Pieces(self.contours)
-
-    @cached_property
-    def curve(self) -> Curve:
-        """For certified distances."""
-        return joined(self.contours)
-
-    @cached_property
-    def area(self) -> float:
-        """[m^2] that the contours enclose, holes taken off where they run the other way."""
-        return abs(sum(contour.area for contour in self.contours))
 
 
 class SketchShape:
@@ -140,23 +103,6 @@ class SketchShape:
         finally:
             self.sketch.set(name, before)
 
-    def least(self, numbers: np.ndarray) -> np.ndarray:
-        """How small each number may become in one step: lengths and angles keep their sign."""
-        found = np.full(len(numbers), -np.inf)
-        for i, kind in enumerate(self.kinds):
-            if kind != "parameter":
-                floor = FLOOR if kind in ("angle", "ratio") else FLOOR * self.size
-                found[i] = min(numbers[i], max(SHRINK * numbers[i], floor))
-        return found
-
-    def most(self, numbers: np.ndarray) -> np.ndarray:
-        """How great each number may become in one step: angles stay below half a turn."""
-        found = np.full(len(numbers), np.inf)
-        for i, kind in enumerate(self.kinds):
-            if kind == "angle":
-                found[i] = math.pi - SHRINK * (math.pi - numbers[i])
-        return found
-
     def slopes(self, here: Placed) -> list[Slope | Rigid]:
         """How the shape changes with each number: the shape a little further, or before where that cannot be."""
         found: list[Slope | Rigid] = []
@@ -187,7 +133,9 @@ class SketchShape:
     def placed_sketch(self, numbers: np.ndarray, original: Sketch) -> Sketch:
         """The sketch itself at these numbers, free dimensions driven as they were."""
         self.at(numbers)
-        motion = self._motion(numbers[len(self.free) :], *self._stand(contours_of_chains(self._chains)))
+        motion = self._motion(
+            numbers[len(self.free) :], *self._stand(contours_of_chains(self._chains))
+        )
         driven = {c.name for c in original.constraints.values() if c.driven}
         return copied(self.sketch, motion=motion, released=driven)
 

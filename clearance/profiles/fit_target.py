@@ -11,6 +11,7 @@ import numpy as np
 
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import Minimum
+from clearance.profiles.fit_placed import Placed
 from clearance.profiles.fit_rows import (
     Gaps,
     Rows,
@@ -19,7 +20,7 @@ from clearance.profiles.fit_rows import (
     joined_gaps,
     sides_of,
 )
-from clearance.profiles.fit_shape import Placed, SketchShape
+from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.gap import Closed, proven_gap
 from clearance.profiles.outline_file import Drawn
 from clearance.profiles.pieces import Pieces
