@@ -101,7 +101,7 @@ def swept_profile(
     Exactness: contains what the faceted links sweep, joints moving linearly between steps; no point is farther
         than `Profile.bound` <= `tolerance` from a swept point. Holes narrower than that may be filled.
     Raises:
-        BadInput: not a plane, joints that move on cubics. BadDimension: not a tolerance.
+        BadInput: not a plane. BadDimension: not a tolerance.
         UnknownLink, UnknownObstacle.
         NothingToMeasure: the plane cuts nothing.
     """
@@ -110,8 +110,6 @@ def swept_profile(
             f"{tolerance:g} m", where="tolerance", valid="at least 1e-6 m (0.001 mm)"
         )
     name, motions = _motions(run)
-    for motion in motions:
-        motion.require_linear("a swept profile")
     seen_on = Plane.of(plane, section)
     moving = [*_chosen(motions, links), *_standing(run, obstacles)]
     if not moving:
