@@ -127,3 +127,19 @@ def test_the_course_is_the_motion(seed, bent):
         assert told[:, 1:] == pytest.approx(interpolated(motion, at), abs=1e-12)
         assert positions_at(motion, at) == pytest.approx(interpolated(motion, at), abs=1e-12)
     assert (positions_at(motion, np.arange(3.0)) == motion.positions).all()
+
+
+@pytest.mark.parametrize("kind", [JointKind.REVOLUTE, JointKind.PRISMATIC])
+@pytest.mark.parametrize(("speeds", "bulge"), [((0.01, -0.01), 0.25), ((0.01, 0.01), 3**0.5 / 18)])
+def test_what_alone_bends_or_alone_jerks_is_in_the_bound(kind, speeds, bulge):
+    """Between equal steps the chords stand still; a joint leaves them by `bulge` times its speed."""
+    case = moved(
+        [joint(0, kind, Z if kind is JointKind.REVOLUTE else (0.0, 1.0, 0.0))],
+        {1: slab([1.0, -1e-4, 0], [1.001, 1e-4, 0.1])},
+        [[0.0], [0.0]],
+        np.array(speeds)[:, None],
+    )
+    motion, body = kinematic_motion(case.robots[0]), case.robots[0].robot.bodies[0]
+    knots = knots_of(motion, body, Plane.of("xy"), 1.0, solid=False)
+    assert len(knots.chord) == 1 and knots.moves.all()
+    assert 0.01 * bulge <= knots.chord[0] <= 0.01 * 2.7 * bulge
