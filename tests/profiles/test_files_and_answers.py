@@ -222,3 +222,33 @@ def test_a_broken_profile_file_is_refused(tmp_path):
     path.write_text("format: other\ncontours: []\n")
     with pytest.raises(BadSyntax, match="clearance-profile-1"):
         read_outline(path)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("plane: [1, 2]", "plane"),
+        ("plane: {origin: [0, 0]}", "plane: origin"),
+        ("plane: {axes: [[1, 0, 0], [0, .nan, 0]]}", "plane: axes"),
+        ("bound: -1", "bound"),
+        ("steps: many", "steps"),
+        ("section: [1]", "section"),
+        ("origin: {links: [a], link_and_step: [[0, 1]]}", "1 entries for 3 pieces"),
+        ("origin: {links: [a], link_and_step: [[0, 1], [1, 1], [0, 2]]}", "a link or step"),
+        ("origin: 5", "origin"),
+        ("parts: {l1: {name: l1}}", "parts: l1: contours"),
+        ("parts: {l1: {contours: [[[0, 0, 0]]]}}", "a single vertex"),
+    ],
+)
+def test_a_profile_file_with_a_wrong_field_is_refused_by_its_name(line, said, tmp_path):
+    path = tmp_path / "p.yaml"
+    path.write_text(
+        f"format: clearance-profile-1\ncontours: [[[0, 0, 0], [1, 0, 0], [1, 1, 0]]]\n{line}\n"
+    )
+    with pytest.raises(BadInput) as caught:
+        read_profile(path)
+    assert (
+        said in str(caught.value)
+        and "p.yaml" in str(caught.value)
+        and "\n" not in str(caught.value)
+    )
