@@ -17,6 +17,9 @@ from clearance.planar.directed import placed
 from clearance.planar.entries import BadCurve, checked_number
 from clearance.tolerance import EXCURSION, LAST_BITS
 
+MOST_PARTS = 16
+"""Parts that a stretch is cut into at once where an excursion could hide in it: more would often be too many."""
+
 
 @dataclass(frozen=True)
 class Deviation:
@@ -125,18 +128,22 @@ def _refined(a: Curve, b: Curve, which, local, distance, limit: float):
     The distance changes by no more than the length run through, at most `_fastest` times the parameter.
     """
     enough = EXCURSION * placed(a, b)[1]
-    fastest, halve = _fastest(a), np.ones(len(which) - 1, bool)
-    while halve.any():
+    fastest = _fastest(a)
+    while True:
         width = np.where(np.diff(which) == 0, np.diff(local), 1.0 - local[:-1])
         middle = 0.5 * (distance[:-1] + distance[1:]) - limit
         same = (distance[:-1] > limit) == (distance[1:] > limit)
-        halve = same & (0.5 * fastest[which[:-1]] * width - np.abs(middle) > enough)
-        k = np.flatnonzero(halve)
-        middle = local[k] + 0.5 * width[k]
-        between = _measured(a, b, which[k], middle)[1][:, 0]
+        needed = 0.5 * fastest[which[:-1]] * width / (np.abs(middle) + enough)
+        k = np.flatnonzero(same & (needed > 1.0))
+        if not len(k):
+            return which, local, distance
+        parts = np.clip(np.ceil(needed[k]), 2, MOST_PARTS).astype(int)
+        k = np.repeat(k, parts - 1)
+        rank = np.arange(len(k)) - np.repeat(np.cumsum(parts - 1) - parts, parts - 1)
+        between = local[k] + width[k] * rank / np.repeat(parts, parts - 1)
+        found = _measured(a, b, which[k], between)[1][:, 0]
         which = np.insert(which, k + 1, which[k])
-        local, distance = np.insert(local, k + 1, middle), np.insert(distance, k + 1, between)
-    return which, local, distance
+        local, distance = np.insert(local, k + 1, between), np.insert(distance, k + 1, found)
 
 
 def _fastest(curve: Curve) -> np.ndarray:
@@ -156,7 +163,10 @@ def _beyond(a, b, which, local, distance, limit) -> np.ndarray:
     out, same = distance > limit, np.diff(a.contour[which]) == 0
     low, high = a.limits[which].T
     parameter = low + local * (high - low)
-    up, down = np.flatnonzero(~out[:-1] & out[1:] & same), np.flatnonzero(out[:-1] & ~out[1:] & same)
+    up, down = (
+        np.flatnonzero(~out[:-1] & out[1:] & same),
+        np.flatnonzero(out[:-1] & ~out[1:] & same),
+    )
     inside, outside = np.append(up, down + 1), np.append(up + 1, down)
     crossed = _crossings(a, b, parameter[inside], parameter[outside], limit)
     starts, stops = parameter.copy(), parameter.copy()

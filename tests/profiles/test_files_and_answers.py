@@ -12,6 +12,7 @@ from clearance.cli.commands import clearance as command
 from clearance.errors import BadInput, BadShape, BadSyntax, UnknownLink
 from clearance.load.case_file import load_case
 from clearance.profiles.compare import as_data, compare
+from clearance.profiles.gap import Closed, proven_gap
 from clearance.profiles.outline_file import Drawn, read_outline, read_profile
 from clearance.profiles.profile_file import write_profile
 from tests.profiles.moving import rows, slab, turning
@@ -174,6 +175,23 @@ def test_check_says_how_close_the_sweep_comes_to_its_sketch():
     swept = cl.swept_profile(kept, answer.plane, section=answer.section)
     zone = kept.record.case.profiles[0].sketch.curves()
     assert answer.gap == pytest.approx(cl.minimum_distance(swept.curve, zone).distance, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["d_cell", "port"])
+def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
+    """keep_in and port_fails are answered in full above and below; here their counterparts."""
+    for suffix, kept in (("", True), ("_fails", False)):
+        if (name, kept) == ("port", False):
+            continue
+        case = load_case(SCENES / "profiles" / f"{name}{suffix}.yaml")
+        space = case.profiles[0]
+        swept = cl.swept_profile(
+            case, space.plane, links=space.links or None, section=space.section
+        )
+        gap, _ = proven_gap(
+            Closed.of_curve(space.sketch.curves()), Closed.of(swept.contours), around=True
+        )
+        assert gap > 0.0 and (gap >= space.limit) == kept
 
 
 def test_a_sweep_beyond_its_sketch_violates_the_case_and_the_page_shows_it(tmp_path):
