@@ -35,11 +35,6 @@ class Pieces:
         self._flat = np.abs(self.bulge) < 1e-9
         self.arrays = self._arrays()
 
-    @classmethod
-    def of_curve(cls, curve: Curve) -> Pieces:
-        """The pieces of a curve of closed contours; free-form parts as arcs within `FINE`."""
-        return cls(contours_of(curve, FINE * curve.size))
-
     def _arrays(self) -> FlatPieces:
         """As the kernels take them."""
         bulge = np.where(self._flat, 1.0, self.bulge)
