@@ -44,8 +44,8 @@ def sweep(
 ) -> None:
     """Writes the outline that the links of CASE.yaml sweep in a plane: nothing swept lies outside it.
 
-    The motion between the samples is included, joints moving linearly; the outline exceeds what is
-    swept by at most the tolerance.
+    The motion between the samples is included, joints moving linearly, or on cubics where the
+    trajectory has velocities; the outline exceeds what is swept by at most the tolerance.
     """
     from clearance.cli.places import require_file_place
     from clearance.cli.progress import shown_progress

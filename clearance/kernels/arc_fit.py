@@ -45,7 +45,7 @@ class Leaves(NamedTuple):
 
 
 @inlined
-def _end_tangent(points, n, at_end):
+def end_tangent(points, n, at_end):
     """The unit tangent at one end of a control polygon, from the nearest control point that differs."""
     e = n if at_end else 0
     x, y = points[e, 0] / points[e, 2], points[e, 1] / points[e, 2]
@@ -109,8 +109,8 @@ def fit_biarc(pieces, i, s0, s1, flat, steps, work, pair):
     """
     points = work[0]
     n = cut(pieces, i, s0, s1, points)
-    ax, ay = _end_tangent(points, n, False)
-    bx, by = _end_tangent(points, n, True)
+    ax, ay = end_tangent(points, n, False)
+    bx, by = end_tangent(points, n, True)
     row = pair[0]
     x0, y0 = points[0, 0] / points[0, 2], points[0, 1] / points[0, 2]
     x1, y1 = points[n, 0] / points[n, 2], points[n, 1] / points[n, 2]

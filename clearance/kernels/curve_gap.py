@@ -7,13 +7,15 @@ middle points this bound errs by the square of their length alone. Not for: the 
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.arc import S0, S1
+from clearance.kernels.arc import S0, S1, WIDTH
+from clearance.kernels.curve_arcs import cells_apart
 from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_nearest import nearest, slide_to_foot
 from clearance.kernels.hausdorff_exact import common_normal
 
 STACK = 4000
-BUDGET = 20000.0  # cells after which the rest is given up with its bound
+BUDGET = 200000.0  # cells after which the rest is given up with its bound
+WIDEST = 1e-9  # of the distance: how much of a bound's lack may be the rounding of large radii
 
 
 @kernel
@@ -44,6 +46,15 @@ def _apart(p, n, q, m, ux, uy, shift):
     for k in range(m + 1):
         most = max(most, (q[k, 0] * ux + q[k, 1] * uy) / q[k, 2])
     return least + shift - most
+
+
+@inlined
+def _extent(p, n):
+    """How far the control points are from the first, at the most, by the sum of both coordinates."""
+    x, y, far = p[0, 0] / p[0, 2], p[0, 1] / p[0, 2], 0.0
+    for k in range(1, n + 1):
+        far = max(far, abs(p[k, 0] / p[k, 2] - x) + abs(p[k, 1] / p[k, 2] - y))
+    return far
 
 
 @inlined
@@ -81,8 +92,11 @@ def _closest_in(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y):
 
 
 @kernel
-def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
-    """Lowers `best` (distance, lower bound, piece, t, piece, s) by the least distance of two leaves."""
+def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work, rows):
+    """Lowers `best` (distance, lower bound, piece, t, piece, s) by the least distance of two leaves.
+
+    Where cells run alongside each other their arcs tell what directions do not, to rounding.
+    """
     p, q, stack = work[0], work[1], work[2]
     stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = t0, t1, s0, s1
     top = 1
@@ -104,8 +118,12 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
         if distance > 0.0:
             along = (shift_x * ex + shift_y * ey) / distance
             bound = max(0.0, _apart(p, n, q, m, ex / distance, ey / distance, along))
+        slack = gap
+        if bound < best[0] - gap:
+            near, rounding = cells_apart(p, n, q, m, shift_x, shift_y, work[3], rows)
+            bound, slack = max(bound, near), max(gap, min(rounding, WIDEST * best[0]))
         if (
-            bound >= best[0] - gap
+            bound >= best[0] - slack
             or best[6] > BUDGET
             or top + 4 > stack.shape[0]
             or (t1 - t0 < 1e-15 and s1 - s0 < 1e-15)
@@ -113,9 +131,13 @@ def _descend(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, gap, best, work):
             best[1] = min(best[1], max(bound, 0.0))
             continue
         t, s = 0.5 * (t0 + t1), 0.5 * (s0 + s1)
+        long_a, long_b = _extent(p, n), _extent(q, m)
+        cut_a, cut_b = 2.0 * long_a >= long_b, 2.0 * long_b >= long_a
         for k in range(4):
-            stack[top, 0], stack[top, 1] = (t0, t) if k & 1 else (t, t1)
-            stack[top, 2], stack[top, 3] = (s0, s) if k & 2 else (s, s1)
+            if (k & 1 and not cut_a) or (k & 2 and not cut_b):
+                continue
+            stack[top, 0], stack[top, 1] = t0 if k & 1 or not cut_a else t, t if k & 1 else t1
+            stack[top, 2], stack[top, 3] = s0 if k & 2 or not cut_b else s, s if k & 2 else s1
             top += 1
 
 
@@ -146,6 +168,7 @@ def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
     for i in range(pb.first.shape[0] - 1):
         widest = max(widest, pb.first[i + 1] - pb.first[i])
     work = np.empty((6, max(300, 4 * widest + 4), 4))
+    rows = np.empty((2, WIDTH))
     n, m = la.arcs.shape[0], lb.arcs.shape[0]
     hint = 0
     for k in range(
@@ -173,7 +196,7 @@ def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
                     a, b = la.arcs[k], lb.arcs[r]
                     _descend(
                         pa, pb, la.piece[k], a[S0], a[S1], lb.piece[r], b[S0], b[S1], shift_x, shift_y,
-                        gap, best, work,
+                        gap, best, work, rows,
                     )  # fmt: skip
             continue
         if j >= size_b or (i < size_a and i <= j):

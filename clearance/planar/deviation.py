@@ -17,6 +17,9 @@ from clearance.planar.directed import placed
 from clearance.planar.entries import BadCurve, checked_number
 from clearance.tolerance import EXCURSION, LAST_BITS
 
+MOST_PARTS = 16
+"""Parts that a stretch is cut into at once where an excursion could hide in it: more would often be too many."""
+
 
 @dataclass(frozen=True)
 class Deviation:
@@ -81,7 +84,9 @@ def deviation(a: Curve, b: Curve, *, limit: float | None = None, samples: int = 
     limit = None if limit is None else checked_number(limit, "limit", least=0.0)
     samples = int(checked_number(samples, "samples", least=2))
     which, local = _spread(a, samples)
-    point, distance, foot = _measured(a, b, which, local)
+    point, found = _measured(a, b, which, local)
+    distance = found[:, 0]
+    foot = b._jets(found[:, 2].astype(np.int64), found[:, 3].copy())[:, :2] + b.origin
     low, high = a.limits[which].T
     parameter = low + local * (high - low)
     step = np.hypot(*np.diff(point, axis=0).T)
@@ -109,14 +114,12 @@ def _spread(a: Curve, samples: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _measured(a: Curve, b: Curve, which: np.ndarray, local: np.ndarray):
+    """Points (n, 2) of a, and the distance, its lower bound, piece and local parameter (n, 4) of b's nearest."""
     shift, _ = placed(a, b)
     own = a._jets(which, local)[:, :2]
     found = np.empty((len(own), 4))
     feet(b.pieces, b.leaves, np.ascontiguousarray(own + shift), found)
-    foot = (
-        b._jets(found[:, 2].astype(np.int64), np.ascontiguousarray(found[:, 3]))[:, :2] + b.origin
-    )
-    return own + a.origin, found[:, 0], foot
+    return own + a.origin, found
 
 
 def _refined(a: Curve, b: Curve, which, local, distance, limit: float):
@@ -125,18 +128,22 @@ def _refined(a: Curve, b: Curve, which, local, distance, limit: float):
     The distance changes by no more than the length run through, at most `_fastest` times the parameter.
     """
     enough = EXCURSION * placed(a, b)[1]
-    fastest, halve = _fastest(a), np.ones(len(which) - 1, bool)
-    while halve.any():
+    fastest = _fastest(a)
+    while True:
         width = np.where(np.diff(which) == 0, np.diff(local), 1.0 - local[:-1])
         middle = 0.5 * (distance[:-1] + distance[1:]) - limit
         same = (distance[:-1] > limit) == (distance[1:] > limit)
-        halve = same & (0.5 * fastest[which[:-1]] * width - np.abs(middle) > enough)
-        k = np.flatnonzero(halve)
-        middle = local[k] + 0.5 * width[k]
-        _, between, _ = _measured(a, b, which[k], middle)
+        needed = 0.5 * fastest[which[:-1]] * width / (np.abs(middle) + enough)
+        k = np.flatnonzero(same & (needed > 1.0))
+        if not len(k):
+            return which, local, distance
+        parts = np.clip(np.ceil(needed[k]), 2, MOST_PARTS).astype(int)
+        k = np.repeat(k, parts - 1)
+        rank = np.arange(len(k)) - np.repeat(np.cumsum(parts - 1) - parts, parts - 1)
+        between = local[k] + width[k] * rank / np.repeat(parts, parts - 1)
+        found = _measured(a, b, which[k], between)[1][:, 0]
         which = np.insert(which, k + 1, which[k])
-        local, distance = np.insert(local, k + 1, middle), np.insert(distance, k + 1, between)
-    return which, local, distance
+        local, distance = np.insert(local, k + 1, between), np.insert(distance, k + 1, found)
 
 
 def _fastest(curve: Curve) -> np.ndarray:
@@ -153,37 +160,33 @@ def _fastest(curve: Curve) -> np.ndarray:
 
 def _beyond(a, b, which, local, distance, limit) -> np.ndarray:
     """The intervals of a's parameter beyond `limit`, from the samples, their ends bisected."""
-    out = distance > limit
-    contour = a.contour[which]
+    out, same = distance > limit, np.diff(a.contour[which]) == 0
     low, high = a.limits[which].T
     parameter = low + local * (high - low)
-    intervals, start = [], None
-    for k in range(len(out)):
-        fresh = k == 0 or contour[k] != contour[k - 1]
-        if fresh and start is not None:
-            intervals.append((start, parameter[k - 1]))
-            start = None
-        if out[k] and start is None:
-            start = (
-                parameter[k] if fresh else _crossing(a, b, parameter[k - 1], parameter[k], limit)
-            )
-        elif not out[k] and start is not None:
-            intervals.append((start, _crossing(a, b, parameter[k], parameter[k - 1], limit)))
-            start = None
-    if start is not None:
-        intervals.append((start, parameter[-1]))
-    return np.array(intervals).reshape(-1, 2)
+    up, down = (
+        np.flatnonzero(~out[:-1] & out[1:] & same),
+        np.flatnonzero(out[:-1] & ~out[1:] & same),
+    )
+    inside, outside = np.append(up, down + 1), np.append(up + 1, down)
+    crossed = _crossings(a, b, parameter[inside], parameter[outside], limit)
+    starts, stops = parameter.copy(), parameter.copy()
+    starts[up + 1], stops[down] = crossed[: len(up)], crossed[len(up) :]
+    first = out & np.append(True, ~out[:-1] | ~same)
+    last = out & np.append(~out[1:] | ~same, True)
+    return np.stack([starts[first], stops[last]], axis=1)
 
 
-def _crossing(a: Curve, b: Curve, inside: float, outside: float, limit: float) -> float:
-    """Where the distance passes `limit` between two parameters, by bisection; on the outer side."""
+def _crossings(a: Curve, b: Curve, inside: np.ndarray, outside: np.ndarray, limit: float):
+    """Where the distance passes `limit` between pairs of parameters, all bisected at once; on the outer side."""
+    outside = outside.copy()
+    inside, going = inside.copy(), np.arange(len(inside))
     for _ in range(60):
-        middle = 0.5 * (inside + outside)
-        if middle in (inside, outside):
+        middle = 0.5 * (inside[going] + outside[going])
+        fresh = (middle != inside[going]) & (middle != outside[going])
+        going, middle = going[fresh], middle[fresh]
+        if not len(going):
             break
-        _, distance, _ = _measured(a, b, *a.locate(np.array([middle])))
-        if distance[0] > limit:
-            outside = middle
-        else:
-            inside = middle
+        beyond = _measured(a, b, *a.locate(middle))[1][:, 0] > limit
+        outside[going[beyond]] = middle[beyond]
+        inside[going[~beyond]] = middle[~beyond]
     return outside

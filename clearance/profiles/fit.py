@@ -9,16 +9,18 @@ starts is kept, no claim is made beyond. Not for: sketches without closed outlin
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, BadShape
 from clearance.planar.curve import Curve
-from clearance.planar.hausdorff import Hausdorff, hausdorff
+from clearance.planar.hausdorff import hausdorff
+from clearance.profiles.fit_bounded import Bounded
+from clearance.profiles.fit_nearest import Nearest
 from clearance.profiles.fit_report import held_rates, sensitivities, touching
-from clearance.profiles.fit_search import Search
+from clearance.profiles.fit_result import Fit
 from clearance.profiles.fit_shape import SketchShape
+from clearance.profiles.fit_starts import starts_of
 from clearance.profiles.fit_target import Found, Target
 from clearance.profiles.outline_file import Drawn, require_closed
 from clearance.profiles.profile import Profile
@@ -31,63 +33,6 @@ class NoFit(BadShape):
     """No start of the search led to a sketch that does what was asked."""
 
 
-@dataclass(frozen=True, eq=False)
-class Fit:
-    """A sketch fitted to an outline.
-
-    Attributes:
-        mode: "nearest", "outside" or "inside".
-        sketch: solved; the free dimensions have their fitted values.
-        dimensions: the free dimensions [m] or [rad].
-        shift: (2,) [m] and turn [rad]: how the sketch was placed, where nothing held it.
-        distance: the Hausdorff distance to the outline, certified, with its witnesses.
-        area: [m^2] of the sketch.
-        margin: [m] that was asked for.
-        clearance: [m] proven lower bound of the gap between sketch and outline (outside, inside); the sketch
-            then contains the outline, or stays clear of it. None for nearest.
-        active: held dimensions that stop it from being better, strongest first: how much the objective (distance
-            [m], area [m^2]) changes for each unit of the dimension.
-        sensitivity: for each free dimension how the distance (nearest) or the clearance changes when it grows
-            and when it shrinks, per unit.
-        ends: (2, 2) [m] where it is attained what counts: the Hausdorff distance (nearest) or the least gap, on
-            the outline and on the sketch.
-        touching: (k, 2) points that hold the fit.
-        n_starts: how many starts were tried.
-    """
-
-    mode: str
-    sketch: Sketch
-    dimensions: dict[str, float]
-    shift: np.ndarray
-    turn: float
-    distance: Hausdorff
-    area: float
-    margin: float
-    clearance: float | None
-    active: dict[str, float]
-    sensitivity: dict[str, tuple[float, float]]
-    ends: np.ndarray
-    touching: np.ndarray
-    n_starts: int
-    curve: Curve = field(repr=False)
-
-    @property
-    def title(self) -> str:
-        """One line for a picture: the mode and the dimensions in mm where they are lengths."""
-        kinds = {
-            name: self.sketch.constraints[name].kind
-            for name in self.dimensions
-            if name in self.sketch.constraints
-        }
-        told = ", ".join(
-            f"{name} {value:.4g} rad"
-            if kinds.get(name) == "angle"
-            else f"{name} {1000 * value:.2f} mm"
-            for name, value in self.dimensions.items()
-        )
-        return f"{self.mode}: {told}"
-
-
 def fit(
     sketch: Sketch,
     profile: Profile | Drawn | Curve,
@@ -95,7 +40,7 @@ def fit(
     *,
     free: Sequence[str] | None = None,
     margin: float = 0.0,
-    starts: int = 4,
+    starts: int = 8,
 ) -> Fit:
     """The sketch whose free dimensions, and place where nothing holds it, suit an outline best.
 
@@ -125,16 +70,26 @@ def fit(
     if drawn is None:
         raise BadShape("the sketch cannot be drawn", where="sketch")
     target = Target(outline, shape, drawn, mode, margin)
-    search = Search(shape, target, drawn)
-    best, tried = _best(search, _starts(shape, outline, mode, starts))
+    search = (Nearest if mode == "nearest" else Bounded)(shape, target, drawn)
+    best, tried = _best(search, starts_of(shape, outline, mode, starts))
     if best is None:
-        what = "contains the outline" if mode == "outside" else "stays clear of the outline"
-        raise NoFit(
-            f"no sketch was found that {what} by {margin:g} m ({tried} starts)",
-            where="fit",
-            valid="a sketch drawn nearer to the answer, more free dimensions, or a smaller margin",
-        )
+        raise _no_fit(search, mode, margin, tried)
     return _told(sketch, shape, search, best, tried)
+
+
+def _no_fit(search: Nearest | Bounded, mode: str, margin: float, tried: int) -> NoFit:
+    if getattr(search, "endless", False):
+        return NoFit(
+            "the sketch grows beside the outline without end",
+            where="fit",
+            valid="a sketch drawn in a hole of the outline, or dimensions that hold it",
+        )
+    what = "contains the outline" if mode == "outside" else "stays clear of the outline"
+    return NoFit(
+        f"no sketch was found that {what} by {margin:g} m ({tried} starts)",
+        where="fit",
+        valid="a sketch drawn nearer to the answer, more free dimensions, or a smaller margin",
+    )
 
 
 def _drawn(profile: Profile | Drawn | Curve) -> Drawn:
@@ -145,48 +100,7 @@ def _drawn(profile: Profile | Drawn | Curve) -> Drawn:
     return Drawn(profile.name or "profile", profile.curve, profile)
 
 
-def _starts(shape: SketchShape, outline: Drawn, mode: str, count: int) -> list[np.ndarray]:
-    """As drawn; scaled and shifted to the outline's box; then the same shaken, always alike."""
-    first = shape.start
-    found = [first]
-    here = shape.at(first)
-    if here is None:
-        return found
-    own, other = here.curve.box, outline.curve.box
-    scale = float(np.min((other[1] - other[0]) / (own[1] - own[0]))) if mode != "inside" else 1.0
-    moved = first.copy()
-    for i, kind in enumerate(shape.kinds):
-        if kind not in ("angle", "ratio", "parameter"):
-            moved[i] = first[i] * scale
-    moved = _centred(shape, moved, other) if mode != "inside" else moved
-    if mode != "inside":
-        found.append(moved)
-    rng = np.random.default_rng(0)
-    while len(found) < count:
-        source = found[0] if len(found) % 2 or mode == "inside" else moved
-        shaken = source.copy()
-        n = len(shape.free)
-        shaken[:n] *= rng.uniform(0.6, 1.4, n)
-        if shape.slides:
-            shaken[n : n + 2] += 0.1 * shape.size * rng.uniform(-1.0, 1.0, 2)
-        if shape.turns:
-            shaken[-1] += 0.5 * np.pi * rng.integers(0, 4) + rng.uniform(-0.3, 0.3)
-        found.append(shaken)
-    return found[: max(1, count)]
-
-
-def _centred(shape: SketchShape, numbers: np.ndarray, box: np.ndarray) -> np.ndarray:
-    """The numbers with the shape's box centred on another, where it may slide."""
-    here = shape.at(numbers) if shape.slides else None
-    if here is None:
-        return numbers
-    n = len(shape.free)
-    moved = numbers.copy()
-    moved[n : n + 2] += box.mean(axis=0) - here.curve.box.mean(axis=0)
-    return moved
-
-
-def _best(search: Search, starts: list[np.ndarray]):
+def _best(search: Nearest | Bounded, starts: list[np.ndarray]):
     best, tried = None, 0
     for start in starts:
         tried += 1
@@ -200,7 +114,9 @@ def _best(search: Search, starts: list[np.ndarray]):
     return best, tried
 
 
-def _told(sketch: Sketch, shape: SketchShape, search: Search, best: Found, tried: int) -> Fit:
+def _told(
+    sketch: Sketch, shape: SketchShape, search: Nearest | Bounded, best: Found, tried: int
+) -> Fit:
     here, target = best.placed, search.target
     n = len(shape.free)
     place = here.numbers[n:]

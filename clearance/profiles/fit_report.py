@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_rows import Rows, Slope, joined_rows
+from clearance.profiles.fit_rows import Rows, Slope, rows_of
 from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_target import Found, Target
 
@@ -49,13 +49,12 @@ def held_rates(shape: SketchShape, target: Target, best: Found) -> dict[str, flo
     names, slopes, change = _held_slopes(shape, target, best)
     if not names:
         return {}
-    pair = target.rows(best.placed.pieces, slopes, best.samples, best.given)
-    weight, k = best.marginals, len(best.chosen)
+    here, weight, k = best.placed.pieces, best.marginals, len(best.chosen)
+    measured = target.distances if target.mode == "nearest" else target.gaps
+    slope = rows_of(measured(here, best.samples, best.given).at(best.chosen), here, slopes).slope
     if target.mode == "nearest":
-        slope = joined_rows(*pair).slope[best.chosen]
         rates, unit = weight[k:] @ slope - weight[:k] @ slope, 1.0
     else:  # the program counts gaps in units of size and areas in units of its square
-        slope = target.gaps(pair).slope[best.chosen]
         rates, unit = np.array(change) + (weight @ slope) * shape.size, shape.size
     found = {name: float(rate) for name, rate in zip(names, rates, strict=True)}
     found = {name: rate for name, rate in found.items() if abs(rate) > 1e-4 * unit}

@@ -1,7 +1,8 @@
 """Distances between a shape and an outline at many points, with their change by every number of the shape.
 
 A row says: this far inside here (negative: outside), and so much more for each number. The first order is exact,
-since the foot of a shortest line may move along its curve at no cost. Not for: certified distances.
+since the foot of a shortest line may move along its curve at no cost. Distances are taken at all points, slopes
+only at those that matter. Not for: certified distances.
 """
 
 from __future__ import annotations
@@ -22,6 +23,30 @@ class Rows(NamedTuple):
     point: np.ndarray
 
 
+class Gaps(NamedTuple):
+    """Rows before their slopes are known.
+
+    Attributes:
+        distance: (k,) with its sign. point: (k, 2) where.
+        normal: (k, 2) how the distance changes when the shape's own place moves.
+        piece, share: (k,) the shape's own place.
+    """
+
+    distance: np.ndarray
+    point: np.ndarray
+    normal: np.ndarray
+    piece: np.ndarray
+    share: np.ndarray
+
+    def at(self, chosen: np.ndarray) -> Gaps:
+        """Only the chosen ones."""
+        return Gaps(*(column[chosen] for column in self))
+
+    def signed(self, sign: float) -> Gaps:
+        """The other side counted positive where `sign` is -1."""
+        return self._replace(distance=sign * self.distance, normal=sign * self.normal)
+
+
 class Slope(NamedTuple):
     """Two neighbouring shapes, how far apart one of their numbers is (0 where it cannot change), and the change
     of the area for each unit of it."""
@@ -30,6 +55,27 @@ class Slope(NamedTuple):
     ahead: Pieces
     width: float
     area: float = 0.0
+
+    def moved(self, gaps: Gaps, own: np.ndarray) -> np.ndarray:
+        """(k, 2) how the places `own` of the shape move for each unit of the number."""
+        if not self.width:
+            return np.zeros_like(own)
+        ahead = self.ahead.point(gaps.piece, gaps.share)
+        return (ahead - self.behind.point(gaps.piece, gaps.share)) / self.width
+
+
+class Rigid(NamedTuple):
+    """The shape as a whole: by `shift` (2,) for each unit, and turned to the left about `pivot` (2,)."""
+
+    shift: np.ndarray
+    pivot: np.ndarray
+    turn: float = 0.0
+    area: float = 0.0
+
+    def moved(self, gaps: Gaps, own: np.ndarray) -> np.ndarray:
+        """(k, 2) how the places `own` of the shape move for each unit of the number."""
+        arm = own - self.pivot
+        return self.shift + self.turn * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
 
 
 def sides_of(pieces: Pieces, region: Region) -> np.ndarray:
@@ -46,22 +92,29 @@ def sides_of(pieces: Pieces, region: Region) -> np.ndarray:
     return np.where(holds(region, pieces.point(longest, half) + step), 1.0, -1.0)
 
 
-def rows_of_shape(here: Pieces, slopes, outline: Pieces, sides, samples) -> Rows:
-    """Rows of the shape's places `samples` (pieces, shares), positive inside the outline."""
+def gaps_of_shape(outline: Pieces, sides: np.ndarray, here: Pieces, samples) -> Gaps:
+    """Gaps of the shape's places `samples` (pieces, shares), positive inside the outline."""
     own = here.point(*samples)
     distance, normal, _ = _measured(outline, sides, own)
-    return Rows(distance, _slope(slopes, samples, normal), own)
+    return Gaps(distance, own, normal, *samples)
 
 
-def rows_of_outline(here: Pieces, slopes, sides, given: np.ndarray) -> Rows:
-    """Rows of the outline's points `given` (k, 2), positive inside the shape."""
-    distance, normal, at = _measured(here, sides, given)
-    return Rows(distance, -_slope(slopes, at, normal), given)
+def gaps_of_outline(here: Pieces, sides: np.ndarray, given: np.ndarray) -> Gaps:
+    """Gaps of the outline's points `given` (k, 2), positive inside the shape."""
+    distance, normal, place = _measured(here, sides, given)
+    return Gaps(distance, given, -normal, *place)
 
 
-def joined_rows(*parts: Rows) -> Rows:
-    """All rows of several."""
-    return Rows(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+def joined_gaps(*parts: Gaps) -> Gaps:
+    """All gaps of several."""
+    return Gaps(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def rows_of(gaps: Gaps, here: Pieces, slopes: list[Slope | Rigid]) -> Rows:
+    """Gaps of the shape `here` with their slopes."""
+    own = here.point(gaps.piece, gaps.share)
+    columns = [(slope.moved(gaps, own) * gaps.normal).sum(axis=1) for slope in slopes]
+    return Rows(gaps.distance, np.stack(columns, axis=1), gaps.point)
 
 
 def _measured(curve: Pieces, sides: np.ndarray, points: np.ndarray):
@@ -75,12 +128,3 @@ def _measured(curve: Pieces, sides: np.ndarray, points: np.ndarray):
     away = off / np.where(near, 1.0, length)[:, None] * side[:, None]
     normal = np.where(near[:, None], left, away) * sides[curve.owner[piece]][:, None]
     return (off * normal).sum(axis=1), normal, (piece, share)
-
-
-def _slope(slopes: list[Slope], places, normal: np.ndarray) -> np.ndarray:
-    """(k, n) how fixed places of the shape move along `normal`."""
-    columns = []
-    for behind, ahead, width, _ in slopes:
-        moved = ahead.point(*places) - behind.point(*places) if width else np.zeros_like(normal)
-        columns.append((moved * normal).sum(axis=1) / (width or 1.0))
-    return np.stack(columns, axis=1)

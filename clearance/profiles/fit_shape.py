@@ -8,55 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, ClearanceError, nearest_name
-from clearance.planar.curve import Curve
-from clearance.profiles.contour import Contour, joined
-from clearance.profiles.fit_rows import Slope
+from clearance.profiles.contour import Contour
+from clearance.profiles.drawn_chains import contours_of_chains, drawn_chains
+from clearance.profiles.fit_placed import Placed
+from clearance.profiles.fit_rows import Rigid, Slope
 from clearance.profiles.outline_file import require_closed, require_solved
-from clearance.profiles.pieces import Pieces
+from clearance.profiles.sketch_copy import copied
 from clearance.sketch import Sketch
-from clearance.sketch.entities import Arc, Circle, Segment
-from clearance.sketch.outline import angles_of, chains, ends_of
-
-LONGEST_ARC = 1.2
-"""[rad] Arcs are cut into equal parts of at most this as drawn; fitting may double it before a bulge is lost."""
 
 
 class NoFreeDimension(BadInput):
     """A sketch to be fitted that has no dimension to change."""
-
-
-@dataclass(frozen=True, eq=False)
-class Placed:
-    """A shape: what the sketch draws, moved to where it stands.
-
-    Attributes:
-        numbers: (n,) the free dimensions, then x, y [m] and turn [rad] where they are free.
-        contours: closed; always the same pieces.
-    """
-
-    numbers: np.ndarray
-    contours: tuple[Contour, ...]
-
-    @cached_property
-    def pieces(self) -> Pieces:
-        """For the search."""
-        return Pieces(self.contours)
-
-    @cached_property
-    def curve(self) -> Curve:
-        """For certified distances."""
-        return joined(self.contours)
-
-    @cached_property
-    def area(self) -> float:
-        """[m^2] that the contours enclose, holes taken off where they run the other way."""
-        return abs(sum(contour.area for contour in self.contours))
 
 
 class SketchShape:
@@ -88,8 +54,8 @@ class SketchShape:
         self.kinds = [self._kind(name) for name in self.free]
         drawn = self.sketch.curves()
         require_closed(drawn, "sketch")
-        self._chains = self._drawn_chains()
-        self._anchor = self._stand(self._contours())
+        self._chains = drawn_chains(self.sketch)
+        self._anchor = self._stand(contours_of_chains(self._chains))
         first = [float(self.sketch.value(name)) for name in self.free]
         self.start = np.array(first + ([0.0, 0.0] if self.slides else []) + [0.0] * self.turns)
         self.size = drawn.size
@@ -116,7 +82,7 @@ class SketchShape:
                 self.sketch.set(name, float(number))
             if not self.sketch.solve().solved:
                 return None
-            contours = self._contours()
+            contours = contours_of_chains(self._chains)
         except ClearanceError:
             return None
         motion = self._motion(numbers[len(self.free) :], *self._stand(contours))
@@ -137,18 +103,22 @@ class SketchShape:
         finally:
             self.sketch.set(name, before)
 
-    def slopes(self, here: Placed) -> list[Slope]:
-        """For each number the shape a little further, or a little before where that cannot be drawn."""
-        found = []
-        for i, number in enumerate(here.numbers):
+    def slopes(self, here: Placed) -> list[Slope | Rigid]:
+        """How the shape changes with each number: the shape a little further, or before where that cannot be."""
+        found: list[Slope | Rigid] = []
+        for i in range(len(self.free)):
             step = 1e-6 * self.scale[i]
-            if i < len(self.free):
-                step = min(step, 1e-3 * abs(number)) or step
+            step = min(step, 1e-3 * abs(here.numbers[i])) or step
             found.append(
                 self._slope(here, i, step)
                 or self._slope(here, i, -step)
                 or Slope(here.pieces, here.pieces, 0.0)
             )
+        pivot = here.contours[0].vertices[0]
+        if self.slides:
+            found += [Rigid(axis, pivot) for axis in np.eye(2)]
+        if self.turns:
+            found.append(Rigid(np.zeros(2), pivot, 1.0))
         return found
 
     def _slope(self, here: Placed, i: int, step: float) -> Slope | None:
@@ -163,7 +133,9 @@ class SketchShape:
     def placed_sketch(self, numbers: np.ndarray, original: Sketch) -> Sketch:
         """The sketch itself at these numbers, free dimensions driven as they were."""
         self.at(numbers)
-        motion = self._motion(numbers[len(self.free) :], *self._stand(self._contours()))
+        motion = self._motion(
+            numbers[len(self.free) :], *self._stand(contours_of_chains(self._chains))
+        )
         driven = {c.name for c in original.constraints.values() if c.driven}
         return copied(self.sketch, motion=motion, released=driven)
 
@@ -188,31 +160,6 @@ class SketchShape:
             return "parameter"
         return self.sketch.constraint(name).kind
 
-    def _drawn_chains(self) -> list[list[tuple]]:
-        """Closed chains of (entity, runs backwards, number of equal parts); circles alone."""
-        entities = list(self.sketch.entities.values())
-        parts = [e for e in entities if isinstance(e, Segment | Arc)]
-        found = [
-            [(e, back, self._parts(e)) for e, back in chain] for chain in chains(self.sketch, parts)
-        ]
-        return found + [[(e, False, 6)] for e in entities if type(e) is Circle]
-
-    def _parts(self, entity) -> int:
-        if isinstance(entity, Segment):
-            return 1
-        start, end = angles_of(entity)
-        return max(1, math.ceil((end - start) / LONGEST_ARC))
-
-    def _contours(self) -> tuple[Contour, ...]:
-        """What the sketch draws now."""
-        found = []
-        for chain in self._chains:
-            vertices, bulges = [], []
-            for entity, back, n in chain:
-                _draw(entity, back, n, vertices, bulges)
-            found.append(Contour(np.array(vertices), np.array(bulges)))
-        return tuple(found)
-
     def _stand(self, contours: tuple[Contour, ...]) -> tuple[np.ndarray, float]:
         """Where the drawing stands: its first vertex, and the direction to the next."""
         first, second = contours[0].vertices[:2]
@@ -231,81 +178,3 @@ class SketchShape:
         matrix = np.array([[cosine, -sine], [sine, cosine]])
         shift = self._anchor[0] + place[:2] - matrix @ at
         return np.column_stack([matrix, shift])
-
-
-def _draw(entity, back: bool, n: int, vertices: list, bulges: list) -> None:
-    """Appends the start of each of `n` equal parts of an entity, and their bulge."""
-    if isinstance(entity, Segment):
-        vertices.append(ends_of(entity)[1 if back else 0].position)
-        bulges.append(0.0)
-        return
-    start, end = angles_of(entity) if isinstance(entity, Arc) else (0.0, 2.0 * math.pi)
-    bulge = math.tan(0.25 * (end - start) / n)
-    center, radius = entity.center.position, entity.radius
-    for k in range(n):
-        angle = end - (end - start) * k / n if back else start + (end - start) * k / n
-        place = center + radius * np.array([math.cos(angle), math.sin(angle)])
-        if k == 0 and isinstance(entity, Arc):
-            place = ends_of(entity)[1 if back else 0].position
-        vertices.append(place)
-        bulges.append(-bulge if back else bulge)
-
-
-def copied(
-    sketch: Sketch,
-    *,
-    driving: frozenset | set = frozenset(),
-    released: frozenset | set = frozenset(),
-    motion: np.ndarray | None = None,
-) -> Sketch:
-    """The same sketch again, some driven dimensions made driving or driving ones driven, all moved.
-
-    Args:
-        driving, released: names of constraints.
-        motion: (2, 3) a rigid motion of the plane; only for sketches that nothing fixes.
-    """
-    motion = np.eye(2, 3) if motion is None else motion
-    made = Sketch()
-    for name, value in sketch.parameters.items():
-        made.parameter(name, value)
-    for entity in sketch.entities.values():
-        _copy_entity(made, entity, motion)
-    for c in sketch.constraints.values():
-        if c.built_in:
-            continue
-        driven = (c.driven and c.name not in driving) or c.name in released
-        value = c.given
-        if value is not None and not isinstance(value, str):
-            value = float(sketch.value(c.name))
-        again = made.add(
-            c.kind,
-            *(entity.name for entity in c.entities),
-            value=value,
-            name=c.name,
-            driven=driven,
-            **c.options,
-        )
-        if driven:
-            again.given = float(again.number)  # plain numbers, for files
-    return made
-
-
-def _copy_entity(made: Sketch, entity, motion: np.ndarray) -> None:
-    def moved(point) -> list[float]:
-        return (motion[:, :2] @ point + motion[:, 2]).tolist()
-
-    name = entity.name
-    if entity.what == "point":
-        made.point(*moved(entity.position), name=name)
-    elif entity.what == "circle":
-        made.circle(made.entity(entity.center.name), entity.radius, name=name)
-    elif entity.what == "arc":
-        ends = (made.entity(p.name) for p in (entity.center, entity.start, entity.end))
-        made.arc(*ends, name=name)
-    else:
-        if entity.ends is not None:
-            ends = [made.entity(p.name) for p in entity.ends]
-        else:
-            foot = entity.offset * np.array([-entity.direction[1], entity.direction[0]])
-            ends = [moved(foot - 0.5 * entity.direction), moved(foot + 0.5 * entity.direction)]
-        (made.segment if entity.what == "segment" else made.line)(*ends, name=name)

@@ -11,15 +11,16 @@ import numpy as np
 
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import Minimum
+from clearance.profiles.fit_placed import Placed
 from clearance.profiles.fit_rows import (
+    Gaps,
     Rows,
-    Slope,
-    joined_rows,
-    rows_of_outline,
-    rows_of_shape,
+    gaps_of_outline,
+    gaps_of_shape,
+    joined_gaps,
     sides_of,
 )
-from clearance.profiles.fit_shape import Placed, SketchShape
+from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.gap import Closed, proven_gap
 from clearance.profiles.outline_file import Drawn
 from clearance.profiles.pieces import Pieces
@@ -73,24 +74,22 @@ class Target:
         free_form = mode == "inside" and outline.profile is None
         self.room = free_form and bool(holds(self.closed.region, drawn.pieces.start[:1]).all())
 
-    def rows(
-        self, here: Pieces, slopes: list[Slope], samples: Places, given: np.ndarray
-    ) -> tuple[Rows, Rows]:
-        """Rows of the shape's places and of the outline's points, positive inside the other."""
-        return (
-            rows_of_shape(here, slopes, self.pieces, self.sides, samples),
-            rows_of_outline(here, slopes, self.shape_sides, given),
-        )
+    def distances(self, here: Pieces, samples: Places, given: np.ndarray) -> Gaps:
+        """Of the shape's places and of the outline's points, positive inside the other."""
+        return joined_gaps(*self._pair(here, samples, given))
 
-    def gaps(self, pair: tuple[Rows, Rows]) -> Rows:
-        """One set of rows whose distance must be at least the margin."""
+    def gaps(self, here: Pieces, samples: Places, given: np.ndarray) -> Gaps:
+        """The same, positive where the shape is on its right side: to be at least the margin."""
+        own, theirs = self._pair(here, samples, given)
         one = 1.0 if self.room else -1.0
         two = 1.0 if self.mode == "outside" else -1.0
-        turned = (
-            Rows(sign * rows.distance, sign * rows.slope, rows.point)
-            for sign, rows in zip((one, two), pair, strict=True)
+        return joined_gaps(own.signed(one), theirs.signed(two))
+
+    def _pair(self, here: Pieces, samples: Places, given: np.ndarray) -> tuple[Gaps, Gaps]:
+        return (
+            gaps_of_shape(self.pieces, self.sides, here, samples),
+            gaps_of_outline(here, self.shape_sides, given),
         )
-        return joined_rows(*turned)
 
     def score(self, here: Placed) -> float:
         """[m^2] what outside and inside make least."""

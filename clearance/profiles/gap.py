@@ -15,13 +15,10 @@ from clearance.planar.curve import Curve
 from clearance.planar.minimum import Minimum, minimum_distance
 from clearance.profiles.contour import Contour, joined
 from clearance.profiles.pieces import FINE, Pieces, contours_of
-from clearance.profiles.region import Region, boundary_distance, holds, region_of
+from clearance.profiles.region import Region, holds, region_of
 
 CHORD = 1e-7
 """[-] How far chords may stray from arcs where sides are told, relative to the size."""
-
-WIDE = 1e-9
-"""[-] Error of a least distance, relative to the size, above which chords are tried as well."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +27,10 @@ class Closed:
 
     Attributes:
         contours: lines and arcs. curve: what is certified.
-        exact: whether the contours are the curve itself, not arcs near it.
     """
 
     contours: tuple[Contour, ...]
     curve: Curve
-    exact: bool = True
 
     @classmethod
     def of(cls, contours: Sequence[Contour]) -> Closed:
@@ -45,8 +40,7 @@ class Closed:
     @classmethod
     def of_curve(cls, curve: Curve) -> Closed:
         """Any curve of closed contours."""
-        free = bool((np.diff(curve.pieces.first) > 3).any())
-        return cls(contours_of(curve, FINE * curve.size), curve, exact=not free)
+        return cls(contours_of(curve, FINE * curve.size), curve)
 
     @cached_property
     def pieces(self) -> Pieces:
@@ -77,19 +71,10 @@ def proven_gap(
         room: the sketch is to lie inside the outline; else outside it.
     """
     least = minimum_distance(sketch.curve, outline.curve)
-    lower, size = least.distance - least.error_bound, sketch.curve.size
-    if least.error_bound > WIDE * size and sketch.exact and outline.exact:
-        lower = max(lower, _gap_of_chords(sketch, outline))  # arcs that run alongside arcs
+    lower = least.distance - least.error_bound
     theirs = holds(sketch.region, outline.starts)
     ours = holds(outline.region, sketch.starts)
     right = (theirs.all() if around else not theirs.any()) and (
         ours.all() if room else not ours.any()
     )
     return (lower if right else -1.0), least
-
-
-def _gap_of_chords(one: Closed, two: Closed) -> float:
-    """The least distance of chords within known heights of the arcs, less the heights."""
-    height = 1e-8 * one.curve.size
-    theirs = region_of([c.flattened(height) for c in two.contours])
-    return boundary_distance(theirs, [c.flattened(height) for c in one.contours]) - 2.01 * height

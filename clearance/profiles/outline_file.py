@@ -17,7 +17,7 @@ from clearance.kernels.arc import RADIUS
 from clearance.planar.curve import Curve
 from clearance.planar.curve_file import read_curve
 from clearance.profiles.profile import Profile
-from clearance.profiles.profile_file import is_profile, profile_of
+from clearance.profiles.profile_read import is_profile, profile_of
 
 if TYPE_CHECKING:
     from clearance.profiles.region import Region

@@ -18,7 +18,7 @@ def profiles(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
     figures = [_figure(answer, pictures) for answer in summary["profiles"]]
     note = element(
         "p",
-        "Gaps are proven for the continuous motion, joints moving linearly between steps, and rounded down; "
+        "Gaps are proven for the continuous motion, between the steps too, and rounded down; "
         "the true gap is larger by at most the bound in summary.json. A negative gap is how far the swept "
         "outline is beyond the sketch.",
         class_="faint",

@@ -32,15 +32,14 @@ def joint(i, kind, axis, offset=(0.0, 0.0, 0.0)):
     return Joint(f"j{i}", kind, f"l{i}", f"l{i + 1}", pose, np.array(axis, float))
 
 
-def moved(joints, shapes, positions):
+def moved(joints, shapes, positions, velocities=None, times=None):
     """The case of a chain of joints; shapes by the number of the link."""
     positions = np.atleast_2d(np.array(positions, float))
     names = tuple(f"l{i}" for i in range(len(joints) + 1))
     bodies = tuple(Body(f"l{i}", shape) for i, shape in sorted(shapes.items()))
     robot = Robot("robot", names, tuple(joints), bodies)
-    asked = Trajectory(
-        np.arange(len(positions), dtype=float), tuple(j.name for j in joints), positions
-    )
+    times = np.arange(len(positions), dtype=float) if times is None else np.array(times, float)
+    asked = Trajectory(times, tuple(j.name for j in joints), positions, velocities)
     return Case("made", (PlacedRobot(robot, asked),), ())
 
 

@@ -12,6 +12,7 @@ from clearance.cli.commands import clearance as command
 from clearance.errors import BadInput, BadShape, BadSyntax, UnknownLink
 from clearance.load.case_file import load_case
 from clearance.profiles.compare import as_data, compare
+from clearance.profiles.gap import Closed, proven_gap
 from clearance.profiles.outline_file import Drawn, read_outline, read_profile
 from clearance.profiles.profile_file import write_profile
 from tests.profiles.moving import rows, slab, turning
@@ -176,6 +177,23 @@ def test_check_says_how_close_the_sweep_comes_to_its_sketch():
     assert answer.gap == pytest.approx(cl.minimum_distance(swept.curve, zone).distance, abs=1e-9)
 
 
+@pytest.mark.parametrize("name", ["d_cell", "port"])
+def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
+    """keep_in and port_fails are answered in full above and below; here their counterparts."""
+    for suffix, kept in (("", True), ("_fails", False)):
+        if (name, kept) == ("port", False):
+            continue
+        case = load_case(SCENES / "profiles" / f"{name}{suffix}.yaml")
+        space = case.profiles[0]
+        swept = cl.swept_profile(
+            case, space.plane, links=space.links or None, section=space.section
+        )
+        gap, _ = proven_gap(
+            Closed.of_curve(space.sketch.curves()), Closed.of(swept.contours), around=True
+        )
+        assert gap > 0.0 and (gap >= space.limit) == kept
+
+
 def test_a_sweep_beyond_its_sketch_violates_the_case_and_the_page_shows_it(tmp_path):
     broken = cl.check(load_case(SCENES / "profiles" / "port_fails.yaml"))
     assert not broken.passed and broken.status == "violated"
@@ -222,3 +240,33 @@ def test_a_broken_profile_file_is_refused(tmp_path):
     path.write_text("format: other\ncontours: []\n")
     with pytest.raises(BadSyntax, match="clearance-profile-1"):
         read_outline(path)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("plane: [1, 2]", "plane"),
+        ("plane: {origin: [0, 0]}", "plane: origin"),
+        ("plane: {axes: [[1, 0, 0], [0, .nan, 0]]}", "plane: axes"),
+        ("bound: -1", "bound"),
+        ("steps: many", "steps"),
+        ("section: [1]", "section"),
+        ("origin: {links: [a], link_and_step: [[0, 1]]}", "1 entries for 3 pieces"),
+        ("origin: {links: [a], link_and_step: [[0, 1], [1, 1], [0, 2]]}", "a link or step"),
+        ("origin: 5", "origin"),
+        ("parts: {l1: {name: l1}}", "parts: l1: contours"),
+        ("parts: {l1: {contours: [[[0, 0, 0]]]}}", "a single vertex"),
+    ],
+)
+def test_a_profile_file_with_a_wrong_field_is_refused_by_its_name(line, said, tmp_path):
+    path = tmp_path / "p.yaml"
+    path.write_text(
+        f"format: clearance-profile-1\ncontours: [[[0, 0, 0], [1, 0, 0], [1, 1, 0]]]\n{line}\n"
+    )
+    with pytest.raises(BadInput) as caught:
+        read_profile(path)
+    assert (
+        said in str(caught.value)
+        and "p.yaml" in str(caught.value)
+        and "\n" not in str(caught.value)
+    )

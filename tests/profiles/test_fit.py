@@ -8,9 +8,12 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadShape
+from clearance.profiles.contour import Contour
 from clearance.profiles.fit import NoFit
-from clearance.profiles.fit_shape import NoFreeDimension, SketchShape, copied
+from clearance.profiles.fit_shape import NoFreeDimension, SketchShape
 from clearance.profiles.outline_file import read_outline
+from clearance.profiles.profile import Profile
+from clearance.profiles.sketch_copy import copied
 from tests.oracle.outlines import inside
 from tests.profiles.moving import rows, slab, turning
 
@@ -173,3 +176,23 @@ def test_refusals_of_fit_are_one_line(sketch, outline, options, fault, said):
 def test_a_sketch_can_be_compared_as_it_is():
     drawn = read_outline(SKETCHES / "d_cell.yaml")
     assert drawn.curve.is_closed and drawn.profile is None
+
+
+def test_a_sketch_beside_the_outline_that_nothing_holds_is_refused():
+    with pytest.raises(NoFit, match="grows beside the outline without end"):
+        cl.fit(
+            rectangle(1.0, 1.0),
+            Profile((Contour(np.array([[5, 5], [6, 5], [6, 6]]), np.zeros(3)),)),
+            "inside",
+            starts=2,
+        )
+
+
+def test_a_dimension_that_would_vanish_does_not_stop_the_others():
+    """A step that the outline does not have shrinks to nothing, and the rest is found all the same."""
+    s = rectangle(1.0, 0.8)
+    s.distance(s.entity("p0"), s.entity("p2"), driven=True, name="diagonal")
+    outline = cl.Curve.polyline([[0, 0], [2, 0], [2, 1e-9], [0, 1e-9]], closed=True)
+    found = cl.fit(s, outline, "nearest", free=["width", "depth"])
+    assert found.dimensions["width"] == pytest.approx(2.0, abs=1e-5)
+    assert 0.0 < found.dimensions["depth"] <= 3e-6

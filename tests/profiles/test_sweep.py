@@ -9,50 +9,25 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLink
-from clearance.profiles.chords import knots_of, positions_at
+from clearance.profiles.chords import knots_of
+from clearance.profiles.course import positions_at
 from clearance.profiles.plane import Plane
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.kinematics import link_poses
 from clearance.world.robot import JointKind
 from tests.oracle.outlines import inside
+from tests.profiles.finely import finely_swept, strays, sweeps
 from tests.profiles.moving import (
     Z,
     joint,
     moved,
     rows,
-    shifted,
     slab,
     sliding,
-    tetrahedron,
     turning,
 )
 
 shapely = pytest.importorskip("shapely")
-
-
-def strays(profile, truth):
-    """[m] greatest distance of the profile's outline from a region of shapely."""
-    points = np.concatenate([contour.flattened(1e-6) for contour in profile.contours])
-    return float(shapely.distance(truth, shapely.points(points)).max())
-
-
-def finely_swept(case, plane, parts):
-    """Unions of all projected triangles at every step and `parts` - 1 instants in between: of what is
-    there at these instants, and of the hulls from each to the next."""
-    motion = kinematic_motion(case.robots[0])
-    instants = np.linspace(0, motion.n_steps - 1, (motion.n_steps - 1) * parts + 1)
-    poses = link_poses(case.robots[0], positions_at(motion, instants))
-    names = case.robots[0].robot.link_names
-    at, between = [], []
-    for body in case.robots[0].robot.bodies:
-        corners = body.shape.vertices[body.shape.triangles()]
-        turned = poses[:, None, None, names.index(body.name)]
-        world = np.einsum("ktcij,tcj->ktci", turned[..., :3, :3], corners) + turned[..., :3, 3]
-        seen = plane.coordinates(world)
-        at.append(shapely.polygons(seen).ravel())
-        six = np.concatenate([seen[:-1], seen[1:]], axis=2)
-        between.append(shapely.convex_hull(shapely.multipoints(six)).ravel())
-    return shapely.unary_union(np.concatenate(at)), shapely.unary_union(np.concatenate(between))
 
 
 def test_a_bar_turning_about_a_point_sweeps_a_sector_of_an_annulus():
@@ -117,20 +92,6 @@ def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
     outer, hole = found.contours
     assert outer.area > 0 > hole.area
     assert abs(-hole.area - math.pi * 0.3**2) <= found.bound * hole.length
-
-
-def sweeps(seed):
-    rng = np.random.default_rng(seed)
-    kinds = [JointKind.REVOLUTE, rng.choice([JointKind.REVOLUTE, JointKind.PRISMATIC])]
-    axes = rng.normal(size=(2, 3))
-    axes /= np.linalg.norm(axes, axis=1)[:, None]
-    joints = [joint(i, JointKind(kinds[i]), axes[i], rng.uniform(-0.3, 0.3, 3)) for i in range(2)]
-    shapes = {
-        1: shifted(cl.box(rng.uniform(0.02, 0.8, 3)), rng.uniform(-0.3, 0.3, 3)),
-        2: tetrahedron(rng, 0.3),
-    }
-    case = moved(joints, shapes, np.cumsum(rng.uniform(-0.5, 0.5, (3, 2)), axis=0))
-    return rng, case
 
 
 @settings(max_examples=6, deadline=None)

@@ -1,0 +1,117 @@
+"""The search for the least sketch around an outline, or the largest clear of it, from one start.
+
+Linear programs in a trust region, each answer certified; what is certified too small is asked for with more
+margin. Not for: choosing starts (`fit_starts`), or the nearest sketch (`fit_nearest`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.profiles.fit_placed import Placed
+from clearance.profiles.fit_program import least_area
+from clearance.profiles.fit_rows import Gaps, Rows, rows_of
+from clearance.profiles.fit_search import MOST_ROWS, STEPS, Search
+from clearance.profiles.fit_target import Found, Places
+
+MOST_NEAR = 60
+"""Places of the outline whose pieces are looked at more closely once the shape is near them."""
+
+ENDLESS = 3.0
+"""[-] A shape still growing after all steps, and so many times the outline's size, has nothing to stop it."""
+
+ROUNDS = 7
+"""Times that a search is taken up again with the certified witnesses."""
+
+
+class Bounded(Search):
+    """The search for the least (outside) or greatest (inside) area with every gap at least the margin.
+
+    Attributes:
+        endless: whether a shape grew beside the outline without end.
+    """
+
+    endless = False
+
+    def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:
+        """The shape that the search ends with; None where it is not what was asked, or no better than the
+        score `beat` once it has come near.
+        """
+        here = self.shape.at(start)
+        return None if here is None else self._certified(here, beat)
+
+    def _certified(self, here: Placed, beat: float) -> Found | None:
+        target, wanted, near = self.target, self.target.margin, 1e-6 * self.shape.size
+        extra, samples = np.zeros((0, 2)), self.samples
+        for k in range(ROUNDS):
+            reach = 0.1 if k == 0 else 1e-3
+            here, rows, marginals, used, grown = self._steps(here, wanted, samples, extra, reach)
+            self.endless |= grown
+            if grown or float(rows.distance.min()) < wanted - near:
+                return None
+            if k == 0 and target.score(here) > beat + 1e-6 * abs(beat):
+                return None
+            gap, least = target.clearance(here)
+            if gap >= target.margin and (gap > 0.0 or target.margin > 0.0):
+                return Found(here, target.score(here), gap, rows, marginals, *used)
+            if gap < 0.0 and least.distance > near:
+                return None
+            extra = np.vstack([extra, least.point_b, self._near_points(here, wanted)])
+            samples = self.with_places(here, least.point_a[None], samples)
+            wanted += 1.05 * (target.margin - max(gap, 0.0)) + 4.0**k * 1e-9 * self.shape.size
+        return None
+
+    def _steps(self, here: Placed, wanted: float, samples: Places, extra: np.ndarray, reach: float):
+        """Linear programs until none promises more: the shape, the rows of the last, which they are, and whether
+        it was still growing, far beyond the outline.
+        """
+        target, size = self.target, self.shape.size
+        price, given = 10.0 * size, np.vstack([target.given, extra])
+        gaps = target.gaps(here.pieces, samples, given)
+        rows, chosen, change = self._rows(here, gaps)
+        for _ in range(STEPS):
+            merit = target.score(here) + price * max(0.0, wanted - float(gaps.distance.min()))
+            bounds = self.bounds(here, reach)
+            found = least_area(rows, change, wanted, price, size, reach, self.shape.scale, *bounds)
+            if found.value <= 1e-10 * size**2 or reach < 1e-10:
+                break
+            moved, gained = self.shape.at(here.numbers + found.step), -np.inf
+            if moved is not None:
+                fresh = target.gaps(moved.pieces, samples, given)
+                missing = max(0.0, wanted - float(fresh.distance.min()))
+                gained = merit - target.score(moved) - price * missing
+            if gained > 0.0:
+                here, gaps = moved, fresh
+                rows, chosen, change = self._rows(here, gaps)
+                share = gained / found.value
+                reach = min(0.5, reach * (2.0 if share > 0.7 else 1.0 if share > 0.2 else 0.4))
+            else:
+                reach *= 0.25
+        else:
+            far = here.pieces.size > ENDLESS * target.pieces.size
+            return here, rows, found.marginals, (samples, given, chosen), far and self._beside
+        return here, rows, found.marginals, (samples, given, chosen), False
+
+    @property
+    def _beside(self) -> bool:
+        return self.target.mode == "inside" and not self.target.room
+
+    def _rows(self, here: Placed, gaps: Gaps) -> tuple[Rows, np.ndarray, np.ndarray]:
+        """The rows nearest to mattering, which they are, and the change of the score by each number."""
+        chosen = np.sort(np.argsort(gaps.distance, kind="stable")[:MOST_ROWS])
+        slopes = self.shape.slopes(here)
+        sign = 1.0 if self.target.mode == "outside" else -1.0
+        change = sign * np.array([slope.area for slope in slopes])
+        return rows_of(gaps.at(chosen), here.pieces, slopes), chosen, change
+
+    def _near_points(self, here: Placed, wanted: float) -> np.ndarray:
+        """Many points of those pieces of the outline that come near the shape: where it may touch."""
+        outline = self.target.pieces
+        piece, share = outline.spread(2)
+        points = outline.point(piece, share)
+        _, _, foot = here.pieces.feet(points)
+        off = np.hypot(*(points - foot).T)
+        near = piece[np.argsort(off, kind="stable")[:MOST_NEAR]]
+        near = np.unique(near[np.sort(off)[:MOST_NEAR] <= wanted + 2e-3 * self.shape.size])
+        dense = np.tile((np.arange(24) + 0.5) / 24.0, len(near))
+        return outline.point(np.repeat(near, 24), dense)

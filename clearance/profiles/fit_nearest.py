@@ -1,0 +1,95 @@
+"""The search for the sketch nearest to an outline, from one start: Gauss and Newton, then linear programs.
+
+Not for: choosing starts (`fit_starts`), or outlines to be contained (`fit_bounded`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.planar.hausdorff import Hausdorff, hausdorff
+from clearance.profiles.fit_placed import Placed
+from clearance.profiles.fit_program import least_greatest
+from clearance.profiles.fit_rows import Gaps, Rows, rows_of
+from clearance.profiles.fit_search import MOST_ROWS, STEPS, Search
+from clearance.profiles.fit_target import Found, Places
+
+
+class Nearest(Search):
+    """The search for the least Hausdorff distance."""
+
+    def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:
+        """The shape that the search ends with; None where the sketch cannot be drawn at its start."""
+        here = self.shape.at(start)
+        return None if here is None else self._minimax(self._least_squares(here))
+
+    def _least_squares(self, here: Placed) -> Placed:
+        """Levenberg and Marquardt on all distances: fast where they vanish together."""
+        damping, rows = 1e-3, self._rows(here)
+        for _ in range(25):
+            scaled = rows.slope * self.shape.scale
+            normal = scaled.T @ scaled
+            ridge = damping * np.diag(np.diag(normal) + 1e-12 * np.trace(normal) + 1e-300)
+            step = np.linalg.lstsq(normal + ridge, -scaled.T @ rows.distance, rcond=None)[0]
+            step = np.clip(step, *self.bounds(here, np.inf))
+            moved = self.shape.at(here.numbers + step * self.shape.scale)
+            fresh = None if moved is None else self._gaps(moved).distance
+            if fresh is not None and fresh @ fresh < rows.distance @ rows.distance:
+                before = rows.distance @ rows.distance
+                here, damping, rows = moved, max(1e-12, 0.1 * damping), self._rows(moved)
+                if np.abs(step).max() < 1e-13 or 0.99 * before < fresh @ fresh > 1e-12 * before:
+                    break
+            else:
+                damping *= 10.0
+                if damping > 1e4 or np.abs(step).max() < 1e-13:
+                    break
+        return here
+
+    def _minimax(self, here: Placed) -> Found:
+        """Linear programs for the least greatest distance; the distance itself is certified each time."""
+        whole, reach, looked = self._distance(here), 0.05, (self.samples, self.target.given)
+        slopes = self.shape.slopes(here)
+        looked = self._with_witness(here, whole, *looked)
+        rows, chosen = self._chosen_rows(here, slopes, *looked)
+        for _ in range(STEPS):
+            if whole.distance <= self.tiny or reach < 1e-9:
+                break
+            step, predicted, _ = least_greatest(rows, self.shape.scale, *self.bounds(here, reach))
+            hoped = whole.distance - predicted
+            if hoped <= 1e-9 * whole.distance + self.tiny:
+                break
+            moved = self.shape.at(here.numbers + step)
+            there = None if moved is None else self._distance(moved)
+            if there is not None:
+                looked = self._with_witness(moved, there, *looked)
+            gained = -1.0 if there is None else (whole.distance - there.distance) / hoped
+            if gained > 0.0:
+                here, whole = moved, there
+                slopes = self.shape.slopes(here)
+                reach *= 2.0 if gained > 0.7 else 1.0 if gained > 0.2 else 0.4
+            else:
+                reach *= 0.25
+            rows, chosen = self._chosen_rows(here, slopes, *looked)
+        last = least_greatest(rows, self.shape.scale, *self.bounds(here, 1e-6))
+        return Found(here, whole.distance, None, rows, last.marginals, *looked, chosen)
+
+    def _distance(self, here: Placed) -> Hausdorff:
+        return hausdorff(here.curve, self.target.outline.curve)
+
+    def _with_witness(self, here: Placed, whole: Hausdorff, samples: Places, given: np.ndarray):
+        """The places that are looked at and the certified witnesses: of steps that failed as well."""
+        own = np.stack([whole.point_a, whole.directed["a_to_b"].point_a])
+        theirs = np.stack([whole.point_b, whole.directed["b_to_a"].point_a])
+        return self.with_places(here, own, samples), np.vstack([given, theirs])
+
+    def _chosen_rows(self, here: Placed, slopes: list, samples: Places, given: np.ndarray):
+        """The rows that matter most, and which they are."""
+        gaps = self.target.distances(here.pieces, samples, given)
+        chosen = np.sort(np.argsort(-np.abs(gaps.distance), kind="stable")[:MOST_ROWS])
+        return rows_of(gaps.at(chosen), here.pieces, slopes), chosen
+
+    def _gaps(self, here: Placed) -> Gaps:
+        return self.target.distances(here.pieces, self.samples, self.target.given)
+
+    def _rows(self, here: Placed) -> Rows:
+        return rows_of(self._gaps(here), here.pieces, self.shape.slopes(here))

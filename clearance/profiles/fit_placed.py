@@ -1,0 +1,70 @@
+"""One shape that a sketch draws, where it stands, and how far its numbers may go in one step.
+
+Not for: drawing it (`fit_shape`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from clearance.planar.curve import Curve
+from clearance.profiles.contour import Contour, joined
+from clearance.profiles.pieces import Pieces
+
+SHRINK = 0.05
+"""[-] What at least is left of a length after one step."""
+
+FLOOR = 1e-6
+"""[-] Lengths are not made shorter than this, relative to the sketch: it could not be drawn at 0."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A shape: what the sketch draws, moved to where it stands.
+
+    Attributes:
+        numbers: (n,) the free dimensions, then x, y [m] and turn [rad] where they are free.
+        contours: closed; always the same pieces.
+    """
+
+    numbers: np.ndarray
+    contours: tuple[Contour, ...]
+
+    @cached_property
+    def pieces(self) -> Pieces:
+        """For the search."""
+        return Pieces(self.contours)
+
+    @cached_property
+    def curve(self) -> Curve:
+        """For certified distances."""
+        return joined(self.contours)
+
+    @cached_property
+    def area(self) -> float:
+        """[m^2] that the contours enclose, holes taken off where they run the other way."""
+        return abs(sum(contour.area for contour in self.contours))
+
+
+def least_numbers(kinds: Sequence[str], numbers: np.ndarray, size: float) -> np.ndarray:
+    """How small each number may become in one step: lengths and angles, of these `kinds`, stay above 0."""
+    found = np.full(len(numbers), -np.inf)
+    for i, kind in enumerate(kinds):
+        if kind != "parameter":
+            floor = FLOOR if kind in ("angle", "ratio") else FLOOR * size
+            found[i] = min(numbers[i], max(SHRINK * numbers[i], floor))
+    return found
+
+
+def greatest_numbers(kinds: Sequence[str], numbers: np.ndarray) -> np.ndarray:
+    """How great each number may become in one step: angles stay below half a turn."""
+    found = np.full(len(numbers), np.inf)
+    for i, kind in enumerate(kinds):
+        if kind == "angle":
+            found[i] = math.pi - SHRINK * (math.pi - numbers[i])
+    return found

@@ -1,0 +1,98 @@
+"""The linear programs of a fit, solved over few of their rows at a time until none of the others is broken.
+
+Not for: where the rows come from (`fit_rows`), or how far a step may go (`fit_nearest`, `fit_bounded`).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.profiles.fit_rows import Rows
+
+FIRST = 48
+"""Rows that a program begins with: those nearest to mattering."""
+
+BROKEN = 1e-9
+"""[-] How far a row may be broken that is left out; the solver's own tolerance is 1e-7."""
+
+
+class Programmed(NamedTuple):
+    """Attributes: step (n,); value of the objective there; marginals of the rows, 0 or less."""
+
+    step: np.ndarray
+    value: float
+    marginals: np.ndarray
+
+
+def least_greatest(rows: Rows, scale: np.ndarray, low: np.ndarray, high: np.ndarray) -> Programmed:
+    """The step that makes the greatest |distance| least to first order.
+
+    Args:
+        scale: (n,) units of the numbers. low, high: (n,) bounds of the step in these units.
+
+    Marginals are (2 k,): of distance <= t, then of -distance <= t.
+    """
+    scaled = rows.slope * scale
+    n, one = scaled.shape[1], -np.ones((len(scaled), 1))
+    unit = max(float(np.abs(rows.distance).max()), 1e-300)
+    found = _least(
+        np.append(np.zeros(n), 1.0),
+        np.vstack([np.hstack([scaled, one]), np.hstack([-scaled, one])]),
+        np.concatenate([-rows.distance, rows.distance]) / unit,
+        [*zip(low / unit, high / unit, strict=True), (0.0, None)],
+    )
+    if found is None:
+        return Programmed(np.zeros(n), unit, np.zeros(2 * len(scaled)))
+    x, marginals = found
+    return Programmed(x[:n] * unit * scale, float(x[n]) * unit, marginals)
+
+
+def least_area(
+    rows: Rows, change: np.ndarray, wanted: float, price: float, size: float, reach: float,
+    scale: np.ndarray, low: np.ndarray, high: np.ndarray,
+) -> Programmed:  # fmt: skip
+    """The step that makes area and `price` times the missing gap least to first order; value: the gain.
+
+    Args:
+        change: (n,) of the area by the numbers. wanted: the least gap. size: of the shape, for units.
+        reach: the greatest step, for units: late small steps are not lost in the solver's tolerances.
+        scale, low, high: as for `least_greatest`.
+    """
+    scaled = rows.slope * scale
+    n = scaled.shape[1]
+    found = _least(
+        np.append(change * scale, price * size) / size**2,
+        np.hstack([-scaled / size, -np.ones((len(scaled), 1))]),
+        (rows.distance - wanted) / (size * reach),
+        [*zip(low / reach, high / reach, strict=True), (0.0, None)],
+    )
+    if found is None:
+        return Programmed(np.zeros(n), 0.0, np.zeros(len(scaled)))
+    x, marginals = found
+    missing = max(0.0, wanted - float(rows.distance.min()))
+    left = float((change * scale) @ x[:n] + price * size * x[n]) * reach
+    return Programmed(x[:n] * reach * scale, price * missing - left, marginals)
+
+
+def _least(cost: np.ndarray, matrix: np.ndarray, right: np.ndarray, bounds: list):
+    """Where `cost` is least with matrix x <= right, and the marginals; None where there is no such x."""
+    from scipy.optimize import linprog
+
+    order = np.argsort(right, kind="stable")
+    active = np.sort(order[:FIRST])
+    while True:
+        solved = linprog(cost, matrix[active], right[active], bounds=bounds, method="highs")
+        if solved.x is None:
+            return None
+        broken = matrix @ solved.x - right
+        broken[active] = 0.0
+        worst = np.argsort(-broken, kind="stable")[:FIRST]
+        worst = worst[broken[worst] > BROKEN]
+        if not len(worst):
+            break
+        active = np.sort(np.append(active, worst))
+    marginals = np.zeros(len(right))
+    marginals[active] = solved.ineqlin.marginals
+    return solved.x, marginals
