@@ -34,7 +34,7 @@ class FlatLists:
         """Takes in numbers with their roles; the first one's place."""
         first = len(self._numbers)
         for number, role in pairs:
-            self._numbers.append(number)
+            self._numbers.append(float(number))
             self._roles.append(role)
         return first
 
