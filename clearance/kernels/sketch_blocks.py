@@ -111,11 +111,14 @@ def bodies(kind, ends, starts, rows, live, theta_of, free):
             if v >= 0:
                 usable = usable and v > 0 and free[v] and body_of[v] < 0
                 if v > 0 and kind[v] == POINT:
+                    usable = usable and b < 0  # an edge of two points, not of three
                     a, b = (v, a)
                 elif v > 0 and kind[v] == TURN:
                     c = v
                 elif v > 0 and kind[v] == SLIDE and b < 0:
                     b = v
+                else:
+                    usable = False
         if not usable or a < 0 or b < 0 or (kind[b] == POINT) != (c < 0):
             continue
         begin = n_log

@@ -29,12 +29,12 @@ CLEAR = 1e-6
 """[-] Share of a motion below which it does not move an entity: a walk comes back to 1e-8."""
 
 
-def rows_of(problem: Problem, part: int, *, independent: bool) -> np.ndarray:
-    """The equations of a part that are edges of the graph."""
+def equations_of(problem: Problem, part: int, x: np.ndarray) -> Equations:
+    """The equations of a part that are edges of the graph; those implied by the count come last."""
     chosen = (problem.row_part == part) & (problem.fate == 0)
-    if independent:
-        chosen[problem.plan.dependent] = False
-    return np.flatnonzero(chosen)
+    last = problem.plan.dependent[chosen[problem.plan.dependent]]
+    chosen[last] = False
+    return Equations(problem, part, np.concatenate([np.flatnonzero(chosen), last]), x)
 
 
 def rigid_motions(
@@ -77,10 +77,10 @@ def _part_freedom(problem: Problem, x: np.ndarray, part: int, suspicious: bool) 
     """Freedoms of one part including its placement; the motions decide where the count may err."""
     if not suspicious:
         return int(problem.free[part])
-    equations = Equations(problem, part, rows_of(problem, part, independent=False))
+    equations = equations_of(problem, part, x)
     if equations.n > FACTORED:
         return int(problem.free[part])
-    return motions_of(equations, x, walk=equations.n <= WALKED).basis.shape[1]
+    return motions_of(equations, walk=equations.n <= WALKED).basis.shape[1]
 
 
 def whole_placement(problem: Problem, x: np.ndarray) -> int:
@@ -111,19 +111,33 @@ def whole_placement(problem: Problem, x: np.ndarray) -> int:
     return rank_of(motions @ vt[rank:].T) if rank < 3 else 0
 
 
-def redundant_rows(problem: Problem, x: np.ndarray, solved: bool) -> list[int]:
-    """Equations that follow from the others: by merges, by the graph's count, or at the
-    solution."""
+def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list[int]:
+    """The constraints (by index) that follow from the others: all their equations do, by merges, by the
+    graph's count or at the solution.
+
+    Of constraints that follow from one another those are named that have one equation only and are no part
+    of how an entity is drawn, as far as there are such; then the last.
+    """
     problem, x = at_unit(problem, x)
-    rows = [*problem.repeated, *np.flatnonzero(problem.fate >= 2), *problem.plan.dependent]
-    suspicious = suspicious_parts(problem, x) if solved else np.zeros(problem.n_parts, bool)
-    for part in np.flatnonzero(suspicious):
-        mine = rows_of(problem, part, independent=True)
-        if mine.size == 0 or mine.size > FACTORED:
-            continue
-        equations = Equations(problem, part, mine)
-        rows += implied(equations, x, walk=equations.n <= WALKED)
-    return sorted(int(r) for r in rows)
+    owner = problem.tables.owner
+    rows = list(np.flatnonzero(problem.fate >= 2))
+    if solved:
+        suspicious = suspicious_parts(problem, x)
+        rows += [r for p in np.flatnonzero(suspicious) for r in _implied_rows(problem, p, x)]
+    else:
+        rows += list(problem.plan.dependent)
+    count = np.bincount(owner[rows], minlength=owner.max(initial=-1) + 1)
+    whole = (count > 0) & (count == np.bincount(owner))
+    whole[owner[problem.repeated]] = True
+    return [int(k) for k in np.flatnonzero(whole)]
+
+
+def _implied_rows(problem: Problem, part: int, x: np.ndarray) -> list[int]:
+    """The equations of a part that follow from its others."""
+    equations = equations_of(problem, part, x)
+    if equations.rows.size > FACTORED or not equations.n:
+        return [int(r) for r in problem.plan.dependent if problem.row_part[r] == part]
+    return implied(equations, walk=equations.n <= WALKED)
 
 
 def entity_freedoms(sketch, problem: Problem, x: np.ndarray) -> dict[str, int]:
@@ -159,8 +173,8 @@ def _freedom_at(problem: Problem, motions: dict, variables: list[int]) -> int:
 
 def _loose_motions(problem: Problem, x: np.ndarray, part: int):
     """(basis of the motions left (n, k), first columns) with the part's initial cluster held."""
-    equations = Equations(problem, part, rows_of(problem, part, independent=False))
-    motions = motions_of(equations, x, walk=equations.n <= WALKED)
+    equations = equations_of(problem, part, x)
+    motions = motions_of(equations, walk=equations.n <= WALKED)
     held = motions.basis[_gauge(problem, part, equations, motions.place)]
     _, values, vt = np.linalg.svd(held)
     rank = int(np.sum(values > CLEAR)) if values.size else 0

@@ -55,28 +55,35 @@ def numbered(problem: Problem, vertices: np.ndarray) -> tuple[np.ndarray, int]:
 
 
 class Equations:
-    """Some equations of one part: residuals, derivatives scaled to lengths, walks on their solutions."""
+    """Some equations of one part at a solution: derivatives scaled to lengths, walks on the solutions.
 
-    def __init__(self, problem: Problem, part: int, rows: np.ndarray) -> None:
+    What is left of their errors at the solution (an implied dimension may be off by a rounding) counts as
+    right. The order of the rows says which are named where some follow from others: the last.
+    """
+
+    def __init__(self, problem: Problem, part: int, rows: np.ndarray, x: np.ndarray) -> None:
         self.problem = problem
+        self.part = part
         self.rows = rows
+        self.solution = x
         self.vertices = np.flatnonzero(problem.part == part)
         self.first, self.n = numbered(problem, self.vertices)
         s = problem.system
         self.unit = np.ones(self.n)
         self.unit[self.first[self.vertices[s.kind[self.vertices] == TURN]]] = 1.0 / problem.size
+        self.error = np.zeros(rows.size)
+        self.error = self.at(x)[0]
 
     def without(self, row: int) -> Equations:
         """The same without one of them."""
-        part = int(self.problem.part[self.vertices[0]])
-        return Equations(self.problem, part, self.rows[self.rows != row])
+        return Equations(self.problem, self.part, self.rows[self.rows != row], self.solution)
 
     def at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (m,) and derivative (m, n)."""
         f, i, j, value = spread(self.problem.system, self.rows, x, self.first)
         matrix = np.zeros((self.rows.size, self.n))
         np.add.at(matrix, (i, j), value)
-        return f, matrix * self.unit
+        return f - self.error, matrix * self.unit
 
     def curvature(self, x: np.ndarray, weights: np.ndarray, motions: np.ndarray) -> np.ndarray:
         """(k, k) the second derivative of the weighted equations along motions (n, k)."""
@@ -106,7 +113,8 @@ class Equations:
             if np.linalg.norm(back) > 2.0 * np.linalg.norm(step):
                 return None
             way, place = way + back, self.moved(place, back)
-        good = np.abs(self.at(place)[0]).max(initial=0.0) <= 1e-13
+        allowed = 1e-13 + 1e-2 * np.abs(self.error).max(initial=0.0)
+        good = np.abs(self.at(place)[0]).max(initial=0.0) <= allowed
         return (place, way) if good else None
 
     @property
@@ -127,12 +135,14 @@ def split(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return vt[rank:].T, u[:, rank:]
 
 
-def motions_of(equations: Equations, x: np.ndarray, *, walk: bool = True) -> Motions:
-    """The motions that a solution x (n,) really has; their number is the local dimension.
+def motions_of(equations: Equations, x: np.ndarray | None = None, *, walk: bool = True) -> Motions:
+    """The motions that a solution really has (or another, x (n,), of the same equations); their number is
+    the local dimension.
 
     Where the equations are dependent they are those at a generic solution nearby; without a walk, those of
     the kernel.
     """
+    x = equations.solution if x is None else x
     kernel, left = split(equations.at(x)[1])
     if not walk or not left.shape[1] or not kernel.shape[1]:
         return Motions(kernel, x)
@@ -183,14 +193,14 @@ def _surviving(equations: Equations, x: np.ndarray, motions: np.ndarray, random)
     return motions @ u[:, : int(np.sum(values > SURVIVES))]
 
 
-def implied(equations: Equations, x: np.ndarray, *, walk: bool = True) -> list[int]:
+def implied(equations: Equations, *, walk: bool = True) -> list[int]:
     """The equations (rows) that follow from the others: without them the solutions near x are as many.
 
     Of equations that follow from one another the last are named.
     """
-    if not split(equations.at(x)[1])[1].shape[1]:
+    if rank_of(equations.at(equations.solution)[1]) == equations.rows.size:
         return []
-    motions = motions_of(equations, x, walk=walk)
+    motions = motions_of(equations, walk=walk)
     kernel, left = split(equations.at(motions.place)[1])
     if motions.basis.shape[1] == kernel.shape[1]:  # a smaller set of equations has no larger kernel
         return [int(equations.rows[k]) for k in dependent(equations.at(motions.place)[1])]
