@@ -184,8 +184,9 @@ def _numeric_part(
         return False
     alone, pivot = np.full(s.kind.shape[0], -1), np.zeros((0, 2))
     limits = limits_of(problem, 6 if rows.size < 60 and effort == 2 else effort)
+    mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
     for origin in (start, x):
-        tried = origin.copy()
+        tried = np.where(mine, origin, x)  # other parts stay where they are
         if solve_block(
             s, vertices, rows, tried, alone, pivot, limits.floor, limits.tolerance, limits.attempts
         ):
