@@ -62,8 +62,8 @@ def assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient):
 
 @inlined
 def _eliminate(matrix, right):
-    """Solves in place, by elimination with row pivots; a pivot that is lost in rounding is taken as one
-    rounding, so that a singular matrix gives a long step and no error."""
+    """Solves in place, by elimination with row pivots; an unknown whose pivot is lost in rounding is left at 0,
+    so that a singular matrix gives neither an error nor a step to where rounding hides all errors."""
     n = right.shape[0]
     largest = 1e-300
     for k in range(n):
@@ -78,8 +78,8 @@ def _eliminate(matrix, right):
             for c in range(k, n):
                 matrix[k, c], matrix[best, c] = matrix[best, c], matrix[k, c]
             right[k], right[best] = right[best], right[k]
-        if not abs(matrix[k, k]) > 1e-16 * largest:
-            matrix[k, k] = 1e-16 * largest
+        if not abs(matrix[k, k]) > 1e-15 * largest:
+            matrix[k, k] = 1e300
         for i in range(k + 1, n):
             factor = matrix[i, k] / matrix[k, k]
             if factor != 0.0:
