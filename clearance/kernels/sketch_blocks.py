@@ -111,11 +111,14 @@ def bodies(kind, ends, starts, rows, live, theta_of, free):
             if v >= 0:
                 usable = usable and v > 0 and free[v] and body_of[v] < 0
                 if v > 0 and kind[v] == POINT:
+                    usable = usable and b < 0  # an edge of two points, not of three
                     a, b = (v, a)
                 elif v > 0 and kind[v] == TURN:
                     c = v
                 elif v > 0 and kind[v] == SLIDE and b < 0:
                     b = v
+                else:
+                    usable = False
         if not usable or a < 0 or b < 0 or (kind[b] == POINT) != (c < 0):
             continue
         begin = n_log
@@ -141,6 +144,46 @@ def bodies(kind, ends, starts, rows, live, theta_of, free):
         count += 1
         body_start[count] = n_log
     return body_of, log[:n_log], body_start[: count + 1]
+
+
+@inlined
+def assumed_bodies(kind, ends, starts, rows, live, body_of, n_bodies, turn, lack, home):
+    """Makes bodies of homes of at least three points, each hung on those before it by at most two edges.
+
+    What they lack is assumed inside (Fig. 13 a and b); `lack` (v,) becomes 0 there. Returns (steps as of
+    `bodies`, their starts).
+    """
+    n = kind.shape[0]
+    log, start = np.full((n, 4), -1, np.int64), np.zeros(n + 1, np.int64)
+    order = np.argsort(turn, kind="mergesort")
+    count, n_log = 0, 0
+    for h in range(n):
+        at_log, good = n_log, True
+        for v in order:
+            if home[v] != h or v == 0:
+                continue
+            hung = 0
+            for at in range(starts[v], starts[v + 1]):
+                if live[rows[at]] and _hangs(rows[at], v, -1, ends, body_of, n_bodies + count):
+                    if hung < 2:
+                        log[at_log, 2 + hung] = rows[at]
+                    hung += 1
+            first = at_log - n_log
+            good = good and kind[v] == POINT and hung <= 2
+            good = good and (first > 1 or hung == first)
+            log[at_log, 0] = v
+            body_of[v] = n_bodies + count
+            at_log += 1
+        if good and at_log >= n_log + 3:
+            for at in range(n_log, at_log):
+                lack[log[at, 0]] = 0
+            count, n_log = count + 1, at_log
+            start[count] = n_log
+            continue
+        for at in range(n_log, at_log):
+            body_of[log[at, 0]] = -1
+            log[at, :] = -1
+    return log[:n_log], start[: count + 1]
 
 
 @inlined

@@ -53,10 +53,13 @@ def bend(s, rows, x, first, multipliers):
     for a in range(m):
         row = rows[a]
         for k in range(8):
-            c, factor = _column(s, s.var[row, k], first)
-            if c < 0:
-                continue
             i = s.var[row, k]
+            c, factor = _column(s, i, first)
+            named = False  # in an earlier slot: two lengths may share a point
+            for j in range(k):
+                named = named or s.var[row, j] == i
+            if c < 0 or named:
+                continue
             kept = x[i]
             h = 1e-6 * (1.0 + abs(kept))
             x[i] = kept + h

@@ -62,13 +62,13 @@ def components(kind, ends, theta_of, absolute):
 
 @inlined
 def turns_by_rule(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies, absolute):
-    """The turn (v,) at which rules A and B take in every vertex of a core with freedom left, and the
-    conditions (v,) that are assumed for its node then.
+    """The turn (v,) at which rules A and B take in every vertex of a core with freedom left, the conditions
+    (v,) that are assumed for its node then, and its home (v,), a cluster that begins with an assumption.
 
-    All are 0 where no freedom is left or the core is too large for the rules.
+    Turns and conditions are 0 and homes -1 where no freedom is left or the core is too large for the rules.
     """
     n, m = kind.shape[0], ends.shape[0]
-    turn, lack = np.zeros(n, np.int64), np.zeros(n, np.int64)
+    turn, lack, home = np.zeros(n, np.int64), np.zeros(n, np.int64), np.full(n, -1, np.int64)
     node = np.full(n, -1, np.int64)
     dof = np.full(n_bodies + n + 1, 3, np.int64)
     present, seen = n_bodies, np.zeros(n_parts, np.uint8)
@@ -102,14 +102,15 @@ def turns_by_rule(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies
     for k in range(present):
         spare += dof[k]
     if present > RULED or spare <= count:
-        return turn, lack
-    turn_of, lacking = merge_order(rows[:count], dof[: present + 1])
+        return turn, lack, home
+    turn_of, lacking, home_of = merge_order(rows[:count], dof[: present + 1])
     for v in range(1, n):
         if node[v] >= 0:
             turn[v] = turn_of[node[v]]
             lack[v] = lacking[node[v]]
             lacking[node[v]] = 0
-    return turn, lack
+            home[v] = home_of[node[v]]
+    return turn, lack, home
 
 
 @inlined

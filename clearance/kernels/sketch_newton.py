@@ -61,6 +61,38 @@ def assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient):
 
 
 @inlined
+def _eliminate(matrix, right):
+    """Solves in place, by elimination with row pivots; an unknown whose pivot is lost in rounding is left at 0,
+    so that a singular matrix gives neither an error nor a step to where rounding hides all errors."""
+    n = right.shape[0]
+    largest = 1e-300
+    for k in range(n):
+        for c in range(n):
+            largest = max(largest, abs(matrix[k, c]))
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        if best != k:
+            for c in range(k, n):
+                matrix[k, c], matrix[best, c] = matrix[best, c], matrix[k, c]
+            right[k], right[best] = right[best], right[k]
+        if not abs(matrix[k, k]) > 1e-15 * largest:
+            matrix[k, k] = 1e300
+        for i in range(k + 1, n):
+            factor = matrix[i, k] / matrix[k, k]
+            if factor != 0.0:
+                for c in range(k + 1, n):
+                    matrix[i, c] -= factor * matrix[k, c]
+                right[i] -= factor * right[k]
+    for k in range(n - 1, -1, -1):
+        for c in range(k + 1, n):
+            right[k] -= matrix[k, c] * right[c]
+        right[k] /= matrix[k, k]
+
+
+@inlined
 def descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
     """Moves the vertices until |residual| <= floor or nothing is gained; True when <= tolerance.
 
@@ -78,17 +110,15 @@ def descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longe
         if not total > floor * floor:
             break
         if damping == 0.0 and m == n:
-            for k in range(n):
-                jacobian[k, k] += (
-                    1e-15  # an exactly singular matrix must not stop the factorisation
-                )
-            step = np.linalg.solve(jacobian, -residual)
+            step = -residual
+            _eliminate(jacobian, step)
         else:
             normal = jacobian.T @ jacobian
             mean = np.trace(normal) / n
             for k in range(n):
                 normal[k, k] += damping * (normal[k, k] + 1e-3 * mean) + 1e-14 * mean + 1e-300
-            step = np.linalg.solve(normal, -(jacobian.T @ residual))
+            step = -(jacobian.T @ residual)
+            _eliminate(normal, step)
         keep(s, vertices, x, kept, False)
         pivots[:] = pivot
         size, fell = 1.0, False

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import kernel
-from clearance.kernels.sketch_blocks import bodies, ordered_parts
+from clearance.kernels.sketch_blocks import assumed_bodies, bodies, ordered_parts
 from clearance.kernels.sketch_core import (
     bases,
     components,
@@ -110,9 +110,15 @@ def make_plan(kind, ends, absolute, theta_of):
                 core_ends[row, :] = -1
         part, n_parts, hold_kind = components(kind, core_ends, theta_of, absolute)
         n_bodies = log_start.shape[0] - 1
-        turn, lack = turns_by_rule(
+        turn, lack, home = turns_by_rule(
             kind, ends, live, free, part, n_parts, hold_kind, body_of, n_bodies, absolute
         )
+        more, more_start = assumed_bodies(
+            kind, ends, starts, rows, live, body_of, n_bodies, turn, lack, home
+        )
+        log = np.concatenate((log, more))
+        log_start = np.concatenate((log_start, log_start[-1] + more_start[1:]))
+        n_bodies = log_start.shape[0] - 1
         held, n_bodies, seed = bases(
             kind, ends, live, free, part, n_parts, hold_kind, body_of, n_bodies, turn
         )

@@ -10,15 +10,9 @@ from clearance.jit import inlined, kernel
 from clearance.kernels.sketch_equations import evaluate
 from clearance.kernels.sketch_graph import POINT, TURN
 
-ALIKE = 1e-16
-"""Determinant of the unit derivatives' products at which they count as one: sine squared, 1e-8 each."""
-
-ASIDE = 1e-3
-"""How far aside curvatures are compared, in parts of the sketch's size."""
-
-BENT_ALIKE = 1e-12
-"""Difference there of loci that are one, in parts of the sketch's size: rounding is below 1e-15, and radii that
-differ by a millionth of the size make 1e-12."""
+ALIKE = 1e-12
+"""Determinant of the unit derivatives' products at which they count as one: sine squared, 1e-6 each. What only
+touches is marked as well."""
 
 
 @inlined
@@ -42,32 +36,9 @@ def _row(s, row, x, v, partner, size, gradient, out):
         out /= length
 
 
-@inlined
-def _only_touch(s, rows, x, v, size, unit):
-    """True if the loci of a point touch without being one, as a fillet and its edge: then it is held.
-
-    Aside by `ASIDE` along their common tangent, what differs is the difference of their curvatures.
-    """
-    if s.kind[v] != POINT:
-        return False
-    i = s.root[v]
-    gradient = np.empty(8)
-    aside = x.copy()
-    aside[i] -= ASIDE * size * unit[0, 1]
-    aside[i + 1] += ASIDE * size * unit[0, 0]
-    first = evaluate(s.code, s.var, s.coef, s.value, aside, rows[0], gradient)
-    second = evaluate(s.code, s.var, s.coef, s.value, aside, rows[1], gradient)
-    along = 1.0 if unit[0, 0] * unit[1, 0] + unit[0, 1] * unit[1, 1] > 0.0 else -1.0
-    return abs(first - along * second) > BENT_ALIKE * size
-
-
 @kernel
 def singular_steps(s, plan, x, size):
-    """Marks (s,) of the closed steps with two or three equations that are not independent at x.
-
-    Two loci of a point that only touch hold it, though not in the first order; they are not marked. Nor are
-    steps with a partner, whose equations can touch in ways that are not told apart here.
-    """
+    """Marks (s,) of the closed steps with two or three equations that are not independent at x."""
     out = np.zeros(plan.vertex.shape[0], np.uint8)
     gradient, unit = np.empty(8), np.zeros((3, 3))
     for k in range(out.shape[0]):
@@ -84,6 +55,5 @@ def singular_steps(s, plan, x, size):
         if count == 3:
             g02, g12, g22 = unit[0] @ unit[2], unit[1] @ unit[2], unit[2] @ unit[2]
             volume = g22 * volume - g00 * g12 * g12 - g11 * g02 * g02 + 2.0 * g01 * g02 * g12
-        if volume <= ALIKE and count == 2 and plan.partner[k] < 0:
-            out[k] = not _only_touch(s, plan.edges[k], x, plan.vertex[k], size, unit)
+        out[k] = volume <= ALIKE
     return out

@@ -190,9 +190,10 @@ def _take_in(a, b, c, group, own, turn, now, missing, lacking):
 
 @kernel
 def merge_order(row_nodes, dof):
-    """The turn (n,) at which every node is taken in, and how many conditions it lacks then (n,).
+    """The turn (n,) at which every node is taken in, how many conditions it lacks then (n,), and its home (n,).
 
-    Turns count from 0; ties are those merged at once.
+    Turns count from 0; ties are those merged at once. A home is a cluster that began without a body and
+    took in single nodes until it met another cluster; -1 outside such.
 
     Args:
         row_nodes: (m, 5) the distinct nodes of every equation between nodes, -1 pads.
@@ -201,6 +202,7 @@ def merge_order(row_nodes, dof):
     n = dof.shape[0]
     group, turn, own = np.arange(n), np.full(n, -1, np.int64), dof.copy()
     lacking, now = np.zeros(n, np.int64), 0
+    home, closed = np.full(n, -1, np.int64), np.zeros(n, np.uint8)
     while True:
         joined = _between(row_nodes, group, n)
         a, b, c = _basic(joined, dof)
@@ -214,6 +216,13 @@ def merge_order(row_nodes, dof):
                 break
             missing = max(dof[a] + dof[b] - joined[a, b] - 3, 0)
         now = _take_in(a, b, c, group, own, turn, now, missing, lacking)
+        clusters = (dof[a] == 3) + (dof[b] == 3) + (c >= 0 and dof[c] == 3)
+        if clusters > 1 or closed[a] or closed[b] or own[a] == 3 or own[b] == 3:
+            closed[a] = 1
+        else:
+            for g in range(n):
+                if group[g] == a or group[g] == b or (c >= 0 and group[g] == c):
+                    home[g] = a
         for g in range(n):
             if group[g] == b or (c >= 0 and group[g] == c):
                 group[g] = a
@@ -223,4 +232,4 @@ def merge_order(row_nodes, dof):
     for g in range(n):
         if turn[g] < 0:
             turn[g] = now
-    return turn, lacking
+    return turn, lacking, home

@@ -40,7 +40,7 @@ class Dimensions(Register):
             constraint = self.constraints[name]
             now = self._dimension(constraint, value)
             self._forget(constraint)
-            constraint.given, constraint.number = value, now
+            constraint.given, constraint.number = (value if isinstance(value, str) else now), now
             self._remember(constraint)
         else:
             known = [*self.parameters, *(c.name for c in self._ordered if c.given is not None)]

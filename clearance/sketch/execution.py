@@ -58,12 +58,23 @@ def run(
         effort: 2 solves it nearest to the sketch, 1 anywhere, 0 gives up where the plan's steps fail.
         turned: (steps,) -1 where a closed step takes the branch opposite to the sketch.
     """
-    unit = 2.0 ** math.frexp(problem.size)[1]
-    lengths = np.where(problem.tables.role == DIRECTION, 1.0, unit)
+    unit, lengths = _units(problem)
     outcome = _run_at_unit(_in_units(problem, unit), before / lengths, sides, effort, turned)
     outcome.x *= lengths
     outcome.residual *= unit
     return outcome
+
+
+def at_unit(problem: Problem, x: np.ndarray) -> tuple[Problem, np.ndarray]:
+    """The same problem and numbers (n,) with lengths divided by a power of two near the size."""
+    unit, lengths = _units(problem)
+    return _in_units(problem, unit), x / lengths
+
+
+def _units(problem: Problem) -> tuple[float, np.ndarray]:
+    """A power of two near the size, and what every number is divided by to be in it."""
+    unit = 2.0 ** math.frexp(problem.size)[1]
+    return unit, np.where(problem.tables.role == DIRECTION, 1.0, unit)
 
 
 def _in_units(problem: Problem, unit: float) -> Problem:
@@ -173,8 +184,9 @@ def _numeric_part(
         return False
     alone, pivot = np.full(s.kind.shape[0], -1), np.zeros((0, 2))
     limits = limits_of(problem, 6 if rows.size < 60 and effort == 2 else effort)
+    mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
     for origin in (start, x):
-        tried = origin.copy()
+        tried = np.where(mine, origin, x)  # other parts stay where they are
         if solve_block(
             s, vertices, rows, tried, alone, pivot, limits.floor, limits.tolerance, limits.attempts
         ):

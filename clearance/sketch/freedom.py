@@ -1,49 +1,40 @@
 """Degrees of freedom of a solved sketch: the whole, every entity, and equations that follow from
 others.
 
-The graph's count is generic; where a part is not too large its derivative matrix at the solution is
-factored as well, so that dependencies which no count can see (theorems of geometry) are found.
+The graph's count is generic; where it may err, the motions that a part really has are worked out at the
+solution (`mobility`), so that dependencies which no count can see (theorems of geometry) are found.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import numpy as np
 
 from clearance.kernels.sketch_columns import spread
 from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch_rank import singular_steps
+from clearance.sketch.execution import at_unit
+from clearance.sketch.mobility import SINGULAR, Equations, implied, motions_of, numbered, rank_of
 from clearance.sketch.problem import Problem
 
 FACTORED = 1500
 """Freedoms of a part up to which its matrix is factored; beyond that the plan's own steps are the
 evidence."""
 
-SINGULAR = 1e-9
-"""[-] Ratio to the largest below which a singular value is taken for 0: dimensions are scaled to
-one size."""
+WALKED = 400
+"""Freedoms of a part up to which contacts beyond the first order are told apart: half a second."""
+
+CLEAR = 1e-6
+"""[-] Share of a motion below which it does not move an entity: a walk comes back to 1e-8."""
 
 
-def derivative(problem: Problem, x: np.ndarray, part: int, rows: np.ndarray):
-    """(matrix (m, n) scaled to lengths, vertices, first column of each) of one part's equations."""
-    s = problem.system
-    vertices = np.flatnonzero(problem.part == part)
-    widths = np.where(s.kind[vertices] == POINT, 2, 1)
-    first = np.full(s.kind.size, -1)
-    first[vertices] = np.concatenate([[0], np.cumsum(widths)[:-1]])
-    _, i, j, value = spread(s, rows, x, first)
-    matrix = np.zeros((rows.size, int(widths.sum())))
-    np.add.at(matrix, (i, j), value)
-    turns = first[vertices[s.kind[vertices] == TURN]]
-    matrix[:, turns] /= problem.size
-    return matrix, vertices, first
-
-
-def rows_of(problem: Problem, part: int, *, independent: bool) -> np.ndarray:
-    """The equations of a part that are edges of the graph."""
+def equations_of(problem: Problem, part: int, x: np.ndarray) -> Equations:
+    """The equations of a part that are edges of the graph; those implied by the count come last."""
     chosen = (problem.row_part == part) & (problem.fate == 0)
-    if independent:
-        chosen[problem.plan.dependent] = False
-    return np.flatnonzero(chosen)
+    last = problem.plan.dependent[chosen[problem.plan.dependent]]
+    chosen[last] = False
+    return Equations(problem, part, np.concatenate([np.flatnonzero(chosen), last]), x)
 
 
 def rigid_motions(
@@ -64,16 +55,9 @@ def rigid_motions(
     return out
 
 
-def rank_of(matrix: np.ndarray) -> int:
-    """The numerical rank."""
-    if not matrix.size:
-        return 0
-    values = np.linalg.svd(matrix, compute_uv=False)
-    return int(np.sum(values > SINGULAR * max(values[0], 1.0)))
-
-
 def freedom_of(problem: Problem, x: np.ndarray) -> int:
     """Degrees of freedom left beyond placing the whole."""
+    problem, x = at_unit(problem, x)
     suspicious = suspicious_parts(problem, x)
     total = sum(_part_freedom(problem, x, p, suspicious[p]) for p in range(problem.n_parts))
     return max(total - whole_placement(problem, x), 0)
@@ -90,12 +74,13 @@ def suspicious_parts(problem: Problem, x: np.ndarray) -> np.ndarray:
 
 
 def _part_freedom(problem: Problem, x: np.ndarray, part: int, suspicious: bool) -> int:
-    """Freedoms of one part including its placement; the matrix decides where the count may err."""
-    vertices = np.flatnonzero(problem.part == part) if suspicious else np.zeros(0)
-    if not suspicious or vertices.size > FACTORED // 2:
+    """Freedoms of one part including its placement; the motions decide where the count may err."""
+    if not suspicious:
         return int(problem.free[part])
-    matrix, _, _ = derivative(problem, x, part, rows_of(problem, part, independent=False))
-    return matrix.shape[1] - rank_of(matrix)
+    equations = equations_of(problem, part, x)
+    if equations.n > FACTORED:
+        return int(problem.free[part])
+    return motions_of(equations, walk=equations.n <= WALKED).basis.shape[1]
 
 
 def whole_placement(problem: Problem, x: np.ndarray) -> int:
@@ -105,9 +90,7 @@ def whole_placement(problem: Problem, x: np.ndarray) -> int:
     vertices = np.arange(1, s.kind.size)
     if not vertices.size:
         return 0
-    widths = np.where(s.kind[vertices] == POINT, 2, 1)
-    first = np.full(s.kind.size, -1)
-    first[vertices] = np.concatenate([[0], np.cumsum(widths)[:-1]])
+    first, _ = numbered(problem, vertices)
     motions = rigid_motions(problem, x, vertices, first)
     rows = np.flatnonzero(problem.fate == 0)
     touching = rows[(problem.absolute[rows] > 0)]
@@ -128,39 +111,39 @@ def whole_placement(problem: Problem, x: np.ndarray) -> int:
     return rank_of(motions @ vt[rank:].T) if rank < 3 else 0
 
 
-def redundant_rows(problem: Problem, x: np.ndarray, solved: bool) -> list[int]:
-    """Equations that follow from the others: by merges, by the graph's count, or at the
-    solution."""
-    rows = [*problem.repeated, *np.flatnonzero(problem.fate >= 2), *problem.plan.dependent]
-    suspicious = suspicious_parts(problem, x) if solved else np.zeros(problem.n_parts, bool)
-    for part in np.flatnonzero(suspicious):
-        mine = rows_of(problem, part, independent=True)
-        if mine.size == 0 or mine.size > FACTORED:
-            continue
-        matrix, _, _ = derivative(problem, x, part, mine)
-        rows += [mine[k] for k in _dependent_rows(matrix)]
-    return sorted(int(r) for r in rows)
+def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list[int]:
+    """The constraints (by index) that follow from the others: all their equations do, by merges, by the
+    graph's count or at the solution.
+
+    Of constraints that follow from one another those are named that have one equation only and are no part
+    of how an entity is drawn, as far as there are such; then the last.
+    """
+    problem, x = at_unit(problem, x)
+    owner = problem.tables.owner
+    rows = list(np.flatnonzero(problem.fate >= 2))
+    if solved:
+        suspicious = suspicious_parts(problem, x)
+        rows += [r for p in np.flatnonzero(suspicious) for r in _implied_rows(problem, p, x)]
+    else:
+        rows += list(problem.plan.dependent)
+    count = np.bincount(owner[rows], minlength=owner.max(initial=-1) + 1)
+    whole = (count > 0) & (count == np.bincount(owner))
+    whole[owner[problem.repeated]] = True
+    return [int(k) for k in np.flatnonzero(whole)]
 
 
-def _dependent_rows(matrix: np.ndarray) -> list[int]:
-    """Rows that the rows before them span."""
-    if rank_of(matrix) == matrix.shape[0]:
-        return []
-    basis, out = np.zeros((0, matrix.shape[1])), []
-    for k, row in enumerate(matrix):
-        rest = row - basis.T @ (basis @ row)
-        rest -= basis.T @ (basis @ rest)
-        norm = np.linalg.norm(rest)
-        if norm <= SINGULAR * max(np.linalg.norm(row), 1.0):
-            out.append(k)
-        else:
-            basis = np.vstack([basis, rest / norm])
-    return out
+def _implied_rows(problem: Problem, part: int, x: np.ndarray) -> list[int]:
+    """The equations of a part that follow from its others."""
+    equations = equations_of(problem, part, x)
+    if equations.rows.size > FACTORED or not equations.n:
+        return [int(r) for r in problem.plan.dependent if problem.row_part[r] == part]
+    return implied(equations, walk=equations.n <= WALKED)
 
 
 def entity_freedoms(sketch, problem: Problem, x: np.ndarray) -> dict[str, int]:
     """Degrees of freedom of every entity while the initial cluster of its part is held."""
     out = {}
+    problem, x = at_unit(problem, x)
     motions = {p: _loose_motions(problem, x, p) for p in range(problem.n_parts)}
     for name, entity in sketch.entities.items():
         count = {"point": 2, "line": 2, "segment": 2}.get(entity.what, 1)
@@ -185,46 +168,40 @@ def _freedom_at(problem: Problem, motions: dict, variables: list[int]) -> int:
         if v > 0:
             shift = i - s.root[v] if s.kind[v] == POINT else 0
             rows.append(basis[first[v] + shift])
-    return rank_of(np.array(rows)) if rows else 0
+    return rank_of(np.array(rows), CLEAR) if rows else 0
 
 
 def _loose_motions(problem: Problem, x: np.ndarray, part: int):
     """(basis of the motions left (n, k), first columns) with the part's initial cluster held."""
-    matrix, vertices, first = derivative(
-        problem, x, part, rows_of(problem, part, independent=False)
-    )
-    hold = problem.hold[part]
-    if hold < 2:
-        matrix = np.vstack([matrix, _gauge(problem, vertices, first, matrix.shape[1], x, hold)])
-    _, values, vt = np.linalg.svd(matrix)
-    rank = int(np.sum(values > SINGULAR * max(values[0], 1.0))) if values.size else 0
-    return vt[rank:].T, first
+    equations = equations_of(problem, part, x)
+    motions = motions_of(equations, walk=equations.n <= WALKED)
+    held = motions.basis[_gauge(problem, part, equations, motions.place)]
+    _, values, vt = np.linalg.svd(held)
+    rank = int(np.sum(values > CLEAR)) if values.size else 0
+    return motions.basis @ vt[rank:].T, equations.first
 
 
-def _gauge(problem: Problem, vertices, first, n: int, x, hold: int) -> np.ndarray:
-    """Rows that hold the vertices placed first: as many as rigid motions are left to the part."""
-    motions = rigid_motions(problem, x, vertices, first)[:n, : 2 if hold else 3]
-    rows = []
-    inside = set(int(v) for v in vertices)
-    ordered = [
-        int(v)
-        for k in range(problem.plan.vertex.size)
-        for v in _placed(problem, k)
-        if int(v) in inside
-    ]
-    for v in dict.fromkeys([*ordered, *map(int, vertices)]):
+def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> list[int]:
+    """The columns of vertices placed first that hold a part: as many as rigid motions are left to it."""
+    vertices, first = equations.vertices, equations.first
+    motions = rigid_motions(problem, x, vertices, first)[:, : (3, 2, 0)[problem.hold[part]]]
+    inside, columns = set(map(int, vertices)), []
+    steps = range(problem.plan.vertex.size)
+    placed = [v for k in steps for v in _placed(problem, k) if v in inside]
+    for v in dict.fromkeys([*placed, *map(int, vertices)]):
         for c in range(first[v], first[v] + (2 if problem.system.kind[v] == POINT else 1)):
-            trial = [*rows, c]
-            if rank_of(motions[trial]) == len(trial):
-                rows = trial
-    out = np.zeros((len(rows), n))
-    out[np.arange(len(rows)), rows] = 1.0
-    return out
+            if len(columns) == motions.shape[1]:
+                return columns
+            if rank_of(motions[[*columns, c]]) == len(columns) + 1:
+                columns.append(c)
+    return columns
 
 
-def _placed(problem: Problem, step: int) -> list[int]:
+def _placed(problem: Problem, step: int) -> Iterable[int]:
     plan = problem.plan
     b = plan.block[step]
     if b >= 0:
-        return list(plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]])
-    return [v for v in (plan.vertex[step], plan.partner[step]) if v >= 0]
+        return map(
+            int, plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
+        )
+    return [int(v) for v in (plan.vertex[step], plan.partner[step]) if v >= 0]

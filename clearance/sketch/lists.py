@@ -12,6 +12,10 @@ from collections.abc import Iterable
 from clearance.sketch.constraints import Constraint
 from clearance.sketch.rows import Row
 
+DRAWN, TOGETHER, ALONE, AGAIN = 0, 1, 2, 3
+"""Ranks of rows: how an entity is drawn; of a constraint with several rows; with one; what often follows from
+others."""
+
 
 class FlatLists:
     """What the solver reads: one entry a variable, a line, a row or a constraint."""
@@ -27,6 +31,7 @@ class FlatLists:
         self._offsets = array("d")
         self._grounds = array("q")
         self._owners = array("q")
+        self._ranks = array("q")
         self._ordered: list[Constraint] = []
         self._together: list[tuple[int, int]] = []
 
@@ -34,13 +39,13 @@ class FlatLists:
         """Takes in numbers with their roles; the first one's place."""
         first = len(self._numbers)
         for number, role in pairs:
-            self._numbers.append(number)
+            self._numbers.append(float(number))
             self._roles.append(role)
         return first
 
     def _append(self, constraint: Constraint, rows: Iterable[Row]) -> None:
         """Takes in a constraint's equations; coincident points are listed apart."""
-        first = len(self._codes)
+        first, rows = len(self._codes), list(rows)
         for row in rows:
             self._codes.append(row.code)
             self._vars.extend(row.var + (-1,) * (8 - len(row.var)))
@@ -49,6 +54,8 @@ class FlatLists:
             self._offsets.append(row.offset)
             self._grounds.append(row.ground)
             self._owners.append(constraint.index)
+            rank = ALONE if len(rows) == 1 else TOGETHER
+            self._ranks.append(DRAWN if constraint.built_in else (AGAIN if row.again else rank))
         constraint.n_rows = len(self._codes) - first
         points = constraint.kind == "coincident" and constraint.entities[0].what == "point"
         if constraint.n_rows and (points or constraint.kind == "concentric"):

@@ -118,6 +118,7 @@ class _Closed:
         self.spare = {p: [3, 2, 0][problem.hold[p]] for p in range(problem.n_parts)}
         for v in np.flatnonzero(np.isin(self.plan.body_of, list(self.base))):
             self.spare[int(problem.part[v])] = 0  # its base places the part
+        self.spare_of_body: dict[int, int] = {}
         self.size: dict[int, int] = {}
 
     def step(self, k: int, outcome: str) -> Step:
@@ -139,10 +140,13 @@ class _Closed:
         part = int(self.problem.part[vertices[0]])
         freedom = sum(2 if self.problem.system.kind[v] == POINT else 1 for v in vertices)
         missing = freedom - len(rows)
-        granted = missing if inside else min(missing, self.spare[part])
-        if not inside:
-            self.spare[part] -= granted
         key = body if inside else -1 - part
+        spare = self.spare_of_body.setdefault(body, 3) if inside else self.spare[part]
+        granted = min(missing, spare)
+        if inside:
+            self.spare_of_body[body] -= granted
+        else:
+            self.spare[part] -= granted
         fresh = inside or (self.problem.hold[part] < 2 and not self._has_base(part))
         self.size[key] = self.size.get(key, 0) + 1
         if granted:

@@ -78,16 +78,20 @@ class Tables:
 
 
 def tables_of(sketch) -> Tables:
-    """The tables of a sketch."""
+    """The tables of a sketch.
+
+    The rows are in the order of their ranks: where some follow from others, it is the last that do.
+    """
+    order = np.argsort(np.array(sketch._ranks, np.int64), kind="stable")
     return Tables(
         np.array(sketch._roles, np.int64),
-        np.array(sketch._codes, np.int64),
-        np.array(sketch._vars, np.int64).reshape(-1, 8),
-        np.array(sketch._coefs, float).reshape(-1, 4),
-        np.array(sketch._scales, float),
-        np.array(sketch._offsets, float),
-        np.array(sketch._grounds, np.int64),
-        np.array(sketch._owners, np.int64),
+        np.array(sketch._codes, np.int64)[order],
+        np.array(sketch._vars, np.int64).reshape(-1, 8)[order],
+        np.array(sketch._coefs, float).reshape(-1, 4)[order],
+        np.array(sketch._scales, float)[order],
+        np.array(sketch._offsets, float)[order],
+        np.array(sketch._grounds, np.int64)[order],
+        np.array(sketch._owners, np.int64)[order],
         np.array(sketch._line_ends, np.int64).reshape(-1, 3),
         list(sketch._together),
         np.array(sketch._dimensions()),

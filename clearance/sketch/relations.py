@@ -132,7 +132,7 @@ class Relations(Dimensions):
         if form.unit:
             given = measured(constraint, self._numbers) if value is None or driven else value
             constraint.number = self._dimension(constraint, given)
-            constraint.given = given
+            constraint.given = given if isinstance(given, str) else constraint.number
         elif value is not None:
             raise BadDimension(
                 f"{kind} {name} with the value {value}", valid=f"{kind} takes no value"

@@ -67,12 +67,10 @@ class SketchResult:
     @cached_property
     def redundant(self) -> list[str]:
         """Constraints that follow from the others."""
-        from clearance.sketch.freedom import redundant_rows
+        from clearance.sketch.freedom import redundant_constraints
 
-        ordered = self.sketch._ordered
-        rows = redundant_rows(self._problem, self._outcome.x, self.solved)
-        owner = self._problem.tables.owner
-        return list(dict.fromkeys(ordered[owner[r]].name for r in rows))
+        chosen = redundant_constraints(self._problem, self._outcome.x, self.solved)
+        return [self.sketch._ordered[k].name for k in chosen]
 
     @cached_property
     def over_constrained(self) -> list[list[str]]:

@@ -26,6 +26,8 @@ class Row(NamedTuple):
     scale: float = 0.0
     offset: float = 0.0
     ground: int = NOWHERE
+    again: bool = False
+    """Often said by another constraint as well: that two lines at a distance are parallel."""
 
 
 def pair(p: Point) -> tuple[int, int]:
@@ -73,7 +75,7 @@ def line_line(x, a, b):
     same = sign(math.cos(turn))
     shift = x[b.variable + 1] - same * x[a.variable + 1]
     return [
-        Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn),
+        Row(equation.LINEAR, (b.variable, a.variable), (1.0, -1.0), offset=turn, again=True),
         Row(equation.LINEAR, (b.variable + 1, a.variable + 1), (1.0, -same), scale=sign(shift)),
     ]
 

@@ -15,6 +15,7 @@ Directions are kept in radians. Not for: anything but sketches.
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 from clearance.errors import (
@@ -158,9 +159,10 @@ def write(sketch, path: Path) -> None:
     yaml = YAML()
     yaml.default_flow_style = None
     yaml.width = 110
+    text = io.StringIO()
+    yaml.dump(_tree(sketch), text)
     try:
-        with path.open("w", encoding="utf-8") as out:
-            yaml.dump(_tree(sketch), out)
+        path.write_text(text.getvalue(), encoding="utf-8")
     except OSError as fault:
         raise Unwritable(f"{path} cannot be written ({fault.__class__.__name__})") from None
 
@@ -177,7 +179,7 @@ def _tree(sketch) -> dict:
             tree["circles"][name] = {"center": e.center.name, "radius": e.radius}
         else:
             tree["arcs"][name] = {"center": e.center.name, "start": e.start.name, "end": e.end.name}
-    tree["constraints"] = [_entry(c) for c in sketch.constraints.values() if not c.built_in]
+    tree["constraints"] = [_entry(sketch, c) for c in sketch.constraints.values() if not c.built_in]
     return {k: v for k, v in tree.items() if v}
 
 
@@ -192,10 +194,10 @@ def _normal(line):
     return np.array([-line.direction[1], line.direction[0]])
 
 
-def _entry(c) -> dict:
+def _entry(sketch, c) -> dict:
     entry = {"kind": c.kind, "of": [e.name for e in c.entities]}
     if c.given is not None:
-        entry["value"] = c.given
+        entry["value"] = sketch.value(c.name) if c.driven else c.given
     entry["name"] = c.name
     if c.driven:
         entry["driven"] = True

@@ -327,6 +327,32 @@ def under_constrained_prism() -> Sketch:
     return s
 
 
+def under_constrained_cycles() -> Sketch:
+    """The counts of Fig. 12 and the course of Fig. 16: three times four points tied to two others (a rigid figure
+    but for one distance, without a triangle), in a ring of two distances each."""
+    s = Sketch()
+    place, point = {}, {}
+    shape = [(-1.5, 0.0), (1.5, 0.2), (0.1, -1.6), (0.2, -0.5), (-0.1, 0.7), (0.1, 1.8)]
+    random = np.random.default_rng(3)
+    for k in range(3):
+        turn = 2.0 * math.pi * k / 3.0
+        middle = 6.0 * np.array([math.cos(turn), math.sin(turn)])
+        for i, q in enumerate(shape):
+            key = f"P{6 * k + i + 1}"
+            place[key] = middle + np.array(q) + random.uniform(-0.15, 0.15, 2)
+            point[key] = s.point(*place[key], name=key)
+    edges = [(6 * k + a, 6 * k + b) for k in range(3) for a in (0, 1) for b in (2, 3, 4, 5)]
+    for k in range(3):
+        j = (k + 1) % 3
+        edges += [(6 * k + 2, 6 * j + 3), (6 * k + 4, 6 * j + 5)]
+    names = list(place)
+    for a, b in edges:
+        span = float(np.linalg.norm(place[names[a]] - place[names[b]]))
+        s.distance(point[names[a]], point[names[b]], span, name=f"d{a + 1}_{b + 1}")
+    jitter(s, 0.1)
+    return s
+
+
 CHANGES = {"B": 16.6, "D": 19.4, "h": 2.2, "w": 2.5, "r": 1.9, "t": 11.2}
 """[m] The design change (f): breadth, depth, double bottom, wing tank, bilge radius, second deck."""
 
@@ -357,6 +383,7 @@ def main() -> None:
     extended_cluster().save(HERE / "extended_cluster.yaml")
     under_constrained().save(HERE / "under_constrained.yaml")
     under_constrained_prism().save(HERE / "under_constrained_prism.yaml")
+    under_constrained_cycles().save(HERE / "under_constrained_cycles.yaml")
     pictures()
 
 

@@ -106,9 +106,6 @@ def main() -> None:
         "port_too_small": opening((0.0, 0.75), 0.09),
     }
     for name, sketch in sketches.items():
-        for constraint in sketch.constraints.values():
-            if constraint.driven:
-                constraint.given = float(constraint.number)
         sketch.save(HERE / f"{name}.yaml")
 
 

@@ -16,6 +16,7 @@ FILES = (
     "extended_cluster",
     "under_constrained",
     "under_constrained_prism",
+    "under_constrained_cycles",
     "midship_d",
 )
 

@@ -34,6 +34,26 @@ def test_round_trip_is_exact(tmp_path):
     assert t.solve().solved and t.entity("right").radius == pytest.approx(0.8, abs=1e-12)
 
 
+@pytest.mark.parametrize("driven", [False, True])
+def test_dimensions_given_as_numpy_numbers_are_saved(tmp_path, driven):
+    s = Sketch()
+    a, b = s.point(np.float64(0.5), 0), s.point(np.float32(2.0), 1)
+    c = s.circle(a, np.float64(1.5), name="c")
+    s.distance(a, b, np.float64(1.8), name="span", driven=driven)
+    s.radius(c, np.float64(1.5), name="r", driven=driven)
+    s.parameter("w", np.float64(2.5))
+    line = s.segment(s.point(3, 3), s.point(4, 5), name="edge")
+    s.distance(a, line, name="gap", driven=driven)
+    if not driven:
+        s.set("span", np.int64(2))
+    s.solve()
+    s.save(tmp_path / "s.yaml")
+    t = Sketch.load(tmp_path / "s.yaml")
+    assert t.constraint("span").driven == driven and t.value("w") == 2.5
+    assert t.value("span") == s.value("span") and t.entity("c").radius == s.entity("c").radius
+    assert t.value("gap") == pytest.approx(s.value("gap"), rel=1e-14)
+
+
 def test_picture_names_every_part():
     text = svg_of(slot(), title="slot")
     assert text.count("<path") == 4 + 1 and text.count("<circle") == 6  # and one distance of points

@@ -6,10 +6,12 @@ import math
 import numpy as np
 import pytest
 
+from clearance.kernels.sketch_columns import bend, spread, step_by
 from clearance.kernels.sketch_equations import gradients, residuals
 from clearance.sketch import Sketch
 from clearance.sketch.constraints import KINDS, measured
-from clearance.sketch.problem import tables_of
+from clearance.sketch.mobility import numbered
+from clearance.sketch.problem import problem_of, tables_of
 
 
 def entities(s, takes):
@@ -65,6 +67,45 @@ def test_derivatives_match_differences(kind, k):
         down[i] -= h
         ahead, behind = (residuals(t.code, t.var, t.coef, t.value, y) for y in (up, down))
         assert np.abs((ahead - behind) / (2 * h) - analytic[:, i]).max(initial=0.0) < 1e-8
+
+
+def bent(s, x):
+    """The second derivative of the sum of all equations, assembled, and by differences of the first."""
+    problem = problem_of(tables_of(s), x)
+    y = problem.system
+    rows = np.flatnonzero(problem.fate == 0)
+    vertices = np.arange(1, y.kind.size)
+    first, n = numbered(problem, vertices)
+    i, j, value = bend(y, rows, x.copy(), first, np.ones(rows.size))
+    assembled = np.zeros((n, n))
+    np.add.at(assembled, (i, j), value)
+    differences, h = np.zeros((n, n)), 1e-5
+    for k, e in enumerate(np.eye(n)):
+        for sign in (1.0, -1.0):
+            moved = x.copy()
+            step_by(y, vertices, e, sign * h, moved, first)
+            _, _, at, slope = spread(y, rows, moved, first)
+            differences[k] += sign * np.bincount(at, slope, n) / (2.0 * h)
+    return assembled, differences
+
+
+@pytest.mark.parametrize(("kind", "k"), CASES)
+def test_second_derivatives_match_differences(kind, k):
+    s, _c, _ = made(kind, k)
+    assert s.solve().solved  # merged numbers agree
+    assembled, differences = bent(s, np.array(s._numbers))
+    assert assembled == pytest.approx(differences, abs=1e-6)
+
+
+def test_second_derivatives_of_lengths_that_share_a_point():
+    s = Sketch()
+    p = [s.point(*q) for q in ((0, 0), (2, 0.3), (2.7, 1.9))]
+    s.equal_length(s.line(p[0], p[1]), s.line(p[1], p[2]))
+    s.midpoint(s.point(1, 1), p[0], p[2])
+    assert s.solve().solved
+    assembled, differences = bent(s, np.array(s._numbers))
+    assert np.abs(differences).max() > 0.1
+    assert assembled == pytest.approx(differences, abs=1e-6)
 
 
 PAPER = {

@@ -83,19 +83,44 @@ def test_under_constrained_sketch_of_figures_12_to_16():
     assert [step.figure for step in merged] == ["Fig. 13 (d)"] * 3 + ["Fig. 8 (d)"]
 
 
-def test_rule_b_begins_a_body_in_a_cycle_without_one():
-    """As in Fig. 16: three assumptions, each followed by what it makes rigid, the rest well-constrained."""
+def test_the_course_of_figure_16():
+    """Three times a body begins in the cycle of least freedom (steps 2, 4 and 6, each with one assumption,
+    Fig. 13 a, as Fig. 17 shows it for P1, P2, P3) and takes in what hangs on it; then all is one (step 7)."""
+    sketch = load("under_constrained_cycles")
+    result = sketch.solve()
+    assert len(sketch.entities) == 18 and len(sketch.constraints) == 30  # 36 - 30 = 6 freedoms left
+    assert result.status == "under" and result.freedom == 3 and result.residual <= 1e-12 * 8.0
+    steps = result.plan
+    course = ["", "", "Fig. 13 (a)", "Fig. 8 (b)", "Fig. 8 (b)", "Fig. 8 (b)"]
+    assert [step.figure for step in steps] == [*course, *course, *course, "Fig. 8 (d)"]
+    assert [step.assumptions for step in steps if step.assumptions] == [1, 1, 1]
+    assert len({step.cluster for step in steps[:18]}) == 3
+    for k in (0, 6, 12):  # a cycle of four points: 8 - 4 freedoms, the least there is
+        cycle = {p for step in steps[k : k + 4] for p in step.places}
+        spans = [c for c in sketch.constraints.values() if {e.name for e in c.entities} <= cycle]
+        assert len(cycle) == 4 and len(spans) == 4
+    assert len(steps[-1].uses) == 6 and steps[-1].assumptions == 0
+
+
+def test_the_rules_avoid_the_end_of_figure_14():
+    """There three assumptions are used up and only an extended cluster is left."""
+    for name in ("under_constrained", "under_constrained_cycles"):
+        plan = load(name).solve().plan
+        assert sum(step.assumptions for step in plan) == 3
+        assert "extended" not in {step.kind for step in plan}
+
+
+def test_rule_b_begins_bodies_in_cycles_without_one():
+    """Two rings with spokes: two bodies begin in a cycle each; what is left takes an extended cluster."""
     sketch = load("under_constrained_prism")
     result = sketch.solve()
     assert len(sketch.entities) == 18 and len(sketch.constraints) == 30
     assert result.status == "under" and result.freedom == 3 and result.residual <= 1e-12 * 5.0
     steps = result.plan
-    assert [step.kind for step in steps] == ["initial", "b", "b", "b", "b", "b", "b", "extended"]
-    assert [step.assumptions for step in steps] == [0, 1, 0, 1, 0, 1, 0, 0]
-    assert steps[1].figure == "Fig. 13 (b)" and steps[2].figure == "Fig. 8 (b)"
-    cycle = {*steps[0].places, *steps[1].places, *steps[2].places}
-    spans = [c for c in sketch.constraints.values() if {e.name for e in c.entities} <= cycle]
-    assert len(cycle) == 4 and len(spans) == 4  # the least cycle: 8 - 4 freedoms
+    assert [step.assumptions for step in steps if step.assumptions] == [1, 1, 1]
+    begun = [step.figure for step in steps if step.assumptions]
+    assert begun == ["Fig. 13 (a)", "Fig. 13 (b)", "Fig. 13 (a)"]
+    assert steps[-1].figure == "Fig. 11" and steps[-1].assumptions == 0
 
 
 def test_rule_b_takes_the_cycle_of_least_freedom_and_most_vertices():
@@ -104,7 +129,8 @@ def test_rule_b_takes_the_cycle_of_least_freedom_and_most_vertices():
     ring = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (4, 5), (5, 6), (6, 4)]
     rows = np.full((len(ring), 5), -1)
     rows[:, :2] = ring
-    turn, lacking = merge_order(rows, np.array([2, 2, 2, 2, 2, 2, 2]))
+    turn, lacking, home = merge_order(rows, np.array([2, 2, 2, 2, 2, 2, 2]))
+    assert len(set(home[[4, 5, 6]])) == 1 and home[4] >= 0
     assert set(np.argsort(turn)[:3]) == {
         4,
         5,
@@ -119,7 +145,7 @@ def test_rule_a_takes_in_a_tree_from_one_body():
     tree = [(0, 1), (1, 2), (1, 3), (3, 4)]
     rows = np.full((len(tree), 5), -1)
     rows[:, :2] = tree
-    turn, lacking = merge_order(rows, np.array([2, 3, 2, 2, 2]))
+    turn, lacking, _ = merge_order(rows, np.array([2, 3, 2, 2, 2]))
     assert turn[1] == 0 and lacking.sum() == 2 * 4 + 3 - 4 - 3
     assert (turn >= 0).all()
 

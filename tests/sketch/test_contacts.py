@@ -1,0 +1,160 @@
+"""Sketches where constraints only touch: held, though not in the first order. Their truth is by construction."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from clearance.sketch import Sketch
+
+SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
+
+
+def verdict(s):
+    result = s.solve()
+    assert result.solved, result.reason
+    return result.status, result.freedom, result.redundant
+
+
+def test_a_d_of_free_radius_and_length():
+    s = Sketch.load(SKETCHES / "d_cell.yaml")
+    assert verdict(s) == ("under", 2, [])
+    assert s.solve().freedom_of["rear"] == 1  # it slides and keeps its direction
+
+
+@pytest.mark.parametrize("given", [0, 1, 2])
+def test_a_d_with_its_dimensions_given_one_after_another(given):
+    s = Sketch.load(SKETCHES / "d_cell.yaml")
+    if given > 0:
+        s.radius(s.entity("front"), 0.5, name="r")
+    if given > 1:
+        s.distance(s.entity("rear"), s.entity("middle"), 1.1, name="l")
+    assert verdict(s) == (("under", "under", "well")[given], 2 - given, [])
+
+
+def fillet(*, radius=None, corner=False, off=0.0):
+    """Two segments at an angle, joined by an arc that touches both."""
+    s, half = Sketch(), 0.35 * math.pi
+    r, reach = 1.0, 1.0 / math.tan(half)
+    d, e = np.array([1.0, 0.0]), np.array([math.cos(2.0 * half), math.sin(2.0 * half)])
+    o = s.point(0.0, 0.0, name="o")
+    p, q = s.point(*(5.0 * d), name="p"), s.point(*(4.0 * e), name="q")
+    a, b = s.point(*(reach * d), name="a"), s.point(*(reach * e), name="b")
+    c = s.point(reach + off, r - off, name="c")
+    arc = s.arc(c, b, a, name="round")
+    one, other = (s.line(o, p), s.line(o, q)) if corner else (s.segment(a, p), s.segment(b, q))
+    if corner:
+        s.incident(a, one), s.incident(b, other)
+    s.tangent(one, arc, name="t1"), s.tangent(other, arc, name="t2")
+    if radius:
+        s.radius(arc, radius)
+    return s
+
+
+def test_a_fillet_between_two_segments():
+    """Five points and a radius are 11 freedoms, of which two arc ends and two contacts take 4 and the placement
+    3; the corner, here in no constraint, has its own two."""
+    s = fillet()
+    status, freedom, redundant = verdict(s)
+    assert (status, redundant) == ("under", [])
+    assert freedom == 11 - 4 - 3 + 2
+    assert verdict(fillet(radius=0.8))[1] == freedom - 1
+
+
+def test_a_fillet_in_a_corner_drawn_with_its_tangent_points():
+    s = fillet(corner=True, radius=1.1, off=0.05)
+    s.distance(s.entity("o"), s.entity("p"), 5.0), s.distance(s.entity("o"), s.entity("q"), 4.0)
+    s.distance(s.entity("p"), s.entity("q"), 7.0)
+    assert verdict(s) == ("well", 0, [])
+
+
+def test_one_contact_said_twice_is_implied():
+    """The radius to the tangent point is perpendicular already."""
+    s = fillet(corner=True, radius=1.0)
+    spoke = s.line(s.entity("c"), s.entity("a"), name="spoke")
+    s.perpendicular(spoke, s.entity("line1"), name="square")
+    status, freedom, redundant = verdict(s)
+    assert status == "over" and len(redundant) == 1
+    t = fillet(corner=True, radius=1.0)
+    assert freedom == verdict(t)[1]
+
+
+@pytest.mark.parametrize("free", [True, False])
+def test_a_slot(free):
+    """Two arcs between two segments, tangent at all four joints: a distance and two radii, which may differ."""
+    s = Sketch()
+    c, d = s.point(0, 0, name="c"), s.point(3, 0.02, name="d")
+    ends = [s.point(x, y) for x, y in ((0, -1), (3, -1), (3.03, 1), (0, 1.02))]
+    low, high = s.segment(ends[0], ends[1]), s.segment(ends[2], ends[3])
+    left, right = s.arc(c, ends[3], ends[0]), s.arc(d, ends[1], ends[2])
+    for line in (low, high):
+        s.tangent(line, left), s.tangent(line, right)
+    if not free:
+        s.radius(left, 1.0, name="r"), s.distance(c, d, 3.0, name="l")
+    status, freedom, redundant = verdict(s)
+    if free:
+        assert (status, freedom, redundant) == ("under", 3, [])
+    else:
+        assert (status, freedom, redundant) == ("under", 1, [])
+        s.equal_radius(left, right)
+        assert verdict(s) == ("well", 0, [])
+        for p, angle in zip(ends, (-90, -90, 90, 90), strict=True):
+            centre = c if p in (ends[0], ends[3]) else d
+            along = d.position - c.position
+            way = p.position - centre.position
+            turn = math.degrees(math.atan2(along[0] * way[1] - along[1] * way[0], along @ way))
+            assert turn == pytest.approx(angle, abs=1e-4)
+
+
+def test_a_triangle_that_is_a_line():
+    """A point at the only place that two circles have in common is held, and moves with them."""
+    s = Sketch()
+    a, b, c = s.point(0, 0), s.point(2, 0), s.point(1.0, 0.0)
+    s.distance(a, b, 2.0), s.distance(a, c, 1.0), s.distance(c, b, 1.0)
+    assert verdict(s) == ("well", 0, [])
+    line = s.line(a, b)
+    s.incident(c, line, name="between")
+    status, freedom, redundant = verdict(s)
+    assert (status, freedom) == ("over", 0) and len(redundant) == 1
+
+
+def test_a_flat_four_bar_linkage_has_one_freedom():
+    """Where its two branches meet the kernel has two motions; every solution near it has one."""
+    s = Sketch()
+    p = [s.point(x, 0.0) for x in (0.0, 1.0, 3.0, 4.0)]
+    for i, j, span in ((0, 1, 1.0), (1, 2, 2.0), (2, 3, 1.0), (0, 3, 2.0)):
+        s.distance(p[i], p[j], span)
+    p[3].sketch._numbers[p[3].variable] = 2.0
+    p[2].sketch._numbers[p[2].variable] = 3.0
+    assert verdict(s) == ("under", 1, [])
+
+
+def test_a_parallelogram_linkage_with_a_third_crank_stays_movable():
+    """The third of three equal parallel cranks is implied, though no count sees it."""
+    s = Sketch()
+    low = [s.point(x, 0.0) for x in (0.0, 1.0, 2.0)]
+    high = [s.point(x + 0.6, 0.8) for x in (0.0, 1.0, 2.0)]
+    for row in (low, high):
+        s.distance(row[0], row[1], 1.0), s.distance(row[1], row[2], 1.0)
+        s.incident(row[1], s.line(row[0], row[2]))
+    for a, b in zip(low, high, strict=True):
+        s.distance(a, b, 1.0)
+    status, freedom, redundant = verdict(s)
+    assert status == "over" and freedom == 1 and len(redundant) == 1
+
+
+def test_circles_that_touch_in_a_row():
+    """Three circles in a chain on one line, each tangent to the next: the middle radius follows."""
+    s = Sketch()
+    x = s.line((0, 0), (1, 0), name="x")
+    c = [s.circle((k, 0.01), r) for k, r in ((0.0, 1.0), (2.0, 0.9), (4.0, 1.1))]
+    s.fix(x)
+    for k in c:
+        s.incident(k.center, x)
+    s.tangent(c[0], c[1]), s.tangent(c[1], c[2])
+    s.radius(c[0], 1.0), s.radius(c[2], 1.0), s.distance(c[0].center, c[2].center, 4.0)
+    assert verdict(s) == ("well", 0, [])
+    assert c[1].radius == pytest.approx(1.0)
+    s.radius(c[1], 1.0, name="again")
+    assert verdict(s)[:2] == ("over", 0)
