@@ -2,7 +2,7 @@
 
 numba's own cache looks only at the file of the function itself and would silently return old code when a
 callee in another kernel file has changed. Here the cache folder's name is a hash of the kernel's file and
-of every kernel file it imports, so that an edit recompiles what depends on it and nothing else.
+of every kernel file it imports, and of this one, so that an edit recompiles what depends on it and nothing else.
 
 A kernel that calls another one is optimised together with all that lies below it, level by level. Large ones
 are therefore kept `apart` and called by address, compiled once for all their callers (`kernel_table`).
@@ -19,6 +19,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numba
+from numba.core import types
+from numba.core.dispatcher import Dispatcher
+from numba.core.targetconfig import ConfigStack
 from numba.extending import register_jitable
 
 _PACKAGE = Path(__file__).parent
@@ -56,11 +59,12 @@ def _cached(function: Callable, **options: bool) -> Callable:
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(folder)
         try:
-            return numba.njit(
+            compiled = numba.njit(
                 cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True, **options
             )(function)
         finally:
             numba.config.CACHE_DIR = before
+    return _watched(compiled)
 
 
 def _for_kernels(function: Callable, **options: object) -> Callable:
@@ -79,7 +83,35 @@ def _for_kernels(function: Callable, **options: object) -> Callable:
 
     compiled._insert = lambda *entry: None  # nothing for Python to find
     compiled._compile_for_args = refuse
+    return compiled if options.get("inline") == "always" else _watched(compiled)
+
+
+def _watched(compiled: Dispatcher) -> Dispatcher:
+    """The same, but refused where it hands on arrays to a caller that counts no references.
+
+    One form of the function serves all callers; with the counts of the one, the other would free an array that
+    is in use, or never.
+    """
+    if numba.config.DISABLE_JIT:
+        return compiled
+    typed = compiled.get_call_template
+
+    def get_call_template(args: tuple, named: dict) -> tuple:
+        found = typed(args, named)
+        flags = ConfigStack().top_or_none()
+        returned = [form.signature.return_type for form in compiled.overloads.values()]
+        if flags is not None and not flags.nrt and any(map(_holds_arrays, returned)):
+            raise TypeError(f"{compiled.py_func.__name__} returns an array to a kernel that is `borrowing`")
+        return found
+
+    compiled.get_call_template = get_call_template
     return compiled
+
+
+def _holds_arrays(kind: types.Type) -> bool:
+    if isinstance(kind, types.BaseTuple):
+        return any(map(_holds_arrays, kind))
+    return isinstance(kind, types.Array)
 
 
 def inlined(function: Callable) -> Callable:
@@ -121,7 +153,7 @@ def _cache_root() -> Path:
 @functools.cache
 def _source_key(path: Path) -> str:
     digest = hashlib.sha256()
-    for source in sorted(_closure(path)):
+    for source in (Path(__file__), *sorted(_closure(path))):
         digest.update(source.name.encode() + source.read_bytes())
     return digest.hexdigest()[:16]
 

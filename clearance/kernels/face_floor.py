@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, merged, spliced
+from clearance.jit import inlined, spliced
 from clearance.kernels.double_double import (
     NOISE,
     Wide,
@@ -70,7 +70,7 @@ def whole(surface, face):
     return Part(surface.face_starts[face] + 1, surface.face_starts[face + 1])
 
 
-@merged
+@spliced
 def corners_of(surface, face, part):
     """Part of a face."""
     start = surface.face_starts[face]

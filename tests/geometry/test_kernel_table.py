@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from clearance import kernel_table
-from clearance.jit import kernel
+from clearance.jit import borrowing, inlined, kernel
 from clearance.kernel_table import MEETING, at_address, call
+from clearance.kernels import predicates
 from tests.reached import reached
 
 ROOT = Path(__file__).parents[2]
@@ -56,6 +57,7 @@ def test_a_caller_with_other_types_is_refused():
     def with_other_types(x, table):
         return at_address(table, MEETING, 1.0, (x, x))
 
+    assert predicates.meeting is not None
     with pytest.raises(TypeError, match=r"meeting.* is called with other types"):
         call(with_other_types, 1.0)
 
@@ -69,3 +71,26 @@ def test_what_only_kernels_can_call_is_refused_to_python():
     assert reached(rigid)(np.eye(4)).xx == 1.0
     with pytest.raises(TypeError, match="by kernels only"):
         rigid(np.eye(4))
+
+
+@inlined
+def first_of(arrays):
+    return arrays[0]
+
+
+@compiled_only
+def test_an_array_is_not_handed_on_to_a_kernel_that_counts_no_references():
+    """One form of `first_of` would serve both: where only one counts, an array is freed while it is in use."""
+
+    @kernel
+    def counting(arrays):
+        return first_of(arrays)[0]
+
+    @borrowing
+    def not_counting(arrays):
+        return first_of(arrays)[0]
+
+    arrays = (np.ones(2), np.zeros(2))
+    assert counting(arrays) == 1.0
+    with pytest.raises(Exception, match="first_of returns an array to a kernel that is `borrowing`"):
+        not_counting(arrays)

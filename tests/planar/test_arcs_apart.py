@@ -10,15 +10,16 @@ from hypothesis import strategies as st
 import clearance as cl
 from clearance.kernels.arc import RADIUS, WIDTH, set_arc, set_segment
 from clearance.kernels.curve_arcs import arcs_apart
+from tests.reached import reached
 
 
 def arc(x0, y0, angle, x1, y1):
     """The arc from one point along a direction to another; the segment where that is the chord's."""
     row = np.zeros(WIDTH)
     if angle is None:
-        set_segment(row, 0.0, 1.0, x0, y0, x1, y1)
+        reached(set_segment)(row, 0.0, 1.0, x0, y0, x1, y1)
     else:
-        set_arc(row, 0.0, 1.0, x0, y0, math.cos(angle), math.sin(angle), x1, y1, 1e-15)
+        reached(set_arc)(row, 0.0, 1.0, x0, y0, math.cos(angle), math.sin(angle), x1, y1, 1e-15)
     return row
 
 
