@@ -82,7 +82,7 @@ def first_of(arrays):
 def test_an_array_is_not_handed_on_to_a_kernel_that_counts_no_references():
     """One form of `first_of` would serve both: where only one counts, an array is freed while it is in use."""
 
-    @kernel
+    @numba.njit  # not cached: `first_of` is compiled here, with counts
     def counting(arrays):
         return first_of(arrays)[0]
 

@@ -24,10 +24,3 @@ def moving_on_cubics():
 def test_a_shared_workspace_is_refused():
     with pytest.raises(BadInput, match="not on cubics"):
         swept_pieces(moving_on_cubics(), 0.01)
-
-
-def test_a_swept_profile_is_refused():
-    run = cl.check(cl.load_case(CASE))
-    record = replace(run.record, motions=(moving_on_cubics(),))
-    with pytest.raises(BadInput, match="not on cubics"):
-        cl.swept_profile(record, "xy")
