@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import borrowing, inlined, kernel
+from clearance.jit import borrowing, inlined, kernel, spliced
 from clearance.kernel_table import borrow, lend
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
 from clearance.kernels.descent import nothing_yet
@@ -141,7 +141,7 @@ def _fill(surface, points, first, origin, scale):
     return reach
 
 
-@inlined
+@spliced
 def _measure(lent_a, lent_b, frames, margin, exact, table):
     """(distance, error, p, q, contact) of the two polygons that are filled in."""
     a, b = borrow(lent_a), borrow(lent_b)

@@ -300,6 +300,13 @@ def segment_meets_triangle(p, q, a, b, c, exact):
     Loops instead of a call for each sign: the predicates are long, and each call may be merged.
     """
     ends, ring = (p, q), (a, b, c, a)
+    n_left, n_right = 0, 0
+    for i in range(3):
+        turn = orient_posed(p, q, ring[i], ring[i + 1], exact)
+        n_left += turn > 0
+        n_right += turn < 0
+        if n_left > 0 and n_right > 0:
+            return False  # the line misses the triangle
     n_above, n_below = 0, 0
     for i in range(2):
         side = orient_posed(a, b, c, ends[i], exact)
@@ -308,12 +315,7 @@ def segment_meets_triangle(p, q, a, b, c, exact):
     if n_above == 2 or n_below == 2:
         return False
     if n_above + n_below > 0:
-        n_left, n_right = 0, 0
-        for i in range(3):
-            turn = orient_posed(p, q, ring[i], ring[i + 1], exact)
-            n_left += turn > 0
-            n_right += turn < 0
-        return n_left == 0 or n_right == 0
+        return True
     for i in range(3):
         if segments_meet(p, q, ring[i], ring[i + 1], exact):
             return True

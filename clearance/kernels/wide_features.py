@@ -14,6 +14,8 @@ from clearance.kernels.double_double import (
     along3,
     cross3,
     dot3,
+    inverse,
+    is_medium,
     minus,
     minus3,
     negative3,
@@ -128,9 +130,13 @@ def two_segments(p0, p1, q0, q1):
     flat = WELL_APART * dot(rounded(u), rounded(u)) * dot(rounded(v), rounded(v))
     if inside and minus(n_sq, at_q).hi >= 0.0 and n_sq.hi > flat:
         h = dot3(r, n)
-        gap_sq = times(h, over(h, n_sq))
-        p, q = along3(p0, over(at_p, n_sq), u), along3(q0, over(at_q, n_sq), v)
-        return Pair(gap_sq, p, q, negative3(n) if h.hi < 0.0 else n, n_sq, p0)
+        if is_medium(n_sq):
+            part = inverse(n_sq)
+            on_p, on_q, share = times(at_p, part), times(at_q, part), times(h, part)
+        else:
+            on_p, on_q, share = over(at_p, n_sq), over(at_q, n_sq), over(h, n_sq)
+        p, q = along3(p0, on_p, u), along3(q0, on_q, v)
+        return Pair(times(h, share), p, q, negative3(n) if h.hi < 0.0 else n, n_sq, p0)
     uv, u_sq, v_sq = dot3(u, v), dot3(u, u), dot3(v, v)
     on_p = _share(at_p, n_sq)
     on_q = _share(minus(times(on_p, uv), dot3(r, v)), v_sq)

@@ -13,9 +13,9 @@ import csv
 import time
 from pathlib import Path
 
-import numba
 import numpy as np
 
+from clearance.jit import borrowing, kernel
 from clearance.kernels.bounds import SLACK
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import FRAMES_AT_REST
@@ -34,10 +34,14 @@ from tests.strategies import FAMILIES, anywhere
 CORNERS = ((3, 3), (4, 3), (4, 4), (6, 6), (8, 8), (12, 12), (16, 16), (32, 32), (64, 64))
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def plain(ps, qs, answers):
     """`nearest_polygons` without what makes it exact."""
-    a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
+    _plain_each(ps, qs, _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1]), answers)
+
+
+@borrowing
+def _plain_each(ps, qs, a_p, b_q, answers):
     frames = FRAMES_AT_REST
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
