@@ -25,10 +25,10 @@ from numba.extending import intrinsic
 
 from clearance.jit import borrowing
 
-REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH = range(6)
+REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS = range(7)
 """The places of the table."""
 
-_table = np.zeros((6, 2), dtype=np.int64)  # address, stamp
+_table = np.zeros((7, 2), dtype=np.int64)  # address, stamp
 _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
 
@@ -96,7 +96,7 @@ def _type_of(value: object) -> types.Type:
 
 
 def _stamp(result: types.Type, arguments: tuple[types.Type, ...]) -> int:
-    return 1 + zlib.crc32(f"{result}{arguments}".encode())
+    return 1 + zlib.crc32(f"{_plain(result)}{arguments}".encode())
 
 
 def _plain(kind: types.Type) -> types.Type:

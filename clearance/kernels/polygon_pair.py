@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import borrowing, inlined, kernel, spliced
-from clearance.kernel_table import borrow, lend
+from clearance.jit import inlined, kernel, spliced
+from clearance.kernel_table import POLYGONS, Lent, apart, at_address, borrow, lend, table_like
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import FRAMES_AT_REST, minus3, rounded
@@ -16,7 +16,7 @@ from clearance.kernels.face_planes import plane_of, unit
 from clearance.kernels.meeting import common_point_of
 from clearance.kernels.predicates import meeting_of, room_for_exact
 from clearance.kernels.refine import NOTHING_REFINED, error_of, refined_of
-from clearance.kernels.surface import Surface
+from clearance.kernels.surface import Surface, surface_like
 from clearance.kernels.vec3 import Vec3, cross, dot, row, sub
 
 UNDERFLOWN = 2.0**-400
@@ -170,11 +170,18 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
     return distance, error, rounded(refined.p), rounded(refined.q), False
 
 
-@borrowing
-def _nearest_each(ps, qs, a_p, b_q, exact, answers, table):
+def _like():
+    polygons, flags = np.empty((0, 3, 3)), np.empty(0, dtype=np.bool_)
+    answers = Answers(np.empty(0), np.empty(0), polygons, flags, flags)
+    room = Lent(surface_like()), Lent(surface_like()), room_for_exact()
+    return polygons, polygons, *room, answers, table_like()
+
+
+@apart(POLYGONS, _like)
+def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
     """Fills `answers`, with room for one polygon of each side."""
+    a_p, b_q = borrow(lent_p), borrow(lent_q)
     frames = FRAMES_AT_REST
-    lent_p, lent_q = lend(a_p), lend(b_q)
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
         in_order = _comes_first(ps[k], first_p, qs[k], first_q)
@@ -198,10 +205,14 @@ def _nearest_each(ps, qs, a_p, b_q, exact, answers, table):
         for axis in range(3):
             answers.points[k, 0, axis] = p[axis] * unscale
             answers.points[k, 1, axis] = q[axis] * unscale
+    return 0
 
 
 @kernel
 def nearest_polygons(ps, qs, answers, table):
-    """Fills `answers` for each pair `ps[k]`, `qs[k]`."""
+    """Fills `answers` for each pair `ps[k]`, `qs[k]`; all arrays contiguous and writable."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
-    _nearest_each(ps, qs, a_p, b_q, room_for_exact(), answers, table)
+    at_address(
+        table, POLYGONS, 0, (ps, qs, lend(a_p), lend(b_q), room_for_exact(), answers, table)
+    )
+    a_p.blunt[0] = b_q.blunt[0] = 0.0  # held until here
