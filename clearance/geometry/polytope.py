@@ -221,11 +221,18 @@ class Polytope:
         return packed(self.vertices, rings, self.centroid, planes, self.face_graph[1])
 
     @cached_property
+    def packed_at(self) -> tuple[int, int, int, int]:
+        """Where `packed` lies in memory (`kernels.polytope_bodies`), for as long as this body is held."""
+        numbers, indices = self.packed
+        return numbers.ctypes.data, len(numbers), indices.ctypes.data, len(indices)
+
+    @cached_property
     def face_areas(self) -> np.ndarray:
         """(f, 4) area [m^2] and centroid [m] of each face."""
         return face_areas(*self.packed)
 
     def prepared(self) -> Self:
         """Itself, with all that intersections need made ahead."""
-        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.face_areas, self.box)
+        _ = (self.face_widths, self.vertex_graph, self.trivalent, self.face_areas, self.packed_at)
+        _ = self.box
         return self

@@ -10,6 +10,7 @@ Arrays as in `polytope_cut`. Not for: the order of the bodies (`query.cutting`).
 from __future__ import annotations
 
 from clearance.jit import borrowing, spliced
+from clearance.kernels.polytope_bodies import INDICES, NUMBERS, array_at
 from clearance.kernels.polytope_cut import (
     CUT,
     FULL,
@@ -17,12 +18,14 @@ from clearance.kernels.polytope_cut import (
     LATER,
     LOOKED,
     MARK,
+    N_FREE,
     N_ROWS,
     QUEUE,
     SEEN,
     STACK,
     STAMP,
     USED,
+    close_up,
     cut_by_plane,
     over,
 )
@@ -120,15 +123,18 @@ def is_copy(spots, mesh, v, base):
 
 
 @borrowing
-def room_about(numbers, indices, origin):
-    """[m] The distance of the plane through which the ray from the centroid to `origin` leaves the body."""
-    x, y, z = origin[0] - numbers[0], origin[1] - numbers[1], origin[2] - numbers[2]
-    cell, _ = cell_of(numbers, indices, x, y, z)
-    face, gauge = exit_in(numbers, indices, cell, x, y, z)
-    return (1.0 - gauge) * numbers[HEAD + ROW * face + 7]
+def rooms_about(bodies, origin, rooms, numbers_like, indices_like):
+    """Fills `rooms` [m]: how far the plane is through which the ray from each centroid to `origin` leaves."""
+    for i in range(len(bodies)):
+        numbers = array_at(bodies, i, NUMBERS, numbers_like)
+        indices = array_at(bodies, i, INDICES, indices_like)
+        x, y, z = origin[0] - numbers[0], origin[1] - numbers[1], origin[2] - numbers[2]
+        cell, _ = cell_of(numbers, indices, x, y, z)
+        face, gauge = exit_in(numbers, indices, cell, x, y, z)
+        rooms[i] = (1.0 - gauge) * numbers[HEAD + ROW * face + 7]
 
 
-@borrowing
+@spliced
 def cut_by_body(
     spots, mesh, state, work, rim, table, numbers, indices, origin, base, tolerance, noise
 ):
@@ -219,3 +225,29 @@ def cut_by_body(
                     work[STACK, n_stack] = rim[i, 0]
                     n_stack += 1
     return CUT, n_cuts
+
+
+@borrowing
+def cut_by_bodies(
+    spots, mesh, state, work, rim, table, bodies, bases, turns, origin, tolerance, noise, sparse,
+    numbers_like, indices_like,
+):  # fmt: skip
+    """Cuts the polytope by bodies in turn; (status, how many of `turns` are done).
+
+    Rows are closed up after a body that leaves more than `sparse` of them free.
+
+    Args:
+        bodies: rows as `polytope_bodies` says; bases: the number of each one's first plane; turns: which bodies,
+            in order. The others as in `cut_by_body`; FULL asks for more rows, and to go on from there.
+    """
+    for i in range(len(turns)):
+        numbers = array_at(bodies, turns[i], NUMBERS, numbers_like)
+        indices = array_at(bodies, turns[i], INDICES, indices_like)
+        status, _ = cut_by_body(
+            spots, mesh, state, work, rim, table, numbers, indices, origin, bases[turns[i]], tolerance, noise
+        )
+        if status != CUT:
+            return status, i
+        if state[N_FREE] > sparse * state[N_ROWS]:
+            close_up(spots, mesh, state, work)
+    return CUT, len(turns)

@@ -223,7 +223,7 @@ def begin(spots, mesh, numbers, indices, corner, form, origin, base):
         mesh[v, LOOKED] = 0
 
 
-@borrowing
+@spliced
 def close_up(spots, mesh, state, work):
     """Moves the rows in use together, in their order, so that later bodies walk over no free ones."""
     n_kept = 0

@@ -22,7 +22,7 @@ from clearance.geometry.polytope import Polytope
 from clearance.geometry.pose import inverse, validated_pose
 from clearance.query.distance import distance
 from clearance.query.intersection import Intersection, intersect
-from clearance.query.penetration import Corners, penetration
+from clearance.query.penetration import Corners, Penetration, depths_at_most, penetration
 from clearance.query.retreat import Ray, shortened, ways_out
 
 EXACT = 1e-12
@@ -190,7 +190,7 @@ class _Placed:
             ray = self._confirmed([*rays, ray])
         at_least = self._depth_of_inner()
         is_close = at_least > CLOSE * ray.length
-        return ray, max(at_least, self._width_of_region(only_convex=is_close))
+        return ray, max(at_least, self._width_of_region(at_least, only_convex=is_close))
 
     @property
     def _needs_search(self) -> bool:
@@ -208,24 +208,41 @@ class _Placed:
         return distance(self.pair.a, self.pair.b, pose_a=pose).distance > 0.0
 
     def _depth_of_inner(self) -> float:
-        """[m] the depth of the convex bodies inside both: no way out of the bodies is shorter."""
+        """[m] the depth of the convex bodies inside both: no way out of the bodies is shorter.
+
+        Pairs in turn by what 26 directions leave of their depth, until that is no more than the greatest found.
+        """
         inner_a = [Corners.placed(part, self.b_from_a) for part in self.pair.parts_a.inner]
-        deep = [penetration(p, q).at_least for p in inner_a for q in self.pair.parts_b.inner]
-        return max(deep, default=0.0)
+        inner_b = [Corners(part.vertices, part.normals) for part in self.pair.parts_b.inner]
+        at_most = depths_at_most(inner_a, inner_b)
+        found = 0.0
+        for row in np.argsort(-at_most, axis=None, kind="stable"):
+            i, j = divmod(int(row), len(inner_b))
+            if at_most[i, j] <= found:
+                break
+            found = max(found, penetration(inner_a[i], inner_b[j]).at_least)
+        return found
+
+    @cached_property
+    def _thin(self) -> Penetration | None:
+        """How thin the hull of the region is, and along what; None where the region is empty."""
+        region = self._region[0]
+        if region.is_empty:
+            return None
+        corners = Corners(region.vertices, np.zeros((0, 3)))
+        return penetration(corners, corners)
 
     def _thin_ways(self) -> list[np.ndarray]:
         """The two directions in which the region is thinnest; none where it is empty."""
-        region = self._region[0]
-        if region.is_empty:
-            return []
-        corners = Corners(region.vertices, np.zeros((0, 3)))
-        thin = penetration(corners, corners).direction
-        return [thin, -thin]
+        return [] if self._thin is None else [self._thin.direction, -self._thin.direction]
 
-    def _width_of_region(self, only_convex: bool) -> float:
-        """[m] the width of a convex part of the region: to part the bodies, it must be parted from itself."""
+    def _width_of_region(self, more_than: float, only_convex: bool) -> float:
+        """[m] the width of a convex part of the region: to part the bodies, it must be parted from itself.
+
+        Where the whole hull is no wider than `more_than` [m], no part of it is looked for.
+        """
         region, volume, volume_at_least = self._region
-        if region.is_empty or volume_at_least < volume:
+        if volume_at_least < volume or self._thin is None or self._thin.depth <= more_than:
             return 0.0
         try:
             parts = hull_drawn_in(region.vertices[region.triangles], only_convex)

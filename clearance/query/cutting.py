@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_clip import cut_by_body, room_about
+from clearance.kernels.polytope_clip import cut_by_bodies, rooms_about
 from clearance.kernels.polytope_cut import (
     BROKEN,
     CUT,
@@ -23,7 +23,6 @@ from clearance.kernels.polytope_cut import (
     N_ROWS,
     STAMP,
     begin,
-    close_up,
     cut_by_planes,
 )
 from clearance.kernels.polytope_patch import lay_patch, mark_patch
@@ -78,8 +77,15 @@ class Task:
         bodies = self.bodies
         first = min(range(len(bodies)), key=lambda k: (bodies[k].volume, k))
         rest = [k for k in range(len(bodies)) if k != first]
-        rooms = {k: room_about(*bodies[k].packed, self.origin) for k in rest} if rest[1:] else {}
-        return [first, *sorted(rest, key=lambda k: (rooms.get(k, 0.0), bodies[k].volume, k))]
+        rooms = np.zeros(len(bodies))
+        if rest[1:]:
+            rooms_about(self.rows, self.origin, rooms, *bodies[0].packed)
+        return [first, *sorted(rest, key=lambda k: (rooms[k], bodies[k].volume, k))]
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """(m, 4) where the bodies' arrays are, for kernels that take them all (`kernels.polytope_bodies`)."""
+        return np.array([body.packed_at for body in self.bodies])
 
     @property
     def seam(self) -> int:
@@ -135,26 +141,24 @@ class Cutting:
         if status != CUT:
             raise Broken
 
-    def by(self, i_body: int) -> bool:
-        """Cuts by one body; False if nothing is left.
+    def by(self, *i_bodies: int) -> bool:
+        """Cuts by bodies in turn, in one call of a kernel; False if nothing is left.
 
         Raises:
             Broken: see there.
         """
-        task, status = self.task, FULL
+        task, turns = self.task, np.array(i_bodies, dtype=np.int64)
         while True:
-            status, _ = cut_by_body(
-                self.spots, self.mesh, self.state, self.work, self.rim, self.table,
-                *task.bodies[i_body].packed, task.origin, task.bases[i_body], task.tolerance,
-                NOISE * task.tolerance,
+            status, n_done = cut_by_bodies(
+                self.spots, self.mesh, self.state, self.work, self.rim, self.table, task.rows, task.bases,
+                turns, task.origin, task.tolerance, NOISE * task.tolerance, SPARSE, *task.bodies[0].packed,
             )  # fmt: skip
             if status != FULL:
                 break
+            turns = turns[n_done:]
             self._grown()
         if status == BROKEN:
             raise Broken
-        if self.state[N_FREE] > SPARSE * self.state[N_ROWS]:
-            close_up(self.spots, self.mesh, self.state, self.work)
         return status == CUT
 
     def patched_by(self, i_first: int, i_body: int) -> bool:
@@ -224,8 +228,8 @@ def cut_down(task: Task, side: float = 0.0) -> Cutting | None:
     cutting = Cutting(task, members[0])
     if side:
         cutting.halve(side)
-    for k in members[1:]:
-        patched = k == members[1] and not side and task.bodies[k].n_faces > PATCHED_FROM
-        if not (cutting.patched_by(members[0], k) if patched else cutting.by(k)):
+    rest = members[1:]
+    if rest and not side and task.bodies[rest[0]].n_faces > PATCHED_FROM:
+        if not cutting.patched_by(members[0], rest.pop(0)):
             return None
-    return cutting
+    return cutting if cutting.by(*rest) else None

@@ -9,9 +9,10 @@ rounding breaks it. Not for: concave bodies.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import cached_property
+from threading import Thread
 
 import numpy as np
 
@@ -139,16 +140,16 @@ def _region(
     """(the region, its moments, the way)."""
     if method != "dual":
         try:
-            halves = _cut(task, threads)
-            if any(half is None for half in halves):
+            found = _cut(task, threads)
+            if any(half is None for half in found):
                 return None, np.zeros(4), "cut"
-            moments = [half.moments() for half in halves]
+            halves, moments = zip(*found, strict=True)
             total = sum(moments)
             if is_thin(task, total[0], max(half[4] for half in moments)):
                 again = refined(task, np.concatenate([half.places() for half in halves]))
                 if again is not None:
                     return *again, "cut"
-            return halves, total[:4], "cut"
+            return list(halves), total[:4], "cut"
         except Broken:
             if method == "cut":
                 raise AssertionError("the cut has broken the surface") from None
@@ -156,15 +157,33 @@ def _region(
     return region, region.moments(), "dual"
 
 
-def _cut(task: Task, threads: int) -> list[Cutting | None]:
+def _cut(task: Task, threads: int) -> list[tuple[Cutting, np.ndarray] | None]:
     """The region whole, or where there is much to do in two halves, whatever the number of threads."""
     if task.seam < HALVED_FROM or len(task.bodies) < 3:
-        return [cut_down(task)]
+        return [_part(task)]
     if threads == 1:
-        return [cut_down(task, side) for side in (1.0, -1.0)]
+        return [_part(task, side) for side in (1.0, -1.0)]
     for body in task.bodies:
         body.prepared()
     _ = task.order  # once, ahead of both
-    with ThreadPoolExecutor(1) as pool:
-        other = pool.submit(cut_down, task, -1.0)
-        return [cut_down(task, 1.0), other.result()]
+    other: Future = Future()
+    worker = Thread(target=_answer, args=(other, task))  # a pool takes 50 us longer to start
+    worker.start()
+    try:
+        return [_part(task, 1.0), other.result()]
+    finally:
+        worker.join()
+
+
+def _answer(other: Future, task: Task) -> None:
+    """The half on the far side, or why there is none."""
+    try:
+        other.set_result(_part(task, -1.0))
+    except BaseException as error:  # it is raised where the result is asked for
+        other.set_exception(error)
+
+
+def _part(task: Task, side: float = 0.0) -> tuple[Cutting, np.ndarray] | None:
+    """What is left on one side, and its moments."""
+    made = cut_down(task, side)
+    return None if made is None else (made, made.moments())

@@ -8,6 +8,7 @@ be pushed out any farther. Not for: concave bodies (`retreat`).
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -68,6 +69,15 @@ def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
     """
     search = _Search(a, b)
     return search.run()
+
+
+def depths_at_most(a: Sequence[Corners], b: Sequence[Corners]) -> np.ndarray:
+    """(len(a), len(b)) [m] no less than the depth of each of `a` in each of `b`, by 26 directions; 0 if apart."""
+    if not a or not b:
+        return np.zeros((len(a), len(b)))
+    lowest = np.array([(TWENTY_SIX @ body.vertices.T).min(axis=1) for body in a])
+    highest = np.array([(TWENTY_SIX @ body.vertices.T).max(axis=1) for body in b])
+    return np.maximum(0.0, (highest[None] - lowest[:, None]).min(axis=2))
 
 
 class _Search:

@@ -16,6 +16,9 @@ import numpy as np
 from clearance.query.penetration import TWENTY_SIX, Corners
 
 MOST_DIRECTIONS = 192
+MOST_NUMBERS = 2_000_000
+"""Numbers in a table of rays, sets and planes: 16 MB."""
+
 RAYS_ASKED = 6
 """Rays on which the bodies themselves are asked, the shortest first."""
 
@@ -49,18 +52,32 @@ def ways_out(
     heights_b = np.array([(directions @ part.vertices.T).max(axis=1) for part in b])
     offsets = (heights_a[:, None] + heights_b[None]).reshape(-1, len(directions))
     offsets = offsets[(-offsets).max(axis=1) < within]
-    lengths = np.array([_first_gap(offsets, directions @ way) for way in directions])
+    at_once = max(1, MOST_NUMBERS // max(1, offsets.size))
+    lengths = np.concatenate([
+        _first_gaps(offsets, directions[i : i + at_once] @ directions.T)
+        for i in range(0, len(directions), at_once)
+    ])  # fmt: skip
     order = np.argsort(lengths, kind="stable")
     return [Ray(float(lengths[i]), directions[i]) for i in order if lengths[i] <= within]
 
 
-def _first_gap(offsets: np.ndarray, slopes: np.ndarray) -> float:
-    """[m] where a ray first leaves all sets {t: directions t <= offsets row} that follow each other on it."""
+def _first_gaps(offsets: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """(r,) [m] where each ray first leaves all sets {t: directions t <= offsets row} that follow each other on it.
+
+    Args:
+        offsets: (p, k) [m] of the sets. slopes: (r, k) of the rays.
+    """
     up, down = slopes > 1e-9, slopes < -1e-9
-    ends = (offsets[:, up] / slopes[up]).min(axis=1, initial=np.inf)
-    begins = (offsets[:, down] / slopes[down]).max(axis=1, initial=-np.inf)
-    met = (begins < ends) & (offsets[:, ~(up | down)] > 0.0).all(axis=1)
-    begins, ends = begins[met], ends[met]
+    at = offsets[None] / np.where(up | down, slopes, 1.0)[:, None]
+    ends = np.where(up[:, None], at, np.inf).min(axis=2)
+    begins = np.where(down[:, None], at, -np.inf).max(axis=2)
+    held = (up | down)[:, None] | (offsets[None] > 0.0)
+    met = (begins < ends) & held.all(axis=2)
+    return np.array([_gap(begins[i, m], ends[i, m]) for i, m in enumerate(met)])
+
+
+def _gap(begins: np.ndarray, ends: np.ndarray) -> float:
+    """Where stretches that begin at 0 or before, and those that follow on them, first leave a gap."""
     at = 0.0
     while True:
         here = (begins <= at) & (ends > at)

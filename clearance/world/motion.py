@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 
@@ -35,19 +34,6 @@ class Motion:
     def n_steps(self) -> int:
         """Number of steps."""
         return len(self.times)
-
-    def require_linear(self, what: str) -> None:
-        """Refuses a motion on cubics for `what`, whose bounds hold for joints that move linearly.
-
-        Raises:
-            BadInput: the motion has velocities.
-        """
-        if self.velocities is not None:
-            raise BadInput(
-                f"{what} is bounded for joints that move linearly, not on cubics",
-                where="trajectory",
-                valid="a trajectory without velocity columns",
-            )
 
     @property
     def joint_names(self) -> tuple[str, ...]:

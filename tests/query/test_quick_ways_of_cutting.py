@@ -7,7 +7,7 @@ import pytest
 
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, is_in_ball
-from clearance.query import cutting
+from clearance.query import cutting, intersection
 from clearance.query.common_point import common_point
 from clearance.query.cutting import Cutting, Task, cut_down
 from clearance.query.intersection import intersect
@@ -116,3 +116,30 @@ def test_a_moved_body_is_the_hull_of_the_moved_corners():
     assert intersect([moved, there]).volume == pytest.approx(
         intersect([body, other]).volume, rel=1e-13
     )
+
+
+@pytest.mark.parametrize("room", [cutting.ROOM, 1])
+def test_bodies_cut_in_one_call_are_cut_as_one_by_one(room, monkeypatch):
+    bodies = cluster(12, 100, 4, spread=0.05)
+    task = Task.about(bodies, common_point(bodies).point)
+    one_by_one = Cutting(task, task.order[0])
+    assert all(one_by_one.by(k) for k in task.order[1:])
+    monkeypatch.setattr(cutting, "ROOM", room)  # 1: the call stops where the rows are full, and goes on
+    at_once = Cutting(task, task.order[0])
+    n_first = len(at_once.spots)
+    assert at_once.by(*task.order[1:])
+    assert (len(at_once.spots) > n_first) == (room == 1)
+    assert at_once.moments()[0] == pytest.approx(one_by_one.moments()[0], rel=4e-15)
+    if room == cutting.ROOM:
+        assert at_once.moments().tobytes() == one_by_one.moments().tobytes()
+
+
+def test_what_breaks_in_the_other_thread_is_raised_by_the_call(monkeypatch):
+    def broken(task, side):
+        if side < 0.0:
+            raise KeyError("the far side")
+
+    monkeypatch.setattr(intersection, "HALVED_FROM", 10)
+    monkeypatch.setattr(intersection, "cut_down", broken)
+    with pytest.raises(KeyError, match="the far side"):
+        intersect(cluster(3, 10, 5, spread=0.05), threads=2)

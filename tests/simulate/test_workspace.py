@@ -15,6 +15,7 @@ from clearance.simulate.swept_pieces import swept_pieces
 from clearance.simulate.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
+from clearance.world.cubic import asked_at
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.report.records import arm, moved
@@ -75,27 +76,70 @@ def test_timing_does_not_matter_and_apart_is_empty():
     assert far.volume == 0.0 and far.region.is_empty and far.links == ()
 
 
+def between_the_steps(motion, n_parts):
+    """(instants in steps, the motion at these): each interval in `n_parts`."""
+    n = motion.n_steps
+    fine = np.linspace(0.0, n - 1.0, n_parts * (n - 1) + 1)
+    times = np.interp(fine, np.arange(n), motion.times)
+    asked = Trajectory(motion.times, motion.joint_names, motion.positions, motion.velocities)
+    return fine, dataclasses.replace(
+        motion, times=times, positions=asked_at(asked, times), velocities=None,
+        tracking_error=np.zeros(len(fine)),
+    )  # fmt: skip
+
+
+def greatest_escape(pieces, motion, n_parts):
+    """[m] how far a corner of a link ever stands out of the pieces that hold it; below 0 if inside."""
+    fine, dense = between_the_steps(motion, n_parts)
+    robot, poses = motion.placed.robot, dense.poses()
+    worst = -np.inf
+    for body in robot.bodies:
+        posed = poses[:, robot.link_names.index(body.name)]
+        corners = np.einsum("nij,kj->nki", posed[:, :3, :3], body.shape.vertices)
+        corners += posed[:, None, :3, 3]
+        held = np.full(len(fine), np.inf)
+        for piece in (p for p in pieces if p.link == body.name):
+            within = (fine >= piece.first) & (fine <= piece.last)
+            rows = corners[within] @ piece.body.normals.T + piece.body.half_spaces[:, 3]
+            held[within] = np.minimum(held[within], rows.max(axis=(1, 2)))
+        worst = max(worst, held.max())
+    return worst
+
+
 @pytest.mark.parametrize("within", [1e-4, 5e-3, 0.2])
 def test_the_pieces_hold_the_links_between_the_samples(within):
-    case = swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6)
+    motion = kinematic_motion(swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6).robots[0])
+    assert greatest_escape(swept_pieces(motion, within), motion, 20) <= 0.0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
+    """Velocities that have nothing to do with the positions: joints swing far beyond their samples."""
+    motion = kinematic_motion(swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6).robots[0])
+    random = np.random.default_rng(seed)
+    wild = random.normal(size=motion.positions.shape) * random.uniform(5.0, 20.0)
+    on_cubics = dataclasses.replace(motion, velocities=wild)
+    assert greatest_escape(swept_pieces(on_cubics, 0.01), on_cubics, 100) <= 0.0
+    assert greatest_escape(swept_pieces(motion, 0.01), on_cubics, 100) > 0.0
+
+
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_the_velocities_of_linear_motion_change_nothing(share):
+    motion = kinematic_motion(swinging("arm", np.eye(4), n_steps=2).robots[0])
+    slope = np.diff(motion.positions, axis=0) / np.diff(motion.times)[:, None]
+    on_cubics = dataclasses.replace(motion, velocities=share * np.tile(slope, (2, 1)))
+    linear, cubic = (max(p.leaves for p in swept_pieces(m, 0.01)) for m in (motion, on_cubics))
+    assert cubic == pytest.approx(linear, rel=1e-12) if share else cubic > 1.2 * linear
+
+
+def test_a_slider_on_a_cubic_swings_beyond_its_samples():
+    """Both ends at 0 with velocities 8 and -8: half way it stands at 2, its chord at 0; leaves = 16 / 8."""
+    case = slider("one", (1, 0, 0), 0.0, 0.0, n_steps=2)
     motion = kinematic_motion(case.robots[0])
-    pieces = swept_pieces(motion, within)
-    n = motion.n_steps
-    fine = np.linspace(0.0, n - 1.0, 20 * (n - 1) + 1)
-    between = [np.interp(fine, np.arange(n), column) for column in motion.positions.T]
-    dense = dataclasses.replace(
-        motion, times=fine, positions=np.column_stack(between), tracking_error=np.zeros(len(fine))
-    )
-    poses = dense.poses()
-    for body in case.robots[0].robot.bodies:
-        i_link = case.robots[0].robot.link_names.index(body.name)
-        for at, pose in zip(fine, poses[:, i_link], strict=True):
-            corners = body.shape.vertices @ pose[:3, :3].T + pose[:3, 3]
-            holding = [p for p in pieces if p.link == body.name and p.first <= at <= p.last]
-            assert any(
-                (corners @ p.body.normals.T + p.body.half_spaces[:, 3]).max() <= 0.0
-                for p in holding
-            ), (body.name, at)
+    motion = dataclasses.replace(motion, velocities=np.array([[8.0], [-8.0]]))
+    (piece,) = swept_pieces(motion, 0.01)
+    assert piece.leaves == pytest.approx(2.0, rel=1e-12)
+    assert greatest_escape([piece], motion, 100) <= 0.0
 
 
 def test_finer_stretches_are_shorter_and_never_leave_a_gap():
