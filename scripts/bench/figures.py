@@ -81,6 +81,59 @@ def _span_of(axes, height: int, rows: Sequence[dict]) -> None:
         axes.annotate(note, (ours, height), (0, 9), textcoords="offset points", fontsize=7.5, color="#555555")
 
 
+def draw_ratios(rows: Sequence[dict], path: Path) -> None:
+    """Bars, a group a scene: how many times our time the peers' best loop of each kind takes."""
+    kinds = {
+        "all pairs, managers, sorted": (("all pairs", "managers", "by spheres"), "#8fa9c4"),
+        "python-fcl's managers": (("managers",), "#1d4e89"),
+        "Klampt with bounds carried by hand": (("carried bounds",), "#6a4c93"),
+    }
+    names = list(dict.fromkeys(row["scene"] for row in rows))
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(figsize=(9.5, 0.55 * len(names) + 1.6), layout="constrained")
+        for i, (label, (endings, colour)) in enumerate(kinds.items()):
+            for height, name in enumerate(names):
+                ratios = [
+                    row["ratio_to_ours"]
+                    for row in rows
+                    if row["scene"] == name and row["library"] != "clearance" and row["method"].endswith(endings)
+                ]
+                if ratios:
+                    place = height + 0.26 * (i - 1)
+                    axes.barh(place, min(ratios), 0.24, color=colour, label=label if height == 0 else None)
+                    axes.annotate(
+                        f"{min(ratios):.3g}", (min(ratios), place), (3, 0), textcoords="offset points",
+                        va="center", fontsize=7,
+                    )  # fmt: skip
+        axes.axvline(1.0, color="#c1121f", linewidth=1.2)
+        axes.set(xscale="log", xlabel="times our time a step (line: ours)", yticks=range(len(names)))
+        axes.set_yticklabels(names)
+        axes.set_ylim(len(names) - 0.4, -0.6)
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
+        axes.set_title("The fastest loop of each kind against ours", loc="left")
+        _save(figure, path)
+
+
+def draw_growth(rows: Sequence[dict], path: Path) -> None:
+    """Two panels: milliseconds a step against triangles, and against steps of one motion."""
+    panels = {"triangles": "triangles in the scene", "steps": "steps of one motion"}
+    with plt.rc_context(STYLE):
+        figure, both = plt.subplots(1, 2, figsize=(9.5, 3.4), layout="constrained", sharey=True)
+        for axes, (what, label) in zip(both, panels.items(), strict=True):
+            chosen = [row for row in rows if row["what"] == what]
+            sizes, spent = [row[what] for row in chosen], [row["ms_per_step"] for row in chosen]
+            axes.plot(sizes, spent, "D-", color=COLOURS["clearance"], label="ours")
+            if what == "triangles":
+                steepest = [spent[0] * 2.5 ** (math.log(size / sizes[0]) / math.log(16)) for size in sizes]
+                axes.plot(sizes, steepest, "--", color="#7a7a7a", label="2.5 times for 16 times the triangles")
+            axes.set(xscale="log", yscale="log", xlabel=label)
+            axes.grid(color="#ececec")
+            axes.legend(frameon=False, fontsize=8)
+        both[0].set_ylabel("milliseconds of CPU a step")
+        figure.suptitle("How our time grows: seven links among 20 obstacles", x=0.01, ha="left", fontsize=10)
+        _save(figure, path)
+
+
 def draw_error_time(rows: Sequence[dict], path: Path) -> None:
     """A panel a group: worst error against median time, a line down to the median error."""
     groups = [g for g in ("polygons", "bodies", "steps") if any(row["group"] == g for row in rows)]

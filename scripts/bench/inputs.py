@@ -136,6 +136,13 @@ def scenes(names: list[str] | None = None) -> Iterator[Scene]:
 def scene_of(path: Path) -> Scene:
     """A case file loaded, its motion followed, its bodies triangulated."""
     case = load_case(path)
+    return scene_from(path.parent.name, case, _reference(case, path.with_name("reference.csv")))
+
+
+def scene_from(
+    name: str, case: Case, reference: tuple[np.ndarray, np.ndarray] | None = None
+) -> Scene:
+    """A case with its motion followed and its bodies triangulated."""
     motions = tuple(kinematic_motion(placed) for placed in case.robots)
     pairs, _ = measured_pairs(case)
     movers = sorted({(pair.i_robot, pair.i_body) for pair in pairs})
@@ -144,7 +151,7 @@ def scene_of(path: Path) -> Scene:
     links = [solid(case.robots[i].robot.bodies[j]) for i, j in movers]
     obstacles = [solid(o.body, stands=True) for o in standing]
     return Scene(
-        name=path.parent.name,
+        name=name,
         case=case,
         motions=motions,
         pairs=pairs,
@@ -155,7 +162,7 @@ def scene_of(path: Path) -> Scene:
         index=np.array(
             [(movers.index((p.i_robot, p.i_body)), fixed.index(p.i_obstacle)) for p in pairs]
         ),
-        reference=_reference(case, path.with_name("reference.csv")),
+        reference=reference,
     )
 
 

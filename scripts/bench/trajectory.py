@@ -1,6 +1,6 @@
 """Prints what a step costs: ours beside every peer's loop, on the shared cases and on our scenes.
 
-    python scripts/bench/trajectory.py [--scenes NAME ...] [--csv FILE] [--picture FILE] [--seconds S]
+    python scripts/bench/trajectory.py [--scenes NAME ...] [--csv FILE] [--picture FILE] [--bars FILE]
 
 One process, one thread, compiled code warm, meshes and trees made outside the clock; milliseconds of CPU a
 step, median over interleaved passes. Loops without memory are asked for evenly spread steps where all of
@@ -57,10 +57,18 @@ def main() -> None:
     console.print(f"{versions(LIBRARIES)}; {time.perf_counter() - started:.0f} s in all", highlight=False)
     if asked.csv:
         write_csv(rows, asked.csv)
-    if asked.picture:
-        from figures import draw_trajectory
+    if asked.picture or asked.bars:
+        draw(rows, asked.picture, asked.bars)
 
-        draw_trajectory(rows, asked.picture)
+
+def draw(rows: list[dict], picture: Path | None, bars: Path | None) -> None:
+    """What pictures are asked for."""
+    from figures import draw_ratios, draw_trajectory
+
+    if picture:
+        draw_trajectory(rows, picture)
+    if bars:
+        draw_ratios(rows, bars)
 
 
 def arguments() -> argparse.Namespace:
@@ -70,6 +78,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--scenes", nargs="*", choices=names, default=None, metavar="NAME")
     parser.add_argument("--csv", type=Path, help="write the rows here")
     parser.add_argument("--picture", type=Path, help="draw them here (.svg or .png)")
+    parser.add_argument("--bars", type=Path, help="draw the ratios here (.svg or .png)")
     parser.add_argument("--seconds", type=float, default=0.8, help="CPU a loop and scene")
     parser.add_argument("--passes", type=int, default=5)
     parser.add_argument("--fault", type=float, default=1e-6, help="[m] beyond which a contact is false")

@@ -1,0 +1,106 @@
+"""Prints how long a whole command takes from start to verdict: on a fresh machine, and every time after.
+
+    python scripts/bench/first_run.py [--cases FILE ...] [--warm N] [--fresh 0|1] [--csv FILE]
+
+Each run is a process of its own, `python -m clearance check CASE`, with its own empty folder for compiled code the
+first time and the same folder after. Seconds on the wall and of CPU with all children; the least of the warm
+runs. On a busy machine the wall says more about the others; CPU seconds are then what to compare.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from inputs import ROOT, case_files
+from rich.console import Console
+from rich.table import Table
+
+COLUMNS = ("case", "run", "seconds", "cpu_seconds")
+
+
+def main() -> None:
+    """Runs what the command line asks for."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--cases", nargs="*", type=Path, default=None, metavar="FILE")
+    parser.add_argument("--warm", type=int, default=3, help="warm runs a case")
+    parser.add_argument("--fresh", type=int, default=1, choices=(0, 1), help="0: no first run, the cache in use")
+    parser.add_argument("--csv", type=Path, help="write the rows here")
+    asked = parser.parse_args()
+    rows = []
+    with tempfile.TemporaryDirectory() as empty:
+        cache = empty if asked.fresh else None
+        for i, case in enumerate(asked.cases or case_files()):
+            first = "first, nothing compiled" if i == 0 and asked.fresh else "first of the case"
+            rows.append({"case": case.parent.name, "run": first, **ran(case, cache)})
+            again = [ran(case, cache) for _ in range(asked.warm)]
+            if again:
+                rows.append({"case": case.parent.name, "run": "warm", **min(again, key=lambda r: r["seconds"])})
+    console = Console(width=None if sys.stdout.isatty() else 132)
+    console.print(table_of(rows))
+    for line in lines_of(rows):
+        console.print(line, highlight=False)
+    if asked.csv:
+        write_csv(rows, asked.csv)
+
+
+def ran(case: Path, cache: str | None) -> dict[str, float]:
+    """Seconds of one command; a verdict of 0 or 1 is an answer, anything else is not."""
+    threads = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}  # as a user has them
+    environment = threads if cache is None else {**threads, "NUMBA_CACHE_DIR": cache}
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    command = [sys.executable, "-m", "clearance", "check", str(case)]
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    seconds, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode not in (0, 1):
+        raise SystemExit(done.stderr)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return {"seconds": seconds, "cpu_seconds": cpu}
+
+
+def lines_of(rows: list[dict]) -> list[str]:
+    """What is held against the targets."""
+    warm = {row["case"]: row for row in rows if row["run"] == "warm"}
+    lines = []
+    for row in rows:
+        if row["run"].startswith("first, nothing") and row["case"] in warm:
+            more = row["seconds"] - warm[row["case"]]["seconds"]
+            cpu = row["cpu_seconds"] - warm[row["case"]]["cpu_seconds"]
+            told = f"{more:.1f} s more than a warm one ({cpu:.1f} s CPU)"
+            lines.append(f"first run of {row['case']}: {told}; target 25 s")
+    if warm:
+        slowest = max(warm.values(), key=lambda row: row["seconds"])
+        told = f"{slowest['seconds']:.2f} s ({slowest['cpu_seconds']:.2f} s CPU)"
+        lines.append(f"slowest warm run: {slowest['case']}, {told}; target 2.5 s")
+    return lines
+
+
+def table_of(rows: list[dict]) -> Table:
+    """All rows."""
+    table = Table(title="from command to verdict", title_justify="left")
+    for column in COLUMNS:
+        table.add_column(column, justify="right" if "seconds" in column else "left")
+    for row in rows:
+        table.add_row(row["case"], row["run"], f"{row['seconds']:.2f}", f"{row['cpu_seconds']:.2f}")
+    return table
+
+
+def write_csv(rows: list[dict], path: Path) -> None:
+    """All rows, numbers to four digits."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="", encoding="utf-8") as out:
+        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
+
+
+if __name__ == "__main__":
+    main()

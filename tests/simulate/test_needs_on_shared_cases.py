@@ -1,0 +1,61 @@
+"""What each need leaves undone on the shared cases, by its counters."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+
+SHARED = Path(__file__).parents[3] / "shared" / "cases"
+CASES = ("fetch_cage_planned", "kuka_iiwa_valve_wall", "lbr_puzzle_grinder", "panda_bookshelf_thin_planned")
+
+
+@pytest.fixture(scope="module", params=CASES)
+def runs(request):
+    path = SHARED / request.param / "case.yaml"
+    if not path.exists():
+        pytest.skip("the shared cases are not beside this checkout")
+    case = cl.load_case(path)
+    return {need: cl.check(case, need=need, jobs=1) for need in ("steps", "pairs", "limit", "minimum")}
+
+
+def tally(runs, need):
+    return runs[need].record.tally
+
+
+def test_all_needs_agree(runs):
+    truth = runs["steps"].steps["clearance"].to_numpy()
+    assert runs["pairs"].steps.equals(runs["steps"].steps)
+    assert runs["minimum"].worst["clearance"] == truth.min()
+    assert runs["minimum"].worst["step"] == truth.argmin()
+    limit = runs["limit"].steps["clearance"].to_numpy()
+    below = truth < runs["limit"].record.case.limits.warn
+    assert (limit[below] == truth[below]).all()
+    for need in ("limit", "minimum"):
+        assert (runs[need].steps["lower_bound"].to_numpy() <= truth).all()
+
+
+def test_pairs_asks_every_pair_at_every_step_and_steps_a_quarter_at_most(runs):
+    every = len(runs["steps"].record.clearances) * len(runs["steps"].record.pair_minima)
+    assert tally(runs, "pairs")["queries"] == every
+    steps = tally(runs, "steps")
+    assert steps["queries"] + steps["pairs_skipped"] == every
+    assert steps["queries"] < 0.25 * every
+
+
+def test_what_is_not_asked_for_is_not_done(runs):
+    """Of the polygon pairs that all pairs take, the others take less than half; the steps less than a fifth."""
+    every = tally(runs, "pairs")["polygon_tests"]
+    assert tally(runs, "minimum")["polygon_tests"] < every / 2
+    assert tally(runs, "limit")["polygon_tests"] < every / 2
+    assert tally(runs, "steps")["polygon_tests"] < every / 5
+
+
+def test_the_minimum_leaves_most_pairs_unasked(runs):
+    counted = tally(runs, "minimum")
+    assert counted["queries"] < 0.25 * tally(runs, "pairs")["queries"]
+    known = ~np.isnan(runs["minimum"].steps["clearance"].to_numpy())
+    assert known.sum() == 1

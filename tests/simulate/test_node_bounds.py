@@ -1,0 +1,214 @@
+"""Every bound that prunes is at most the truth, by exact rationals, degenerate input included."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.tree import join, surface_of
+from clearance.jit import kernel
+from clearance.kernels.bounds import (
+    displacement,
+    lower_bound_boxes,
+    lower_bound_boxes_in_sight,
+    lower_bound_faces_in_sight,
+    rounding_slack,
+    sight_along,
+)
+from clearance.kernels.double_double import frames_of
+from clearance.kernels.surface import box_of
+from clearance.kernels.sweep import World, root_bound
+from clearance.kernels.vec3 import Vec3, rigid
+from clearance.simulate.kinematic import kinematic_motion
+from clearance.simulate.measure import measure
+from clearance.world.case import Limits
+from clearance.world.pairs import measured_pairs
+from tests import oracle
+from tests.made_cases import flying
+from tests.oracle.rationals import posed
+from tests.strategies import rotations
+
+
+@kernel
+def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, faces):
+    """Fills the bounds of all node pairs and face pairs, with the slacks that the search takes off."""
+    frames = frames_of(rigid(pose_a), rigid(pose_b))
+    slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
+    p = Vec3(0.0, 0.0, 0.0)
+    sight = sight_along(p, Vec3(direction[0], direction[1], direction[2]), frames.m)
+    for i in range(len(a.children)):
+        for j in range(len(b.children)):
+            p, q = box_of(a, i), box_of(b, j)
+            boxes[i, j] = lower_bound_boxes(p, q, frames.m, slack)
+            in_sight[i, j] = lower_bound_boxes_in_sight(p, q, sight) - slack
+    for i in range(len(a.normals)):
+        for j in range(len(b.normals)):
+            faces[i, j] = lower_bound_faces_in_sight(a, i, b, j, sight) - slack
+
+
+@kernel
+def root_bound_of(surface, world):
+    """The bound that a sweep begins with."""
+    return root_bound(surface, world, 0, 0)
+
+
+@kernel
+def displacement_of(surface, before, after):
+    """The bound on a body's motion."""
+    return displacement(surface, surface.roots[0], before, after)
+
+
+def triangles(random, n, kind):
+    """A surface of n triangles that share no corner: of any shape, needles, points and lines, or far away."""
+    corners = random.normal(size=(n, 1, 3)) + 0.4 * random.normal(size=(n, 3, 3))
+    if kind == "needles":
+        corners[:, 2] = corners[:, 1] + 1e-9 * random.normal(size=(n, 3))
+    if kind == "no area":
+        corners[:, 2] = corners[:, 1]
+        corners[::2, 1] = corners[::2, 0]
+        corners[::2, 2] = corners[::2, 0]
+    if kind == "flat":
+        corners[..., 2] = 0.25
+    if kind == "lattice":
+        corners = np.round(corners * 2.0) / 2.0
+    if kind == "far":
+        corners += 1e5
+    if kind == "tiny":
+        corners *= 1e-8
+    return Polyhedron(corners.reshape(-1, 3), np.arange(3 * n).reshape(n, 3))
+
+
+KINDS = ("any", "needles", "no area", "flat", "lattice", "far", "tiny")
+
+
+def pose(random, reach, turned):
+    placed = np.eye(4)
+    if turned:
+        placed[:3, :3] = rotations(random, 1)[0]
+    away = reach * random.normal(size=3)
+    placed[:3, 3] = away if turned else np.round(away * 4) / 4
+    return placed
+
+
+def holders(surface):
+    """For each node the faces below it."""
+    below = [set() for _ in surface.children]
+    for node in reversed(range(len(surface.children))):
+        left, right = surface.children[node]
+        below[node] = {int(left)} if right < 0 else below[left] | below[right]
+    return below
+
+
+def exact_distances_sq(a, b, pose_a, pose_b):
+    """Fractions, a row a face of a."""
+    ours, theirs = (posed(shape.vertices, at) for shape, at in ((a, pose_a), (b, pose_b)))
+    return [
+        [oracle.polygon_distance_sq(ours[3 * i : 3 * i + 3], theirs[3 * j : 3 * j + 3]) for j in range(b.n_faces)]
+        for i in range(a.n_faces)
+    ]
+
+
+def is_at_most(bound, distance_sq):
+    """bound <= root of the fraction, decided exactly; what is negative or nothing bounds anything."""
+    if math.isnan(bound):
+        return False
+    return bound <= 0.0 or (math.isfinite(bound) and Fraction(float(bound)) ** 2 <= distance_sq)
+
+
+@settings(max_examples=60, deadline=None)
+@example(0, "far", "needles", 1e5, True)
+@example(1, "no area", "no area", 1.0, False)
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.sampled_from(KINDS),
+    st.sampled_from([0.0, 1e-7, 1.0, 4.0, 1e5]), st.booleans(),
+)  # fmt: skip
+def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, kind_b, reach, turned):
+    random = np.random.default_rng(seed)
+    a, b = triangles(random, 3, kind_a), triangles(random, 3, kind_b)
+    pose_a, pose_b = pose(random, reach, turned), pose(random, reach, turned)
+    one, two = surface_of(a), surface_of(b)
+    boxes, in_sight = np.empty((2, len(one.children), len(two.children)))
+    faces = np.empty((3, 3))
+    direction = random.normal(size=3) if turned else np.eye(3)[random.integers(3)]
+    bounds_of_nodes(one, two, pose_a, pose_b, direction, boxes, in_sight, faces)
+    truth = exact_distances_sq(a, b, pose_a, pose_b)
+    for i, below_a in enumerate(holders(one)):
+        for j, below_b in enumerate(holders(two)):
+            least_sq = min(truth[f][g] for f in below_a for g in below_b)
+            assert is_at_most(boxes[i, j], least_sq)
+            assert is_at_most(in_sight[i, j], least_sq)
+    for f in range(3):
+        for g in range(3):
+            assert is_at_most(faces[f, g], truth[f][g])
+    world = World(np.array([-1, -1]), np.array([pose_a, pose_b]), np.empty((1, 0, 4, 4)), np.array([[0, 1]]))
+    assert is_at_most(root_bound_of(join([a, b]), world), min(map(min, truth)))
+
+
+def test_bounds_are_not_idle():
+    """Two lone triangles along the line of sight: the bounds come near the distance."""
+    random = np.random.default_rng(2)
+    a, b = triangles(random, 3, "flat"), triangles(random, 3, "flat")
+    above = np.eye(4)
+    above[2, 3] = 5.0
+    one, two = surface_of(a), surface_of(b)
+    boxes, in_sight = np.empty((2, len(one.children), len(two.children)))
+    faces = np.empty((3, 3))
+    bounds_of_nodes(one, two, np.eye(4), above, np.array([0.0, 0.0, 1.0]), boxes, in_sight, faces)
+    for bounds in (boxes, in_sight, faces):
+        assert bounds.min() == pytest.approx(5.0, rel=1e-5)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.sampled_from([0.0, 1e-9, 1e-3, 1.0, 1e4]), st.booleans()
+)
+def test_no_corner_moves_farther_than_its_bound(seed, kind, reach, turned):
+    """The displacement is convex over the faces, so the corners decide; poses are taken number by number."""
+    random = np.random.default_rng(seed)
+    shape = triangles(random, 4, kind)
+    before = pose(random, 1.0, True)
+    after = before.copy() if not turned else pose(random, 1.0, True)
+    after[:3, 3] = before[:3, 3] + reach * random.normal(size=3)
+    bound = displacement_of(surface_of(shape), before, after)
+    for start, end in zip(posed(shape.vertices, before), posed(shape.vertices, after), strict=True):
+        moved_sq = sum((x - y) ** 2 for x, y in zip(start, end, strict=True))
+        assert moved_sq <= Fraction(bound) ** 2
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from(KINDS[:5]), st.sampled_from(KINDS[:5]),
+    st.sampled_from([0.0, 1e-3, 0.1, 3.0]), st.sampled_from(["minimum", "limit"]),
+)  # fmt: skip
+def test_no_bound_carried_from_step_to_step_is_above_the_exact_distance(seed, kind_a, kind_b, stride, need):
+    random = np.random.default_rng(seed)
+    link, obstacles = triangles(random, 2, kind_a), [triangles(random, 2, kind_b) for _ in range(2)]
+    standing = [pose(random, 3.0, True) for _ in obstacles]
+    walk = np.cumsum(stride * random.normal(size=(6, 6)), axis=0)
+    case = replace(
+        flying("walk", link, list(zip(obstacles, standing, strict=True)), walk),
+        limits=Limits(0.0, float(random.choice([0.01, 1.0, 3.0]))),
+    )
+    motion = kinematic_motion(case.robots[0])
+    found = measure(case, [motion], measured_pairs(case)[0], need, jobs=1)
+    truth = [
+        min(
+            min(map(min, exact_distances_sq(link, shape, moved[-1], at)))
+            for shape, at in zip(obstacles, standing, strict=True)
+        )
+        for moved in motion.poses()
+    ]
+    for step, least_sq in enumerate(truth):
+        if found.pair[step] < 0:
+            assert is_at_most(found.lower_bound[step], least_sq)
+        else:  # the pose is rounded to a rotation, which moves what is as far away as this by as much
+            assert found.lower_bound[step] <= oracle.root(least_sq) + Fraction(1e-15) * 100
+            assert found.clearance[step] == pytest.approx(float(oracle.root(least_sq)), abs=1e-13)
+    assert (found.pair >= 0).any()
