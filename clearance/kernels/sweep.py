@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import borrowing, inlined, kernel
+from clearance.jit import borrowing, inlined, kernel, merged
 from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_slack
@@ -24,7 +24,8 @@ GROWTH = 1.0 + 1e-9
 
 
 LOOK_AHEAD = 4.0
-"""Steps of mean travel beyond the best within which a pair is still measured, so that its bound lasts."""
+"""Steps of mean travel beyond the best within which a pair is still measured, so that its bound lasts; none
+where bodies move farther in a step than they are apart."""
 
 
 NOT_LESS = 1.0 + 2.0**-50
@@ -131,6 +132,35 @@ def _add_travel(surface, world, row, travel):
             travel[body] += displacement(surface, surface.roots[body], start, end) * GROWTH
 
 
+@merged
+def _floor_of(world, pair, travel, floors):
+    """[m] the carried bound of a pair."""
+    return floors[pair] - (travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]])
+
+
+@inlined
+def _bounded_again(surface, world, pair, row, travel, floors):
+    """[m] the bound of a pair whose carried one is used up, by the boxes of both bodies; it is carried on."""
+    floor = root_bound(surface, world, pair, row)
+    moved = travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
+    floors[pair] = (floor + moved) * KEPT_DOWN
+    return floor
+
+
+@inlined
+def _nearest_by_boxes(surface, world, row, travel, floors, winner):
+    """The pair to ask first where the last winner has moved farther than it was apart."""
+    nearest = np.inf
+    for pair in range(len(world.pairs)):
+        floor = _floor_of(world, pair, travel, floors)
+        if floor < nearest:
+            floor = max(floor, _bounded_again(surface, world, pair, row, travel, floors))
+            if floor < nearest:
+                nearest = floor
+                winner = pair
+    return winner
+
+
 @inlined
 def _write_points(hit, points):
     for axis in range(3):
@@ -212,6 +242,8 @@ def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
         best_pair = -1
         lowest = np.inf
         gap = within[0]
+        if _floor_of(world, winner, travel, floors) <= 0.0:
+            winner = _nearest_by_boxes(surface, world, row, travel, floors, winner)
         for turn in range(-1, n_pairs):
             pair = winner if turn < 0 else turn
             if turn == winner:
@@ -219,13 +251,16 @@ def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
             body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
             moved = travel[body_a] + travel[body_b]
             floor = floors[pair] - moved
+            if floor <= 0.0:
+                floor = _bounded_again(surface, world, pair, row, travel, floors)
             if goal.each:
                 gap = within[pair]
             if floor > gap:
                 lowest = min(lowest, floor)
                 tally[0] += 1
                 continue
-            limit = gap + LOOK_AHEAD * moved / max(1, row)
+            ahead = moved / max(1, row)
+            limit = gap + (LOOK_AHEAD * ahead if ahead < gap else 0.0)
             if floor <= 0.0:
                 forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
             asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
