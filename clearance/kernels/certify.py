@@ -30,7 +30,7 @@ from clearance.kernels.drift import (
 from clearance.kernels.face_pair import may_meet, nearest_of_faces
 from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
-from clearance.kernels.predicates import meeting_of
+from clearance.kernels.meeting import meeting_of
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 

@@ -18,7 +18,8 @@ from clearance.kernels.bounds import (
 )
 from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_faces
 from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, keep
-from clearance.kernels.predicates import NO_MEETING, Exact, Meeting, meeting_of, room_for_exact
+from clearance.kernels.meeting import NO_MEETING, Meeting, meeting_of
+from clearance.kernels.predicates import Exact, room_for_exact
 from clearance.kernels.refine import (
     N_WAITING,
     NOTHING_REFINED,

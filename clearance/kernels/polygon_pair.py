@@ -8,13 +8,14 @@ import numpy as np
 from clearance.jit import inlined, kernel, spliced
 from clearance.kernel_table import POLYGONS, Lent, apart, at_address, borrow, lend, table_like
 from clearance.kernels.bounds import SLACK, lower_bound_faces_in_sight, sight_along
+from clearance.kernels.common_point import common_point_of
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import FRAMES_AT_REST, minus3, rounded
 from clearance.kernels.every_feature import Ask
 from clearance.kernels.face_pair import limit_of, may_meet, nearest_of_faces
 from clearance.kernels.face_planes import plane_of, unit
-from clearance.kernels.meeting import common_point_of
-from clearance.kernels.predicates import meeting_of, room_for_exact
+from clearance.kernels.meeting import meeting_of
+from clearance.kernels.predicates import room_for_exact
 from clearance.kernels.refine import NOTHING_REFINED, error_of, refined_of
 from clearance.kernels.surface import Surface, surface_like
 from clearance.kernels.vec3 import Vec3, cross, dot, row, sub

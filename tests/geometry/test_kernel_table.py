@@ -12,7 +12,7 @@ import pytest
 from clearance import kernel_table
 from clearance.jit import borrowing, inlined, kernel
 from clearance.kernel_table import MEETING, at_address, call
-from clearance.kernels import predicates
+from clearance.kernels import meeting
 from tests.reached import reached
 
 ROOT = Path(__file__).parents[2]
@@ -57,7 +57,7 @@ def test_a_caller_with_other_types_is_refused():
     def with_other_types(x, table):
         return at_address(table, MEETING, 1.0, (x, x))
 
-    assert predicates.meeting is not None
+    assert meeting.meeting is not None
     with pytest.raises(TypeError, match=r"meeting.* is called with other types"):
         call(with_other_types, 1.0)
 

@@ -75,7 +75,8 @@ def meetings(n):
     """Which faces of two boxes meet, straight from the kernels: planes, tree and predicates."""
     from clearance.geometry.tree import surface_of
     from clearance.kernels.double_double import frames_of
-    from clearance.kernels.predicates import meeting, room_for_exact
+    from clearance.kernels.meeting import meeting
+    from clearance.kernels.predicates import room_for_exact
     from clearance.kernels.vec3 import rigid
 
     exact, found = room_for_exact(), []
@@ -91,7 +92,7 @@ def meetings(n):
 
 def n_compiled():
     """How many forms of the kernel of `meetings` were compiled in this process, none of them from a cache."""
-    from clearance.kernels.predicates import meeting
+    from clearance.kernels.meeting import meeting
 
     return sum(meeting.stats.cache_misses.values()) - sum(meeting.stats.cache_hits.values())
 
