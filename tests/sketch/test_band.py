@@ -6,6 +6,7 @@ import pytest
 from clearance.kernels import sketch_damped
 from clearance.kernels.sketch_search import BANDED, solve_block
 from clearance.sketch.problem import problem_of, tables_of
+from tests.reached import reached
 from tests.sketch.patterns import distances, irreducible, prism, shaken
 
 
@@ -47,10 +48,10 @@ def test_band_solves_what_numpy_solves(seed):
         band[: n - k, k] = np.diag(matrix, k)
     right = random.uniform(-1, 1, n)
     answer = right.copy()
-    assert sketch_damped._solve_band(band.copy(), answer)
+    assert reached(sketch_damped._solve_band)(band.copy(), answer)
     assert answer == pytest.approx(np.linalg.solve(matrix, right), rel=1e-9)
     band[3, 0] = -1.0
-    assert not sketch_damped._solve_band(band, right)
+    assert not reached(sketch_damped._solve_band)(band, right)
 
 
 def test_a_long_strip_has_a_narrow_band():
@@ -61,9 +62,9 @@ def test_a_long_strip_has_a_narrow_band():
     first = np.full(s.kind.size, -1)
     first[1:] = 2 * np.arange(vertices.size)
     n = 2 * vertices.size
-    node_at, width, of_row = sketch_damped.nodes_of(s, vertices, rows, first, n)
-    start, mine = sketch_damped.incidence(of_row, width.size)
-    half, column = sketch_damped.narrow(vertices, first, n, node_at, width, of_row, start, mine)
+    node_at, width, of_row = reached(sketch_damped.nodes_of)(s, vertices, rows, first, n)
+    start, mine = reached(sketch_damped.incidence)(of_row, width.size)
+    half, column = reached(sketch_damped.narrow)(vertices, first, n, node_at, width, of_row, start, mine)
     assert sorted(column) == list(range(0, n, 2))  # a permutation of the points
     assert half <= 16  # a ring folded twice: four points abreast
     for a, b in edges:
