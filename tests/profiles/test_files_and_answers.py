@@ -149,6 +149,7 @@ def test_the_commands_from_sweep_to_picture(tmp_path):
             "unknown obstacle",
         ),
         (["fit", "ZONE", "none.yaml", "--out", "x.yaml"], "no such file"),
+        (["compare", "ZONE", "none.yaml", "--out", "x.yaml"], "no such file"),
         (["fit", "OPENING", "ZONE", "--out", "x.yaml"], "no free dimension"),
     ],
 )
@@ -177,11 +178,11 @@ def test_check_says_how_close_the_sweep_comes_to_its_sketch():
     assert answer.gap == pytest.approx(cl.minimum_distance(swept.curve, zone).distance, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", ["d_cell", "port"])
+@pytest.mark.parametrize("name", ["keep_in", "d_cell", "port"])
 def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
     """keep_in and port_fails are answered in full above and below; here their counterparts."""
     for suffix, kept in (("", True), ("_fails", False)):
-        if (name, kept) == ("port", False):
+        if (name, kept) in {("port", False), ("keep_in", True)}:
             continue
         case = load_case(SCENES / "profiles" / f"{name}{suffix}.yaml")
         space = case.profiles[0]
