@@ -140,8 +140,8 @@ def _floor_of(world, pair, travel, floors):
 
 @inlined
 def _bounded_again(surface, world, pair, row, travel, floors):
-    """[m] the bound of a pair whose carried one is used up, by the boxes of both bodies; it is carried on."""
-    floor = root_bound(surface, world, pair, row)
+    """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
+    floor = max(_floor_of(world, pair, travel, floors), root_bound(surface, world, pair, row))
     moved = travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
     floors[pair] = (floor + moved) * KEPT_DOWN
     return floor
@@ -154,7 +154,7 @@ def _nearest_by_boxes(surface, world, row, travel, floors, winner):
     for pair in range(len(world.pairs)):
         floor = _floor_of(world, pair, travel, floors)
         if floor < nearest:
-            floor = max(floor, _bounded_again(surface, world, pair, row, travel, floors))
+            floor = _bounded_again(surface, world, pair, row, travel, floors)
             if floor < nearest:
                 nearest = floor
                 winner = pair
