@@ -10,6 +10,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 
 class ClearanceError(Exception):
@@ -117,6 +118,19 @@ def at(place: str) -> Iterator[None]:
     except ClearanceError as error:
         error.where = f"{place}: {error.where}" if error.where else place
         raise
+
+
+@contextmanager
+def unwritable(place: Path) -> Iterator[None]:
+    """Turns what the system says about writing in `place` into `Unwritable`."""
+    try:
+        yield
+    except OSError as error:
+        raise Unwritable(
+            f"cannot write here: {error.strerror or error}",
+            where=str(place),
+            valid="a folder that can be written, on a disk with room, is needed",
+        ) from error
 
 
 def nearest_name(given: str, valid: Iterable[str]) -> str:

@@ -164,6 +164,7 @@ at_address = _at_no_address if numba.config.DISABLE_JIT else _at_address
 """`at_address(table, place, result, args)`: what the kernel at that place of the table gives for `args`, a tuple;
 `result` is any value of the type of its result."""
 
+
 def _as_it_is(value):
     return value
 

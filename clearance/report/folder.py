@@ -15,11 +15,10 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Collection
 from pathlib import Path
 
-from clearance.errors import Unwritable
+from clearance.errors import unwritable
 
 LAST = "summary.json"
 _EXCHANGE = 2  # RENAME_EXCHANGE of Linux's renameat2
@@ -40,7 +39,7 @@ def fill_folder(
     Raises:
         Unwritable: there is no way to write there; `folder` is then as it was.
     """
-    with _unwritable(folder):
+    with unwritable(folder):
         folder = Path(os.path.realpath(folder))
         as_a_whole = not folder.is_dir() or _is_only_a_report(folder, own)
         beside = room or (folder.parent if as_a_whole else folder)
@@ -80,7 +79,7 @@ def write_file(path: Path, content: bytes) -> None:
     Raises:
         Unwritable: there is no way to write there; an older file is then as it was.
     """
-    with _unwritable(path):
+    with unwritable(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, partial = tempfile.mkstemp(
             prefix=f".{path.name}-", suffix=".partial", dir=path.parent
@@ -135,18 +134,6 @@ def _exchange_files(fresh: Path, folder: Path, older: Path, own: Collection[str]
             elif name in names and not (fresh / name).exists():
                 (folder / name).unlink(missing_ok=True)
         raise
-
-
-@contextmanager
-def _unwritable(place: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise Unwritable(
-            f"cannot write here: {error.strerror or error}",
-            where=str(place),
-            valid="a folder that can be written, on a disk with room, is needed",
-        ) from error
 
 
 def _umask() -> int:

@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import Unwritable
+from clearance.errors import Unwritable, unwritable
 
 SAVE_AFTER = 1.0
 """[s] between two states of a pass: so much work is lost at most. Writing one takes milliseconds."""
@@ -167,19 +167,6 @@ def open_spool(place: Path, say: Callable[[str], None]) -> Iterator[Spool]:
         finally:
             if not any(place.glob("*.state")):  # refused before anything was worth keeping
                 shutil.rmtree(place, ignore_errors=True)
-
-
-@contextmanager
-def unwritable(place: Path) -> Iterator[None]:
-    """Turns what the system says about writing in `place` into `Unwritable`."""
-    try:
-        yield
-    except OSError as error:
-        raise Unwritable(
-            f"cannot write here: {error.strerror or error}",
-            where=str(place),
-            valid="a folder that can be written, on a disk with room, is needed",
-        ) from error
 
 
 def let_go(mapped: mmap.mmap) -> None:

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pyarrow as pa
 
-from clearance.simulate.spool import let_go, unwritable
+from clearance.errors import unwritable
+from clearance.simulate.spool import let_go
 
 
 def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, Callable[[], None]]:

@@ -10,7 +10,6 @@ runs. On a busy machine the wall says more about the others; CPU seconds are the
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import resource
 import subprocess
@@ -22,6 +21,7 @@ from pathlib import Path
 from inputs import ROOT, case_files
 from rich.console import Console
 from rich.table import Table
+from rows import write_csv
 
 COLUMNS = ("case", "run", "seconds", "cpu_seconds")
 
@@ -48,7 +48,7 @@ def main() -> None:
     for line in lines_of(rows):
         console.print(line, highlight=False)
     if asked.csv:
-        write_csv(rows, asked.csv)
+        write_csv(rows, COLUMNS, asked.csv, digits=4)
 
 
 def ran(case: Path, cache: str | None) -> dict[str, float]:
@@ -90,16 +90,6 @@ def table_of(rows: list[dict]) -> Table:
     for row in rows:
         table.add_row(row["case"], row["run"], f"{row['seconds']:.2f}", f"{row['cpu_seconds']:.2f}")
     return table
-
-
-def write_csv(rows: list[dict], path: Path) -> None:
-    """All rows, numbers to four digits."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{v:.4g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@ searched, and what is allocated at most while steps are measured, by `tracemallo
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 import time
 import tracemalloc
@@ -24,6 +23,7 @@ import numpy as np  # isort: skip
 from clock import interleaved
 from rich.console import Console
 from rich.table import Table
+from rows import write_csv
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
@@ -60,7 +60,7 @@ def main() -> None:
     for line in [*growth_lines(rows), *memory_lines(finer, closer)]:
         console.print(line, highlight=False)
     if asked.csv:
-        write_csv(rows, asked.csv)
+        write_csv(rows, COLUMNS, asked.csv)
     if asked.picture:
         from figures import draw_growth
 
@@ -163,16 +163,6 @@ def table_of(rows: list[dict]) -> Table:
         times = [f"{row[name]:.4g}" for name in COLUMNS[4:6]]
         table.add_row(*cells, *times, f"{a_step[0]:.4g}, {a_step[1]:.4g}")
     return table
-
-
-def write_csv(rows: list[dict], path: Path) -> None:
-    """All rows, numbers to six digits."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
 if __name__ == "__main__":

@@ -9,7 +9,6 @@ unless two are said. python-fcl's all pairs are asked for some steps only and to
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 import time
 from collections.abc import Callable
@@ -18,6 +17,7 @@ from pathlib import Path
 from inputs import Scene, absent_inputs, case_files, scenes  # first: it sets the number of threads
 from rich.console import Console
 from rich.table import Table
+from rows import write_csv
 
 import numpy as np  # isort: skip
 
@@ -58,7 +58,7 @@ def main() -> None:
     for what, target in TARGETS.items():
         console.print(line_of(what, target, rows), highlight=False)
     if asked.csv:
-        write_csv(rows, asked.csv)
+        write_csv(rows, COLUMNS, asked.csv)
 
 
 def rows_of(scene: Scene, passes: int) -> list[dict]:
@@ -131,16 +131,6 @@ def table_of(rows: list[dict]) -> Table:
         cells = [f"{of_scene[kind]['ratio_to_steps']:.3g}" if kind in of_scene else "" for kind in kinds]
         table.add_row(scene, f"{of_scene['steps']['seconds'] * 1e3:.2f}", *cells[1:])
     return table
-
-
-def write_csv(rows: list[dict], path: Path) -> None:
-    """All rows, numbers to six digits."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ peers place one body and ask. Microseconds of CPU a question, median over interl
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -23,6 +22,7 @@ from clock import interleaved
 from peers import Coal, Fcl, Klampt, absent_peers, available, silenced, versions
 from rich.console import Console
 from rich.table import Table
+from rows import write_csv
 
 import clearance as cl
 from clearance.geometry.polyhedron import Polyhedron
@@ -115,7 +115,7 @@ def main() -> None:
     console.print(summary(rows), highlight=False)
     console.print(versions(modules), highlight=False)
     if asked.csv:
-        write_csv(rows, asked.csv)
+        write_csv(rows, COLUMNS, asked.csv)
 
 
 def rows_of(name: str, asked: argparse.Namespace) -> list[dict]:
@@ -195,16 +195,6 @@ def table_of(rows: list[dict]) -> Table:
         found = {row["method"]: row["us"] for row in rows if row["pair"] == name}
         table.add_row(name, *[f"{found[method]:.4g}" if method in found else "" for method in methods])
     return table
-
-
-def write_csv(rows: list[dict], path: Path) -> None:
-    """All rows, numbers to six digits."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
 if __name__ == "__main__":

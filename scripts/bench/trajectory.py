@@ -11,7 +11,6 @@ where we say more than `--fault` is listed with the step, and so is the reverse.
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 import time
 from pathlib import Path
@@ -24,6 +23,7 @@ from loops import StepLoop, loops_of
 from peers import absent_peers, versions
 from rich.console import Console
 from rich.table import Table
+from rows import write_csv
 
 COLUMNS = (
     "scene", "library", "method", "triangles", "pairs", "steps", "ms_per_step", "ms_least",
@@ -56,7 +56,7 @@ def main() -> None:
     console.print(summary(rows), highlight=False)
     console.print(f"{versions(LIBRARIES)}; {time.perf_counter() - started:.0f} s in all", highlight=False)
     if asked.csv:
-        write_csv(rows, asked.csv)
+        write_csv(rows, COLUMNS, asked.csv)
     if asked.picture or asked.bars:
         draw(rows, asked.picture, asked.bars)
 
@@ -217,16 +217,6 @@ def fastest_ratios(rows: list[dict], kinds: tuple[str, ...]) -> list[float]:
         if row["library"] != "clearance" and row["method"].endswith(kinds):
             least[row["scene"]] = min(least.get(row["scene"], np.inf), row["ratio_to_ours"])
     return list(least.values())
-
-
-def write_csv(rows: list[dict], path: Path) -> None:
-    """All rows, numbers to six digits."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.DictWriter(out, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        for row in rows:
-            writer.writerow({k: f"{v:.6g}" if isinstance(v, float) else v for k, v in row.items()})
 
 
 if __name__ == "__main__":

@@ -16,7 +16,8 @@ from pathlib import Path
 from inputs import scene_from  # first: it sets the number of threads before numpy is loaded
 from peers import absent_peers, versions
 from rich.console import Console
-from trajectory import LIBRARIES, fastest_ratios, measured, table_of, write_csv
+from rows import write_csv
+from trajectory import COLUMNS, LIBRARIES, fastest_ratios, measured, table_of
 
 from tests.made_cases import (
     arm_among_obstacles,
@@ -60,7 +61,7 @@ def main() -> None:
         console.print(row, highlight=False)
     console.print(versions(LIBRARIES), highlight=False)
     if asked.csv:
-        write_csv(rows, asked.csv)
+        write_csv(rows, COLUMNS, asked.csv)
 
 
 def summary(rows: list[dict]) -> list[str]:

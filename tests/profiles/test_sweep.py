@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLink
-from clearance.profiles.chords import knots_of
 from clearance.profiles.course import positions_at
 from clearance.profiles.plane import Plane
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.kinematics import link_poses
 from clearance.world.robot import JointKind
 from tests.oracle.outlines import inside
+from tests.profiles.chord_bound import assert_within_chord_and_turn
 from tests.profiles.finely import finely_swept, strays, sweeps
 from tests.profiles.moving import (
     Z,
@@ -152,21 +152,8 @@ def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed):
 @given(st.integers(0, 2**32 - 1))
 def test_points_stay_within_the_chord_bound(seed):
     _, case = sweeps(seed)
-    motion, plane = kinematic_motion(case.robots[0]), Plane.of("xz")
-    body = case.robots[0].robot.bodies[1]
-    knots = knots_of(motion, body, plane, 1.0, solid=False)
-    for k in range(len(knots.chord)):
-        share = np.linspace(0.0, 1.0, 21)
-        instants = knots.instant[k] + share * (knots.instant[k + 1] - knots.instant[k])
-        poses = link_poses(case.robots[0], positions_at(motion, instants))[:, 2]
-        path = plane.coordinates(
-            body.shape.vertices @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
-        )
-        chord = path[0] + share[:, None, None] * (path[-1] - path[0])
-        off = np.sqrt(((path - chord) ** 2).sum(axis=2)).max()
-        assert off <= knots.chord[k] * (1 + 1e-12) + 1e-15
-        toward = poses[:, :3, :3].transpose(0, 2, 1) @ np.cross(*plane.axes)
-        assert np.arccos(np.clip(toward @ toward[10], -1, 1)).max() <= knots.turn[k] + 1e-7
+    motion = kinematic_motion(case.robots[0])
+    assert_within_chord_and_turn(case, motion, lambda at: positions_at(motion, at), slack=1e-15)
 
 
 def test_only_the_links_asked_for_and_each_on_its_own():
