@@ -25,7 +25,7 @@ from numba.core.targetconfig import ConfigStack
 from numba.extending import register_jitable
 
 _PACKAGE = Path(__file__).parent
-_KERNEL_IMPORT = re.compile(r"^\s*from clearance\.(kernels(?:\.\w+)+) import", re.MULTILINE)
+_KERNEL_IMPORT = re.compile(r"^\s*from clearance\.(kernels(?:\.\w+)+|kernel_table) import", re.MULTILINE)
 _decorating = threading.Lock()
 
 if "NUMBA_OPT" not in os.environ:
@@ -87,17 +87,17 @@ def _for_kernels(function: Callable, **options: object) -> Callable:
 
 
 def _watched(compiled: Dispatcher) -> Dispatcher:
-    """The same, but refused where it hands on arrays to a caller that counts no references.
+    """The same, of one form for all values of its arguments, and refused to callers that would lose count.
 
-    One form of the function serves all callers; with the counts of the one, the other would free an array that
-    is in use, or never.
+    A caller that counts no references must not be handed arrays: one form of the function serves all callers, and
+    with the counts of the one the other would free an array that is in use, or never.
     """
     if numba.config.DISABLE_JIT:
         return compiled
     typed = compiled.get_call_template
 
     def get_call_template(args: tuple, named: dict) -> tuple:
-        found = typed(args, named)
+        found = typed(tuple(map(_whatever_its_value, args)), named)
         flags = ConfigStack().top_or_none()
         returned = [form.signature.return_type for form in compiled.overloads.values()]
         if flags is not None and not flags.nrt and any(map(_holds_arrays, returned)):
@@ -106,6 +106,12 @@ def _watched(compiled: Dispatcher) -> Dispatcher:
 
     compiled.get_call_template = get_call_template
     return compiled
+
+
+def _whatever_its_value(kind: types.Type) -> types.Type:
+    """The type of an argument without its value, which numba would compile a form of the function for."""
+    kind = types.unliteral(kind)
+    return types.int64 if kind == types.int32 else kind
 
 
 def _holds_arrays(kind: types.Type) -> bool:
@@ -131,9 +137,10 @@ def merged(function: Callable) -> Callable:
     """Like `inlined`, but always merged into its callers, at the price of code size and compile time.
 
     For what inner loops call: a call that is not merged passes every array of a `Surface` by value, some
-    two hundred numbers, which costs more than most of these functions do.
+    two hundred numbers, which costs more than most of these functions do. It counts no references, whoever
+    calls it first (`borrowing`), so it makes no array.
     """
-    return _for_kernels(function, forceinline=True)
+    return _for_kernels(function, forceinline=True, _nrt=False)
 
 
 def shared(function: Callable) -> Callable:
