@@ -14,8 +14,9 @@ import numpy as np
 from clearance.geometry.edges import rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.face_planes import face_planes
+from clearance.kernels.lanes import WIDTH
 from clearance.kernels.surface import Surface
-from clearance.kernels.tree_build import build_tree
+from clearance.kernels.tree_build import build_tree, most_groups
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
 _joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Surface]]
@@ -74,12 +75,11 @@ def _join(parts: Sequence[Surface]) -> Surface:
         owned_edges=stacked("owned_edges", "vertices"),
         centres=stacked("centres"),
         boxes=stacked("boxes"),
-        children=_joined_children(parts, n_before["centres"], n_before["normals"]),
-        roots=stacked("roots", "centres"),
+        children=_joined_children(parts, n_before["children"] // WIDTH, n_before["normals"]),
+        roots=stacked("roots", "children"),
         probe_starts=starts("probe_starts", "probes"),
         probes=stacked("probes", "vertices"),
-        solid_starts=starts("solid_starts", "solid_faces"),
-        solid_faces=stacked("solid_faces", "normals"),
+        solid=stacked("solid"),
     )
 
 
@@ -93,14 +93,13 @@ def _offsets(lengths: Sequence[int]) -> np.ndarray:
 
 
 def _joined_children(
-    parts: Sequence[Surface], node_shifts: np.ndarray, face_shifts: np.ndarray
+    parts: Sequence[Surface], group_shifts: np.ndarray, face_shifts: np.ndarray
 ) -> np.ndarray:
     rows = []
-    for part, node_shift, face_shift in zip(parts, node_shifts, face_shifts, strict=True):
-        leaf = part.children[:, 1] < 0
-        children = (part.children + node_shift).astype(np.int32)
-        children[leaf, 0] = part.children[leaf, 0] + face_shift
-        children[leaf, 1] = -1
+    for part, group_shift, face_shift in zip(parts, group_shifts, face_shifts, strict=True):
+        children = part.children.copy()
+        leaf = children[:, 1] == 0
+        children[:, 0] += np.where(leaf, face_shift, group_shift).astype(np.int32)
         rows.append(children)
     return np.concatenate(rows)
 
@@ -119,7 +118,6 @@ def _build(shape: Polyhedron) -> Surface:
     centres, boxes, children = _tree(vertices[corners], starts)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
-    solid_faces = np.flatnonzero(shape.component_closed[shape.face_component])
     return Surface(
         vertices=vertices,
         exact=vertices,
@@ -140,8 +138,7 @@ def _build(shape: Polyhedron) -> Surface:
         roots=np.zeros(1, dtype=np.int64),
         probe_starts=np.array([0, len(probes)]),
         probes=probes,
-        solid_starts=np.array([0, len(solid_faces)]),
-        solid_faces=solid_faces,
+        solid=shape.component_closed[shape.face_component],
     )
 
 
@@ -170,11 +167,9 @@ def _owned(
 
 def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, ...]:
     """Centres, boxes and children of the tree's nodes."""
-    n_nodes = 2 * len(starts) - 3
-    nodes = (
-        np.empty((n_nodes, 3)),
-        np.empty((n_nodes, 12), dtype=np.float32),
-        np.empty((n_nodes, 2), dtype=np.int32),
-    )
-    build_tree(corner_points, starts, *nodes)
-    return nodes
+    most = most_groups(len(starts) - 1)
+    centres = np.empty((3 * most, WIDTH))
+    boxes = np.empty((12 * most, WIDTH), dtype=np.float32)
+    children = np.empty((WIDTH * most, 2), dtype=np.int32)
+    n = build_tree(corner_points, starts, centres, boxes, children)
+    return centres[: 3 * n].copy(), boxes[: 12 * n].copy(), children[: WIDTH * n].copy()

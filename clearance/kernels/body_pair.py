@@ -123,7 +123,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     if found.meeting.found:
         return _contact(a, b, frames, found, tally, table)
     if not asked.apart:
-        inside, x = contained(a, body_a, b, body_b, frames, scratch.exact, table)
+        inside, x = contained(a, body_a, b, body_b, frames, scratch, table)
         if inside:
             forget(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)

@@ -1,14 +1,21 @@
-"""Lower bounds: each pruning rule is a function that never exceeds the distance it bounds."""
+"""Lower bounds: each pruning rule is a function that never exceeds the distance it bounds.
+
+Where a box is taken, four boxes in lanes may stand in its place (`surface.group_at`); the bound is then of each.
+"""
 
 import math
 from typing import NamedTuple
 
 from clearance.jit import merged
-from clearance.kernels.surface import box_of, corner_of
-from clearance.kernels.vec3 import Rigid, Vec3, dot, row, sub, turn, turn_back
+from clearance.kernels.lanes import larger, square_root, where_positive
+from clearance.kernels.surface import box_of
+from clearance.kernels.vec3 import Rigid, Vec3, along, dot, move, rigid, row, sub, turn, turn_back
 
 SLACK = 128.0 * 2.0**-53
 """Rounding of a box bound, relative to the sum of the coordinates' magnitudes: 40 operations, doubled."""
+
+NO_REACH = 1e300
+"""[m] Less than nothing is known of boxes whose centres coincide."""
 
 LEAN = 2.0**-20
 """Four times what rounding to single precision can turn the axes of a box, relative to 1."""
@@ -16,8 +23,7 @@ LEAN = 2.0**-20
 
 @merged
 def _axis_gap(centre, half_a, half_b, slack):
-    gap = abs(centre) - half_a - half_b - slack
-    return gap if gap > 0.0 else 0.0
+    return larger(abs(centre) - half_a - half_b - slack, 0.0)
 
 
 @merged
@@ -43,12 +49,13 @@ def lower_bound_boxes(p, q, m, slack):
     The greatest of three: in the frame of either box the other one fits in an axis-parallel box of half
     sizes |R| h, and the distance of two axis-parallel boxes is known; along the line of the centres both
     boxes reach no farther than the sum of their half sizes' shares. The axes are orthonormal to `LEAN` / 4
-    only, which each of the three can lengthen by that share of the centres' distance.
+    only, which each of the three can lengthen by that share of the centres' distance. Where the boxes overlap
+    it is the last one, and the less the more they do.
     """
     n = _between_boxes(p, q, m)
     h, k = p.half, q.half
     d = n.t
-    slack += LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
+    slack = slack + LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
     x = _axis_gap(d.x, h.x, abs(n.xx) * k.x + abs(n.xy) * k.y + abs(n.xz) * k.z, slack)
     y = _axis_gap(d.y, h.y, abs(n.yx) * k.x + abs(n.yy) * k.y + abs(n.yz) * k.z, slack)
     z = _axis_gap(d.z, h.z, abs(n.zx) * k.x + abs(n.zy) * k.y + abs(n.zz) * k.z, slack)
@@ -60,15 +67,14 @@ def lower_bound_boxes(p, q, m, slack):
     in_q = x * x + y * y + z * z
     gap_sq = dot(d, d)
     reach = abs(d.x) * h.x + abs(d.y) * h.y + abs(d.z) * h.z
-    reach += abs(e.x) * k.x + abs(e.y) * k.y + abs(e.z) * k.z
-    between_centres = 0.0
-    if gap_sq > reach:
-        between_centres = (gap_sq - reach) / math.sqrt(gap_sq) - slack
-    return max(math.sqrt(max(in_p, in_q)), between_centres)
+    reach = reach + abs(e.x) * k.x + abs(e.y) * k.y + abs(e.z) * k.z
+    between_centres = larger((gap_sq - reach) / square_root(gap_sq) - slack, -NO_REACH)  # NaN where they coincide
+    outside = square_root(larger(in_p, in_q))
+    return where_positive(outside, larger(outside, between_centres), between_centres)
 
 
 class Sight(NamedTuple):
-    """A direction in which two bodies are seen apart: along `u` in the frame of a, `v` in that of b.
+    """A direction in which two bodies are seen apart: along `u` in the frame of a, `v` in that of b, from a to b.
 
     Any unit vector gives a valid bound; that of the best witness points gives a tight one.
     """
@@ -86,6 +92,13 @@ def sight_along(p, q, m):
     if length > 0.0:
         d = Vec3(d.x / length, d.y / length, d.z / length)
     return Sight(d, turn_back(m, d), dot(d, m.t))
+
+
+@merged
+def opposite(sight):
+    """The same sight with a and b exchanged."""
+    u, v = sight.u, sight.v
+    return Sight(Vec3(-v.x, -v.y, -v.z), Vec3(-u.x, -u.y, -u.z), sight.offset)
 
 
 @merged
@@ -120,8 +133,8 @@ def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
 @merged
 def _reach(surface, root):
     """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
-    c = row(surface.centres, root)
-    h = box_of(surface, root).half
+    box = box_of(surface, root)
+    c, h = box.centre, box.half
     return abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
 
 
@@ -140,18 +153,21 @@ def displacement(surface, root, before, after):
     The displacement is the norm of an affine map, hence convex: its maximum over the body's box is
     attained at a corner. `before` and `after` are (4, 4) poses.
     """
-    most_sq = 0.0
     box = box_of(surface, root)
-    for corner in range(8):
-        x, y, z = corner_of(box, corner)
-        moved_sq = 0.0
-        for i in range(3):
-            moved = (
-                (after[i, 0] - before[i, 0]) * x
-                + (after[i, 1] - before[i, 1]) * y
-                + (after[i, 2] - before[i, 2]) * z
-                + (after[i, 3] - before[i, 3])
-            )
-            moved_sq += moved * moved
-        most_sq = max(most_sq, moved_sq)
+    a, b = rigid(after), rigid(before)
+    way = Rigid(
+        a.xx - b.xx, a.xy - b.xy, a.xz - b.xz,
+        a.yx - b.yx, a.yy - b.yy, a.yz - b.yz,
+        a.zx - b.zx, a.zy - b.zy, a.zz - b.zz,
+        sub(a.t, b.t),
+    )  # fmt: skip
+    centre = move(way, box.centre)
+    x, y, z = turn(way, box.x), turn(way, box.y), turn(way, box.z)
+    most_sq = 0.0
+    for corner in range(4):  # and the opposite one
+        out = along(Vec3(0.0, 0.0, 0.0), box.half.x, x)
+        out = along(out, box.half.y if corner & 1 else -box.half.y, y)
+        out = along(out, box.half.z if corner & 2 else -box.half.z, z)
+        most_sq = max(most_sq, dot(out, out) + 2.0 * abs(dot(centre, out)))
+    most_sq += dot(centre, centre)
     return math.sqrt(most_sq) * (1.0 + SLACK)

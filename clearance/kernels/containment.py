@@ -1,17 +1,20 @@
 """Whether a body lies wholly inside another one whose surface it does not meet, decided exactly.
 
 A point is inside where the winding number of the closed, consistently oriented components is not zero, so
-that cavities are outside and overlapping components inside. Open surfaces have no inside. The winding number
-is the signed count of the triangles that a ray along an axis of the world meets. Where the ray meets an
-edge or a corner, the point is moved aside by (e, e^2) for an infinitely small e, in thought: the signs of
-the predicates (`predicates`) then follow from coordinates, so that no ray is a special case. Source:
-Edelsbrunner & Mücke 1990, simulation of simplicity.
+that cavities are outside and overlapping components inside. Open surfaces have no inside. The winding number is
+the signed count of the triangles that a ray along an axis of the world meets; only boxes of the tree that the ray
+may meet are opened. Where the ray meets an edge or a corner, the point is moved aside by (e, e^2) for an
+infinitely small e, in thought: the signs of the predicates (`predicates`) then follow from coordinates, so that
+no ray is a special case. Source: Edelsbrunner & Mücke 1990, simulation of simplicity.
 """
+
+import numpy as np
 
 from clearance.jit import inlined, spliced
 from clearance.kernel_table import WINDING_NUMBER, apart, at_address
 from clearance.kernels.bounds import LEAN
 from clearance.kernels.double_double import FRAMES_AT_REST, size
+from clearance.kernels.lanes import WIDTH
 from clearance.kernels.predicates import (
     FILTER,
     Posed,
@@ -21,7 +24,7 @@ from clearance.kernels.predicates import (
     side_along,
     turn_along,
 )
-from clearance.kernels.surface import box_of, surface_like
+from clearance.kernels.surface import box_of, is_leaf, surface_like
 from clearance.kernels.vec3 import Vec3, dot, move, move_back, row, sub
 
 AXIS = 2
@@ -76,36 +79,78 @@ def _beside(exact, a, b, c, x):
     return False
 
 
+@inlined
+def _ray_may_meet(surface, node, x, along_ray, far):
+    """False only if the node's box is beside or behind the ray by more than rounding."""
+    box = box_of(surface, node)
+    d = sub(box.centre, x)
+    room = 8.0 * (LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half)))
+    p = Vec3(dot(box.x, d), dot(box.y, d), dot(box.z, d))
+    t = Vec3(dot(box.x, along_ray), dot(box.y, along_ray), dot(box.z, along_ray))
+    x, y, z = box.half.x, box.half.y, box.half.z
+    u, v, w = abs(t.x), abs(t.y), abs(t.z)
+    return (
+        dot(p, t) + x * u + y * v + z * w >= -room
+        and abs(p.y * t.z - p.z * t.y) <= y * w + z * v + room
+        and abs(p.z * t.x - p.x * t.z) <= z * u + x * w + room
+        and abs(p.x * t.y - p.y * t.x) <= x * v + y * u + room
+    )
+
+
+@inlined
+def _crossings(surface, face, side, x, exact):
+    """The signed count of the triangles of a face's fan that the ray from x meets."""
+    number = 0
+    start = surface.face_starts[face]
+    first = Posed(row(surface.exact, surface.face_vertices[start]), side)
+    for k in range(start + 2, surface.face_starts[face + 1]):
+        second = Posed(row(surface.exact, surface.face_vertices[k - 1]), side)
+        third = Posed(row(surface.exact, surface.face_vertices[k]), side)
+        if not _beside(exact, first, second, third, x):
+            number += _crossing(first, second, third, x, exact)
+    return number
+
+
 def _like():
-    return surface_like(), 0, True, Vec3(0.0, 0.0, 0.0), FRAMES_AT_REST, room_for_exact()
+    nodes = np.empty((0, 2), dtype=np.int32)
+    nowhere = Vec3(0.0, 0.0, 0.0)
+    return surface_like(), 0, True, nowhere, nowhere, 0.0, FRAMES_AT_REST, room_for_exact(), nodes
 
 
 @apart(WINDING_NUMBER, _like)
-def winding_number(surface, body, is_b, vertex, frames, exact):
+def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
     """How often the closed components of a body wind round a point that is not on its surface, exactly.
 
     Args:
         is_b: True if the body is b.
         vertex: of the other body, in its frame.
+        x: the same in the body's own frame, rounded by no more than ROUNDING of `far` [m].
+        nodes: (k, 2) room for nodes that wait.
     """
     set_poses(frames, exact)
-    number = 0
     side = 1 if is_b else 0
-    x = Posed(vertex, 1 - side)
-    for i in range(surface.solid_starts[body], surface.solid_starts[body + 1]):
-        face = surface.solid_faces[i]
-        start = surface.face_starts[face]
-        first = Posed(row(surface.exact, surface.face_vertices[start]), side)
-        for k in range(start + 2, surface.face_starts[face + 1]):
-            second = Posed(row(surface.exact, surface.face_vertices[k - 1]), side)
-            third = Posed(row(surface.exact, surface.face_vertices[k]), side)
-            if not _beside(exact, first, second, third, x):
-                number += _crossing(first, second, third, x, exact)
+    along_ray = row(exact.poses[side], AXIS)
+    probe = Posed(vertex, 1 - side)
+    number = 0
+    n_waiting = 1
+    nodes[0, 0] = surface.roots[body]
+    while n_waiting > 0:
+        n_waiting -= 1
+        node = np.int64(nodes[n_waiting, 0])
+        if not _ray_may_meet(surface, node, x, along_ray, far):
+            continue
+        first = np.int64(surface.children[node, 0])
+        if not is_leaf(surface, node):
+            for k in range(surface.children[node, 1]):
+                nodes[n_waiting, 0] = WIDTH * first + k
+                n_waiting += 1
+        elif surface.solid[first]:
+            number += _crossings(surface, first, side, probe, exact)
     return number
 
 
 @spliced
-def contained(a, body_a, b, body_b, frames, exact, table):
+def contained(a, body_a, b, body_b, frames, scratch, table):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
 
     Exactness: right for the float vertices under the float poses of `frames`.
@@ -117,9 +162,10 @@ def contained(a, body_a, b, body_b, frames, exact, table):
         for i in range(one.probe_starts[body_one], one.probe_starts[body_one + 1]):
             v = row(one.vertices, one.probes[i])
             x = move_back(frames.m, v) if is_a else move(frames.m, v)
-            if _in_box(two, two.roots[body_two], x, far + size(v)):
+            away = far + size(v)
+            if _in_box(two, two.roots[body_two], x, away):
                 probe = row(one.exact, one.probes[i])
-                asked = (two, body_two, is_a, probe, frames, exact)
+                asked = (two, body_two, is_a, probe, x, away, frames, scratch.exact, scratch.nodes)
                 if at_address(table, WINDING_NUMBER, 0, asked) != 0:
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a

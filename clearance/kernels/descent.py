@@ -11,13 +11,16 @@ import numpy as np
 from clearance.jit import inlined, merged, shared, spliced
 from clearance.kernel_table import borrow
 from clearance.kernels.bounds import (
+    Sight,
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
     lower_bound_faces_in_sight,
+    opposite,
     sight_along,
 )
 from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_faces
-from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, keep
+from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
+from clearance.kernels.lanes import WIDTH, how_many, lane, larger, least_of
 from clearance.kernels.meeting import NO_MEETING, Meeting, meeting_of
 from clearance.kernels.predicates import Exact, room_for_exact
 from clearance.kernels.refine import (
@@ -30,12 +33,16 @@ from clearance.kernels.refine import (
     settle,
     shed,
 )
-from clearance.kernels.surface import box_of
-from clearance.kernels.vec3 import Vec3
+from clearance.kernels.surface import box_at, box_of, group_at, is_leaf
+from clearance.kernels.vec3 import Rigid, Vec3, inverse
 
-STACK_DEPTH = 8192
-"""Node pairs that can wait: each split adds one, so twice the depths of both trees and a front is enough;
-trees of a million faces split at the mean are below 200 deep, and `descend` checks."""
+STACK_DEPTH = WIDTH * LONGEST + 4096
+"""Node pairs that can wait: all of a front, and three for each opening, so three times the depths of both trees;
+those of a million faces split at the mean are below 100 deep, and `descend` checks."""
+
+
+FEW = 256
+"""Of so many node pairs a search that knows nothing yet goes on with the nearest after each face pair."""
 
 
 class Scratch(NamedTuple):
@@ -43,7 +50,7 @@ class Scratch(NamedTuple):
 
     nodes: np.ndarray  # (STACK_DEPTH, 2) int32
     bounds: np.ndarray  # (STACK_DEPTH,)
-    left: np.ndarray  # (LONGEST + 2, 2) int32, node pairs that were left
+    left: np.ndarray  # (LONGEST + 2, 3) int32, entries of a front that were left
     floors: np.ndarray  # (LONGEST + 2,)
     waiting: Waiting
     exact: Exact
@@ -88,13 +95,110 @@ def breadth(box):
     return half.x + half.y + half.z - max(half.x, max(half.y, half.z))
 
 
+class View(NamedTuple):
+    """How two bodies are seen from the frame of one of them.
+
+    Attributes:
+        m: the motion from the frame of the other to its own.
+        sight: the direction that best parts them so far.
+    """
+
+    m: Rigid
+    sight: Sight
+
+
 @merged
-def _bound(p, q, m, sight, slack, cut):
-    """[m] a lower bound on the distance of two boxes: the cheap one in sight if that excludes them."""
-    in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack
-    if in_sight > cut:
+def views_along(sight, m):
+    """The view from the frame of a and that from b."""
+    return View(m, sight), View(inverse(m), opposite(sight))
+
+
+@merged
+def views_of(best, m):
+    """The views in which the best points so far part the bodies."""
+    return views_along(sight_along(best.p, best.q, m), m)
+
+
+@merged
+def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut):
+    """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
+
+    The cheap ones in sight if they exclude all that are marked.
+    """
+    boxes, centres, boxes_across, centres_across = a.boxes, a.centres, b.boxes, b.centres
+    view = from_a
+    if is_b:
+        boxes, centres, boxes_across, centres_across = b.boxes, b.centres, a.boxes, a.centres
+        view = from_b
+    p, q = group_at(boxes, centres, group), box_at(boxes_across, centres_across, other)
+    in_sight = lower_bound_boxes_in_sight(p, q, view.sight) - slack
+    if least_of(in_sight, marks) > cut:
         return in_sight
-    return lower_bound_boxes(p, q, m, slack)
+    return larger(in_sight, lower_bound_boxes(p, q, view.m, slack))
+
+
+@merged
+def opened(a, node_a, b, node_b):
+    """What is looked at next of a node pair, not both leaves: (is of b, group, how many nodes, node across)."""
+    if is_leaf(a, node_a) or (
+        not is_leaf(b, node_b) and breadth(box_of(a, node_a)) < breadth(box_of(b, node_b))
+    ):
+        return True, b.children[node_b, 0], b.children[node_b, 1], node_a
+    return False, a.children[node_a, 0], a.children[node_a, 1], node_b
+
+
+@merged
+def wait(scratch, n_waiting, node_a, node_b, bound, first):
+    """Lets a node pair wait among those from place `first` on, the nearest last; how many wait."""
+    k = n_waiting
+    while k > first and scratch.bounds[k - 1] < bound:
+        scratch.bounds[k] = scratch.bounds[k - 1]
+        scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k - 1, 0], scratch.nodes[k - 1, 1]
+        k -= 1
+    scratch.bounds[k] = bound
+    scratch.nodes[k, 0], scratch.nodes[k, 1] = node_a, node_b
+    return n_waiting + 1
+
+
+@merged
+def _wait_for_near(a, b, scratch, n_waiting, group, other, is_b, marks, bounds, cut):
+    """Lets the marked nodes of a group wait that are not beyond `cut` from a node of the other body.
+
+    Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. Returns
+    (waiting, marks that stay, the least bound of those, that of those which do not wait).
+    """
+    least = least_of(bounds, marks)
+    if least > cut:
+        return n_waiting, marks, least, least
+    first = n_waiting
+    low = math.inf
+    far = math.inf
+    across_is_leaf = is_leaf(a, other) if is_b else is_leaf(b, other)
+    for i in range(WIDTH):
+        if marks & (1 << i) == 0:
+            continue
+        bound = lane(bounds, i)
+        if bound > cut:
+            far = min(far, bound)
+            continue
+        node = WIDTH * group + i
+        node_a = other if is_b else node
+        node_b = node if is_b else other
+        if across_is_leaf and (is_leaf(b, node) if is_b else is_leaf(a, node)):
+            low = min(low, bound)
+            node_a = ~node_a
+        else:
+            marks ^= 1 << i
+        n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
+    return n_waiting, marks, min(low, far), far
+
+
+@merged
+def _leave(scratch, n_left, group, other, marks, floor):
+    """Notes an entry for the front; the number of them."""
+    scratch.left[n_left, 0], scratch.left[n_left, 1], scratch.left[n_left, 2] = group, other, marks
+    scratch.floors[n_left] = floor
+    return n_left + (n_left <= LONGEST)  # one too many says that not all are there
 
 
 @shared
@@ -103,7 +207,7 @@ def new_scratch():
     return Scratch(
         np.empty((STACK_DEPTH, 2), dtype=np.int32),
         np.empty(STACK_DEPTH),
-        np.empty((LONGEST + 2, 2), dtype=np.int32),
+        np.empty((LONGEST + 2, 3), dtype=np.int32),
         np.empty(LONGEST + 2),
         room_for_waiting(),
         room_for_exact(),
@@ -116,40 +220,64 @@ def margin_of(slack):
     return 4.0 * slack
 
 
+@merged
+def _nearest_last(scratch, n_waiting):
+    """Puts the nearest of all node pairs that wait last."""
+    nodes, bounds = scratch.nodes, scratch.bounds
+    last = n_waiting - 1
+    nearest = last
+    for k in range(last):
+        if max(0.0, bounds[k]) < max(0.0, bounds[nearest]):
+            nearest = k
+    nodes[nearest, 0], nodes[last, 0] = nodes[last, 0], nodes[nearest, 0]
+    nodes[nearest, 1], nodes[last, 1] = nodes[last, 1], nodes[nearest, 1]
+    bounds[nearest], bounds[last] = bounds[last], bounds[nearest]
+
+
 @spliced
-def _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch):
-    """Splits the front of a pair: what is still far stays in it, the rest waits. (kept, waiting, floor)"""
+def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
+    """Splits the front of a pair: what is still far stays in it, the rest waits.
+
+    Returns (kept, waiting, node pairs bounded, floor).
+    """
     start = fronts.spans[pair, 0]
     n_kept = 0
     n_waiting = 0
+    n_nodes = 0
     nearest = 0
-    least = math.inf
     floor = math.inf
     for i in range(start, start + fronts.spans[pair, 1]):
-        node_a, node_b = fronts.nodes[i, 0], fronts.nodes[i, 1]
+        group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
         carried = fronts.floors[i]
         if carried - moved <= cut:
-            bound = _bound(box_of(a, node_a), box_of(b, node_b), m, sight, slack, cut)
-            if bound <= cut:
-                scratch.bounds[n_waiting] = bound
-                scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = node_a, node_b
-                if bound < least:
-                    least = bound
-                    nearest = n_waiting
-                n_waiting += 1
+            is_b = marks >= OF_B
+            marks %= OF_B
+            n_nodes += how_many(marks)
+            bounds = bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
+            n_before = n_waiting
+            n_waiting, marks, low, far = _wait_for_near(
+                a, b, scratch, n_waiting, group, other, is_b, marks, bounds, cut
+            )
+            if n_waiting > n_before and scratch.bounds[n_waiting - 1] < scratch.bounds[nearest]:
+                nearest = n_waiting - 1
+            floor = min(floor, far)
+            if marks == 0:
                 continue
-            carried = (bound + moved) * KEPT_DOWN
-        floor = min(floor, carried)
-        fronts.nodes[start + n_kept, 0], fronts.nodes[start + n_kept, 1] = node_a, node_b
-        fronts.floors[start + n_kept] = carried
+            marks += OF_B if is_b else 0
+            carried = (low + moved) * KEPT_DOWN
+        else:
+            floor = min(floor, carried - moved)
+        kept = start + n_kept
+        fronts.entries[kept, 0], fronts.entries[kept, 1], fronts.entries[kept, 2] = group, other, marks
+        fronts.floors[kept] = carried
         n_kept += 1
     if n_waiting > 0:  # nearest last
         last = n_waiting - 1
-        nodes = scratch.nodes
+        nodes, bounds = scratch.nodes, scratch.bounds
         nodes[nearest, 0], nodes[last, 0] = nodes[last, 0], nodes[nearest, 0]
         nodes[nearest, 1], nodes[last, 1] = nodes[last, 1], nodes[nearest, 1]
-        scratch.bounds[nearest], scratch.bounds[last] = scratch.bounds[last], least
-    return n_kept, n_waiting, floor - moved
+        bounds[nearest], bounds[last] = bounds[last], bounds[nearest]
+    return n_kept, n_waiting, n_nodes, floor
 
 
 @spliced
@@ -175,21 +303,21 @@ def descend(
     margin = margin_of(slack)
     best_gap = math.sqrt(best.gap_sq)
     cut = best_gap + margin
-    sight = sight_along(best.p, best.q, m)
+    from_a, from_b = views_of(best, m)
     refined = NOTHING_REFINED
-    n_nodes = 1
     n_faces = 0
     n_exact = scratch.exact.count[0]
     n_pairs = 0
     met = NO_MEETING
     n_left = 0
     measured = math.inf
+    is_cold = best.gap_sq == math.inf
     if fronts.spans[pair, 1] > 0:
-        n_nodes = fronts.spans[pair, 1]
-        n_kept, n_waiting, floor = _resume(a, b, m, sight, slack, cut, fronts, pair, moved, scratch)
-        n_nodes -= n_kept
+        n_kept, n_waiting, n_nodes, floor = _resume(
+            a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch
+        )
     else:
-        n_kept, n_waiting, floor = 0, 1, math.inf
+        n_kept, n_waiting, n_nodes, floor = 0, 1, 1, math.inf
         scratch.nodes[0, 0] = root_a
         scratch.nodes[0, 1] = root_b
         scratch.bounds[0] = lower_bound_boxes(box_of(a, root_a), box_of(b, root_b), m, slack)
@@ -198,13 +326,18 @@ def descend(
         node_a = scratch.nodes[n_waiting, 0]
         node_b = scratch.nodes[n_waiting, 1]
         bound = scratch.bounds[n_waiting]
-        leaf_a = a.children[node_a, 1] < 0
-        leaf_b = b.children[node_b, 1] < 0
-        is_left = bound > cut
-        if not is_left and leaf_a and leaf_b:
-            is_left = True
+        is_kept = node_a < 0  # leaves, which the front has
+        if is_kept:
+            node_a = ~node_a
+        if bound > cut:
+            floor = min(floor, bound)
+            if not is_kept:
+                mark = 1 << node_a % WIDTH
+                n_left = _leave(scratch, n_left, node_a // WIDTH, node_b, mark, (bound + moved) * KEPT_DOWN)
+            continue
+        if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-            in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
+            in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
             if in_sight <= cut:
                 n_faces += 1
                 before_sq = best.gap_sq
@@ -213,13 +346,15 @@ def descend(
                 if best.gap_sq < before_sq:
                     best_gap = math.sqrt(best.gap_sq)
                     cut = best_gap + margin
-                    sight = sight_along(best.p, best.q, m)
-                    in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-                if bound == 0.0 and in_sight <= 0.0 and may_meet(a, face_a, b, face_b, m, margin):
-                    met = meeting_of(table, a, face_a, b, face_b, frames, scratch.exact)
+                    from_a, from_b = views_of(best, m)
+                    in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
+                if bound <= 0.0 and in_sight <= 0.0 and may_meet(a, face_a, b, face_b, m, margin):
+                    met = meeting_of(table, lent_a, face_a, lent_b, face_b, frames, scratch.exact)
                     if met.found:
                         best = Hit(0.0, face_a, face_b, m.t, m.t)
                         break
+                if n_waiting > 1 and (best.gap_sq < before_sq or (is_cold and n_waiting < FEW)):
+                    _nearest_last(scratch, n_waiting)
                 if near.seen.near_sq < math.inf:
                     if n_pairs == N_WAITING:
                         n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
@@ -233,36 +368,25 @@ def descend(
                     n_pairs += 1
                     gap = math.sqrt(near.seen.near_sq)
                     measured = min(measured, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
+                else:
+                    floor = min(floor, cut)
             else:
                 floor = min(floor, in_sight)
-            bound = max(bound, in_sight)
-        elif is_left:
-            floor = min(floor, bound)
-        if is_left:
-            scratch.left[n_left, 0], scratch.left[n_left, 1] = node_a, node_b
-            scratch.floors[n_left] = (bound + moved) * KEPT_DOWN
-            n_left += n_left <= LONGEST  # one too many says that not all are there
+            if not is_kept:  # the roots
+                n_left = _leave(scratch, n_left, node_a // WIDTH, node_b, 1, (bound + moved) * KEPT_DOWN)
             continue
-        a0, a1, b0, b1 = node_a, node_a, node_b, node_b
-        if leaf_b or (not leaf_a and breadth(box_of(a, node_a)) >= breadth(box_of(b, node_b))):
-            a0, a1 = a.children[node_a, 0], a.children[node_a, 1]
-        else:
-            b0, b1 = b.children[node_b, 0], b.children[node_b, 1]
-        first = _bound(box_of(a, a0), box_of(b, b0), m, sight, slack, cut)
-        second = _bound(box_of(a, a1), box_of(b, b1), m, sight, slack, cut)
-        n_nodes += 2
-        if first < second:
-            a0, a1 = a1, a0
-            b0, b1 = b1, b0
-            first, second = second, first
-        assert n_waiting + 2 <= STACK_DEPTH
-        scratch.nodes[n_waiting, 0] = a0
-        scratch.nodes[n_waiting, 1] = b0
-        scratch.bounds[n_waiting] = first
-        scratch.nodes[n_waiting + 1, 0] = a1
-        scratch.nodes[n_waiting + 1, 1] = b1
-        scratch.bounds[n_waiting + 1] = second
-        n_waiting += 2
+        is_b, group, count, other = opened(a, node_a, b, node_b)
+        marks = (1 << count) - 1
+        bounds = bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
+        n_nodes += count
+        assert n_waiting + WIDTH <= STACK_DEPTH
+        n_waiting, marks, low, far = _wait_for_near(
+            a, b, scratch, n_waiting, group, other, is_b, marks, bounds, cut
+        )
+        floor = min(floor, far)
+        if marks > 0:
+            marks += OF_B if is_b else 0
+            n_left = _leave(scratch, n_left, group, other, marks, (low + moved) * KEPT_DOWN)
     if met.found:
         forget(fronts, pair)
     else:
@@ -272,4 +396,4 @@ def descend(
         )
         keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
     tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)
-    return Found(met, best, min(floor, min(measured, cut)), refined, tally)
+    return Found(met, best, min(floor, measured), refined, tally)

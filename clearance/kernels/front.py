@@ -3,6 +3,9 @@
 A search that goes on from its front instead of the roots retests only what the motion since then could have
 brought near (front tracking: Ehmann & Lin 2001, Li & Chen 1998; the bounds carried with it are ours). All
 fronts lie in one pool of fixed size; where it is full they are dropped and built anew.
+
+An entry is a group of nodes of one body against a node of the other, `(group, other, marks)`: bit k of the marks
+says that node k of the group is meant, `OF_B` that the group is of b.
 """
 
 from typing import NamedTuple
@@ -10,12 +13,16 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, merged, shared
+from clearance.kernels.lanes import WIDTH
 
 POOL = 1 << 17
-"""Node pairs that are kept in all (16 bytes each), whatever the number of pairs and steps."""
+"""Entries that are kept in all (20 bytes each), whatever the number of pairs and steps."""
 
 LONGEST = 4096
-"""Node pairs that the front of one body pair may have; a longer one is not kept."""
+"""Entries that the front of one body pair may have; a longer one is not kept."""
+
+OF_B = 1 << WIDTH
+"""The mark of a group of b."""
 
 GROWN = 3
 """A front that has grown to this many times its first length, and 64, is built anew from the roots."""
@@ -28,13 +35,14 @@ class Fronts(NamedTuple):
     """The fronts of all pairs.
 
     Attributes:
-        nodes: (POOL, 2) node of a, node of b.
-        floors: (POOL,) [m] a lower bound on their distance plus what both bodies had moved by then.
+        entries: (POOL, 3) as above.
+        floors: (POOL,) [m] a lower bound on the distance of all node pairs of the entry, plus what both bodies had
+            moved by then.
         spans: (p, 4) of each pair: its first place in the pool, its length, its room, its first length.
         used: (1,) places of the pool that are given away.
     """
 
-    nodes: np.ndarray
+    entries: np.ndarray
     floors: np.ndarray
     spans: np.ndarray
     used: np.ndarray
@@ -44,7 +52,7 @@ class Fronts(NamedTuple):
 def no_fronts(n_pairs, pool):
     """Fronts of length 0; those of single queries have no pool."""
     return Fronts(
-        np.empty((pool, 2), dtype=np.int32),
+        np.empty((pool, 3), dtype=np.int32),
         np.empty(pool),
         np.zeros((n_pairs, 4), dtype=np.int64),
         np.zeros(1, dtype=np.int64),
@@ -55,6 +63,13 @@ def no_fronts(n_pairs, pool):
 def forget(fronts, pair):
     """Lets the next search of a pair begin at the roots."""
     fronts.spans[pair, 1] = 0
+
+
+@merged
+def _copy(entries, floors, i, fronts, k):
+    for column in range(3):
+        fronts.entries[k, column] = entries[i, column]
+    fronts.floors[k] = floors[i]
 
 
 @inlined
@@ -74,17 +89,15 @@ def _room_for(fronts, pair, n_kept, length):
         fronts.used[0] = 0
     first = fronts.used[0]
     for i in range(n_kept):  # upward: the new place may begin below the old one
-        fronts.nodes[first + i, 0] = fronts.nodes[before + i, 0]
-        fronts.nodes[first + i, 1] = fronts.nodes[before + i, 1]
-        fronts.floors[first + i] = fronts.floors[before + i]
+        _copy(fronts.entries, fronts.floors, before + i, fronts, first + i)
     fronts.used[0] = first + room
     spans[pair, 0], spans[pair, 2] = first, room
     return True
 
 
 @merged
-def keep(fronts, pair, n_kept, nodes, floors, n_fresh):
-    """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new node pairs."""
+def keep(fronts, pair, n_kept, entries, floors, n_fresh):
+    """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new entries."""
     length = n_kept + n_fresh
     if length > LONGEST or not _room_for(fronts, pair, n_kept, length):
         forget(fronts, pair)
@@ -92,9 +105,7 @@ def keep(fronts, pair, n_kept, nodes, floors, n_fresh):
     spans = fronts.spans
     at = spans[pair, 0] + n_kept
     for i in range(n_fresh):
-        fronts.nodes[at + i, 0] = nodes[i, 0]
-        fronts.nodes[at + i, 1] = nodes[i, 1]
-        fronts.floors[at + i] = floors[i]
+        _copy(entries, floors, i, fronts, at + i)
     if n_kept == 0:
         spans[pair, 3] = length
     spans[pair, 1] = 0 if length > GROWN * spans[pair, 3] + 64 else length

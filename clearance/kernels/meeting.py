@@ -7,7 +7,7 @@ definite surface. Not for: where they meet (`common_point`).
 from typing import NamedTuple
 
 from clearance.jit import inlined, spliced
-from clearance.kernel_table import MEETING, apart, at_address
+from clearance.kernel_table import MEETING, Lent, apart, at_address, borrow
 from clearance.kernels.bounds import SLACK
 from clearance.kernels.double_double import FRAMES_AT_REST, size
 from clearance.kernels.face_pair import ROUGH, has_plane, height
@@ -88,13 +88,18 @@ def _edges_meet_face(one, face_one, two, face_two, edge_of_a, inner, frames, exa
     return Meeting(False, edge_of_a, start, start, other + 1)
 
 
-@apart(MEETING, lambda: (surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, room_for_exact()))
-def meeting(a, face_a, b, face_b, frames, exact):
+def _like():
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, room_for_exact()
+
+
+@apart(MEETING, _like)
+def meeting(lent_a, face_a, lent_b, face_b, frames, exact):
     """Where two faces have a point in common, exactly: the first edge and triangle found to meet.
 
     Of two flat faces that meet an edge of one meets the other. Where one is bent, its fan's diagonals are
     edges too.
     """
+    a, b = borrow(lent_a), borrow(lent_b)
     set_poses(frames, exact)
     found = NO_MEETING
     one, face_one, two, face_two = a, face_a, b, face_b
@@ -111,6 +116,6 @@ def meeting(a, face_a, b, face_b, frames, exact):
 
 
 @spliced
-def meeting_of(table, a, face_a, b, face_b, frames, exact):
+def meeting_of(table, lent_a, face_a, lent_b, face_b, frames, exact):
     """The same by address."""
-    return at_address(table, MEETING, NO_MEETING, (a, face_a, b, face_b, frames, exact))
+    return at_address(table, MEETING, NO_MEETING, (lent_a, face_a, lent_b, face_b, frames, exact))

@@ -57,7 +57,7 @@ def _empty_surface(n):
         np.empty((n, 3)), np.empty((n, 3)), ends, around, np.empty((1, 3)), np.empty(1), np.empty(1),
         np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, ends, edges,
         nodes, np.empty((0, 12), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
-        none, none, none, none, none,
+        none, none, none, np.empty(0, dtype=np.bool_),
     )  # fmt: skip
 
 
@@ -152,7 +152,7 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
         lower_bound_faces_in_sight(a, 0, b, 0, sight) <= margin
         and may_meet(a, 0, b, 0, frames.m, margin)
     ):
-        found = meeting_of(table, a, 0, b, 0, frames, exact)
+        found = meeting_of(table, lent_a, 0, lent_b, 0, frames, exact)
         if found.found:
             common = common_point_of(table, a, 0, b, 0, frames, found)
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True

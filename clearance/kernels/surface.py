@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import merged
-from clearance.kernels.vec3 import Vec3, along, row
+from clearance.kernels.lanes import WIDTH, lanes_at
+from clearance.kernels.vec3 import Vec3, along
 
 
 class Surface(NamedTuple):
@@ -27,12 +28,13 @@ class Surface(NamedTuple):
         corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
         vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
         edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns.
-        centres: (n, 3) [m] of the boxes of the tree's nodes, in the body frame.
-        boxes: (n, 12) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
-        children: (n, 2) node indices; for a leaf (face, -1).
-        roots: (bodies,) root nodes.
+        centres: (3 g, 4) [m] of the boxes of the tree's nodes, in the body frame. Node n is lane n % 4 of group
+            n // 4; lanes without a node repeat the first.
+        boxes: (12 g, 4) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
+        children: (4 g, 2) of node n: a group and how many nodes of it, or for a leaf (face, 0).
+        roots: (bodies,) root nodes, each alone in its group.
         probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
-        solid_starts, solid_faces: (bodies + 1,), the faces of closed, consistently oriented components.
+        solid: (f,) True for the faces of closed, consistently oriented components.
     """
 
     vertices: np.ndarray
@@ -54,8 +56,7 @@ class Surface(NamedTuple):
     roots: np.ndarray
     probe_starts: np.ndarray
     probes: np.ndarray
-    solid_starts: np.ndarray
-    solid_faces: np.ndarray
+    solid: np.ndarray
 
 
 def surface_like():
@@ -65,8 +66,8 @@ def surface_like():
     return Surface(
         points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
         indices, indices, indices, pairs,
-        points, np.empty((0, 12), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
-        indices, indices, indices, indices, indices,
+        np.empty((0, 4)), np.empty((0, 4), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
+        indices, indices, indices, np.empty(0, dtype=np.bool_),
     )  # fmt: skip
 
 
@@ -81,16 +82,59 @@ class Box(NamedTuple):
 
 
 @merged
+def _point_at(numbers, first, k):
+    x, y, z = numbers[first, k], numbers[first + 1, k], numbers[first + 2, k]
+    return Vec3(np.float64(x), np.float64(y), np.float64(z))
+
+
+@merged
+def box_at(boxes, centres, node):
+    """The box of a node."""
+    group, k = node // WIDTH, node % WIDTH
+    first = 12 * group
+    return Box(
+        _point_at(boxes, first, k),
+        _point_at(boxes, first + 3, k),
+        _point_at(boxes, first + 6, k),
+        _point_at(centres, 3 * group, k),
+        _point_at(boxes, first + 9, k),
+    )
+
+
+@merged
 def box_of(surface, node):
     """The box of a node of the tree."""
-    boxes = surface.boxes
+    return box_at(surface.boxes, surface.centres, node)
+
+
+@merged
+def _points_at(numbers, first):
+    return Vec3(lanes_at(numbers, first), lanes_at(numbers, first + 1), lanes_at(numbers, first + 2))
+
+
+@merged
+def group_at(boxes, centres, group):
+    """The boxes of the nodes of a group, in lanes."""
+    first = 12 * group
     return Box(
-        Vec3(float(boxes[node, 0]), float(boxes[node, 1]), float(boxes[node, 2])),
-        Vec3(float(boxes[node, 3]), float(boxes[node, 4]), float(boxes[node, 5])),
-        Vec3(float(boxes[node, 6]), float(boxes[node, 7]), float(boxes[node, 8])),
-        row(surface.centres, node),
-        Vec3(float(boxes[node, 9]), float(boxes[node, 10]), float(boxes[node, 11])),
+        _points_at(boxes, first),
+        _points_at(boxes, first + 3),
+        _points_at(boxes, first + 6),
+        _points_at(centres, 3 * group),
+        _points_at(boxes, first + 9),
     )
+
+
+@merged
+def group_of(surface, group):
+    """The boxes of a group of the tree, in lanes."""
+    return group_at(surface.boxes, surface.centres, group)
+
+
+@merged
+def is_leaf(surface, node):
+    """True if the node is of one face, which is `children[node, 0]`."""
+    return surface.children[node, 1] == 0
 
 
 @merged

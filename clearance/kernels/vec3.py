@@ -109,6 +109,13 @@ def move_back(m, v):
 
 
 @merged
+def inverse(m):
+    """The motion x -> R^T (x - t)."""
+    t = turn_back(m, m.t)
+    return Rigid(m.xx, m.yx, m.zx, m.xy, m.yy, m.zy, m.xz, m.yz, m.zz, Vec3(-t.x, -t.y, -t.z))
+
+
+@merged
 def rigid(matrix):
     """The motion that a (4, 4) or (3, 4) matrix describes."""
     return Rigid(

@@ -12,10 +12,11 @@ from clearance.geometry.tree import surface_of
 from clearance.jit import kernel
 from clearance.kernel_table import call
 from clearance.kernels.containment import contained
+from clearance.kernels.descent import new_scratch
 from clearance.kernels.double_double import frames_of
-from clearance.kernels.predicates import room_for_exact
 from clearance.kernels.vec3 import rigid
 from tests import oracle
+from tests.made_cases import torus
 from tests.strategies import BOX_FACES, QUARTER_TURNS, poses, rotations
 
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
@@ -27,7 +28,7 @@ OCTAHEDRON_FACES = [
 
 @kernel
 def is_contained(a, b, pose_a, pose_b, table):
-    return contained(a, 0, b, 0, frames_of(rigid(pose_a), rigid(pose_b)), room_for_exact(), table)[0]
+    return contained(a, 0, b, 0, frames_of(rigid(pose_a), rigid(pose_b)), new_scratch(), table)[0]
 
 
 def cube(half):
@@ -108,3 +109,22 @@ def test_both_poses_are_taken_exactly():
         assert found == oracle.contains(
             [Fraction(x) + Fraction(2) ** -60 for x in corner], CORNERS, BOX_FACES, pose_a
         )
+
+
+def test_rays_through_many_faces_like_the_oracle():
+    """A ray looks only into the boxes of the tree that it may meet; a ring is met up to four times."""
+    random = np.random.default_rng(32)
+    ring = torus(1.0, 0.4, 14, 7)
+    faces = ring.face_vertices.reshape(-1, 3).tolist()
+    n_inside = 0
+    for _ in range(120):
+        pose_a, pose_b = np.eye(4), np.eye(4)
+        pose_a[:3, :3] = rotations(random, 1)[0]
+        pose_a[:3, 3] = random.normal(size=3)
+        x = random.uniform((-1.4, -1.4, -0.4), (1.4, 1.4, 0.4))
+        pose_b[:3, 3] = pose_a[:3, :3] @ x + pose_a[:3, 3]
+        near = distance(ring, cube(2.0**-20), pose_a=pose_a, pose_b=pose_b)
+        corner = [Fraction(x) + Fraction(2) ** -20 for x in pose_b[:3, 3].tolist()]
+        assert near.contact == oracle.contains(corner, ring.vertices, faces, pose_a)
+        n_inside += near.contact
+    assert 20 < n_inside < 100

@@ -22,8 +22,10 @@ from clearance.kernels.bounds import (
     rounding_slack,
     sight_along,
 )
+from clearance.kernels.descent import bounds_of_group, views_along
 from clearance.kernels.double_double import frames_of
-from clearance.kernels.surface import box_of
+from clearance.kernels.lanes import ALL, WIDTH, lane
+from clearance.kernels.surface import box_of, group_of
 from clearance.kernels.sweep import World, root_bound
 from clearance.kernels.vec3 import Vec3, rigid
 from clearance.simulate.kinematic import kinematic_motion
@@ -37,8 +39,11 @@ from tests.strategies import rotations
 
 
 @kernel
-def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, faces):
-    """Fills the bounds of all node pairs and face pairs, with the slacks that the search takes off."""
+def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, faces):
+    """Fills the bounds of all node pairs and face pairs, with the slacks that the search takes off.
+
+    `alike` takes how far the bounds of boxes in lanes are from those of one after another.
+    """
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
     p = Vec3(0.0, 0.0, 0.0)
@@ -48,9 +53,26 @@ def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, faces):
             p, q = box_of(a, i), box_of(b, j)
             boxes[i, j] = lower_bound_boxes(p, q, frames.m, slack)
             in_sight[i, j] = lower_bound_boxes_in_sight(p, q, sight) - slack
+            alike[i, j] = boxes[i, j]
+            alike[i, j] -= lane(lower_bound_boxes(group_of(a, i // WIDTH), q, frames.m, slack), i % WIDTH)
     for i in range(len(a.normals)):
         for j in range(len(b.normals)):
             faces[i, j] = lower_bound_faces_in_sight(a, i, b, j, sight) - slack
+
+
+@kernel
+def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_of_b):
+    """Fills what the search takes as the bound of each node pair, with the group of the one and the other side."""
+    frames = frames_of(rigid(pose_a), rigid(pose_b))
+    slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
+    sight = sight_along(
+        Vec3(0.0, 0.0, 0.0), Vec3(direction[0], direction[1], direction[2]), frames.m)
+    from_a, from_b = views_along(sight, frames.m)
+    for i in range(len(a.children)):
+        for j in range(len(b.children)):
+            of_a = bounds_of_group(a, b, from_a, from_b, i // WIDTH, j, False, ALL, slack, cut)
+            of_b = bounds_of_group(a, b, from_a, from_b, j // WIDTH, i, True, ALL, slack, cut)
+            groups_of_a[i, j], groups_of_b[i, j] = lane(of_a, i % WIDTH), lane(of_b, j % WIDTH)
 
 
 @kernel
@@ -101,8 +123,11 @@ def holders(surface):
     """For each node the faces below it."""
     below = [set() for _ in surface.children]
     for node in reversed(range(len(surface.children))):
-        left, right = surface.children[node]
-        below[node] = {int(left)} if right < 0 else below[left] | below[right]
+        first, count = surface.children[node]
+        if count == 0:
+            below[node] = {int(first)}
+        elif count > 0:
+            below[node] = set().union(*below[WIDTH * first : WIDTH * first + count])
     return below
 
 
@@ -134,16 +159,22 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, ki
     a, b = triangles(random, 3, kind_a), triangles(random, 3, kind_b)
     pose_a, pose_b = pose(random, reach, turned), pose(random, reach, turned)
     one, two = surface_of(a), surface_of(b)
-    boxes, in_sight = np.empty((2, len(one.children), len(two.children)))
+    boxes, in_sight, alike, of_a, of_b = np.empty((5, len(one.children), len(two.children)))
     faces = np.empty((3, 3))
     direction = random.normal(size=3) if turned else np.eye(3)[random.integers(3)]
-    bounds_of_nodes(one, two, pose_a, pose_b, direction, boxes, in_sight, faces)
+    bounds_of_nodes(one, two, pose_a, pose_b, direction, boxes, in_sight, alike, faces)
+    bounds_of_groups(one, two, pose_a, pose_b, direction, random.choice([0.0, 1.0, np.inf]), of_a, of_b)
     truth = exact_distances_sq(a, b, pose_a, pose_b)
     for i, below_a in enumerate(holders(one)):
         for j, below_b in enumerate(holders(two)):
+            if not (below_a and below_b):  # a lane without a node
+                continue
             least_sq = min(truth[f][g] for f in below_a for g in below_b)
             assert is_at_most(boxes[i, j], least_sq)
             assert is_at_most(in_sight[i, j], least_sq)
+            assert is_at_most(of_a[i, j], least_sq)
+            assert is_at_most(of_b[i, j], least_sq)
+            assert alike[i, j] == 0.0
     for f in range(3):
         for g in range(3):
             assert is_at_most(faces[f, g], truth[f][g])
@@ -158,10 +189,12 @@ def test_bounds_are_not_idle():
     above = np.eye(4)
     above[2, 3] = 5.0
     one, two = surface_of(a), surface_of(b)
-    boxes, in_sight = np.empty((2, len(one.children), len(two.children)))
+    boxes, in_sight, alike, of_a, of_b = np.empty((5, len(one.children), len(two.children)))
     faces = np.empty((3, 3))
-    bounds_of_nodes(one, two, np.eye(4), above, np.array([0.0, 0.0, 1.0]), boxes, in_sight, faces)
-    for bounds in (boxes, in_sight, faces):
+    along = np.array([0.0, 0.0, 1.0])
+    bounds_of_nodes(one, two, np.eye(4), above, along, boxes, in_sight, alike, faces)
+    bounds_of_groups(one, two, np.eye(4), above, along, np.inf, of_a, of_b)
+    for bounds in (boxes, in_sight, of_a, of_b, faces):
         assert bounds.min() == pytest.approx(5.0, rel=1e-5)
 
 
