@@ -3,7 +3,8 @@
 In the middle of an interval the trees are descended as for a distance, but each bound is lowered by how far
 the link can move in the interval: along the direction of the nearest points where two faces or boxes are
 seen apart, so that sliding past costs nothing in the first order. What does not stay above the target is
-halved. Not for: the steps themselves (`sweep`).
+halved. A bound on a pair holds for later intervals less what its link moves in them: pairs that it keeps above the
+target are not asked. Not for: the steps themselves (`sweep`).
 """
 
 import math
@@ -12,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import borrowing, inlined, kernel
+from clearance.kernel_table import lend
 from clearance.kernels.bounds import (
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
@@ -19,20 +21,32 @@ from clearance.kernels.bounds import (
     rounding_slack,
     sight_along,
 )
-from clearance.kernels.descent import Scratch, breadth, margin_of, new_scratch, nothing_yet
+from clearance.kernels.descent import (
+    STACK_DEPTH,
+    Scratch,
+    margin_of,
+    new_scratch,
+    nothing_yet,
+    opened,
+    wait,
+)
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.drift import (
+    Drift,
     drift_of,
     drift_of_box,
     drift_of_box_along,
     drift_of_face_along,
 )
 from clearance.kernels.face_pair import may_meet, nearest_of_faces
+from clearance.kernels.front import KEPT_DOWN
 from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
+from clearance.kernels.lanes import ALL, WIDTH, lane, larger, least_of
 from clearance.kernels.meeting import meeting_of
-from clearance.kernels.surface import box_of
-from clearance.kernels.vec3 import rigid
+from clearance.kernels.surface import box_of, group_of, is_leaf
+from clearance.kernels.sweep import GROWTH
+from clearance.kernels.vec3 import Vec3, rigid
 
 DEPTH = 64
 """Parts of an interval that can wait, one a halving; after 52 the ends cannot be told apart."""
@@ -66,12 +80,35 @@ class Asked(NamedTuple):
 
 
 class Middle(NamedTuple):
-    """Room for the state in the middle of an interval, and for the search."""
+    """The state in the middle of an interval or of a part of it."""
 
     positions: np.ndarray  # (1, n_links)
     swing: np.ndarray  # (n_links,)
     bend: np.ndarray  # (n_links,)
     poses: np.ndarray  # (1, n_links, 4, 4)
+
+
+class Known(NamedTuple):
+    """What is carried from interval to interval, and room.
+
+    Attributes:
+        whole, part: the middle of the interval, and of a part of it.
+        links: (bodies,) the link of each body that moves, else -1.
+        drifts: (bodies, 7) numbers of the `Drift` of each in the interval.
+        travel: (bodies,) [m] how far each can have moved in all.
+        floors: (p,) [m] a bound on each pair's distance over an interval, plus the travel at its end.
+        seeds: (p, 2) the faces that were nearest, or -1.
+        waiting: (DEPTH, 2) parts of an interval.
+    """
+
+    whole: Middle
+    part: Middle
+    links: np.ndarray
+    drifts: np.ndarray
+    travel: np.ndarray
+    floors: np.ndarray
+    seeds: np.ndarray
+    waiting: np.ndarray
     scratch: Scratch
 
 
@@ -93,14 +130,21 @@ class Held(NamedTuple):
 
 
 @inlined
-def _node_floor(p, q, m, sight, slack, drift, target):
-    """[m] a lower bound on the distance of two boxes over the interval."""
-    in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack
-    in_sight -= drift_of_box_along(p, sight.u, drift)
-    if in_sight >= target:
+def _node_floors(p, q, m, sight, slack, drift, target):
+    """[m] lower bounds on the distances of boxes in lanes over the interval."""
+    in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack - drift_of_box_along(p, sight.u, drift)
+    if least_of(in_sight, ALL) >= target:
         return in_sight
     apart = lower_bound_boxes(p, q, m, slack) - slack
-    return max(in_sight, apart - drift_of_box(p, drift))
+    return larger(in_sight, apart - drift_of_box(p, drift))
+
+
+@inlined
+def _floors_of_group(a, b, group, other, is_b, m, sight, slack, drift, target):
+    """[m] lower bounds on the distances of the nodes of a group to a node of the other body over the interval."""
+    if is_b:
+        return _node_floors(box_of(a, other), group_of(b, group), m, sight, slack, drift, target)
+    return _node_floors(group_of(a, group), box_of(b, other), m, sight, slack, drift, target)
 
 
 @inlined
@@ -135,8 +179,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
     sight = sight_along(best.p, best.q, m)
     floor = math.inf
     scratch.nodes[0, 0], scratch.nodes[0, 1] = root_a, root_b
-    scratch.bounds[0] = _node_floor(
-        box_of(a, root_a), box_of(b, root_b), m, sight, slack, drift, target)
+    scratch.bounds[0] = -math.inf
     n_waiting = 1
     while n_waiting > 0:
         n_waiting -= 1
@@ -145,8 +188,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
         if bound >= target:
             floor = min(floor, bound)
             continue
-        leaf_a, leaf_b = a.children[node_a, 1] < 0, b.children[node_b, 1] < 0
-        if leaf_a and leaf_b:
+        if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             bound = max(bound, _face_floor(a, face_a, b, face_b, sight, slack, drift))
             if bound < target:
@@ -168,19 +210,15 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             if bound < target and moved >= STILL * allowed:
                 return Held(0.0, least, False, near_a, near_b)
             continue
-        if leaf_b or (not leaf_a and breadth(box_of(a, node_a)) >= breadth(box_of(b, node_b))):
-            a0, a1, b0, b1 = a.children[node_a, 0], a.children[node_a, 1], node_b, node_b
-        else:
-            a0, a1, b0, b1 = node_a, node_a, b.children[node_b, 0], b.children[node_b, 1]
-        first = _node_floor(box_of(a, a0), box_of(b, b0), m, sight, slack, drift, target)
-        second = _node_floor(box_of(a, a1), box_of(b, b1), m, sight, slack, drift, target)
-        tally[2] += 2
-        if first < second:
-            a0, a1, b0, b1, first, second = a1, a0, b1, b0, second, first
-        scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = a0, b0
-        scratch.nodes[n_waiting + 1, 0], scratch.nodes[n_waiting + 1, 1] = a1, b1
-        scratch.bounds[n_waiting], scratch.bounds[n_waiting + 1] = first, second
-        n_waiting += 2
+        is_b, group, count, other = opened(a, node_a, b, node_b)
+        floors = _floors_of_group(a, b, group, other, is_b, m, sight, slack, drift, target)
+        tally[2] += count
+        assert n_waiting + WIDTH <= STACK_DEPTH
+        first = n_waiting
+        for k in range(count):
+            node = WIDTH * group + k
+            node_a, node_b = other if is_b else node, node if is_b else other
+            n_waiting = wait(scratch, n_waiting, node_a, node_b, lane(floors, k), first)
     return Held(floor, least, True, near_a, near_b)
 
 
@@ -189,7 +227,7 @@ def _meet(a, face_a, b, face_b, frames, margin, scratch, table):
     """True if two faces have a point in common, by exact signs."""
     if not may_meet(a, face_a, b, face_b, frames.m, margin):
         return False
-    return meeting_of(table, a, face_a, b, face_b, frames, scratch.exact).found
+    return meeting_of(table, lend(a), face_a, lend(b), face_b, frames, scratch.exact).found
 
 
 @inlined
@@ -214,18 +252,50 @@ def _go_to(chain, path, step, low, high, middle):
 
 
 @inlined
-def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tally, table):
+def _new_middle(n_links):
+    return Middle(np.empty((1, n_links)), np.empty(n_links), np.empty(n_links), np.empty((1, n_links, 4, 4)))
+
+
+@inlined
+def _drift_in(surface, chain, body, link, middle):
+    """The drift of a body about `middle`."""
+    pose = rigid(middle.poses[0, link])
+    root = surface.roots[body]
+    return drift_of(surface, root, chain, link, middle.poses[0], middle.swing, middle.bend, pose)
+
+
+@inlined
+def _drift_at(drifts, body):
+    d = drifts[body]
+    return Drift(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6])
+
+
+@inlined
+def _go_on(surface, chain, path, step, known):
+    """Goes to the interval after `step`: its middle, how each body drifts about it, and the travel at its end."""
+    _go_to(chain, path, step, 0.0, 1.0, known.whole)
+    for body in range(len(known.links)):
+        link = known.links[body]
+        if link < 0:
+            continue
+        drift = _drift_in(surface, chain, body, link, known.whole)
+        numbers = known.drifts[body]
+        numbers[0], numbers[1], numbers[2] = drift.velocity.x, drift.velocity.y, drift.velocity.z
+        numbers[3], numbers[4], numbers[5] = drift.spin.x, drift.spin.y, drift.spin.z
+        numbers[6] = drift.rest
+        known.travel[body] += 2.0 * GROWTH * drift_of_box(box_of(surface, surface.roots[body]), drift)
+
+
+@inlined
+def _hold_pair(surface, asked, pair, middle, drift, least, gap, fail, known, tally, table):
     """`hold` of a pair at the state in `middle`."""
     body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
-    link = asked.links[pair]
-    pose = rigid(middle.poses[0, link])
-    root = surface.roots[body_a]
-    drift = drift_of(surface, root, chain, link, middle.poses[0], middle.swing, middle.bend, pose)
-    frames = frames_of(pose, rigid(asked.standing[body_b]))
+    frames = frames_of(rigid(middle.poses[0, asked.links[pair]]), rigid(asked.standing[body_b]))
     tally[1] += 1
+    seeds = known.seeds
     held = hold(
         surface, body_a, surface, body_b, frames, drift, least, gap, fail,
-        seeds[pair, 0], seeds[pair, 1], middle.scratch, tally, table,
+        seeds[pair, 0], seeds[pair, 1], known.scratch, tally, table,
     )  # fmt: skip
     seeds[pair, 0], seeds[pair, 1] = held.face_a, held.face_b
     return held
@@ -233,7 +303,7 @@ def _hold_pair(surface, chain, asked, pair, middle, least, gap, fail, seeds, tal
 
 @kernel
 def certify(
-    surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally, table
+    surface, chain, asked, path, order, first, last, clearance, gap, fail, lower, upper, tally, table
 ):
     """Fills `lower` [m] for the motion between the steps `first` to `last`, and lowers `upper`.
 
@@ -241,60 +311,84 @@ def certify(
         surface: every face owns all its features.
         path: how the joint of each link moves from step to step, a `JointPath`.
         order: (n,) the pair to look at first in each interval.
-        known: (n,) [m] clearance of the steps over these pairs, proven to within rounding.
+        clearance: (n,) [m] of the steps over these pairs, proven to within rounding.
         gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
         fail: [m] the limit that is to be decided, if need be with a smaller gap.
     """
-    n_links = path.positions.shape[1]
-    middle = Middle(
-        np.empty((1, n_links)), np.empty(n_links), np.empty(n_links),
-        np.empty((1, n_links, 4, 4)), new_scratch(),
+    n_links, n_pairs, n_bodies = path.positions.shape[1], len(asked.bodies), len(surface.roots)
+    known = Known(
+        _new_middle(n_links), _new_middle(n_links), np.full(n_bodies, -1), np.empty((n_bodies, 7)),
+        np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
+        new_scratch(),
     )  # fmt: skip
-    seeds = np.full((len(asked.bodies), 2), -1)
-    waiting = np.empty((DEPTH, 2))
+    for pair in range(n_pairs):
+        known.links[asked.bodies[pair, 0]] = asked.links[pair]
     _certify(
-        surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally,
-        middle, seeds, waiting, table,
-    )  # fmt: skip
+        surface, chain, asked, path, order, first, last, clearance, gap, fail, lower, upper, tally, known, table
+    )
 
 
 @borrowing
 def _certify(
-    surface, chain, asked, path, order, first, last, known, gap, fail, lower, upper, tally,
-    middle, seeds, waiting, table,
-):  # fmt: skip
-    """`certify`, with room for the middle of an interval, the nearest faces, and parts that wait."""
+    surface, chain, asked, path, order, first, last, clearance, gap, fail, lower, upper, tally, known, table
+):
+    """`certify`, with room for what is known."""
     n_pairs = len(asked.bodies)
+    travel, floors = known.travel, known.floors
     for i in range(len(tally)):
         tally[i] = 0
     for step in range(first, last):
-        least = min(known[step], known[step + 1])
+        least = min(clearance[step], clearance[step + 1])
         floor = least  # 0 for a contact: then nothing is left to prove
+        _go_on(surface, chain, path, step, known)
         for turn in range(-1, n_pairs):
             pair = order[step] if turn < 0 else turn
             if turn == order[step] or least <= 0.0:
                 continue
-            waiting[0, 0], waiting[0, 1] = 0.0, 1.0
-            n_waiting = 1
-            while n_waiting > 0:
-                n_waiting -= 1
-                low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
-                _go_to(chain, path, step, low, high, middle)
-                held = _hold_pair(
-                    surface, chain, asked, pair, middle, least, gap, fail, seeds, tally, table
-                )
-                least = held.least
-                if least <= 0.0:
-                    floor = 0.0
-                    break
-                if held.completed:
-                    floor = min(floor, held.floor)
-                elif n_waiting + 2 > DEPTH:
-                    floor = 0.0
-                else:
-                    at = 0.5 * (low + high)
-                    waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
-                    waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
-                    n_waiting += 2
+            moved = travel[asked.bodies[pair, 0]]
+            carried = floors[pair] - moved
+            if carried >= least - allowed_gap(least, gap, fail):
+                floor = min(floor, carried)
+                tally[0] += 1
+                continue
+            held = _hold_interval(surface, chain, asked, path, step, pair, least, gap, fail, known, tally, table)
+            floors[pair] = (held.floor + moved) * KEPT_DOWN
+            least = held.least
+            floor = min(floor, held.floor)
         lower[step] = max(0.0, min(floor, least) * ROUNDED_DOWN)
         upper[step] = least
+
+
+@inlined
+def _hold_interval(surface, chain, asked, path, step, pair, least, gap, fail, known, tally, table):
+    """`hold` of a pair over the whole interval after `step`, halved until that is done."""
+    body = asked.bodies[pair, 0]
+    drift = _drift_at(known.drifts, body)
+    held = _hold_pair(surface, asked, pair, known.whole, drift, least, gap, fail, known, tally, table)
+    if held.completed or held.least <= 0.0:
+        return held
+    least = held.least
+    floor = math.inf
+    waiting = known.waiting
+    waiting[0, 0], waiting[0, 1] = 0.5, 1.0
+    waiting[1, 0], waiting[1, 1] = 0.0, 0.5
+    n_waiting = 2
+    while n_waiting > 0:
+        n_waiting -= 1
+        low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
+        _go_to(chain, path, step, low, high, known.part)
+        drift = _drift_in(surface, chain, body, asked.links[pair], known.part)
+        held = _hold_pair(surface, asked, pair, known.part, drift, least, gap, fail, known, tally, table)
+        least = held.least
+        if least <= 0.0:
+            return held
+        if held.completed:
+            floor = min(floor, held.floor)
+        elif n_waiting + 2 > DEPTH:
+            floor = 0.0
+        else:
+            at = 0.5 * (low + high)
+            waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
+            waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
+            n_waiting += 2
+    return Held(floor, least, True, held.face_a, held.face_b)

@@ -15,6 +15,7 @@ import numpy as np
 from clearance.jit import inlined
 from clearance.kernels.bounds import LEAN, box_reach
 from clearance.kernels.kinematics import SLIDING, TURNING
+from clearance.kernels.lanes import square_root
 from clearance.kernels.surface import box_of, corner_of
 from clearance.kernels.vec3 import Vec3, add, along, cross, dot, row, sub, turn_back
 
@@ -124,9 +125,9 @@ def velocity_at(drift, x):
 def drift_of_box(box, drift):
     """[m] an upper bound on how far any point of a box moves from the middle."""
     v = velocity_at(drift, box.centre)
-    radius = math.sqrt(dot(box.half, box.half)) * (1.0 + LEAN)
+    radius = square_root(dot(box.half, box.half)) * (1.0 + LEAN)
     turning = math.sqrt(dot(drift.spin, drift.spin)) * radius
-    return math.sqrt(dot(v, v)) + turning + drift.rest
+    return square_root(dot(v, v)) + turning + drift.rest
 
 
 @inlined
