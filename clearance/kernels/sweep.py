@@ -23,9 +23,11 @@ GROWTH = 1.0 + 1e-9
 """Covers the rounding of a sum of up to four million displacements."""
 
 
-LOOK_AHEAD = 4.0
-"""Steps of mean travel beyond the best within which a pair is still measured, so that its bound lasts; none
-where bodies move farther in a step than they are apart."""
+LOOK_AHEAD = 2.0
+"""Steps of mean travel beyond the best within which a pair is still measured, so that its bound lasts."""
+
+LITTLE = 0.1
+"""Of the best: where bodies move more in a step, nothing is measured beyond it."""
 
 
 NOT_LESS = 1.0 + 2.0**-50
@@ -260,7 +262,7 @@ def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
                 tally[0] += 1
                 continue
             ahead = moved / max(1, row)
-            limit = gap + (LOOK_AHEAD * ahead if ahead < gap else 0.0)
+            limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
             if floor <= 0.0:
                 forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
             asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)

@@ -23,7 +23,7 @@ class Layout:
     """All measured bodies behind one another: links first, then obstacles.
 
     Attributes:
-        links: (robot, column of its poses) of each link that is measured.
+        links: (robot, column of its poses) of each link that is measured, robot by robot.
         frames: (bodies,) which of `links` carries the body, or -1 for one that stands.
         standing: (bodies, 4, 4) poses of the bodies that stand [m].
         pairs: (p, 2) bodies to measure against each other.
@@ -37,9 +37,11 @@ class Layout:
 
     def world(self, motions: Sequence[Motion], steps: np.ndarray) -> World:
         """Where everything is at `steps` (k,), in that order."""
-        poses = [motion.poses_at(steps) for motion in motions]
-        moving = np.stack([poses[i_robot][:, column] for i_robot, column in self.links], axis=1)
-        return World(self.frames, self.standing, np.ascontiguousarray(moving), self.pairs)
+        moving = [
+            motion.poses_at(steps)[:, [column for i, column in self.links if i == i_robot]]
+            for i_robot, motion in enumerate(motions)
+        ]
+        return World(self.frames, self.standing, np.concatenate(moving, axis=1), self.pairs)
 
 
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:

@@ -8,6 +8,7 @@ part at a time; rows are kept in memory or on disk (`spool`). Not for: where the
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -30,8 +31,9 @@ NEEDS = ("steps", "pairs", "limit", "minimum")
 """What can be asked: the clearance of every step; of every pair as well; of the steps below the warn limit,
 with a lower bound for the others; the least of all steps only."""
 
-FIRST_LOOK = 24
-"""Steps that are looked at first, evenly spread, where only the least of many is asked for."""
+FIRST_LOOK = 0.5
+"""Of so many times the root of their number, steps are looked at first, evenly spread, where only the least of
+many is asked for."""
 
 Steps = np.ndarray | range
 """(k,) increasing step indices."""
@@ -265,7 +267,8 @@ def _first_least(work: _Sweep) -> float:
 
 
 def _first_steps(n_steps: int) -> np.ndarray:
-    return np.unique(np.linspace(0, n_steps - 1, FIRST_LOOK).round().astype(np.int64))
+    n_looked_at = min(n_steps, 2 + round(FIRST_LOOK * math.sqrt(n_steps)))
+    return np.unique(np.linspace(0, n_steps - 1, n_looked_at).round().astype(np.int64))
 
 
 def _measurement(

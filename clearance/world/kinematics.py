@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -39,6 +40,7 @@ def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
     return poses
 
 
+@lru_cache(maxsize=8)  # asked for again for every part of a motion
 def chain_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Parents, kinds, parent_from_joint and axes of all links, as `kernels.kinematics.forward` takes them."""
     n_links = len(robot.link_names)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,13 @@ def runs(request):
         pytest.skip("the shared cases are not beside this checkout")
     case = cl.load_case(path)
     return {need: cl.check(case, need=need, jobs=1) for need in ("steps", "pairs", "limit", "minimum")}
+
+
+def cut_to(placed, n_steps):
+    """A placed robot that stops after so many steps."""
+    asked = placed.trajectory
+    kept = replace(asked, times=asked.times[:n_steps], positions=asked.positions[:n_steps], velocities=None)
+    return replace(placed, trajectory=kept)
 
 
 def tally(runs, need):
@@ -59,3 +67,16 @@ def test_the_minimum_leaves_most_pairs_unasked(runs):
     assert counted["queries"] < 0.25 * tally(runs, "pairs")["queries"]
     known = ~np.isnan(runs["minimum"].steps["clearance"].to_numpy())
     assert known.sum() == 1
+
+
+def test_the_minimum_tests_fewer_polygons_than_the_first_tenth_of_the_steps_where_one_place_is_nearest():
+    path = SHARED / "panda_bookshelf_thin_planned" / "case.yaml"
+    if not path.exists():
+        pytest.skip("the shared cases are not beside this checkout")
+    case = cl.load_case(path)
+    least = cl.check(case, need="minimum", jobs=1).record
+    n_steps = len(least.clearances)
+    begun = replace(case, robots=tuple(cut_to(placed, n_steps // 10) for placed in case.robots))
+    tenth = cl.check(begun, need="steps", jobs=1).record
+    assert len(tenth.clearances) == n_steps // 10
+    assert least.tally["polygon_tests"] < tenth.tally["polygon_tests"]
