@@ -9,7 +9,7 @@ from clearance.kernel_table import SEARCH, Lent, apart, at_address, borrow, lend
 from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.common_point import common_point_of
 from clearance.kernels.containment import contained
-from clearance.kernels.descent import Tally, descend, margin_of, new_scratch, nothing_yet
+from clearance.kernels.descent import Tally, descend, margin_of, nothing_yet
 from clearance.kernels.double_double import (
     FRAMES_AT_REST,
     Wide3,
@@ -21,6 +21,7 @@ from clearance.kernels.double_double import (
 from clearance.kernels.face_pair import Hit, nearest_of_faces
 from clearance.kernels.front import forget, no_fronts
 from clearance.kernels.refine import error_of
+from clearance.kernels.scratch import new_scratch
 from clearance.kernels.surface import surface_like
 from clearance.kernels.vec3 import Vec3, move, rigid
 

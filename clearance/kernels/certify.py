@@ -21,15 +21,7 @@ from clearance.kernels.bounds import (
     rounding_slack,
     sight_along,
 )
-from clearance.kernels.descent import (
-    STACK_DEPTH,
-    Scratch,
-    margin_of,
-    new_scratch,
-    nothing_yet,
-    opened,
-    wait,
-)
+from clearance.kernels.descent import margin_of, nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.drift import (
     Drift,
@@ -44,6 +36,8 @@ from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
 from clearance.kernels.lanes import ALL, WIDTH, lane, larger, least_of
 from clearance.kernels.meeting import meeting_of
+from clearance.kernels.node_pairs import opened
+from clearance.kernels.scratch import STACK_DEPTH, Scratch, new_scratch, wait
 from clearance.kernels.surface import box_of, group_of, is_leaf
 from clearance.kernels.sweep import GROWTH
 from clearance.kernels.vec3 import Vec3, rigid

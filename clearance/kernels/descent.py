@@ -8,52 +8,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, merged, shared, spliced
+from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import borrow
-from clearance.kernels.bounds import (
-    Sight,
-    lower_bound_boxes,
-    lower_bound_boxes_in_sight,
-    lower_bound_faces_in_sight,
-    opposite,
-    sight_along,
-)
+from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sight
 from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_faces
 from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
-from clearance.kernels.lanes import WIDTH, how_many, lane, larger, least_of
+from clearance.kernels.guess import guess
+from clearance.kernels.lanes import WIDTH, how_many, lane, least_of
 from clearance.kernels.meeting import NO_MEETING, Meeting, meeting_of
-from clearance.kernels.predicates import Exact, room_for_exact
-from clearance.kernels.refine import (
-    N_WAITING,
-    NOTHING_REFINED,
-    Refined,
-    Waiting,
-    put,
-    room_for_waiting,
-    settle,
-    shed,
-)
-from clearance.kernels.surface import box_at, box_of, group_at, is_leaf
-from clearance.kernels.vec3 import Rigid, Vec3, inverse
-
-STACK_DEPTH = WIDTH * LONGEST + 4096
-"""Node pairs that can wait: all of a front, and three for each opening, so three times the depths of both trees;
-those of a million faces split at the mean are below 100 deep, and `descend` checks."""
-
-
-FEW = 256
-"""Of so many node pairs a search that knows nothing yet goes on with the nearest after each face pair."""
-
-
-class Scratch(NamedTuple):
-    """Room for waiting node pairs and face pairs and for exact arithmetic, reused between queries."""
-
-    nodes: np.ndarray  # (STACK_DEPTH, 2) int32
-    bounds: np.ndarray  # (STACK_DEPTH,)
-    left: np.ndarray  # (LONGEST + 2, 3) int32, entries of a front that were left
-    floors: np.ndarray  # (LONGEST + 2,)
-    waiting: Waiting
-    exact: Exact
+from clearance.kernels.node_pairs import bounds_of_group, opened, views_of
+from clearance.kernels.refine import N_WAITING, NOTHING_REFINED, Refined, put, settle, shed
+from clearance.kernels.scratch import STACK_DEPTH, wait
+from clearance.kernels.surface import box_of, is_leaf
+from clearance.kernels.vec3 import Vec3
 
 
 class Tally(NamedTuple):
@@ -86,78 +53,6 @@ def nothing_yet(limit_sq):
     """The hit that any pair of points within the limit beats."""
     nowhere = Vec3(0.0, 0.0, 0.0)
     return Hit(limit_sq, 2**62, 2**62, nowhere, nowhere)
-
-
-@merged
-def breadth(box):
-    """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
-    half = box.half
-    return half.x + half.y + half.z - max(half.x, max(half.y, half.z))
-
-
-class View(NamedTuple):
-    """How two bodies are seen from the frame of one of them.
-
-    Attributes:
-        m: the motion from the frame of the other to its own.
-        sight: the direction that best parts them so far.
-    """
-
-    m: Rigid
-    sight: Sight
-
-
-@merged
-def views_along(sight, m):
-    """The view from the frame of a and that from b."""
-    return View(m, sight), View(inverse(m), opposite(sight))
-
-
-@merged
-def views_of(best, m):
-    """The views in which the best points so far part the bodies."""
-    return views_along(sight_along(best.p, best.q, m), m)
-
-
-@merged
-def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut):
-    """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
-
-    The cheap ones in sight if they exclude all that are marked.
-    """
-    boxes, centres, boxes_across, centres_across = a.boxes, a.centres, b.boxes, b.centres
-    view = from_a
-    if is_b:
-        boxes, centres, boxes_across, centres_across = b.boxes, b.centres, a.boxes, a.centres
-        view = from_b
-    p, q = group_at(boxes, centres, group), box_at(boxes_across, centres_across, other)
-    in_sight = lower_bound_boxes_in_sight(p, q, view.sight) - slack
-    if least_of(in_sight, marks) > cut:
-        return in_sight
-    return larger(in_sight, lower_bound_boxes(p, q, view.m, slack))
-
-
-@merged
-def opened(a, node_a, b, node_b):
-    """What is looked at next of a node pair, not both leaves: (is of b, group, how many nodes, node across)."""
-    if is_leaf(a, node_a) or (
-        not is_leaf(b, node_b) and breadth(box_of(a, node_a)) < breadth(box_of(b, node_b))
-    ):
-        return True, b.children[node_b, 0], b.children[node_b, 1], node_a
-    return False, a.children[node_a, 0], a.children[node_a, 1], node_b
-
-
-@merged
-def wait(scratch, n_waiting, node_a, node_b, bound, first):
-    """Lets a node pair wait among those from place `first` on, the nearest last; how many wait."""
-    k = n_waiting
-    while k > first and scratch.bounds[k - 1] < bound:
-        scratch.bounds[k] = scratch.bounds[k - 1]
-        scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k - 1, 0], scratch.nodes[k - 1, 1]
-        k -= 1
-    scratch.bounds[k] = bound
-    scratch.nodes[k, 0], scratch.nodes[k, 1] = node_a, node_b
-    return n_waiting + 1
 
 
 @merged
@@ -199,19 +94,6 @@ def _leave(scratch, n_left, group, other, marks, floor):
     scratch.left[n_left, 0], scratch.left[n_left, 1], scratch.left[n_left, 2] = group, other, marks
     scratch.floors[n_left] = floor
     return n_left + (n_left <= LONGEST)  # one too many says that not all are there
-
-
-@shared
-def new_scratch():
-    """Room for one search at a time."""
-    return Scratch(
-        np.empty((STACK_DEPTH, 2), dtype=np.int32),
-        np.empty(STACK_DEPTH),
-        np.empty((LONGEST + 2, 3), dtype=np.int32),
-        np.empty(LONGEST + 2),
-        room_for_waiting(),
-        room_for_exact(),
-    )
 
 
 @inlined
@@ -311,7 +193,6 @@ def descend(
     met = NO_MEETING
     n_left = 0
     measured = math.inf
-    is_cold = best.gap_sq == math.inf
     if fronts.spans[pair, 1] > 0:
         n_kept, n_waiting, n_nodes, floor = _resume(
             a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch
@@ -321,6 +202,8 @@ def descend(
         scratch.nodes[0, 0] = root_a
         scratch.nodes[0, 1] = root_b
         scratch.bounds[0] = lower_bound_boxes(box_of(a, root_a), box_of(b, root_b), m, slack)
+        if best.gap_sq == math.inf:
+            n_waiting, n_nodes = guess(a, root_a, b, root_b, from_a, from_b, scratch)
     while n_waiting > 0:
         n_waiting -= 1
         node_a = scratch.nodes[n_waiting, 0]
@@ -353,7 +236,7 @@ def descend(
                     if met.found:
                         best = Hit(0.0, face_a, face_b, m.t, m.t)
                         break
-                if n_waiting > 1 and (best.gap_sq < before_sq or (is_cold and n_waiting < FEW)):
+                if n_waiting > 1 and best.gap_sq < before_sq:
                     _nearest_last(scratch, n_waiting)
                 if near.seen.near_sq < math.inf:
                     if n_pairs == N_WAITING:

@@ -15,9 +15,9 @@ from clearance.jit import inlined, kernel
 from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, rounding_slack
-from clearance.kernels.descent import new_scratch
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, no_fronts
+from clearance.kernels.scratch import new_scratch
 from clearance.kernels.vec3 import rigid
 
 ROOM = 2 * LONGEST + 16

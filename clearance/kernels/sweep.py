@@ -13,9 +13,10 @@ from clearance.jit import borrowing, inlined, kernel, merged
 from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_slack
-from clearance.kernels.descent import Scratch, new_scratch, nothing_yet
+from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
+from clearance.kernels.scratch import Scratch, new_scratch
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 

@@ -51,7 +51,7 @@ def body_answers(n):
 
 def answers_without_rules(n):
     """For each rule, the answers without it, and how many pairs of faces more were looked at."""
-    from clearance.kernels import body_pair, descent
+    from clearance.kernels import body_pair, descent, node_pairs
 
     def nothing_known(p, q, *_):
         """Of boxes alone or in lanes."""
@@ -65,10 +65,13 @@ def answers_without_rules(n):
     }
     found = {}
     for name, never in rules.items():
-        rule = getattr(descent, name)
-        setattr(descent, name, never)
+        users = [module for module in (descent, node_pairs) if hasattr(module, name)]
+        rule = getattr(users[0], name)
+        for module in users:
+            setattr(module, name, never)
         found[name] = body_answers(n)
-        setattr(descent, name, rule)
+        for module in users:
+            setattr(module, name, rule)
     assert body_pair.descend is descent.descend
     return found
 

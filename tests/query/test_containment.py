@@ -12,8 +12,8 @@ from clearance.geometry.tree import surface_of
 from clearance.jit import kernel
 from clearance.kernel_table import call
 from clearance.kernels.containment import contained
-from clearance.kernels.descent import new_scratch
 from clearance.kernels.double_double import frames_of
+from clearance.kernels.scratch import new_scratch
 from clearance.kernels.vec3 import rigid
 from tests import oracle
 from tests.made_cases import torus

@@ -22,9 +22,9 @@ from clearance.kernels.bounds import (
     rounding_slack,
     sight_along,
 )
-from clearance.kernels.descent import bounds_of_group, views_along
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.lanes import ALL, WIDTH, lane
+from clearance.kernels.node_pairs import bounds_of_group, views_along
 from clearance.kernels.surface import box_of, group_of
 from clearance.kernels.sweep import World, root_bound
 from clearance.kernels.vec3 import Vec3, rigid

@@ -1,0 +1,62 @@
+"""Where a search that knows nothing yet looks first: pairs of faces that are probably near."""
+
+import numpy as np
+
+from clearance.jit import merged, spliced
+from clearance.kernels.lanes import WIDTH, lane
+from clearance.kernels.node_pairs import between_centres, opened
+from clearance.kernels.scratch import wait
+from clearance.kernels.surface import is_leaf
+
+GUESSES = 12
+"""Node pairs that a search which knows nothing yet follows down to faces before it begins at the roots."""
+
+
+@merged
+def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
+    """Puts a node pair among at most `most` from place `first` on, the nearest last; how many they are."""
+    if n_found == most:
+        if bound >= scratch.bounds[first]:
+            return n_found
+        for k in range(first, first + most - 1):
+            scratch.bounds[k] = scratch.bounds[k + 1]
+            scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k + 1, 0], scratch.nodes[k + 1, 1]
+        n_found -= 1
+    return wait(scratch, first + n_found, node_a, node_b, bound, first) - first
+
+
+@spliced
+def guess(a, root_a, b, root_b, from_a, from_b, scratch):
+    """Lets few pairs of leaves wait over the pair of roots: those whose centres are nearest, level by level.
+
+    They wait as what the front has, since they are met again from the roots. Returns (waiting, node pairs seen).
+    """
+    nodes, bounds = scratch.nodes, scratch.bounds
+    n_nodes = 0
+    n_found = 1
+    nodes[1, 0], nodes[1, 1], bounds[1] = root_a, root_b, 0.0
+    deeper = True
+    while deeper:
+        deeper = False
+        n_next = 0
+        after = 1 + GUESSES
+        for i in range(n_found, 0, -1):
+            node_a, node_b = np.int64(nodes[i, 0]), np.int64(nodes[i, 1])
+            if is_leaf(a, node_a) and is_leaf(b, node_b):
+                n_next = _among_nearest(scratch, after, n_next, GUESSES, node_a, node_b, bounds[i])
+                continue
+            deeper = True
+            is_b, group, count, other = opened(a, node_a, b, node_b)
+            found = between_centres(a, b, from_a, from_b, group, other, is_b)
+            n_nodes += count
+            for k in range(count):
+                node = WIDTH * group + k
+                node_a, node_b = other if is_b else node, node if is_b else other
+                n_next = _among_nearest(scratch, after, n_next, GUESSES, node_a, node_b, lane(found, k))
+        for i in range(n_next):
+            nodes[1 + i, 0], nodes[1 + i, 1] = nodes[after + i, 0], nodes[after + i, 1]
+            bounds[1 + i] = bounds[after + i]
+        n_found = n_next
+    for i in range(1, 1 + n_found):
+        nodes[i, 0] = ~nodes[i, 0]
+    return 1 + n_found, n_nodes

@@ -1,0 +1,52 @@
+"""Room for one search at a time, and how node pairs wait in it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.jit import merged, shared
+from clearance.kernels.front import LONGEST
+from clearance.kernels.lanes import WIDTH
+from clearance.kernels.predicates import Exact, room_for_exact
+from clearance.kernels.refine import Waiting, room_for_waiting
+
+STACK_DEPTH = WIDTH * LONGEST + 4096
+"""Node pairs that can wait: all of a front, and three for each opening, so three times the depths of both trees;
+those of a million faces split at the mean are below 100 deep, and `descend` checks."""
+
+
+class Scratch(NamedTuple):
+    """Room for waiting node pairs and face pairs and for exact arithmetic, reused between queries."""
+
+    nodes: np.ndarray  # (STACK_DEPTH, 2) int32
+    bounds: np.ndarray  # (STACK_DEPTH,)
+    left: np.ndarray  # (LONGEST + 2, 3) int32, entries of a front that were left
+    floors: np.ndarray  # (LONGEST + 2,)
+    waiting: Waiting
+    exact: Exact
+
+
+@shared
+def new_scratch():
+    """Room for one search at a time."""
+    return Scratch(
+        np.empty((STACK_DEPTH, 2), dtype=np.int32),
+        np.empty(STACK_DEPTH),
+        np.empty((LONGEST + 2, 3), dtype=np.int32),
+        np.empty(LONGEST + 2),
+        room_for_waiting(),
+        room_for_exact(),
+    )
+
+
+@merged
+def wait(scratch, n_waiting, node_a, node_b, bound, first):
+    """Lets a node pair wait among those from place `first` on, the nearest last; how many wait."""
+    k = n_waiting
+    while k > first and scratch.bounds[k - 1] < bound:
+        scratch.bounds[k] = scratch.bounds[k - 1]
+        scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k - 1, 0], scratch.nodes[k - 1, 1]
+        k -= 1
+    scratch.bounds[k] = bound
+    scratch.nodes[k, 0], scratch.nodes[k, 1] = node_a, node_b
+    return n_waiting + 1
