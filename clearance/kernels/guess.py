@@ -41,18 +41,18 @@ def guess(a, root_a, b, root_b, from_a, from_b, scratch):
         n_next = 0
         after = 1 + GUESSES
         for i in range(n_found, 0, -1):
-            node_a, node_b = np.int64(nodes[i, 0]), np.int64(nodes[i, 1])
-            if is_leaf(a, node_a) and is_leaf(b, node_b):
-                n_next = _among_nearest(scratch, after, n_next, GUESSES, node_a, node_b, bounds[i])
-                continue
-            deeper = True
-            is_b, group, count, other = opened(a, node_a, b, node_b)
-            found = between_centres(a, b, from_a, from_b, group, other, is_b)
-            n_nodes += count
+            node_a, node_b, near, count = np.int64(nodes[i, 0]), np.int64(nodes[i, 1]), bounds[i], 1
+            is_open = not (is_leaf(a, node_a) and is_leaf(b, node_b))
+            if is_open:
+                is_b, group, count, other = opened(a, node_a, b, node_b)
+                found = between_centres(a, b, from_a, from_b, group, other, is_b)
+                n_nodes += count
+                deeper = True
             for k in range(count):
-                node = WIDTH * group + k
-                node_a, node_b = other if is_b else node, node if is_b else other
-                n_next = _among_nearest(scratch, after, n_next, GUESSES, node_a, node_b, lane(found, k))
+                if is_open:
+                    node, near = WIDTH * group + k, lane(found, k)
+                    node_a, node_b = other if is_b else node, node if is_b else other
+                n_next = _among_nearest(scratch, after, n_next, GUESSES, node_a, node_b, near)
         for i in range(n_next):
             nodes[1 + i, 0], nodes[1 + i, 1] = nodes[after + i, 0], nodes[after + i, 1]
             bounds[1 + i] = bounds[after + i]
