@@ -36,7 +36,7 @@ from clearance.errors import ClearanceError
 ROUNDING = 1e-12
 """[-] Contact closer than this part of the size is no fault of a float64 library."""
 
-MOST_FACE_PAIRS = 1_000_000
+MOST_FACE_PAIRS = 20_000_000
 """A step for the paper's method; scenes of more are left out, and named (minutes a step)."""
 
 

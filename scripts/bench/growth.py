@@ -45,7 +45,7 @@ def main() -> None:
     """Runs what the command line asks for."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--seconds", type=float, default=3.0, help="CPU a size")
-    parser.add_argument("--passes", type=int, default=7)
+    parser.add_argument("--passes", type=int, default=25)
     parser.add_argument("--fineness", nargs="*", type=int, default=FINENESS, metavar="N")
     parser.add_argument("--steps", nargs="*", type=int, default=STEPS, metavar="N")
     parser.add_argument("--csv", type=Path, help="write the rows here")
