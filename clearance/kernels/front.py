@@ -24,8 +24,8 @@ LONGEST = 4096
 OF_B = 1 << WIDTH
 """The mark of a group of b."""
 
-GROWN = 3
-"""A front that has grown to this many times its first length, and 64, is built anew from the roots."""
+GROWN, ANYHOW = 1.2, 16
+"""A front that has grown to so many times its first length, and so many entries, is built anew from the roots."""
 
 KEPT_DOWN = 1.0 - 2.0**-50
 """Covers the rounding of a bound to which the way so far was added."""
@@ -108,4 +108,4 @@ def keep(fronts, pair, n_kept, entries, floors, n_fresh):
         _copy(entries, floors, i, fronts, at + i)
     if n_kept == 0:
         spans[pair, 3] = length
-    spans[pair, 1] = 0 if length > GROWN * spans[pair, 3] + 64 else length
+    spans[pair, 1] = 0 if length > GROWN * spans[pair, 3] + ANYHOW else length
