@@ -210,9 +210,13 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
         assert n_waiting + WIDTH <= STACK_DEPTH
         first = n_waiting
         for k in range(count):
+            bound = lane(floors, k)
+            if bound >= target:
+                floor = min(floor, bound)
+                continue
             node = WIDTH * group + k
             node_a, node_b = other if is_b else node, node if is_b else other
-            n_waiting = wait(scratch, n_waiting, node_a, node_b, lane(floors, k), first)
+            n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
     return Held(floor, least, True, near_a, near_b)
 
 
