@@ -36,7 +36,7 @@ from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
 from clearance.kernels.lanes import ALL, WIDTH, lane, larger, least_of
 from clearance.kernels.meeting import meeting_of
-from clearance.kernels.node_pairs import opened
+from clearance.kernels.node_pairs import opened, pair_in_group
 from clearance.kernels.scratch import STACK_DEPTH, Scratch, new_scratch, wait
 from clearance.kernels.surface import box_of, group_of, is_leaf
 from clearance.kernels.sweep import GROWTH
@@ -214,8 +214,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             if bound >= target:
                 floor = min(floor, bound)
                 continue
-            node = WIDTH * group + k
-            node_a, node_b = other if is_b else node, node if is_b else other
+            node_a, node_b = pair_in_group(is_b, group, k, other)
             n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
     return Held(floor, least, True, near_a, near_b)
 

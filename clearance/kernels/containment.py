@@ -35,11 +35,17 @@ ROUNDING = 512.0 * 2.0**-53
 
 
 @inlined
+def _room(box, d, far):
+    """[m] what rounding can move a point at `d` from the centre of a box, against its sides."""
+    return LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half))
+
+
+@inlined
 def _in_box(surface, node, x, far):
     """True unless `x` is outside the node's box by more than rounding."""
     box = box_of(surface, node)
     d = sub(x, box.centre)
-    room = LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half))
+    room = _room(box, d, far)
     if abs(dot(box.x, d)) > box.half.x + room or abs(dot(box.y, d)) > box.half.y + room:
         return False
     return abs(dot(box.z, d)) <= box.half.z + room
@@ -84,16 +90,15 @@ def _ray_may_meet(surface, node, x, along_ray, far):
     """False only if the node's box is beside or behind the ray by more than rounding."""
     box = box_of(surface, node)
     d = sub(box.centre, x)
-    room = 8.0 * (LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half)))
+    room = 8.0 * _room(box, d, far)
     p = Vec3(dot(box.x, d), dot(box.y, d), dot(box.z, d))
     t = Vec3(dot(box.x, along_ray), dot(box.y, along_ray), dot(box.z, along_ray))
-    x, y, z = box.half.x, box.half.y, box.half.z
-    u, v, w = abs(t.x), abs(t.y), abs(t.z)
+    h, u, v, w = box.half, abs(t.x), abs(t.y), abs(t.z)
     return (
-        dot(p, t) + x * u + y * v + z * w >= -room
-        and abs(p.y * t.z - p.z * t.y) <= y * w + z * v + room
-        and abs(p.z * t.x - p.x * t.z) <= z * u + x * w + room
-        and abs(p.x * t.y - p.y * t.x) <= x * v + y * u + room
+        dot(p, t) + h.x * u + h.y * v + h.z * w >= -room
+        and abs(p.y * t.z - p.z * t.y) <= h.y * w + h.z * v + room
+        and abs(p.z * t.x - p.x * t.z) <= h.z * u + h.x * w + room
+        and abs(p.x * t.y - p.y * t.x) <= h.x * v + h.y * u + room
     )
 
 

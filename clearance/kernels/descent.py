@@ -16,9 +16,9 @@ from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
 from clearance.kernels.lanes import WIDTH, how_many, lane, least_of
 from clearance.kernels.meeting import NO_MEETING, Meeting, meeting_of
-from clearance.kernels.node_pairs import bounds_of_group, opened, views_of
+from clearance.kernels.node_pairs import bounds_of_group, opened, pair_in_group, views_of
 from clearance.kernels.refine import N_WAITING, NOTHING_REFINED, Refined, put, settle, shed
-from clearance.kernels.scratch import STACK_DEPTH, wait
+from clearance.kernels.scratch import STACK_DEPTH, swap, wait
 from clearance.kernels.surface import box_of, is_leaf
 from clearance.kernels.vec3 import Vec3
 
@@ -68,7 +68,6 @@ def _wait_for_near(a, b, scratch, n_waiting, group, other, is_b, marks, bounds, 
     first = n_waiting
     low = math.inf
     far = math.inf
-    across_is_leaf = is_leaf(a, other) if is_b else is_leaf(b, other)
     for i in range(WIDTH):
         if marks & (1 << i) == 0:
             continue
@@ -76,10 +75,8 @@ def _wait_for_near(a, b, scratch, n_waiting, group, other, is_b, marks, bounds, 
         if bound > cut:
             far = min(far, bound)
             continue
-        node = WIDTH * group + i
-        node_a = other if is_b else node
-        node_b = node if is_b else other
-        if across_is_leaf and (is_leaf(b, node) if is_b else is_leaf(a, node)):
+        node_a, node_b = pair_in_group(is_b, group, i, other)
+        if is_leaf(a, node_a) and is_leaf(b, node_b):
             low = min(low, bound)
             node_a = ~node_a
         else:
@@ -105,15 +102,12 @@ def margin_of(slack):
 @merged
 def _nearest_last(scratch, n_waiting):
     """Puts the nearest of all node pairs that wait last."""
-    nodes, bounds = scratch.nodes, scratch.bounds
-    last = n_waiting - 1
-    nearest = last
-    for k in range(last):
+    bounds = scratch.bounds
+    nearest = n_waiting - 1
+    for k in range(n_waiting - 1):
         if max(0.0, bounds[k]) < max(0.0, bounds[nearest]):
             nearest = k
-    nodes[nearest, 0], nodes[last, 0] = nodes[last, 0], nodes[nearest, 0]
-    nodes[nearest, 1], nodes[last, 1] = nodes[last, 1], nodes[nearest, 1]
-    bounds[nearest], bounds[last] = bounds[last], bounds[nearest]
+    swap(scratch, nearest, n_waiting - 1)
 
 
 @spliced
@@ -154,11 +148,7 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
         fronts.floors[kept] = carried
         n_kept += 1
     if n_waiting > 0:  # nearest last
-        last = n_waiting - 1
-        nodes, bounds = scratch.nodes, scratch.bounds
-        nodes[nearest, 0], nodes[last, 0] = nodes[last, 0], nodes[nearest, 0]
-        nodes[nearest, 1], nodes[last, 1] = nodes[last, 1], nodes[nearest, 1]
-        bounds[nearest], bounds[last] = bounds[last], bounds[nearest]
+        swap(scratch, nearest, n_waiting - 1)
     return n_kept, n_waiting, n_nodes, floor
 
 

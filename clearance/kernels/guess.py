@@ -3,9 +3,9 @@
 import numpy as np
 
 from clearance.jit import merged, spliced
-from clearance.kernels.lanes import WIDTH, lane
-from clearance.kernels.node_pairs import between_centres, opened
-from clearance.kernels.scratch import wait
+from clearance.kernels.lanes import lane
+from clearance.kernels.node_pairs import between_centres, opened, pair_in_group
+from clearance.kernels.scratch import copy, wait
 from clearance.kernels.surface import is_leaf
 
 GUESSES = 12
@@ -19,8 +19,7 @@ def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
         if bound >= scratch.bounds[first]:
             return n_found
         for k in range(first, first + most - 1):
-            scratch.bounds[k] = scratch.bounds[k + 1]
-            scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k + 1, 0], scratch.nodes[k + 1, 1]
+            copy(scratch, k + 1, k)
         n_found -= 1
     return wait(scratch, first + n_found, node_a, node_b, bound, first) - first
 
@@ -29,7 +28,9 @@ def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
 def guess(a, root_a, b, root_b, from_a, from_b, scratch):
     """Lets few pairs of leaves wait over the pair of roots: those whose centres are nearest, level by level.
 
-    They wait as what the front has, since they are met again from the roots. Returns (waiting, node pairs seen).
+    They wait as what the front has, since they are met again from the roots. Their bound is the distance of the
+    centres, which may be too much; a pair that is passed over for it is met there too.
+    Returns (waiting, node pairs seen).
     """
     nodes, bounds = scratch.nodes, scratch.bounds
     n_nodes = 0
@@ -50,12 +51,11 @@ def guess(a, root_a, b, root_b, from_a, from_b, scratch):
                 deeper = True
             for k in range(count):
                 if is_open:
-                    node, near = WIDTH * group + k, lane(found, k)
-                    node_a, node_b = other if is_b else node, node if is_b else other
+                    node_a, node_b = pair_in_group(is_b, group, k, other)
+                    near = lane(found, k)
                 n_next = _among_nearest(scratch, after, n_next, GUESSES, node_a, node_b, near)
         for i in range(n_next):
-            nodes[1 + i, 0], nodes[1 + i, 1] = nodes[after + i, 0], nodes[after + i, 1]
-            bounds[1 + i] = bounds[after + i]
+            copy(scratch, after + i, 1 + i)
         n_found = n_next
     for i in range(1, 1 + n_found):
         nodes[i, 0] = ~nodes[i, 0]

@@ -10,7 +10,7 @@ from clearance.kernels.bounds import (
     opposite,
     sight_along,
 )
-from clearance.kernels.lanes import larger, least_of, square_root
+from clearance.kernels.lanes import WIDTH, larger, least_of, square_root
 from clearance.kernels.surface import box_at, box_of, group_at, is_leaf
 from clearance.kernels.vec3 import Rigid, dot, inverse, move, sub
 
@@ -72,7 +72,7 @@ def between_centres(a, b, from_a, from_b, group, other, is_b):
 
 
 @merged
-def breadth(box):
+def _breadth(box):
     """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
     half = box.half
     return half.x + half.y + half.z - max(half.x, max(half.y, half.z))
@@ -82,7 +82,14 @@ def breadth(box):
 def opened(a, node_a, b, node_b):
     """What is looked at next of a node pair, not both leaves: (is of b, group, how many nodes, node across)."""
     if is_leaf(a, node_a) or (
-        not is_leaf(b, node_b) and breadth(box_of(a, node_a)) < breadth(box_of(b, node_b))
+        not is_leaf(b, node_b) and _breadth(box_of(a, node_a)) < _breadth(box_of(b, node_b))
     ):
         return True, b.children[node_b, 0], b.children[node_b, 1], node_a
     return False, a.children[node_a, 0], a.children[node_a, 1], node_b
+
+
+@merged
+def pair_in_group(is_b, group, k, other):
+    """Node `k` of a group and the node across, that of a first."""
+    node = WIDTH * group + k
+    return (other, node) if is_b else (node, other)

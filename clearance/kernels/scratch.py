@@ -40,12 +40,27 @@ def new_scratch():
 
 
 @merged
+def copy(scratch, i, k):
+    """Lets what waits at place `i` wait at place `k` too."""
+    scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[i, 0], scratch.nodes[i, 1]
+    scratch.bounds[k] = scratch.bounds[i]
+
+
+@merged
+def swap(scratch, i, k):
+    """Lets what waits at two places change them."""
+    nodes, bounds = scratch.nodes, scratch.bounds
+    nodes[i, 0], nodes[k, 0] = nodes[k, 0], nodes[i, 0]
+    nodes[i, 1], nodes[k, 1] = nodes[k, 1], nodes[i, 1]
+    bounds[i], bounds[k] = bounds[k], bounds[i]
+
+
+@merged
 def wait(scratch, n_waiting, node_a, node_b, bound, first):
     """Lets a node pair wait among those from place `first` on, the nearest last; how many wait."""
     k = n_waiting
     while k > first and scratch.bounds[k - 1] < bound:
-        scratch.bounds[k] = scratch.bounds[k - 1]
-        scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[k - 1, 0], scratch.nodes[k - 1, 1]
+        copy(scratch, k - 1, k)
         k -= 1
     scratch.bounds[k] = bound
     scratch.nodes[k, 0], scratch.nodes[k, 1] = node_a, node_b

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel, shared
+from clearance.jit import inlined, kernel
 from clearance.kernels.lanes import WIDTH
 
 OUTWARD = 1.0 + 1e-15
@@ -278,7 +278,6 @@ def _take_part(node, first, last, centres, boxes, room):
         room.boxes[0, i] = boxes[12 * group + i, k]
 
 
-@shared
 def most_groups(n_faces):
     """Groups that a tree over so many faces has at most: one for the root, one a node that is no leaf."""
     return 1 + (2 * n_faces + 1) // 3

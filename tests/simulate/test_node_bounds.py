@@ -65,8 +65,7 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
     """Fills what the search takes as the bound of each node pair, with the group of the one and the other side."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    sight = sight_along(
-        Vec3(0.0, 0.0, 0.0), Vec3(direction[0], direction[1], direction[2]), frames.m)
+    sight = sight_along(Vec3(0.0, 0.0, 0.0), Vec3(direction[0], direction[1], direction[2]), frames.m)
     from_a, from_b = views_along(sight, frames.m)
     for i in range(len(a.children)):
         for j in range(len(b.children)):
