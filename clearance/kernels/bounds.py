@@ -131,6 +131,51 @@ def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
 
 
 @merged
+def _beside(surface, face, other, face_other, m):
+    """(squared distance, where to) of what lies beyond the plane and one edge of a face, seen from its body.
+
+    Args:
+        m: from the frame of the other body to its own.
+    """
+    first, last = other.face_starts[face_other], other.face_starts[face_other + 1]
+    normal = row(surface.normals, face)
+    v = turn_back(m, normal)
+    least, most = math.inf, -math.inf
+    for c in range(first, last):
+        h = dot(v, row(other.vertices, other.face_vertices[c]))
+        least, most = min(least, h), max(most, h)
+    start = surface.face_starts[face]
+    offset = dot(normal, sub(m.t, row(surface.vertices, surface.face_vertices[start])))
+    height = max(0.0, least + offset) + min(0.0, most + offset)
+    farthest, outward = 0.0, normal
+    for e in range(start, surface.face_starts[face + 1]):
+        u = row(surface.corner_normals, e)
+        v = turn_back(m, u)
+        least = math.inf
+        for c in range(first, last):
+            least = min(least, dot(v, row(other.vertices, other.face_vertices[c])))
+        least += dot(u, sub(m.t, row(surface.vertices, surface.face_vertices[e])))
+        if least > farthest:
+            farthest, outward = least, u
+    to = along(Vec3(farthest * outward.x, farthest * outward.y, farthest * outward.z), height, normal)
+    return height * height + farthest * farthest, to
+
+
+@merged
+def sight_beside(a, face_a, b, face_b, from_a, from_b):
+    """A sight in which two faces are probably apart: up from the plane of one and away from its nearest edge.
+
+    Args:
+        from_a, from_b: `a_from_b` and the inverse.
+    """
+    of_a, d = _beside(a, face_a, b, face_b, from_a)
+    of_b, e = _beside(b, face_b, a, face_a, from_b)
+    if of_b > of_a:
+        d = turn(from_a, Vec3(-e.x, -e.y, -e.z))
+    return sight_along(Vec3(0.0, 0.0, 0.0), d, from_a)
+
+
+@merged
 def _reach(surface, root):
     """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
     box = box_of(surface, root)

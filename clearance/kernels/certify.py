@@ -20,6 +20,7 @@ from clearance.kernels.bounds import (
     lower_bound_faces_in_sight,
     rounding_slack,
     sight_along,
+    sight_beside,
 )
 from clearance.kernels.descent import margin_of, nothing_yet
 from clearance.kernels.double_double import frames_of
@@ -34,13 +35,13 @@ from clearance.kernels.face_pair import may_meet, nearest_of_faces
 from clearance.kernels.front import KEPT_DOWN
 from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
-from clearance.kernels.lanes import ALL, WIDTH, lane, larger, least_of
+from clearance.kernels.lanes import WIDTH, lane, larger, marks_within
 from clearance.kernels.meeting import meeting_of
 from clearance.kernels.node_pairs import opened, pair_in_group
 from clearance.kernels.scratch import STACK_DEPTH, Scratch, new_scratch, wait
 from clearance.kernels.surface import box_of, group_of, is_leaf
 from clearance.kernels.sweep import GROWTH
-from clearance.kernels.vec3 import Vec3, rigid
+from clearance.kernels.vec3 import Vec3, inverse, rigid
 
 DEPTH = 64
 """Parts of an interval that can wait, one a halving; after 52 the ends cannot be told apart."""
@@ -127,7 +128,7 @@ class Held(NamedTuple):
 def _node_floors(p, q, m, sight, slack, drift, target):
     """[m] lower bounds on the distances of boxes in lanes over the interval."""
     in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack - drift_of_box_along(p, sight.u, drift)
-    if least_of(in_sight, ALL) >= target:
+    if marks_within(in_sight, target) == 0:
         return in_sight
     apart = lower_bound_boxes(p, q, m, slack) - slack
     return larger(in_sight, apart - drift_of_box(p, drift))
@@ -158,6 +159,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
     `a` and `b` are surfaces in which every face owns all its features, so that a face pair is seen whole.
     """
     m = frames.m
+    m_back = inverse(m)
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = CHAIN_SLACK * rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
@@ -185,6 +187,10 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             bound = max(bound, _face_floor(a, face_a, b, face_b, sight, slack, drift))
+            if bound < target:
+                beside = sight_beside(a, face_a, b, face_b, m, m_back)
+                apart = _face_floor(a, face_a, b, face_b, beside, slack, drift)
+                bound = max(bound, apart) if apart > 0.0 else bound  # what may touch is told by exact signs below
             if bound < target:
                 tally[3] += 1
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best

@@ -14,7 +14,7 @@ from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sig
 from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_faces
 from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
-from clearance.kernels.lanes import WIDTH, how_many, lane, least_of
+from clearance.kernels.lanes import WIDTH, first_of, how_many, lane, least_of, marks_within
 from clearance.kernels.meeting import NO_MEETING, Meeting, meeting_of
 from clearance.kernels.node_pairs import bounds_of_group, opened, pair_in_group, views_of
 from clearance.kernels.refine import N_WAITING, NOTHING_REFINED, Refined, put, settle, shed
@@ -62,19 +62,14 @@ def _wait_for_near(a, b, scratch, n_waiting, group, other, is_b, marks, bounds, 
     Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. Returns
     (waiting, marks that stay, the least bound of those, that of those which do not wait).
     """
-    least = least_of(bounds, marks)
-    if least > cut:
-        return n_waiting, marks, least, least
+    near = marks & marks_within(bounds, cut)
+    far = least_of(bounds, marks ^ near)
     first = n_waiting
     low = math.inf
-    far = math.inf
-    for i in range(WIDTH):
-        if marks & (1 << i) == 0:
-            continue
+    while near:
+        i = first_of(near)
+        near &= near - 1
         bound = lane(bounds, i)
-        if bound > cut:
-            far = min(far, bound)
-            continue
         node_a, node_b = pair_in_group(is_b, group, i, other)
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             low = min(low, bound)

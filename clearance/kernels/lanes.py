@@ -144,6 +144,27 @@ def _lanes_at(typing_context, array, row):
 
 
 @intrinsic
+def _number_at(typing_context, array, row, place):
+    def emit(context, builder, signature, values):
+        first = context.make_array(signature.args[0])(context, builder, values[0]).data
+        index = builder.add(builder.mul(values[1], values[1].type(WIDTH)), values[2])
+        number = builder.load(cgutils.gep_inbounds(builder, first, index))
+        return number if number.type == ir.DoubleType() else builder.fpext(number, ir.DoubleType())
+
+    return types.float64(array, types.intp, types.intp), emit
+
+
+@intrinsic
+def _marks_within(typing_context, lanes, most):
+    def emit(context, builder, signature, values):
+        lanes, most = (_vector(builder, *each) for each in zip(signature.args, values, strict=True))
+        within = builder.fcmp_ordered("<=", lanes, most)
+        return builder.zext(builder.bitcast(within, ir.IntType(WIDTH)), ir.IntType(64))
+
+    return types.int64(lanes, types.float64), emit
+
+
+@intrinsic
 def _lane(typing_context, lanes, place):
     def emit(context, builder, signature, values):
         return builder.extract_element(values[0], values[1])
@@ -169,17 +190,34 @@ if numba.config.DISABLE_JIT:
         """Row `row` of an (n, 4) array of float32 or float64 that lies in one piece."""
         return array[row].astype(np.float64)
 
+    def number_at(array, row, place):
+        """One of the four of `lanes_at`."""
+        return float(array[row, place])
+
+    def marks_within(lanes, most):
+        """Bits of the lanes that are at most `most`."""
+        return int((lanes <= most) @ (1 << np.arange(WIDTH)))
+
     def lane(lanes, place):
         """One of the four."""
         return lanes[place]
 else:
-    square_root, larger, where_positive, lanes_at, lane = _square_root, _larger, _where_positive, _lanes_at, _lane
+    square_root, larger, where_positive, marks_within = _square_root, _larger, _where_positive, _marks_within
+    lanes_at, number_at, lane = _lanes_at, _number_at, _lane
 
 
 @merged
 def how_many(marks):
     """How many bits are set."""
     return (marks & 1) + (marks >> 1 & 1) + (marks >> 2 & 1) + (marks >> 3 & 1)
+
+
+@merged
+def first_of(marks):
+    """The first lane whose bit is set, of marks that are not 0."""
+    if marks & 3:
+        return 0 if marks & 1 else 1
+    return 2 if marks & 4 else 3
 
 
 @merged

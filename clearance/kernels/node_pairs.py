@@ -10,7 +10,7 @@ from clearance.kernels.bounds import (
     opposite,
     sight_along,
 )
-from clearance.kernels.lanes import WIDTH, larger, least_of, square_root
+from clearance.kernels.lanes import WIDTH, larger, marks_within, square_root
 from clearance.kernels.surface import box_at, box_of, group_at, is_leaf
 from clearance.kernels.vec3 import Rigid, dot, inverse, move, sub
 
@@ -58,7 +58,7 @@ def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
     """
     p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
     in_sight = lower_bound_boxes_in_sight(p, q, view.sight) - slack
-    if least_of(in_sight, marks) > cut:
+    if marks & marks_within(in_sight, cut) == 0:
         return in_sight
     return larger(in_sight, lower_bound_boxes(p, q, view.m, slack))
 

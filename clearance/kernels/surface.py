@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import merged
-from clearance.kernels.lanes import WIDTH, lanes_at
+from clearance.kernels.lanes import WIDTH, lanes_at, number_at
 from clearance.kernels.vec3 import Vec3, along
 
 
@@ -83,8 +83,7 @@ class Box(NamedTuple):
 
 @merged
 def _point_at(numbers, first, k):
-    x, y, z = numbers[first, k], numbers[first + 1, k], numbers[first + 2, k]
-    return Vec3(np.float64(x), np.float64(y), np.float64(z))
+    return Vec3(number_at(numbers, first, k), number_at(numbers, first + 1, k), number_at(numbers, first + 2, k))
 
 
 @merged

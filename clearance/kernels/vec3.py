@@ -5,6 +5,10 @@ Not for: arrays of points (numpy) and poses as users give them (room `geometry.p
 
 from typing import NamedTuple
 
+import numba
+from numba.core import cgutils, types
+from numba.extending import intrinsic
+
 from clearance.jit import merged
 
 
@@ -71,9 +75,30 @@ def gap_sq(a, b):
 
 
 @merged
-def row(array, i):
-    """Row `i` of an (n, 3) array."""
+def _row_checked(array, i):
     return Vec3(array[i, 0], array[i, 1], array[i, 2])
+
+
+@intrinsic
+def _row(typing_context, array, i):
+    place = types.NamedUniTuple(array.dtype, 3, Vec3)
+    if array.layout != "C":
+        raise TypeError(f"{array} does not lie in one piece")
+
+    def emit(context, builder, signature, values):
+        first = context.make_array(array)(context, builder, values[0]).data
+        index = builder.mul(values[1], values[1].type(3), flags=["nsw"])
+        numbers = [
+            builder.load(cgutils.gep_inbounds(builder, first, builder.add(index, index.type(k), flags=["nsw"])))
+            for k in range(3)
+        ]
+        return context.make_tuple(builder, place, numbers)
+
+    return place(array, types.intp), emit
+
+
+row = _row_checked if numba.config.DISABLE_JIT or numba.config.BOUNDSCHECK else _row
+"""`row(array, i)`: row `i`, from 0, of an (n, 3) array."""
 
 
 @merged
