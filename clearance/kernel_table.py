@@ -13,9 +13,12 @@ Beside each address stands a stamp of the types it was compiled for, so that no 
 
 from __future__ import annotations
 
+import subprocess
 import threading
+import time
 import zlib
 from collections.abc import Callable
+from pathlib import Path
 
 import numba
 import numpy as np
@@ -31,6 +34,10 @@ REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS = 
 _table = np.zeros((7, 2), dtype=np.int64)  # address, stamp
 _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
+_elsewhere: list[subprocess.Popen] = []
+
+_PATIENCE = 0.02
+"""[s] How often to look whether another process has compiled a kernel."""
 
 
 def table_like() -> np.ndarray:
@@ -76,10 +83,25 @@ def call(function: Callable, *args: object) -> object:
             if place == compiled:
                 raise TypeError(f"{_apart[place][0]} is called with other types than `like` says") from None
             compiled = place
-            _compile(place)
+            compile_kernel(place)
 
 
-def _compile(place: int) -> None:
+def is_kept(place: int) -> bool:
+    """True if the kernel lies compiled in the cache, for this processor and interpreter or others."""
+    function, _ = _apart[place]
+    name = function.py_func.__name__
+    return any(Path(function.stats.cache_path).glob(f"*.{name}-*.nbc"))  # written last
+
+
+def await_from(process: subprocess.Popen) -> None:
+    """Lets kernels that are not kept come from another process as long as it runs."""
+    _elsewhere[:] = [process]
+
+
+def compile_kernel(place: int) -> None:
+    """Compiles the kernel of a place, or takes it from the cache, and writes its address down."""
+    while not is_kept(place) and any(process.poll() is None for process in _elsewhere):
+        time.sleep(_PATIENCE)
     function, like = _apart[place]
     argument_types = tuple(_type_of(argument) for argument in like())
     with _compiling:

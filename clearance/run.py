@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput
-from clearance.simulate.certify import certify_motion
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import NEEDS, Measurement, Progress, measure
 from clearance.simulate.parts import blocks
@@ -153,6 +152,8 @@ def check(
         found = measure(case, motions, pairs, need, jobs=jobs, progress=progress, kept=kept)
     certificate = None
     if certify:
+        from clearance.simulate.certify import certify_motion
+
         certificate = certify_motion(
             case, motions, pairs, found, certify_gap, jobs=jobs, progress=progress, kept=kept
         )

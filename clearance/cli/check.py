@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,6 +76,7 @@ def check(
 
     require_folder_place(out)
     require_file_place(junit)
+    _compile_ahead(quiet)
     case = load_case(case_file)
     limits = _limits(case.limits, fail_mm, warn_mm)
     from clearance.cli.kept import kept_rows
@@ -101,6 +103,14 @@ def check(
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return _exit_code(run)
+
+
+def _compile_ahead(quiet: bool) -> None:
+    """Begins to compile what this machine has not yet, and says so in a terminal."""
+    from clearance import ahead
+
+    if ahead.start() and not quiet and sys.stderr.isatty():
+        click.echo("compiling for this machine, once: about half a minute", err=True)
 
 
 def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits | None:

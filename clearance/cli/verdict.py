@@ -7,6 +7,7 @@ terminal.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
@@ -19,7 +20,7 @@ from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.profiles import gap_text, plane_text
 from clearance.report.wording import certified_text, contact_text, count, limit_mm, mm, seconds
 from clearance.run import Run
-from clearance.simulate.record import CrossCheck, Disagreement, ProfileAnswer, Record
+from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, ProfileAnswer, Record
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
 _LEVELS = {"contact": "contact", "below_fail": "below fail", "below_warn": "below warn"}
@@ -48,8 +49,9 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines += _deepest(record)
-    if record.pair_minima:
-        lines.append(_pair_table(record))
+    nearest = record.pair_minima[:_MOST_PAIRS]
+    if nearest:
+        lines.append(_pair_table(nearest))
     lines += [_row("profile", _profile_text(answer)) for answer in record.profiles]
     if record.certificate is not None:
         lines.append(_row("certified", certified_text(summary_of(record)["certified"])))
@@ -106,13 +108,13 @@ def _interval_text(record: Record, level: str) -> str:
     return f"{count(n_steps, 'step')}: {', '.join(times)}{tail}"
 
 
-def _pair_table(record: Record) -> Table:
+def _pair_table(nearest: Sequence[PairMinimum]) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 2))
     table.add_column("  closest pairs: link")
     table.add_column("obstacle")
     for name in ("clearance mm", "step", "time s"):
         table.add_column(name, justify="right")
-    for pair in record.pair_minima[:_MOST_PAIRS]:
+    for pair in nearest:
         cells = (
             f"  {pair.link}",
             pair.obstacle,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.geometry.edges import distinct_vertices, edge_use, rings_of, twins
+from clearance.geometry.edges import distinct_vertices, edge_keys, edge_use, rings_of, twins
 from clearance.kernels import coplanar as kernels
 from clearance.kernels.topology import joined_labels
 
@@ -144,12 +144,15 @@ def _without_covered_needles(points: np.ndarray, faces: _Faces) -> _Faces:
     """Leaves out needles whose longest edge is an edge of a proper face that is not their only neighbour."""
     proper = np.repeat(faces.axes != kernels.DEGENERATE, np.diff(faces.starts))
     tails, heads = faces.ends()
-    edges = {frozenset(pair) for pair in zip(tails[proper].tolist(), heads[proper].tolist(), strict=True)}
-    keep = np.ones(len(faces.axes), dtype=bool)
-    for i in np.flatnonzero(faces.axes == kernels.DEGENERATE):
+    needles = np.flatnonzero(faces.axes == kernels.DEGENERATE)
+    longest = np.empty((len(needles), 2), dtype=np.int64)
+    for k, i in enumerate(needles):
         corners = faces.flat[faces.starts[i] : faces.starts[i + 1]]
         spread = np.abs(points[corners][:, None] - points[corners][None]).max(axis=2)
-        keep[i] = frozenset(corners[list(np.unravel_index(spread.argmax(), spread.shape))].tolist()) not in edges
+        longest[k] = corners[list(np.unravel_index(spread.argmax(), spread.shape))]
+    edges = edge_keys(tails[proper], heads[proper], len(points))
+    keep = np.ones(len(faces.axes), dtype=bool)
+    keep[needles] = ~np.isin(edge_keys(*longest.T, len(points)), edges)
     return _selected(faces, keep)
 
 

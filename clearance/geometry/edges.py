@@ -79,10 +79,14 @@ class EdgeUse(NamedTuple):
         return np.add.reduceat(np.where(self.forward, 1, -1), self.starts[:-1])
 
 
+def edge_keys(tails: np.ndarray, heads: np.ndarray, n_vertices: int) -> np.ndarray:
+    """(n,) the number of the edge under each half-edge from `tails` to `heads` (n,)."""
+    return np.minimum(tails, heads) * n_vertices + np.maximum(tails, heads)
+
+
 def edge_use(tails: np.ndarray, heads: np.ndarray) -> EdgeUse:
     """Groups half-edges from `tails` to `heads` (n,) by the edge they run along."""
-    low, high = np.minimum(tails, heads), np.maximum(tails, heads)
-    keys = low * (int(high.max()) + 1) + high
+    keys = edge_keys(tails, heads, int(max(tails.max(), heads.max())) + 1)
     order = np.argsort(keys, kind="stable")
     ordered = keys[order]
     new = np.flatnonzero(ordered[1:] != ordered[:-1]) + 1

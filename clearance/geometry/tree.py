@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.geometry.edges import rings_of
+from clearance.geometry.edges import edge_keys, rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.face_planes import face_planes
 from clearance.kernels.lanes import WIDTH
@@ -112,9 +112,10 @@ def _build(shape: Polyhedron) -> Surface:
     normals, blunt, width = np.empty((shape.n_faces, 3)), np.empty(shape.n_faces), np.empty(shape.n_faces)
     bent = np.empty(shape.n_faces, dtype=np.bool_)
     face_planes(vertices, starts, corners, normals, blunt, width, bent)
-    owned_vertices, vertex_starts = _owned(corners, ring.face, shape.n_faces)
+    first_corners, vertex_starts = _owned(corners, ring.face, shape.n_faces)
     edges = np.stack([corners, corners[ring.ahead]], axis=1)
-    owned_edges, edge_starts = _owned(np.sort(edges, axis=1), ring.face, shape.n_faces)
+    first_uses, edge_starts = _owned(edge_keys(*edges.T, len(vertices)), ring.face, shape.n_faces)
+    owned_edges = np.sort(edges[first_uses], axis=1)
     centres, boxes, children = _tree(vertices[corners], starts)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
@@ -129,7 +130,7 @@ def _build(shape: Polyhedron) -> Surface:
         bent=bent,
         corner_normals=_corner_normals(vertices, edges, normals[ring.face]),
         vertex_starts=vertex_starts,
-        owned_vertices=owned_vertices,
+        owned_vertices=corners[first_corners],
         edge_starts=edge_starts,
         owned_edges=owned_edges,
         centres=centres,
@@ -155,14 +156,12 @@ def _corner_normals(vertices: np.ndarray, edges: np.ndarray, normals: np.ndarray
     return _unit(np.cross(vertices[edges[:, 1]] - vertices[edges[:, 0]], normals))
 
 
-def _owned(
-    features: np.ndarray, face_of_corner: np.ndarray, n_faces: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """The distinct features (vertices or edges), each under the first face that holds it, and their starts."""
-    _, first = np.unique(features, axis=0, return_index=True)
+def _owned(features: np.ndarray, face_of_corner: np.ndarray, n_faces: int) -> tuple[np.ndarray, np.ndarray]:
+    """The corners where features (vertices or edges, by number) first occur, and where each face's begin."""
+    _, first = np.unique(features, return_index=True)
     first.sort()
     counts = np.bincount(face_of_corner[first], minlength=n_faces)
-    return np.ascontiguousarray(features[first]), np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    return first, np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
 
 
 def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, ...]:

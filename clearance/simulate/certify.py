@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.ahead import usable_cores
 from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
 from clearance.kernel_table import call
@@ -19,7 +20,7 @@ from clearance.kernels.joint_path import JointPath
 from clearance.kernels.surface import Surface
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
-from clearance.simulate.parts import in_order, parts, usable_cores
+from clearance.simulate.parts import in_order, parts
 from clearance.simulate.record import Certificate
 from clearance.simulate.spool import Rows
 from clearance.world.case import Case

@@ -15,10 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.ahead import usable_cores
 from clearance.kernel_table import call
 from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
 from clearance.simulate.layout import Layout, lay_out
-from clearance.simulate.parts import blocks, in_order, parts, usable_cores
+from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.spool import Rows
 from clearance.world.case import Case
 from clearance.world.motion import Motion
@@ -62,8 +63,8 @@ class Measurement:
         pair: (n,) index of the pair that attains it, or -1.
         points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
         tally: counters by name.
-        find_minima: the least clearance of each pair; not measured until it is called. None if it was not
-            asked for.
+        find_minima: the least clearance of each pair, or of those that come nearest, of which there are at
+            least so many; not measured until it is called. None if it was not asked for.
         every: (n, p) [m] the clearance of each pair at each step, if that was asked for.
         may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).
     """
@@ -73,7 +74,7 @@ class Measurement:
     pair: np.ndarray
     points: np.ndarray
     tally: dict[str, int]
-    find_minima: Callable[[], Minima] | None
+    find_minima: Callable[[int | None], Minima] | None
     every: np.ndarray | None = None
     may_cut_pairs: bool = False
 
@@ -224,12 +225,12 @@ def measure(
     if need == "limit":
         return _within_limit(work, case.limits.warn)
     rows = work.step_rows("steps", range(work.n_steps))
-    return _measurement(work, rows, lambda: _pair_minima(work.quiet))
+    return _measurement(work, rows, lambda most: _pair_minima(work.quiet, most))
 
 
 def _every_pair(work: _Sweep) -> Measurement:
     rows, every, minima = work.every_row("pairs", range(work.n_steps))
-    return _measurement(work, rows, lambda: minima, every=every)
+    return _measurement(work, rows, lambda most: minima, every=every)
 
 
 def _minimum(work: _Sweep) -> Measurement:
@@ -253,11 +254,17 @@ def _within_limit(work: _Sweep, limit: float) -> Measurement:
     return least
 
 
-def _pair_minima(work: _Sweep) -> Minima:
-    """The least of each pair: a first look at few steps, then only what could be nearer."""
+def _pair_minima(work: _Sweep, most: int | None) -> Minima:
+    """The least of each pair: a first look at few steps, then only what could be nearer.
+
+    If only the nearest pairs are wanted, what is not seen nearer than so many of them is left out.
+    """
     infinite = np.full(work.n_pairs, np.inf)
-    seen = work.aside.least_rows("first", _first_steps(work.n_steps), infinite)
-    return work.least_rows("minima", range(work.n_steps), seen.clearance * NOT_LESS)
+    seen = work.aside.least_rows("first", _first_steps(work.n_steps), infinite).clearance
+    if most is None or most >= work.n_pairs:
+        return work.least_rows("minima", range(work.n_steps), seen * NOT_LESS)
+    within = np.minimum(seen, np.partition(seen, most - 1)[most - 1]) * NOT_LESS
+    return work.aside.least_rows("nearest", range(work.n_steps), within)
 
 
 def _first_least(work: _Sweep) -> float:
@@ -274,7 +281,7 @@ def _first_steps(n_steps: int) -> np.ndarray:
 def _measurement(
     work: _Sweep,
     rows: KeptRows,
-    find_minima: Callable[[], Minima] | None,
+    find_minima: Callable[[int | None], Minima] | None,
     every: np.ndarray | None = None,
 ) -> Measurement:
     for block in blocks(work.n_steps):

@@ -59,7 +59,7 @@ def measure_paper(
         winner,
         points,
         dict(tally),
-        lambda: minima,
+        lambda most: minima,
         may_cut_pairs=True,
     )
 

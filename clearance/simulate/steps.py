@@ -113,7 +113,7 @@ def _contact_columns(block: slice, contacts: Sequence[StepContact]) -> dict[str,
 class PairMinima(Sequence[PairMinimum]):
     """The least clearance of every pair over the run, least first, found when first looked at.
 
-    Empty if less was asked for. Ties are in the order of the pairs.
+    Empty if less was asked for. Ties are in the order of the pairs. Of the first few nothing else is measured.
     """
 
     def __init__(
@@ -127,14 +127,20 @@ class PairMinima(Sequence[PairMinimum]):
         return len(self._rows)
 
     def __getitem__(self, index: int | slice) -> PairMinimum | tuple[PairMinimum, ...]:
+        if "_rows" not in self.__dict__ and isinstance(index, slice):
+            if (index.start, index.step) == (None, None) and index.stop is not None and index.stop > 0:
+                return self._found(index.stop)[index]
         return self._rows[index]
 
     @cached_property
     def _rows(self) -> tuple[PairMinimum, ...]:
+        return self._found(None)
+
+    def _found(self, most: int | None) -> tuple[PairMinimum, ...]:
         if self._find is None:
             return ()
         links, obstacles = self._names
-        found = self._find()
+        found = self._find(most)
         return tuple(
             PairMinimum(
                 link=links[i],
@@ -160,7 +166,7 @@ def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> lis
     if not found.may_cut_pairs:
         return []
     links, obstacles = pair_names(case, pairs)
-    cut = np.flatnonzero(np.isinf(found.find_minima().clearance))
+    cut = np.flatnonzero(np.isinf(found.find_minima(None).clearance))
     reason = "the paper's rules cut every polygon pair at every step"
     return [Unmeasured(links[i], obstacles[i], reason) for i in cut]
 

@@ -1,0 +1,58 @@
+"""Compiles the search in a process of its own while this one still reads its input: the first run on a machine.
+
+The compiler takes one function at a time in a process, which leaves all cores but one idle for half a minute. The
+second process fills the cache; who comes to a kernel that it is busy with waits for it (`kernel_table`). Two that
+start at once, as tests do, take turns. Not for: what is compiled later, or only where a scene needs it.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import subprocess
+import sys
+
+import numba
+
+import clearance.kernels.body_pair  # noqa: F401 it enters both into the table
+from clearance import kernel_table
+from clearance.jit import cache_root
+from clearance.kernel_table import REFINE, SEARCH
+
+FIRST = (SEARCH, REFINE)
+"""What every question about distances needs, in the order in which it is come to."""
+
+
+def start() -> bool:
+    """Begins to compile what is not kept from an earlier run; True if anything has to be."""
+    if numba.config.DISABLE_JIT or all(map(kernel_table.is_kept, FIRST)):
+        return False
+    if usable_cores() > 1 and sys.executable:
+        command = [sys.executable, "-m", "clearance.ahead"]
+        none = subprocess.DEVNULL
+        process = subprocess.Popen(command, stdin=none, stdout=none, stderr=none)
+        atexit.register(process.terminate)
+        kernel_table.await_from(process)
+    return True
+
+
+def usable_cores() -> int:
+    """The cores that this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def main() -> None:
+    """The second process: compiles into the cache, after any other that does."""
+    import fcntl
+
+    cache_root().mkdir(parents=True, exist_ok=True)
+    with open(cache_root() / "ahead.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for place in FIRST:
+            kernel_table.compile_kernel(place)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,61 @@
+"""What a second process compiles ahead: taken by the first, never waited for in vain."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import pytest
+
+from clearance import ahead
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled here")
+
+FROM_A_SECOND_PROCESS = """
+import json
+from clearance import ahead, kernel_table
+from clearance.kernels import body_pair, refine
+told = {"kept": [kernel_table.is_kept(place) for place in ahead.FIRST], "first": ahead.start()}
+for place in ahead.FIRST:
+    kernel_table.compile_kernel(place)
+told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, refine.refine)]
+told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, refine.refine)]
+told["again"] = ahead.start()
+print(json.dumps(told))
+"""
+
+FROM_ONE_THAT_ENDS = """
+import json, subprocess, sys
+from clearance import kernel_table
+from clearance.kernels import containment
+kernel_table.await_from(subprocess.Popen([sys.executable, "-c", ""]))
+kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
+print(json.dumps(sum(containment.winding_number.stats.cache_misses.values())))
+"""
+
+
+def told_by(script, cache):
+    """What a script prints in a process of its own with an empty cache."""
+    settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(cache)}
+    done = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    return json.loads(done.stdout)
+
+
+@pytest.mark.skipif(ahead.usable_cores() < 2, reason="one core: nothing is compiled ahead")
+def test_what_the_second_process_compiles_is_taken_and_not_made_again(tmp_path):
+    told = told_by(FROM_A_SECOND_PROCESS, tmp_path)
+    assert told["kept"] == [False, False]
+    assert told["first"] and not told["again"]
+    assert told["taken"] == [1, 1]
+    assert told["made"] == [0, 0]
+
+
+def test_a_process_that_ends_without_it_is_not_waited_for(tmp_path):
+    assert told_by(FROM_ONE_THAT_ENDS, tmp_path) == 1
