@@ -8,6 +8,7 @@ start at once, as tests do, take turns. Not for: what is compiled later, or only
 from __future__ import annotations
 
 import atexit
+import functools
 import os
 import subprocess
 import sys
@@ -23,8 +24,9 @@ FIRST = (SEARCH, REFINE)
 """What every question about distances needs, in the order in which it is come to."""
 
 
+@functools.cache
 def start() -> bool:
-    """Begins to compile what is not kept from an earlier run; True if anything has to be."""
+    """Begins to compile what is not kept from an earlier run, at the first call; True if anything has to be."""
     if numba.config.DISABLE_JIT or all(map(kernel_table.is_kept, FIRST)):
         return False
     if usable_cores() > 1 and sys.executable:

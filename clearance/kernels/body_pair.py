@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel, spliced
-from clearance.kernel_table import SEARCH, Lent, apart, at_address, borrow, lend, table_like
+from clearance.jit import inlined, spliced
+from clearance.kernel_table import SEARCH, Lent, apart, at_address, borrow, table_like
 from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.common_point import common_point_of
 from clearance.kernels.containment import contained
@@ -13,7 +13,6 @@ from clearance.kernels.descent import Tally, descend, margin_of, nothing_yet
 from clearance.kernels.double_double import (
     FRAMES_AT_REST,
     Wide3,
-    frames_of,
     plus3,
     rounded,
     wide,
@@ -23,7 +22,7 @@ from clearance.kernels.front import forget, no_fronts
 from clearance.kernels.refine import error_of
 from clearance.kernels.scratch import new_scratch
 from clearance.kernels.surface import surface_like
-from clearance.kernels.vec3 import Vec3, move, rigid
+from clearance.kernels.vec3 import Vec3, move
 
 NO_FACE = -1
 
@@ -158,11 +157,3 @@ def measure_pair(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, mo
         NOTHING_MEASURED,
         (lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table),
     )
-
-
-@kernel
-def nearest_bodies(a, b, world_from_a, world_from_b, table):
-    """The nearest points of two bodies at given (4, 4) poses, in the world."""
-    frames = frames_of(rigid(world_from_a), rigid(world_from_b))
-    asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
-    return measure_pair(lend(a), 0, lend(b), 0, frames, asked, no_fronts(1, 0), 0, 0.0, new_scratch(), table)

@@ -17,7 +17,7 @@ from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, rounding_slack
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, no_fronts
-from clearance.kernels.scratch import new_scratch
+from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
 ROOM = 2 * LONGEST + 16
@@ -78,18 +78,16 @@ if not numba.config.DISABLE_JIT:
 
 @inlined
 def _breadth(surface):
-    """[m] the greatest extent of a body along an axis of its frame."""
-    most = 0.0
-    for axis in range(3):
-        most = max(most, surface.vertices[:, axis].max() - surface.vertices[:, axis].min())
-    return most
+    """[m] the greatest extent of a body along an axis of its box."""
+    half = box_of(surface, surface.roots[0]).half
+    return 2.0 * max(half.x, max(half.y, half.z))
 
 
 @kernel
-def hold_pair(a, b):
-    """A pair of surfaces of which nothing is known yet."""
+def hold_pair(a, b, room, scratch):
+    """A pair of surfaces of which nothing is known yet, with room for a front of so many node pairs."""
     return HeldPair(
-        a, b, new_scratch(), no_fronts(1, ROOM), np.zeros((2, 4, 4)), np.array([NO_FACE, NO_FACE]),
+        a, b, scratch, no_fronts(1, room), np.zeros((2, 4, 4)), np.array([NO_FACE, NO_FACE]),
         np.array([0.0, -np.inf, FAR * min(_breadth(a), _breadth(b))]),
     )  # fmt: skip
 
@@ -151,12 +149,13 @@ def _measure(held, pose_a, pose_b, table):
 
 
 @kernel
-def nearest_at_poses(held, poses_a, poses_b, checked, numbers, points, counts, table):
+def nearest_at_poses(held, poses_a, poses_b, checked, afresh, numbers, points, counts, table):
     """Fills a row for each pose and returns -1, or nothing and the first row with a pose that is in doubt.
 
     Args:
         poses_a, poses_b: (n, 4, 4) `world_from_body` [m]; (1, 4, 4) for a body that stands.
         checked: True if no pose is to be doubted.
+        afresh: True if nothing is to be taken from what was asked before.
         numbers: (n, 2) [m] distance, error bound.
         points: (n, 2, 3) [m] witness points in the world.
         counts: (n, 5) faces of a and b, then nodes, faces and exact decisions that it took.
@@ -166,6 +165,8 @@ def nearest_at_poses(held, poses_a, poses_b, checked, numbers, points, counts, t
         if not (_is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])):
             return i
     for i in range(len(numbers)):
+        if afresh:
+            held.carried[FLOOR] = -np.inf
         measured = _measure(held, poses_a[min(i, last_a)], poses_b[min(i, last_b)], table)
         hit, tally = measured.hit, measured.tally
         numbers[i, 0], numbers[i, 1] = np.sqrt(hit.gap_sq), measured.error

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, NotFinite
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
-from clearance.geometry.tree import surface_of
 from clearance.kernel_table import call
-from clearance.kernels.body_pair import nearest_bodies
 from clearance.kernels.polygon_pair import Answers, nearest_polygons
+from clearance.query.one_pair import room_for
 from clearance.query.paper import distance_paper, polygon_distance_paper
 from clearance.query.result import Nearest
-from clearance.tolerance import LARGEST, ROTATION
 
 METHODS = ("exact", "paper")
-
-_STILL = np.eye(4)
 
 
 def distance(
@@ -44,25 +38,10 @@ def distance(
         wholly inside a closed one, is contact.
     Ties: the least face indices.
     """
-    world_from_a, world_from_b = _pose(pose_a), _pose(pose_b)
     if _checked(method) == "paper":
-        return distance_paper(a, b, world_from_a, world_from_b)
-    found = call(nearest_bodies, surface_of(a), surface_of(b), world_from_a, world_from_b)
-    hit = found.hit
-    return Nearest(
-        distance=math.sqrt(hit.gap_sq),
-        point_a=np.array(hit.p),
-        point_b=np.array(hit.q),
-        face_a=int(hit.face_a),
-        face_b=int(hit.face_b),
-        contact=bool(hit.gap_sq == 0.0),
-        error_bound=float(found.error),
-        tally={
-            "nodes": int(found.tally.nodes),
-            "polygons": int(found.tally.faces),
-            "exact_decisions": int(found.tally.exact_decisions),
-        },
-    )
+        poses = [np.eye(4) if pose is None else validated_pose(pose) for pose in (pose_a, pose_b)]
+        return distance_paper(a, b, *poses)
+    return room_for(a, b).nearest(pose_a, pose_b)
 
 
 def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> Nearest:
@@ -107,33 +86,6 @@ def _measured(ps: np.ndarray, qs: np.ndarray) -> Answers:
     answers = Answers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
     call(nearest_polygons, ps, qs, answers)
     return answers
-
-
-def _pose(pose: np.ndarray | None) -> np.ndarray:
-    """The pose if it is a rigid motion; the usual form is checked in 3 µs, anything else by `validated_pose`."""
-    if pose is None:
-        return _STILL
-    usual = type(pose) is np.ndarray and pose.dtype == np.float64 and pose.shape == (4, 4)
-    if usual and pose.flags.c_contiguous and _is_rigid(pose.tolist()):
-        return pose
-    return validated_pose(pose)
-
-
-def _is_rigid(rows: list[list[float]]) -> bool:
-    """True if the pose is rigid by plain floats, to half of what is allowed; never for NaN."""
-    (a, b, c, x), (d, e, f, y), (g, h, i, z), last = rows
-    near = 0.5 * ROTATION
-    return (
-        last == [0.0, 0.0, 0.0, 1.0]
-        and abs(x) + abs(y) + abs(z) <= LARGEST
-        and abs(a * a + d * d + g * g - 1.0) <= near
-        and abs(b * b + e * e + h * h - 1.0) <= near
-        and abs(c * c + f * f + i * i - 1.0) <= near
-        and abs(a * b + d * e + g * h) <= near
-        and abs(a * c + d * f + g * i) <= near
-        and abs(b * c + e * f + h * i) <= near
-        and a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) > 0.0
-    )
 
 
 def _polygons(points: np.ndarray, n_dimensions: int) -> np.ndarray:

@@ -13,12 +13,11 @@ import numpy as np
 from clearance.errors import BadShape, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
-from clearance.geometry.tree import surface_of
 from clearance.kernel_table import call
-from clearance.kernels.pair_query import hold_pair, nearest_at_poses
+from clearance.kernels.pair_query import nearest_at_poses
+from clearance.kernels.scratch import new_scratch
+from clearance.query.one_pair import OnePair, answer_rows
 from clearance.query.result import Nearest
-
-_AT_REST = np.eye(4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +50,7 @@ class Query:
     def __init__(self, a: Polyhedron, b: Polyhedron) -> None:
         self.a, self.b = a, b
         self._lock = threading.Lock()
-        self._held = hold_pair(surface_of(a), surface_of(b))
-        poses, rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), _rows(1)
-        self._asked = (self._held, *poses, False, *rows)
-        (self._pose_a,), (self._pose_b,) = poses
-        (self._number,), (self._point,), (self._count,) = rows
+        self._pair = OnePair(a, b, new_scratch(), goes_on=True)
 
     def distance(
         self, world_from_a: np.ndarray | None = None, world_from_b: np.ndarray | None = None
@@ -70,18 +65,8 @@ class Query:
 
         Exactness, Ties: as `distance`.
         """
-        pose_a, pose_b = _pose(world_from_a), _pose(world_from_b)
         with self._lock:
-            self._pose_a[...], self._pose_b[...] = pose_a, pose_b
-            if call(nearest_at_poses, *self._asked) >= 0:
-                validated_pose(pose_a), validated_pose(pose_b)
-                call(nearest_at_poses, *self._asked[:3], True, *self._asked[4:])
-            (distance, error), points = self._number.tolist(), self._point.copy()
-            face_a, face_b, n_nodes, n_faces, n_exact = self._count.tolist()
-        return Nearest(
-            distance, points[0], points[1], face_a, face_b, distance == 0.0, error,
-            {"nodes": n_nodes, "polygons": n_faces, "exact_decisions": n_exact},
-        )  # fmt: skip
+            return self._pair.nearest(world_from_a, world_from_b)
 
     def distances(
         self, worlds_from_a: np.ndarray | None = None, worlds_from_b: np.ndarray | None = None
@@ -99,31 +84,16 @@ class Query:
         lengths = {len(poses) for poses in (poses_a, poses_b) if len(poses) != 1}
         if len(lengths) > 1:
             raise BadShape(f"{len(poses_a)} poses of a and {len(poses_b)} of b", valid="as many of each")
-        numbers, points, counts = _rows(lengths.pop() if lengths else 1)
+        numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
         with self._lock:
-            if call(nearest_at_poses, self._held, poses_a, poses_b, False, numbers, points, counts) >= 0:
+            held = self._pair.held
+            if call(nearest_at_poses, held, poses_a, poses_b, False, False, numbers, points, counts) >= 0:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
-                call(nearest_at_poses, self._held, poses_a, poses_b, True, numbers, points, counts)
+                call(nearest_at_poses, held, poses_a, poses_b, True, False, numbers, points, counts)
         return NearestAtPoses(
             numbers[:, 0].copy(), points, counts[:, :2].copy(), numbers[:, 1].copy()
         )
-
-
-def _rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Room for n answers, as `nearest_at_poses` fills it."""
-    return np.empty((n, 2)), np.empty((n, 2, 3)), np.empty((n, 5), dtype=np.int64)
-
-
-def _pose(given: np.ndarray | None) -> np.ndarray:
-    """A (4, 4) array that is not yet known to be a pose."""
-    if given is None:
-        return _AT_REST
-    try:
-        pose = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        return validated_pose(given)
-    return pose if pose.shape == (4, 4) else validated_pose(pose)
 
 
 def _poses(given: np.ndarray | None, where: str) -> np.ndarray:

@@ -1,0 +1,104 @@
+"""Room for questions about one pair of solids, which takes longer to make than many an answer."""
+
+from __future__ import annotations
+
+import threading
+import weakref
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.pose import validated_pose
+from clearance.geometry.tree import surface_of
+from clearance.kernel_table import call
+from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.scratch import Scratch, new_scratch
+from clearance.query.result import Nearest
+
+_AT_REST = np.eye(4)
+
+HELD = 256
+"""Pairs whose room is held for each thread, a kilobyte each."""
+
+
+class OnePair:
+    """A pair of solids as the search has it, and what it has found; for one thread at a time.
+
+    Args:
+        scratch: of `new_scratch`; pairs that are asked in turn may share it.
+        goes_on: False if every question is asked afresh.
+
+    Attributes:
+        held: of `hold_pair`. It knows nothing of the polyhedra, so that it does not keep them alive.
+    """
+
+    def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch, *, goes_on: bool) -> None:
+        self.held = hold_pair(surface_of(a), surface_of(b), ROOM if goes_on else 0, scratch)
+        self._goes_on = goes_on
+        self._poses, self._rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), answer_rows(1)
+
+    def nearest(self, given_a: np.ndarray | None, given_b: np.ndarray | None) -> Nearest:
+        """The answer at one pose of each, (4, 4) or None for the identity."""
+        pose_a, pose_b = _pose(given_a), _pose(given_b)
+        self._poses[0][0], self._poses[1][0] = pose_a, pose_b
+        if call(nearest_at_poses, self.held, *self._poses, False, not self._goes_on, *self._rows) >= 0:
+            validated_pose(pose_a), validated_pose(pose_b)
+            call(nearest_at_poses, self.held, *self._poses, True, not self._goes_on, *self._rows)
+        numbers, points, counts = self._rows
+        ((distance, error),), (point_a, point_b) = numbers.tolist(), points[0].copy()
+        ((face_a, face_b, n_nodes, n_faces, n_exact),) = counts.tolist()
+        return Nearest(
+            distance, point_a, point_b, face_a, face_b, distance == 0.0, error,
+            {"nodes": n_nodes, "polygons": n_faces, "exact_decisions": n_exact},
+        )  # fmt: skip
+
+
+def answer_rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Room for n answers, as `nearest_at_poses` fills it."""
+    return np.empty((n, 2)), np.empty((n, 2, 3)), np.empty((n, 5), dtype=np.int64)
+
+
+class _Asked:
+    """A pair that was asked about; its room goes when one of the solids does."""
+
+    def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch) -> None:
+        self.room: OnePair | None = OnePair(a, b, scratch, goes_on=False)
+        self._a, self._b = weakref.ref(a, self._let_go), weakref.ref(b, self._let_go)
+
+    def is_of(self, a: Polyhedron, b: Polyhedron) -> bool:
+        return self._a() is a and self._b() is b
+
+    def _let_go(self, _: weakref.ref) -> None:
+        self.room = None
+
+
+class _Thread(threading.local):
+    """What a thread has asked about."""
+
+    def __init__(self) -> None:
+        self.asked: dict[tuple[int, int], _Asked] = {}
+        self.scratch = new_scratch()
+
+
+_thread = _Thread()
+
+
+def room_for(a: Polyhedron, b: Polyhedron) -> OnePair:
+    """Room for a pair: that of an earlier question of this thread, if there is one."""
+    asked = _thread.asked.get((id(a), id(b)))
+    if asked is None or not asked.is_of(a, b):  # one that is gone may have had the same address
+        if len(_thread.asked) == HELD:
+            _thread.asked.clear()
+        asked = _thread.asked[id(a), id(b)] = _Asked(a, b, _thread.scratch)
+    return asked.room
+
+
+def _pose(given: np.ndarray | None) -> np.ndarray:
+    """A (4, 4) array that is not yet known to be a pose."""
+    if given is None:
+        return _AT_REST
+    try:
+        pose = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        return validated_pose(given)
+    return pose if pose.shape == (4, 4) else validated_pose(pose)

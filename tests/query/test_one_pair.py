@@ -1,0 +1,64 @@
+"""`distance` keeps room for the pairs it was asked about: that changes no answer, and keeps no solid alive."""
+
+import gc
+import threading
+import weakref
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+import clearance as cl
+from clearance.query.one_pair import HELD, room_for
+from tests.made_cases import at, ball
+from tests.strategies import rotations
+
+
+def told(near):
+    """An answer bit by bit, with its counters."""
+    numbers = [near.distance, near.error_bound, *near.point_a, *near.point_b]
+    return [float(x).hex() for x in numbers] + [near.face_a, near.face_b, near.contact, near.tally]
+
+
+def poses(n):
+    """Apart, touching and crossing, in turn."""
+    random = np.random.default_rng(8)
+    away = random.normal(size=(n, 3)) * np.array([3.0, 0.9, 0.3, 2.0])[np.arange(n) % 4, None]
+    return [at(*x, turned=r) for x, r in zip(away, rotations(random, n), strict=True)]
+
+
+def test_an_answer_does_not_depend_on_what_was_asked_before():
+    a, b = ball(1.0, 2), cl.box((1.0, 0.5, 0.2))
+    again = [told(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
+    fresh = [told(cl.distance(ball(1.0, 2), cl.box((1.0, 0.5, 0.2)), pose_b=pose)) for pose in poses(40)]
+    assert again == fresh
+    assert {near[10] for near in again} == {True, False}
+
+
+def test_threads_do_not_disturb_each_other():
+    a, b = ball(1.0, 2), cl.box((1.0, 0.5, 0.2))
+    alone = [told(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
+    start = threading.Barrier(4)
+
+    def ask(_):
+        start.wait()
+        return [told(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
+
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(ask, range(4))) == [alone] * 4
+
+
+def test_more_pairs_than_are_held_are_answered():
+    boxes = [cl.box((1.0, 1.0, 1.0 + 0.001 * i)) for i in range(HELD + 3)]
+    for _ in range(2):
+        found = [cl.distance(boxes[0], other, pose_b=at(0.0, 0.0, 3.0)).distance for other in boxes]
+        assert np.allclose(found, [2.0 - 0.0005 * i for i in range(len(boxes))], rtol=0.0, atol=1e-15)
+
+
+def test_a_solid_that_is_let_go_takes_its_room_along():
+    a, b = cl.box((1.0, 1.0, 1.0)), cl.box((2.0, 1.0, 1.0))
+    room = room_for(a, b)
+    assert room_for(a, b) is room and room_for(b, a) is not room
+    gone, solid = weakref.ref(room), weakref.ref(b)
+    del b, room
+    gc.collect()
+    assert solid() is None and gone() is None
