@@ -9,8 +9,9 @@ import math
 from typing import NamedTuple
 
 from clearance.jit import merged, spliced
+from clearance.kernels.bounds import lower_bound_faces_in_sight, sight_beside
 from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
-from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
+from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, inverse, move, move_back, row, sub
 
 ROUGH = 2.0**-44
 """Relative error of a height over a face whose corners are all blunt; it grows as 1 / angle^2: the normal is
@@ -224,27 +225,8 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     return edges_to_edges(a, face_a, b, face_b, m, limit_sq, near)
 
 
-@spliced
-def _on_one_side(surface, face, other, face_other, m, is_a, tolerance):
-    """True if all corners of the other face are clearly on one side of the plane of `face`."""
-    least, most = math.inf, -math.inf
-    for c in range(other.face_starts[face_other], other.face_starts[face_other + 1]):
-        x = row(other.vertices, other.face_vertices[c])
-        h = height(surface, face, move(m, x) if is_a else move_back(m, x))
-        least, most = min(least, h), max(most, h)
-    return least > tolerance or most < -tolerance
-
-
 @merged
 def may_meet(a, face_a, b, face_b, m, margin):
-    """False only if one face is clearly on one side of the other's plane."""
-    far = margin / (512.0 * 2.0**-53)
-    one, face_one, two, face_two = a, face_a, b, face_b
-    for side in range(2):
-        if has_plane(one, face_one):
-            blunt = one.blunt[face_one]
-            tolerance = 2.0 * one.width[face_one] + margin + ROUGH * blunt * blunt * far
-            if _on_one_side(one, face_one, two, face_two, m, side == 0, tolerance):
-                return False
-        one, face_one, two, face_two = b, face_b, a, face_a
-    return True
+    """False only if two faces are clearly apart, seen up from the plane of one and away from its nearest edge."""
+    beside = sight_beside(a, face_a, b, face_b, m, inverse(m))
+    return lower_bound_faces_in_sight(a, face_a, b, face_b, beside) <= margin

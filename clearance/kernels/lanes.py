@@ -165,6 +165,14 @@ def _marks_within(typing_context, lanes, most):
 
 
 @intrinsic
+def _first_of(typing_context, marks):
+    def emit(context, builder, signature, values):
+        return builder.cttz(values[0], ir.IntType(1)(1))
+
+    return types.int64(types.int64), emit
+
+
+@intrinsic
 def _lane(typing_context, lanes, place):
     def emit(context, builder, signature, values):
         return builder.extract_element(values[0], values[1])
@@ -198,26 +206,22 @@ if numba.config.DISABLE_JIT:
         """Bits of the lanes that are at most `most`."""
         return int((lanes <= most) @ (1 << np.arange(WIDTH)))
 
+    def first_of(marks):
+        """The first lane whose bit is set, of marks that are not 0."""
+        return (marks & -marks).bit_length() - 1
+
     def lane(lanes, place):
         """One of the four."""
         return lanes[place]
 else:
     square_root, larger, where_positive, marks_within = _square_root, _larger, _where_positive, _marks_within
-    lanes_at, number_at, lane = _lanes_at, _number_at, _lane
+    lanes_at, number_at, lane, first_of = _lanes_at, _number_at, _lane, _first_of
 
 
 @merged
 def how_many(marks):
     """How many bits are set."""
     return (marks & 1) + (marks >> 1 & 1) + (marks >> 2 & 1) + (marks >> 3 & 1)
-
-
-@merged
-def first_of(marks):
-    """The first lane whose bit is set, of marks that are not 0."""
-    if marks & 3:
-        return 0 if marks & 1 else 1
-    return 2 if marks & 4 else 3
 
 
 @merged
