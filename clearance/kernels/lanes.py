@@ -208,7 +208,7 @@ if numba.config.DISABLE_JIT:
 
     def first_of(marks):
         """The first lane whose bit is set, of marks that are not 0."""
-        return (marks & -marks).bit_length() - 1
+        return (int(marks) & -int(marks)).bit_length() - 1
 
     def lane(lanes, place):
         """One of the four."""
