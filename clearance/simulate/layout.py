@@ -23,25 +23,23 @@ class Layout:
     """All measured bodies behind one another: links first, then obstacles.
 
     Attributes:
-        links: (robot, column of its poses) of each link that is measured, robot by robot.
-        frames: (bodies,) which of `links` carries the body, or -1 for one that stands.
+        n_frames: links of all robots, measured or not.
+        frames: (bodies,) which of them carries the body, robot by robot, or -1 for one that stands.
         standing: (bodies, 4, 4) poses of the bodies that stand [m].
         pairs: (p, 2) bodies to measure against each other.
     """
 
     surface: Surface
-    links: tuple[tuple[int, int], ...]
+    n_frames: int
     frames: np.ndarray
     standing: np.ndarray
     pairs: np.ndarray
 
     def world(self, motions: Sequence[Motion], steps: np.ndarray) -> World:
         """Where everything is at `steps` (k,), in that order."""
-        moving = [
-            motion.poses_at(steps)[:, [column for i, column in self.links if i == i_robot]]
-            for i_robot, motion in enumerate(motions)
-        ]
-        return World(self.frames, self.standing, np.concatenate(moving, axis=1), self.pairs)
+        moving = [motion.poses_at(steps) for motion in motions]
+        poses = moving[0] if len(moving) == 1 else np.concatenate(moving, axis=1)
+        return World(self.frames, self.standing, poses, self.pairs)
 
 
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
@@ -57,16 +55,17 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     ]
     return Layout(
         surface=join(shapes),
-        links=tuple((i, _pose_column(case, i, j)) for i, j in links),
-        frames=np.array([*range(len(links)), *[-1] * len(obstacles)], dtype=np.int64),
+        n_frames=sum(len(placed.robot.link_names) for placed in case.robots),
+        frames=np.array([*(_frame(case, i, j) for i, j in links), *[-1] * len(obstacles)], dtype=np.int64),
         standing=_standing(case, len(links), obstacles),
         pairs=np.array(measured, dtype=np.int64),
     )
 
 
-def _pose_column(case: Case, i_robot: int, i_body: int) -> int:
+def _frame(case: Case, i_robot: int, i_body: int) -> int:
     robot = case.robots[i_robot].robot
-    return robot.link_names.index(robot.bodies[i_body].name)
+    before = sum(len(placed.robot.link_names) for placed in case.robots[:i_robot])
+    return before + robot.link_names.index(robot.bodies[i_body].name)
 
 
 def _standing(case: Case, n_links: int, obstacles: Sequence[int]) -> np.ndarray:

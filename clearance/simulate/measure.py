@@ -17,7 +17,7 @@ import numpy as np
 
 from clearance.ahead import usable_cores
 from clearance.kernel_table import call
-from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
+from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, World, sweep
 from clearance.simulate.layout import Layout, lay_out
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.spool import Rows
@@ -40,6 +40,9 @@ Steps = np.ndarray | range
 """(k,) increasing step indices."""
 
 COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
+
+SHORT = 4096
+"""Poses that a run has at most where they are kept: half a megabyte, more costs as much as it saves."""
 
 HELD = 512
 """Parts after which the memory of rows that are on disk is let go: 5 MB."""
@@ -89,6 +92,7 @@ class _Sweep:
     kept: Rows
     progress: Progress | None = None
     tally: np.ndarray = field(default_factory=lambda: np.zeros(len(COUNTERS), dtype=np.int64))
+    worlds: dict[tuple[int, int], World] = field(default_factory=dict)
 
     @property
     def n_steps(self) -> int:
@@ -136,6 +140,15 @@ class _Sweep:
             array(f"{name}.points", (n_rows, 2, 3)),
         )
 
+    def _world(self, steps: np.ndarray) -> World:
+        """Where everything is; of a short run that is kept, since what asks for less may pass through it twice."""
+        span = int(steps[0]), int(steps[-1])
+        if self.n_steps * self.layout.n_frames > SHORT or len(steps) != 1 + span[1] - span[0]:
+            return self.layout.world(self.motions, steps)
+        if span not in self.worlds:
+            self.worlds[span] = self.layout.world(self.motions, steps)
+        return self.worlds[span]
+
     def _run(
         self,
         name: str,
@@ -150,18 +163,21 @@ class _Sweep:
         log = self.kept.log(name, spans)
         least, tally = _gathered(log.gathered, self.n_pairs)
         nothing = np.empty((0, self.n_pairs))
+        no_minima = _no_minima(self.n_pairs)
 
         def run_part(span: slice) -> tuple[int, PairRows, np.ndarray]:
             these = np.array(steps[span], dtype=np.int64)
-            world = self.layout.world(self.motions, these)
-            found = PairRows(nothing if every is None else every[span], *_no_minima(self.n_pairs))
+            world = self._world(these)
+            minima = _no_minima(self.n_pairs) if goal.each else no_minima  # which are not written then
+            found = PairRows(nothing if every is None else every[span], *minima)
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
             call(sweep, self.layout.surface, world, these, goal, _rows_of(rows, span), found, counts)
             return span.stop, found, counts
 
         results = in_order(run_part, spans[log.done :], self.jobs)
         for i_part, (done, found, counts) in enumerate(results, start=log.done + 1):
-            _take_lesser(least, found)
+            if goal.each:
+                _take_lesser(least, found)
             tally += counts
             log.note(i_part, {**least._asdict(), "tally": tally}, last=i_part == len(spans))
             if i_part % HELD == 0:

@@ -10,7 +10,7 @@ import numpy as np
 from clearance.errors import UnknownJoint, nearest_name
 from clearance.kernels.kinematics import FIXED, SLIDING, TURNING, forward
 from clearance.world.case import PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import JointKind, Mimic, Robot
 
 _KERNEL_KIND = {
     JointKind.FIXED: FIXED,
@@ -88,14 +88,40 @@ def _column(columns: dict[str, int], name: str) -> int:
 
 def positions_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
     """(n, n_links) the position of the joint above each link; 0 for the root and for fixed joints."""
-    index = {name: i for i, name in enumerate(robot.link_names)}
-    columns = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
-    by_name = {joint.name: joint for joint in robot.joints}
+    links, columns, mimics = _moving_links(robot)
     positions = np.zeros((len(moving), len(robot.link_names)))
-    for joint in robot.joints:
-        if joint.kind is not JointKind.FIXED:
-            positions[:, index[joint.child]] = _position(joint, by_name, columns, moving)
+    positions[:, links] = moving[:, columns]
+    for link, column, way in mimics:
+        position = moving[:, column]
+        for mimic in way:
+            position = mimic.multiplier * position + mimic.offset
+        positions[:, link] = position
     return positions
+
+
+@lru_cache(maxsize=8)
+def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, int, list[Mimic]]]]:
+    """(links, columns, mimics): which link a column of the moving joints moves, and which links follow a column.
+
+    Those that follow have the rules to apply, one after another.
+    """
+    index = {name: i for i, name in enumerate(robot.link_names)}
+    column_of = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
+    by_name = {joint.name: joint for joint in robot.joints}
+    links, columns, mimics = [], [], []
+    for joint in robot.joints:
+        if joint.kind is JointKind.FIXED:
+            continue
+        link, way = index[joint.child], []
+        while joint.mimic is not None:
+            way.insert(0, joint.mimic)
+            joint = by_name[joint.mimic.joint]
+        if way:
+            mimics.append((link, column_of[joint.name], way))
+        else:
+            links.append(link)
+            columns.append(column_of[joint.name])
+    return links, columns, mimics
 
 
 def velocities_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
@@ -105,13 +131,3 @@ def velocities_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
         for joint in robot.joints
     )
     return positions_by_link(replace(robot, joints=without_offsets), moving)
-
-
-def _position(
-    joint: Joint, by_name: dict[str, Joint], columns: dict[str, int], moving: np.ndarray
-) -> np.ndarray:
-    """(n,) the position of a joint, following mimic chains to a moving joint."""
-    if joint.mimic is None:
-        return moving[:, columns[joint.name]]
-    master = _position(by_name[joint.mimic.joint], by_name, columns, moving)
-    return joint.mimic.multiplier * master + joint.mimic.offset
