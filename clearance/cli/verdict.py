@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from clearance.report import summary_of
+from clearance.report import certified_of, contact_of, notes_of
 from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.profiles import gap_text, plane_text
 from clearance.report.wording import certified_text, contact_text, count, limit_mm, mm, seconds
@@ -54,7 +54,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
         lines.append(_pair_table(nearest))
     lines += [_row("profile", _profile_text(answer)) for answer in record.profiles]
     if record.certificate is not None:
-        lines.append(_row("certified", certified_text(summary_of(record)["certified"])))
+        lines.append(_row("certified", certified_text(certified_of(record))))
     if run.cross_check is not None:
         lines += _cross_check(run.cross_check)
     lines += _notes(record)
@@ -86,7 +86,7 @@ def _deepest(record: Record) -> list[Text]:
     """The deepest overlap: where, how deep, which way out of the link."""
     if record.deepest is None:
         return []
-    told = summary_of(record)["contact"]["deepest"]
+    told = contact_of(record)["deepest"]
     way = ", ".join(f"{value:.4f}" for value in told["direction"])
     text = f"step {told['step']}, {told['link']} in {told['obstacle']}: {contact_text(told)}"
     return [_row("deepest", f"{text}; way out of the link ({way})")]
@@ -156,7 +156,7 @@ def _told(row: Disagreement) -> str:
 
 
 def _notes(record: Record) -> list[Text]:
-    notes = summary_of(record)["notes"]
+    notes = notes_of(record)
     lines = [_row("note", note) for note in notes[:_MOST_NOTES]]
     more = len(notes) - len(lines)
     return [*lines, _row("", f"and {count(more, 'more note')}, see --json")] if more > 0 else lines

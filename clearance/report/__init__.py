@@ -1,7 +1,8 @@
 """A record put into files that people and programs read. Not for: measuring or judging anything."""
 
+from clearance.report.contact import contact_of
 from clearance.report.junit import write_junit
 from clearance.report.output import json_text, write
-from clearance.report.summary import summary_of
+from clearance.report.summary import certified_of, notes_of, summary_of
 
-__all__ = ["json_text", "summary_of", "write", "write_junit"]
+__all__ = ["certified_of", "contact_of", "json_text", "notes_of", "summary_of", "write", "write_junit"]

@@ -48,7 +48,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "pairs": [asdict(minimum) for minimum in record.pair_minima],
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
         "contact": contact_of(record),
-        "certified": _certified(record),
+        "certified": certified_of(record),
         "cross_check": _cross_check(record.cross_check),
         "tracking_error": _tracking_error(record),
         "robots": [_robot(record, motion) for motion in record.motions],
@@ -56,7 +56,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "tessellation_bound": _tessellation_bound(record),
         "profiles": [_profile(answer) for answer in record.profiles],
         "tally": dict(record.tally),
-        "notes": _notes(record),
+        "notes": notes_of(record),
         "inputs": inputs(case),
         "versions": versions(),
     }
@@ -124,7 +124,7 @@ def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
     }
 
 
-def _certified(record: Record) -> dict[str, Any] | None:
+def certified_of(record: Record) -> dict[str, Any] | None:
     """The least proven bound [m], the interval it holds for, and the least distance seen there."""
     certificate = record.certificate
     if certificate is None:
@@ -171,7 +171,7 @@ def _tessellation_bound(record: Record) -> float:
     return max(links, default=0.0) + max(obstacles, default=0.0)
 
 
-def _notes(record: Record) -> list[str]:
+def notes_of(record: Record) -> list[str]:
     robots = [note for motion in record.motions for note in motion.placed.robot.notes]
     return list(dict.fromkeys([*record.case.notes, *robots, *record.notes]))
 

@@ -241,7 +241,7 @@ def measure(
     if need == "limit":
         return _within_limit(work, case.limits.warn)
     rows = work.step_rows("steps", range(work.n_steps))
-    return _measurement(work, rows, lambda most: _pair_minima(work.quiet, most))
+    return _measurement(work, rows, lambda most: _pair_minima(work.quiet, rows, most))
 
 
 def _every_pair(work: _Sweep) -> Measurement:
@@ -270,17 +270,27 @@ def _within_limit(work: _Sweep, limit: float) -> Measurement:
     return least
 
 
-def _pair_minima(work: _Sweep, most: int | None) -> Minima:
+def _pair_minima(work: _Sweep, rows: KeptRows, most: int | None) -> Minima:
     """The least of each pair: a first look at few steps, then only what could be nearer.
 
-    If only the nearest pairs are wanted, what is not seen nearer than so many of them is left out.
+    If only the nearest pairs are wanted, and as many have been the nearest of a step, what is farther is left out.
     """
+    if most is not None:
+        seen = _least_as_nearest(work, rows)
+        if np.isfinite(seen).sum() >= most:
+            within = np.minimum(seen, np.partition(seen, most - 1)[most - 1]) * NOT_LESS
+            return work.aside.least_rows("nearest", range(work.n_steps), within)
     infinite = np.full(work.n_pairs, np.inf)
     seen = work.aside.least_rows("first", _first_steps(work.n_steps), infinite).clearance
-    if most is None or most >= work.n_pairs:
-        return work.least_rows("minima", range(work.n_steps), seen * NOT_LESS)
-    within = np.minimum(seen, np.partition(seen, most - 1)[most - 1]) * NOT_LESS
-    return work.aside.least_rows("nearest", range(work.n_steps), within)
+    return work.least_rows("minima", range(work.n_steps), seen * NOT_LESS)
+
+
+def _least_as_nearest(work: _Sweep, rows: KeptRows) -> np.ndarray:
+    """(p,) [m] the least clearance of each pair over the steps at which it is the nearest; infinite if none."""
+    least = np.full(work.n_pairs, np.inf)
+    for block in blocks(work.n_steps):
+        np.minimum.at(least, rows.pair[block], rows.clearance[block])
+    return least
 
 
 def _first_least(work: _Sweep) -> float:
