@@ -11,12 +11,12 @@ import numba
 import numpy as np
 from numba.core import types
 
-from clearance.jit import inlined, kernel
+from clearance.jit import borrowing, inlined, kernel
 from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement, rounding_slack
 from clearance.kernels.double_double import frames_of
-from clearance.kernels.front import KEPT_DOWN, LONGEST, forget, no_fronts
+from clearance.kernels.front import KEPT_DOWN, LONGEST, Fronts, forget, no_fronts
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
@@ -110,41 +110,49 @@ def _is_surely_rigid(pose):
     return x * pose[0, 2] + y * pose[1, 2] + z * pose[2, 2] > 0.0
 
 
+class Known(NamedTuple):
+    """What is known of a pair: the fields of `HeldPair` that change from question to question."""
+
+    fronts: Fronts
+    poses: np.ndarray
+    seeds: np.ndarray
+    carried: np.ndarray
+
+
 @inlined
-def _travel(held, pose_a, pose_b, frames):
+def _travel(a, b, known, pose_a, pose_b, frames):
     """[m] an upper bound on what the points of both bodies have moved in all, by the time of these poses.
 
     Infinite where they may have come to touch, or where little of what is known can be of use: from a front, the
     first contact can take a hundred times the search that it takes from the roots, and then that one as well.
     """
-    a, b = held.a, held.b
-    way = displacement(a, a.roots[0], held.poses[0], pose_a)
-    way += displacement(b, b.roots[0], held.poses[1], pose_b)
-    if not way <= held.carried[STRIDE]:
+    way = displacement(a, a.roots[0], known.poses[0], pose_a)
+    way += displacement(b, b.roots[0], known.poses[1], pose_b)
+    if not way <= known.carried[STRIDE]:
         return np.inf
     way += rounding_slack(a, a.roots[0], b, b.roots[0], frames)  # where motions cancel
-    moved = (held.carried[MOVED] + way) * ROUNDED_UP
-    return moved if held.carried[FLOOR] > moved else np.inf
+    moved = (known.carried[MOVED] + way) * ROUNDED_UP
+    return moved if known.carried[FLOOR] > moved else np.inf
 
 
 @inlined
-def _measure(held, pose_a, pose_b, table):
-    """The nearest points of a held pair, as `measure_pair` gives them."""
+def _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table):
+    """The nearest points of a pair, as `measure_pair` gives them."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
-    moved = _travel(held, pose_a, pose_b, frames)
-    held.carried[FLOOR] = -np.inf  # until the search has come to its end
-    asked = Asked(np.inf, np.inf, held.seeds[0], held.seeds[1], True)
+    moved = _travel(a, b, known, pose_a, pose_b, frames)
+    known.carried[FLOOR] = -np.inf  # until the search has come to its end
+    asked = Asked(np.inf, np.inf, known.seeds[0], known.seeds[1], True)
     if moved == np.inf:
         moved = 0.0
         asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
-        forget(held.fronts, 0)
-    measured = measure_pair(
-        lend(held.a), 0, lend(held.b), 0, frames, asked, held.fronts, 0, moved, held.scratch, table
-    )
-    held.carried[MOVED] = moved
-    held.carried[FLOOR] = (measured.lower_bound + moved) * KEPT_DOWN
-    held.seeds[0], held.seeds[1] = measured.face_a, measured.face_b
-    held.poses[0], held.poses[1] = pose_a, pose_b
+        forget(known.fronts, 0)
+    measured = measure_pair(lent_a, 0, lent_b, 0, frames, asked, known.fronts, 0, moved, scratch, table)
+    known.carried[MOVED] = moved
+    known.carried[FLOOR] = (measured.lower_bound + moved) * KEPT_DOWN
+    known.seeds[0], known.seeds[1] = measured.face_a, measured.face_b
+    for i in range(4):
+        for k in range(4):
+            known.poses[0, i, k], known.poses[1, i, k] = pose_a[i, k], pose_b[i, k]
     return measured
 
 
@@ -164,14 +172,24 @@ def nearest_at_poses(held, poses_a, poses_b, checked, afresh, numbers, points, c
     for i in range(0 if checked else len(numbers)):
         if not (_is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])):
             return i
+    known = Known(held.fronts, held.poses, held.seeds, held.carried)
+    _nearest(held.a, held.b, known, held.scratch, poses_a, poses_b, afresh, numbers, points, counts, table)
+    return -1
+
+
+@borrowing
+def _nearest(a, b, known, scratch, poses_a, poses_b, afresh, numbers, points, counts, table):
+    """Fills a row for each pose."""
+    lent_a, lent_b = lend(a), lend(b)
+    last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
     for i in range(len(numbers)):
         if afresh:
-            held.carried[FLOOR] = -np.inf
-        measured = _measure(held, poses_a[min(i, last_a)], poses_b[min(i, last_b)], table)
+            known.carried[FLOOR] = -np.inf
+        pose_a, pose_b = poses_a[min(i, last_a)], poses_b[min(i, last_b)]
+        measured = _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table)
         hit, tally = measured.hit, measured.tally
         numbers[i, 0], numbers[i, 1] = np.sqrt(hit.gap_sq), measured.error
         for axis in range(3):
             points[i, 0, axis], points[i, 1, axis] = hit.p[axis], hit.q[axis]
         counts[i, 0], counts[i, 1] = hit.face_a, hit.face_b
         counts[i, 2], counts[i, 3], counts[i, 4] = tally.nodes, tally.faces, tally.exact_decisions
-    return -1
