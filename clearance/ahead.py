@@ -12,6 +12,7 @@ import functools
 import os
 import subprocess
 import sys
+import threading
 
 import numba
 
@@ -24,18 +25,31 @@ FIRST = (SEARCH, REFINE)
 """What every question about distances needs, in the order in which it is come to."""
 
 
-@functools.cache
+_starting = threading.Lock()
+
+
 def start() -> bool:
     """Begins to compile what is not kept from an earlier run, at the first call; True if anything has to be."""
+    with _starting:
+        return _start_once()
+
+
+@functools.cache
+def _start_once() -> bool:
     if numba.config.DISABLE_JIT or all(map(kernel_table.is_kept, FIRST)):
         return False
     if usable_cores() > 1 and sys.executable:
         command = [sys.executable, "-m", "clearance.ahead"]
         none = subprocess.DEVNULL
         process = subprocess.Popen(command, stdin=none, stdout=none, stderr=none)
-        atexit.register(process.terminate)
+        atexit.register(_stop, process)
         kernel_table.await_from(process)
     return True
+
+
+def _stop(process: subprocess.Popen) -> None:
+    process.terminate()
+    process.wait()
 
 
 def usable_cores() -> int:
