@@ -13,6 +13,7 @@ import os
 import subprocess
 import sys
 import threading
+from contextlib import suppress
 
 import numba
 
@@ -20,6 +21,9 @@ import clearance.kernels.body_pair  # noqa: F401 it enters both into the table
 from clearance import kernel_table
 from clearance.jit import cache_root
 from clearance.kernel_table import REFINE, SEARCH
+
+IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
+"""Set in the environment of the second process, so that no other one follows whatever it comes to run."""
 
 FIRST = (SEARCH, REFINE)
 """What every question about distances needs, in the order in which it is come to."""
@@ -38,13 +42,23 @@ def start() -> bool:
 def _start_once() -> bool:
     if numba.config.DISABLE_JIT or all(map(kernel_table.is_kept, FIRST)):
         return False
-    if usable_cores() > 1 and sys.executable:
-        command = [sys.executable, "-m", "clearance.ahead"]
-        none = subprocess.DEVNULL
-        process = subprocess.Popen(command, stdin=none, stdout=none, stderr=none)
-        atexit.register(_stop, process)
-        kernel_table.await_from(process)
+    if usable_cores() > 1 and sys.executable and not getattr(sys, "frozen", False) and IS_SECOND not in os.environ:
+        with suppress(OSError):  # then all is compiled here
+            process = _second_process()
+            atexit.register(_stop, process)
+            kernel_table.await_from(process)
     return True
+
+
+def _second_process() -> subprocess.Popen:
+    """This interpreter once more, with the same path to import from: neither more nor less may be found there."""
+    script = f"import sys; sys.path[:] = {sys.path!r}; from clearance.ahead import main; main()"
+    options = subprocess._args_from_interpreter_flags()
+    none = subprocess.DEVNULL
+    return subprocess.Popen(
+        [sys.executable, *options, "-c", script],
+        env={**os.environ, IS_SECOND: "1"}, stdin=none, stdout=none, stderr=none,
+    )  # fmt: skip
 
 
 def _stop(process: subprocess.Popen) -> None:
@@ -69,6 +83,3 @@ def main() -> None:
         for place in FIRST:
             kernel_table.compile_kernel(place)
 
-
-if __name__ == "__main__":
-    main()

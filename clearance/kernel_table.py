@@ -36,8 +36,8 @@ _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
 _elsewhere: list[subprocess.Popen] = []
 
-_PATIENCE = 0.02
-"""[s] How often to look whether another process has compiled a kernel."""
+_PATIENCE, _AT_MOST = 0.02, 60.0
+"""[s] How often to look whether another process has compiled a kernel, and how long to wait for each."""
 
 
 def table_like() -> np.ndarray:
@@ -100,7 +100,10 @@ def await_from(process: subprocess.Popen) -> None:
 
 def compile_kernel(place: int) -> None:
     """Compiles the kernel of a place, or takes it from the cache, and writes its address down."""
+    give_up = time.monotonic() + _AT_MOST
     while not is_kept(place) and any(process.poll() is None for process in _elsewhere):
+        if time.monotonic() > give_up:
+            _elsewhere.clear()
         time.sleep(_PATIENCE)
     function, like = _apart[place]
     argument_types = tuple(_type_of(argument) for argument in like())

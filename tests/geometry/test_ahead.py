@@ -38,13 +38,27 @@ print(json.dumps(sum(containment.winding_number.stats.cache_misses.values())))
 """
 
 
-def told_by(script, cache):
-    """What a script prints in a process of its own with an empty cache."""
-    settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(cache)}
+WHERE_NO_PROCESS_STARTS = """
+import json, sys
+from clearance import ahead, kernel_table
+sys.executable = "/nowhere/python"
+print(json.dumps([ahead.start(), len(kernel_table._elsewhere)]))
+"""
+
+
+def told_by(script, folder):
+    """What a script prints in a process of its own with an empty cache, from a folder with a trap in it."""
+    here = folder / "work"
+    here.mkdir()
+    (here / "numba.py").write_text("open('trapped', 'w').close()\n")
+    (folder / "script.py").write_text(script)
+    settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(folder / "cache")}
     done = subprocess.run(
-        [sys.executable, "-c", script], cwd=ROOT, env={**os.environ, **settings}, capture_output=True, text=True
-    )
+        [sys.executable, folder / "script.py"],
+        cwd=here, env={**os.environ, **settings}, capture_output=True, text=True,
+    )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
+    assert not (here / "trapped").exists()
     return json.loads(done.stdout)
 
 
@@ -59,3 +73,8 @@ def test_what_the_second_process_compiles_is_taken_and_not_made_again(tmp_path):
 
 def test_a_process_that_ends_without_it_is_not_waited_for(tmp_path):
     assert told_by(FROM_ONE_THAT_ENDS, tmp_path) == 1
+
+
+@pytest.mark.skipif(ahead.usable_cores() < 2, reason="one core: nothing is compiled ahead")
+def test_where_no_process_can_be_started_all_is_left_to_the_first(tmp_path):
+    assert told_by(WHERE_NO_PROCESS_STARTS, tmp_path) == [True, 0]
