@@ -18,8 +18,12 @@ from clearance.kernels.double_double import (
     NOISE,
     Wide,
     Wide3,
+    dot3,
     less,
     minus,
+    minus3,
+    point_of_a,
+    point_of_b,
     root,
     wide,
 )
@@ -29,10 +33,15 @@ from clearance.kernels.face_pair import NOTHING_SEEN, Seen, limit_of
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.surface import surface_like
+from clearance.kernels.vec3 import dot, sub
 from clearance.kernels.wide_features import wide_feature, wide_feature_here
 
 N_WAITING = 64
 """Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
+
+
+SLENDER = 2.0**6
+"""The reciprocal sine of a triangle's corner up to which the noise in every floor covers its normal's rounding."""
 
 
 class Refined(NamedTuple):
@@ -77,6 +86,28 @@ def _enough(length, margin):
 
 
 @inlined
+def _unevenness(frames, corners, is_a, pair):
+    """[m] how far a triangle's corners are off the plane of its rounded normal, along which a height was taken."""
+    if corners.n < 3:
+        return 0.0
+    u, v = sub(corners.v, corners.u), sub(corners.w, corners.u)
+    u_sq, v_sq = dot(u, u), dot(v, v)
+    if u_sq * v_sq <= SLENDER * SLENDER * pair.w_sq.hi:
+        return 0.0
+    first = point_of_a(frames, corners.u) if is_a else point_of_b(frames, corners.u)
+    second = point_of_a(frames, corners.v) if is_a else point_of_b(frames, corners.v)
+    third = point_of_a(frames, corners.w) if is_a else point_of_b(frames, corners.w)
+    off = abs(dot3(pair.w, minus3(second, first)).hi) + abs(dot3(pair.w, minus3(third, first)).hi)
+    return 2.0 * off / math.sqrt(pair.w_sq.hi)
+
+
+@inlined
+def _lowered(floor, frames, one, two, pair):
+    """A floor less what the measured distance of a corner and a triangle may be off either way."""
+    return minus(floor, wide(_unevenness(frames, one, True, pair) + _unevenness(frames, two, False, pair)))
+
+
+@inlined
 def _better(best, pair, length, face_a, face_b, floor):
     """`best` after a face pair."""
     if less(best.floor, floor):
@@ -106,7 +137,7 @@ def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best):
     enough = _enough(length, ask.margin)
     if less(floor, enough) and (a.bent[face_a] or b.bent[face_b]):
         floor = floor_of_fans(a, face_a, b, face_b, frames, pair, enough, floor)
-    return _better(best, pair, length, face_a, face_b, floor)
+    return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair))
 
 
 @apart(
@@ -125,7 +156,7 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
             floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
             length = root(pair.gap_sq)
             if not less(floor, _enough(length, ask.margin)):
-                return _better(best, pair, length, face_a, face_b, floor)
+                return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair))
     return at_address(
         table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best)
     )
