@@ -214,7 +214,7 @@ def test_an_interrupted_run_leaves_the_older_report_as_it_was(folder):
     time.sleep(4.0)
     assert process.poll() is None, "the run ended before it could be interrupted"
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=180)
+    out, err = process.communicate(timeout=60)
     assert (process.returncode, out) == (130, "") and err.count("\n") == 1
     assert "interrupted" in err
     assert files(folder / "report") == before

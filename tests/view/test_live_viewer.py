@@ -164,9 +164,9 @@ def test_the_server_ends_with_the_program(tmp_path, how):
     )
     url = re.search(r"http://\S+", program.stdout.readline())[0]
     ask = build_opener(ProxyHandler({})).open
-    assert ask(url, timeout=120).status == 200
+    assert ask(url, timeout=20).status == 200
     time.sleep(0.3)  # from the printed address to the wait
     program.send_signal(how)
-    assert program.wait(timeout=120) == 0
+    assert program.wait(timeout=20) == 0
     with pytest.raises(URLError):
-        ask(url, timeout=120)
+        ask(url, timeout=20)
