@@ -28,7 +28,6 @@ IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 FIRST = (SEARCH, REFINE)
 """What every question about distances needs, in the order in which it is come to."""
 
-
 _starting = threading.Lock()
 
 
@@ -82,4 +81,3 @@ def main() -> None:
         fcntl.flock(lock, fcntl.LOCK_EX)
         for place in FIRST:
             kernel_table.compile_kernel(place)
-
