@@ -98,7 +98,7 @@ class PairRows(NamedTuple):
     points: np.ndarray
 
 
-@inlined
+@merged
 def pose_of(world, body, row):
     """Where a body is at a row, as a `Rigid`."""
     if world.frames[body] < 0:
@@ -106,7 +106,7 @@ def pose_of(world, body, row):
     return rigid(world.poses[row, world.frames[body]])
 
 
-@inlined
+@merged
 def pair_frames(world, pair, row):
     """Where both bodies of a pair are at a row."""
     a = pose_of(world, world.pairs[pair, 0], row)
@@ -114,7 +114,7 @@ def pair_frames(world, pair, row):
     return frames_of(a, b)
 
 
-@inlined
+@merged
 def root_bound(surface, world, pair, row):
     """[m] a lower bound on the distance of the boxes of a pair."""
     frames = pair_frames(world, pair, row)
@@ -125,7 +125,7 @@ def root_bound(surface, world, pair, row):
     return max(0.0, bound - slack)
 
 
-@inlined
+@merged
 def _add_travel(surface, world, row, travel):
     """Adds to `travel` (bodies,) [m] what each body moves from the row before to this one."""
     for body in range(len(world.frames)):
@@ -141,7 +141,7 @@ def _floor_of(world, pair, travel, floors):
     return floors[pair] - (travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]])
 
 
-@inlined
+@merged
 def _bounded_again(surface, world, pair, row, travel, floors):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
     floor = max(_floor_of(world, pair, travel, floors), root_bound(surface, world, pair, row))
@@ -150,7 +150,7 @@ def _bounded_again(surface, world, pair, row, travel, floors):
     return floor
 
 
-@inlined
+@merged
 def _nearest_by_boxes(surface, world, row, travel, floors, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
     nearest = np.inf
