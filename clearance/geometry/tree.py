@@ -15,7 +15,7 @@ from clearance.geometry.edges import edge_keys, rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.face_planes import face_planes
 from clearance.kernels.lanes import WIDTH
-from clearance.kernels.surface import Surface
+from clearance.kernels.surface import ANYTHING, LISTED, Surface
 from clearance.kernels.tree_build import build_tree, most_groups
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
@@ -73,6 +73,7 @@ def _join(parts: Sequence[Surface]) -> Surface:
         owned_vertices=stacked("owned_vertices", "vertices"),
         edge_starts=starts("edge_starts", "owned_edges"),
         owned_edges=stacked("owned_edges", "vertices"),
+        owns=stacked("owns"),
         centres=stacked("centres"),
         boxes=stacked("boxes"),
         children=_joined_children(parts, n_before["children"] // WIDTH, n_before["normals"]),
@@ -136,6 +137,7 @@ def _build(shape: Polyhedron) -> Surface:
         owned_vertices=corners[first_corners],
         edge_starts=edge_starts,
         owned_edges=owned_edges,
+        owns=_owns(first_corners, first_uses, ring.face, starts, bent),
         centres=centres,
         boxes=boxes,
         children=children,
@@ -165,6 +167,19 @@ def _owned(features: np.ndarray, face_of_corner: np.ndarray, n_faces: int) -> tu
     first.sort()
     counts = np.bincount(face_of_corner[first], minlength=n_faces)
     return first, np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+
+
+def _owns(
+    first_corners: np.ndarray, first_uses: np.ndarray, face: np.ndarray, starts: np.ndarray, bent: np.ndarray
+) -> np.ndarray:
+    """(f,) `Surface.owns`, from the corners whose vertex their face owns, and those where an edge of it starts."""
+    place = np.arange(len(face)) - starts[face]
+    bit = 1 << np.minimum(place, LISTED - 1)
+    owned = np.zeros(len(face), dtype=np.int64)
+    owned[first_corners] = bit[first_corners]
+    owned[first_uses] |= bit[first_uses] << LISTED
+    bits = np.bitwise_or.reduceat(owned, starts[:-1])
+    return np.where(bent | (np.diff(starts) > LISTED), ANYTHING, bits).astype(np.uint16)
 
 
 def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, ...]:

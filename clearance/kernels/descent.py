@@ -11,7 +11,14 @@ import numpy as np
 from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import borrow
 from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sight
-from clearance.kernels.face_pair import Hit, limit_of, may_meet, nearest_of_faces
+from clearance.kernels.face_pair import (
+    OWN_SIGHT,
+    Hit,
+    limit_of,
+    may_meet,
+    may_own_nearest,
+    nearest_of_faces,
+)
 from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
 from clearance.kernels.lanes import WIDTH, first_of, how_many, lane, least_of, marks_within
@@ -206,7 +213,10 @@ def descend(
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
-            if in_sight <= cut:
+            is_near = in_sight <= cut
+            if is_near and (
+                in_sight < (1.0 - OWN_SIGHT) * cut or may_own_nearest(a, face_a, b, face_b, from_a.sight, slack)
+            ):
                 n_faces += 1
                 before_sq = best.gap_sq
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
@@ -238,7 +248,7 @@ def descend(
                     measured = min(measured, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
                 else:
                     floor = min(floor, cut)
-            else:
+            elif not is_near:
                 floor = min(floor, in_sight)
             if not is_kept:  # the roots
                 n_left = _leave(scratch, n_left, node_a // WIDTH, node_b, 1, (bound + moved) * KEPT_DOWN)

@@ -8,14 +8,24 @@ both; each is a candidate here, over the features that the two faces own. Not fo
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from clearance.jit import merged, spliced
 from clearance.kernels.bounds import lower_bound_faces_in_sight, sight_beside
 from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
+from clearance.kernels.surface import ANYTHING, LISTED
 from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, inverse, move, move_back, row, sub
 
 ROUGH = 2.0**-44
 """Relative error of a height over a face whose corners are all blunt; it grows as 1 / angle^2: the normal is
 off by 16 u / angle, and a foot next to a corner by that over the angle."""
+
+
+LEANING = 2.0**-6
+"""Difference of two unit vectors, within which a face pair is known to be nearest at features of others."""
+
+OWN_SIGHT = 0.5 * LEANING * LEANING
+"""Share of the least distance that the bound of a face pair may be short of it for that."""
 
 
 class Hit(NamedTuple):
@@ -223,6 +233,48 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
     near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)
     return edges_to_edges(a, face_a, b, face_b, m, limit_sq, near)
+
+
+@merged
+def _may_own_farthest(surface, face, u, slack):
+    """False if nothing that a face owns is its farthest along any direction within `LEANING` of `u`.
+
+    A corner, an edge or the face is farthest; all its corners are as high as the highest, but for the leaning.
+    """
+    owns = np.int64(surface.owns[face])
+    if owns == ANYTHING:
+        return True
+    first, end = surface.face_starts[face], surface.face_starts[face + 1]
+    height_of_top = -math.inf
+    top = u
+    for c in range(first, end):
+        x = row(surface.vertices, surface.face_vertices[c])
+        h = dot(u, x)
+        if h > height_of_top:
+            top, height_of_top = x, h
+    high = 0
+    for c in range(first, end):
+        below = sub(top, row(surface.vertices, surface.face_vertices[c]))
+        if dot(u, below) <= LEANING * (abs(below.x) + abs(below.y) + abs(below.z)) + slack:
+            high |= 1 << (c - first)
+    edges = high & (high >> 1 | high << (end - first - 1))
+    if (owns & high) | (owns >> LISTED & edges):
+        return True
+    but_one = high & (high - 1)
+    return but_one != 0 and (edges == 0 or but_one & (but_one - 1) != 0)
+
+
+@merged
+def may_own_nearest(a, face_a, b, face_b, sight, slack):
+    """False if two faces, should they be the nearest of all, are nearest at features that are other faces' own.
+
+    Only for faces of which the bound in sight is at least the least distance less `OWN_SIGHT` of it. Then the
+    direction of their nearest points is within `LEANING` of the sight.
+    """
+    v = sight.v
+    return _may_own_farthest(a, face_a, sight.u, slack) and _may_own_farthest(
+        b, face_b, Vec3(-v.x, -v.y, -v.z), slack
+    )
 
 
 @merged

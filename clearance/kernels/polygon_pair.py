@@ -17,7 +17,7 @@ from clearance.kernels.face_planes import plane_of, unit
 from clearance.kernels.meeting import meeting_of
 from clearance.kernels.predicates import room_for_exact
 from clearance.kernels.refine import NOTHING_REFINED, error_of, refined_of
-from clearance.kernels.surface import Surface, surface_like
+from clearance.kernels.surface import ANYTHING, Surface, surface_like
 from clearance.kernels.vec3 import Vec3, cross, dot, row, sub
 
 UNDERFLOWN = 2.0**-400
@@ -56,6 +56,7 @@ def _empty_surface(n):
     return Surface(
         np.empty((n, 3)), np.empty((n, 3)), ends, around, np.empty((1, 3)), np.empty(1), np.empty(1),
         np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, ends, edges,
+        np.full(1, ANYTHING, dtype=np.uint16),
         nodes, np.empty((0, 12), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
         none, none, none, np.empty(0, dtype=np.bool_),
     )  # fmt: skip

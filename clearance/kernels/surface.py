@@ -13,6 +13,12 @@ from clearance.jit import merged
 from clearance.kernels.lanes import WIDTH, lanes_at, number_at
 from clearance.kernels.vec3 import Vec3, along
 
+LISTED = 8
+"""Corners that a face may have for `Surface.owns` to tell them from one another."""
+
+ANYTHING = (1 << 2 * LISTED) - 1
+"""All bits of `Surface.owns`."""
+
 
 class Surface(NamedTuple):
     """Bodies as flat arrays; all indices are into these arrays.
@@ -28,6 +34,8 @@ class Surface(NamedTuple):
         corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
         vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
         edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns.
+        owns: (f,) the same by bits: k of corner k, `LISTED` + k of the edge that starts there; all are set where a
+            face has more than `LISTED` corners or is bent.
         centres: (3 g, 4) [m] of the boxes of the tree's nodes, in the body frame. Node n is lane n % 4 of group
             n // 4; lanes without a node repeat the first.
         boxes: (12 g, 4) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
@@ -50,6 +58,7 @@ class Surface(NamedTuple):
     owned_vertices: np.ndarray
     edge_starts: np.ndarray
     owned_edges: np.ndarray
+    owns: np.ndarray
     centres: np.ndarray
     boxes: np.ndarray
     children: np.ndarray
@@ -65,7 +74,7 @@ def surface_like():
     indices, pairs = np.empty(0, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
     return Surface(
         points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
-        indices, indices, indices, pairs,
+        indices, indices, indices, pairs, np.empty(0, dtype=np.uint16),
         np.empty((0, 4)), np.empty((0, 4), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
         indices, indices, indices, np.empty(0, dtype=np.bool_),
     )  # fmt: skip

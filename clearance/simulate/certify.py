@@ -17,7 +17,7 @@ from clearance.kernel_table import call
 from clearance.kernels.certify import Asked, certify
 from clearance.kernels.drift import Chain
 from clearance.kernels.joint_path import JointPath
-from clearance.kernels.surface import Surface
+from clearance.kernels.surface import ANYTHING, Surface
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
 from clearance.simulate.parts import in_order, parts
@@ -155,6 +155,7 @@ def _with_whole_faces(surface: Surface) -> Surface:
         vertex_starts=starts,
         owned_vertices=corners,
         edge_starts=starts,
+        owns=np.full(len(starts) - 1, ANYTHING, dtype=np.uint16),
         owned_edges=np.stack([corners, corners[rings_of(starts).ahead]], axis=1),
     )
 

@@ -1,0 +1,110 @@
+"""What a face owns, and that leaving out face pairs whose nearest features are others' own changes no bit."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance import Polyhedron
+from clearance.geometry.shapes import box, cylinder, pipe, sphere
+from clearance.geometry.tree import surface_of
+from clearance.kernel_table import call
+from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.scratch import new_scratch
+from clearance.kernels.surface import ANYTHING, LISTED
+from tests.made_cases import torus
+from tests.strategies import rotations
+
+
+def prism(n: int) -> Polyhedron:
+    """Upright, its many-sided caps first, so that they own all corners."""
+    angle = 2.0 * np.pi * np.arange(n) / n
+    ring = np.round(np.stack([0.3 * np.cos(angle), 0.3 * np.sin(angle)], axis=1), 6)
+    corners = np.concatenate([np.column_stack([ring, np.full(n, z)]) for z in (-0.5, 0.5)])
+    sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
+    return Polyhedron(corners, [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
+
+
+BODIES = {
+    "box": box((1.0, 0.7, 0.4)),
+    "many-sided caps": prism(40),
+    "eight-sided caps": prism(LISTED),
+    "cylinder": cylinder(radius=0.3, length=1.0, tolerance=0.001),
+    "ball": sphere(0.4, tolerance=0.01),
+    "ring": torus(0.5, 0.12, 40, 14),
+    "pipe": pipe(inner_radius=0.2, outer_radius=0.25, length=0.6, tolerance=0.002),
+}
+
+
+def in_triangles(shape: Polyhedron) -> Polyhedron:
+    faces = np.split(shape.face_vertices, shape.face_starts[1:-1])
+    return Polyhedron(shape.vertices, [(f[0], f[i], f[i + 1]) for f in faces for i in range(1, len(f) - 1)])
+
+
+def of_face(items, starts, face):
+    return items[starts[face] : starts[face + 1]]
+
+
+def answers(a, b, poses, *, afresh):
+    """(distance, bound, points, faces) at all poses, as one array of bits; how many face pairs were measured."""
+    held = hold_pair(a, b, ROOM, new_scratch())
+    n = len(poses)
+    numbers, points, counts = np.empty((n, 2)), np.empty((n, 2, 3)), np.empty((n, 5), dtype=np.int64)
+    assert call(nearest_at_poses, held, np.eye(4)[None], poses, False, afresh, numbers, points, counts) == -1
+    return b"".join(x.tobytes() for x in (numbers, points, counts[:, :2].copy())), int(counts[:, 3].sum())
+
+
+def around(random, n, least, most):
+    """Poses at a distance, turned at random or upright (parallel faces), each with three a little farther on."""
+    poses = np.tile(np.eye(4), (n, 4, 1, 1))
+    poses[: n // 2, :, :3, :3] = rotations(random, n // 2)[:, None]
+    away = random.normal(size=(n, 3))
+    away[n // 4 :: 3, :2] = 0.0
+    away *= random.uniform(least, most, (n, 1)) / np.linalg.norm(away, axis=1, keepdims=True)
+    poses[..., :3, 3] = away[:, None]
+    poses[:, 1:, :3, 3] += random.normal(scale=1e-3, size=(n, 3, 3)).cumsum(axis=1)
+    return poses.reshape(-1, 4, 4)
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_bits_say_what_the_lists_say(name):
+    surface = surface_of(BODIES[name])
+    for face, bits in enumerate(surface.owns.tolist()):
+        corners = of_face(surface.face_vertices, surface.face_starts, face).tolist()
+        vertices = set(of_face(surface.owned_vertices, surface.vertex_starts, face).tolist())
+        edges = of_face(surface.owned_edges, surface.edge_starts, face)
+        if len(corners) > LISTED or surface.bent[face]:
+            assert bits == ANYTHING
+            continue
+        ring = list(zip(corners, corners[1:] + corners[:1], strict=True))
+        assert {v for k, v in enumerate(corners) if bits >> k & 1} == vertices
+        starting = {frozenset(ends) for k, ends in enumerate(ring) if bits >> (LISTED + k) & 1}
+        assert starting == {frozenset(ends) for ends in edges.tolist()}
+
+
+@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("cut", [False, True], ids=["polygons", "triangles"])
+@settings(max_examples=12, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), other=st.sampled_from(sorted(BODIES)))
+def test_nothing_changes_but_the_work(name, cut, seed, other):
+    shapes = [BODIES[name], BODIES[other]]
+    a, b = (surface_of(in_triangles(shape) if cut else shape) for shape in shapes)
+    whole_a, whole_b = (s._replace(owns=np.full_like(s.owns, ANYTHING)) for s in (a, b))
+    random = np.random.default_rng(seed)
+    poses = around(random, 12, 0.2, 1.0 + random.uniform(0.0, 30.0))
+    expected, _ = answers(whole_a, whole_b, poses, afresh=True)
+    for afresh in (True, False):
+        found, n_faces = answers(a, b, poses, afresh=afresh)
+        found_by_all, n_all = answers(whole_a, whole_b, poses, afresh=afresh)
+        assert found == found_by_all == expected
+        assert n_faces <= n_all
+
+
+def test_most_face_pairs_are_left_out_where_corners_are_nearest():
+    """The nearest corner of a ball lies in some six faces, of which one owns it."""
+    ball = surface_of(BODIES["ball"])
+    whole = ball._replace(owns=np.full_like(ball.owns, ANYTHING))
+    poses = around(np.random.default_rng(5), 15, 1.0, 3.0)
+    _, n_faces = answers(ball, ball, poses, afresh=False)
+    _, n_all = answers(whole, whole, poses, afresh=False)
+    assert 2 * n_faces < n_all
