@@ -1,4 +1,4 @@
-"""Joints of a URDF model to ours: kinds, limits, unit axes, mimics that lead somewhere."""
+"""Joints of a checked URDF document to ours: kinds, limits, unit axes, mimics that lead somewhere."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import BadInput, UnknownJoint, at, nearest_name
+from clearance.load.urdf_elements import number, numbers, pose_of
 from clearance.world.robot import Joint, JointKind, Mimic
 
 if TYPE_CHECKING:
-    import yourdfpy
+    from lxml.etree import _Element as Element
 
 _KINDS = tuple(kind.value for kind in JointKind)
 
 
-def joints_from_model(model: yourdfpy.Robot) -> tuple[list[Joint], list[str]]:
+def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
     """The joints in file order, and notes on what had to be decided.
 
     Raises:
@@ -24,9 +25,9 @@ def joints_from_model(model: yourdfpy.Robot) -> tuple[list[Joint], list[str]]:
             a mimic that follows itself. UnknownJoint: a mimic of a joint that is not there.
     """
     joints = []
-    for given in model.joints:
-        with at(f"joint {given.name!r}"):
-            joints.append(_joint(given))
+    for element in root.iterfind("joint"):
+        with at(f"joint {element.get('name')!r}"):
+            joints.append(_joint(element))
     by_name = {joint.name: joint for joint in joints}
     notes: list[str] = []
     for i, joint in enumerate(joints):
@@ -37,32 +38,32 @@ def joints_from_model(model: yourdfpy.Robot) -> tuple[list[Joint], list[str]]:
     return joints, notes
 
 
-def _joint(given: yourdfpy.Joint) -> Joint:
-    if given.type not in _KINDS:
-        raise BadInput(f"type {given.type!r} is not supported", valid=f"one of {', '.join(_KINDS)}")
-    kind = JointKind(given.type)
-    lower, upper = _limits(given, kind)
-    mimic = None
-    if given.mimic is not None and kind is not JointKind.FIXED:
-        mimic = Mimic(given.mimic.joint, given.mimic.multiplier, given.mimic.offset)
+def _joint(element: Element) -> Joint:
+    if element.get("type") not in _KINDS:
+        raise BadInput(
+            f"type {element.get('type')!r} is not supported", valid=f"one of {', '.join(_KINDS)}"
+        )
+    kind = JointKind(element.get("type"))
+    lower, upper = _limits(element.find("limit"), kind)
     return Joint(
-        name=given.name,
+        name=element.get("name"),
         kind=kind,
-        parent=given.parent,
-        child=given.child,
-        parent_from_joint=np.eye(4) if given.origin is None else np.asarray(given.origin),
-        axis=_axis(given, kind),
+        parent=element.find("parent").get("link"),
+        child=element.find("child").get("link"),
+        parent_from_joint=pose_of(element),
+        axis=_axis(element.find("axis"), kind),
         lower=lower,
         upper=upper,
-        mimic=mimic,
+        mimic=_mimic(element.find("mimic"), kind),
     )
 
 
-def _axis(given: yourdfpy.Joint, kind: JointKind) -> np.ndarray:
+def _axis(element: Element | None, kind: JointKind) -> np.ndarray:
     """(3,) of length one; a fixed joint's axis says nothing and becomes x."""
+    along_x = (1.0, 0.0, 0.0)
     if kind is JointKind.FIXED:
-        return np.array([1.0, 0.0, 0.0])
-    axis = np.asarray(given.axis, dtype=np.float64)
+        return np.array(along_x)
+    axis = np.array(along_x if element is None else numbers(element, "xyz", along_x))
     greatest = np.abs(axis).max()
     if greatest == 0:
         raise BadInput("axis is 0 0 0", valid="a direction is needed")
@@ -70,17 +71,24 @@ def _axis(given: yourdfpy.Joint, kind: JointKind) -> np.ndarray:
     return axis / np.linalg.norm(axis)
 
 
-def _limits(given: yourdfpy.Joint, kind: JointKind) -> tuple[float, float]:
+def _limits(element: Element | None, kind: JointKind) -> tuple[float, float]:
     """Lower and upper limit: infinite where neither is written, 0 where one is not (URDF)."""
-    limit = given.limit
-    if kind in (JointKind.FIXED, JointKind.CONTINUOUS) or limit is None:
+    if kind in (JointKind.FIXED, JointKind.CONTINUOUS) or element is None:
         return -np.inf, np.inf
-    if limit.lower is None and limit.upper is None:
+    if element.get("lower") is None and element.get("upper") is None:
         return -np.inf, np.inf
-    lower, upper = limit.lower or 0.0, limit.upper or 0.0
+    lower, upper = number(element, "lower", 0.0), number(element, "upper", 0.0)
     if lower > upper:
         raise BadInput(f"lower limit {lower:g} is above upper limit {upper:g}")
     return lower, upper
+
+
+def _mimic(element: Element | None, kind: JointKind) -> Mimic | None:
+    if element is None or kind is JointKind.FIXED:
+        return None
+    return Mimic(
+        element.get("joint"), number(element, "multiplier", 1.0), number(element, "offset", 0.0)
+    )
 
 
 def _with_checked_mimic(joint: Joint, by_name: dict[str, Joint]) -> tuple[Joint, list[str]]:

@@ -1,33 +1,30 @@
-"""URDF to a robot, and the one door to yourdfpy.
+"""URDF to a robot: one body for each link that has a shape.
 
-The document is checked first (`urdf_elements`); yourdfpy then turns it into links and joints
-without touching any mesh, and meshes go through our own loader. Not for: where the robot stands, or
-how it moves.
+The document is checked first (`urdf_elements`), so that what is read here is there; meshes go through our own
+loader. Not for: where the robot stands, or how it moves.
 """
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from clearance.errors import BadSyntax, at
+from clearance.errors import at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, capsule, cylinder, sphere
-from clearance.load.joints import joints_from_model
+from clearance.load.joints import joints_of
 from clearance.load.mesh import LoadedMesh
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot_tree import links_from_root
-from clearance.load.urdf_elements import origin_notes, parse_document
+from clearance.load.urdf_elements import number, numbers, origin_notes, parse_document, pose_of
 from clearance.world.body import Body
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
-    import yourdfpy
     from lxml.etree import _Element as Element
 
 Geometry = Literal["collision", "visual"]
@@ -59,84 +56,60 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
     with at(shown):
         root = parse_document(data)
         unit_notes = origin_notes(root)
-        model = _model(root)
-        joints, notes = joints_from_model(model)
+        joints, notes = joints_of(root)
         notes += [f"{shown}: {note}" for note in unit_notes]
-        link_names, ordered = links_from_root([link.name for link in model.links], joints)
-        by_name = {link.name: link for link in model.links}
+        by_name = {link.get("name"): link for link in root.iterfind("link")}
+        link_names, ordered = links_from_root(tuple(by_name), joints)
         bodies = []
         for name in link_names:
             body, link_notes = _body(by_name[name], request, meshes)
             notes += [f"{shown}: {note}" for note in link_notes]
             bodies += [body] if body is not None else []
-        bare = [name for name in link_names if not _elements(by_name[name], request)]
+        bare = [name for name in link_names if by_name[name].find(request.geometry) is None]
         if bare:
             what = f"no {request.geometry} geometry and not measured: {', '.join(bare)}"
             links = "1 link" if len(bare) == 1 else f"{len(bare)} links"
             notes.append(f"{shown}: {links} with {what}")
-    return Robot(model.name, link_names, ordered, tuple(bodies), tuple(notes))
-
-
-def _model(root: Element) -> yourdfpy.Robot:
-    import yourdfpy
-    from lxml import etree
-
-    root.set("name", root.get("name") or "robot")
-    for element in root.iter("collision", "visual"):
-        element.set("name", element.find("geometry")[0].tag)
-    for element in list(
-        root.iter("capsule")
-    ):  # yourdfpy has no capsule; its `name` tells them apart
-        element.tag = "cylinder"
-    try:
-        document = io.BytesIO(etree.tostring(root))
-        return yourdfpy.URDF.load(document, build_scene_graph=False, load_meshes=False).robot
-    except (
-        Exception
-    ) as error:  # whatever its parsing hits; the document is checked, so this is rare
-        raise BadSyntax(f"not a URDF that can be read: {type(error).__name__}: {error}") from None
-
-
-def _elements(
-    link: yourdfpy.Link, request: UrdfRequest
-) -> list[yourdfpy.Collision] | list[yourdfpy.Visual]:
-    return link.collisions if request.geometry == "collision" else link.visuals
+    return Robot(root.get("name") or "robot", link_names, ordered, tuple(bodies), tuple(notes))
 
 
 def _body(
-    link: yourdfpy.Link, request: UrdfRequest, meshes: MeshStore
+    link: Element, request: UrdfRequest, meshes: MeshStore
 ) -> tuple[Body | None, list[str]]:
-    elements = _elements(link, request)
+    """The shapes of a link as one body in its frame, if it has any, and notes."""
+    elements = link.findall(request.geometry)
     if not elements:
         return None, []
+    name = link.get("name")
     shapes, origins, notes = [], [], []
     for i, element in enumerate(elements):
-        with at(f"link {link.name!r} {request.geometry}[{i}]"):
-            shape, origin, shape_notes = _shape(element, request, meshes)
-        shapes.append(shape if element.origin is None else shape.transformed(element.origin))
+        with at(f"link {name!r} {request.geometry}[{i}]"):
+            shape, origin, shape_notes = _shape(element.find("geometry")[0], request, meshes)
+        moved = element.find("origin") is not None
+        shapes.append(shape.transformed(pose_of(element)) if moved else shape)
         origins.append(origin)
         notes += shape_notes
-    return Body(link.name, Polyhedron.merged(shapes), ", ".join(origins)), notes
+    return Body(name, Polyhedron.merged(shapes), ", ".join(origins)), notes
 
 
 def _shape(
-    element: yourdfpy.Collision | yourdfpy.Visual, request: UrdfRequest, meshes: MeshStore
+    element: Element, request: UrdfRequest, meshes: MeshStore
 ) -> tuple[Polyhedron, str, list[str]]:
     """The shape of one element in its own frame, what it was made from, and notes."""
-    geometry = element.geometry
-    if geometry.mesh is not None:
-        mesh, shown = _mesh(geometry.mesh, request, meshes)
+    kind = element.tag
+    if kind == "mesh":
+        mesh, shown = _mesh(element, request, meshes)
         return mesh.shape, shown, [f"{shown}: {note}" for note in mesh.notes]
-    if geometry.box is not None:
-        return box(geometry.box.size), "box", []
-    if geometry.sphere is not None:
-        return sphere(radius=geometry.sphere.radius), "sphere", []
-    made = capsule if element.name == "capsule" else cylinder
-    rod = geometry.cylinder
-    return made(radius=rod.radius, length=rod.length), element.name, []
+    if kind == "box":
+        return box(numbers(element, "size")), kind, []
+    radius = number(element, "radius")
+    if kind == "sphere":
+        return sphere(radius=radius), kind, []
+    made = capsule if kind == "capsule" else cylinder
+    return made(radius=radius, length=number(element, "length")), kind, []
 
 
-def _mesh(mesh: yourdfpy.Mesh, request: UrdfRequest, meshes: MeshStore) -> tuple[LoadedMesh, str]:
-    path = mesh_path(mesh.filename, request.path.parent, request.package_dirs)
-    scale = np.ones(3) if mesh.scale is None else np.broadcast_to(mesh.scale, 3)
+def _mesh(element: Element, request: UrdfRequest, meshes: MeshStore) -> tuple[LoadedMesh, str]:
+    path = mesh_path(element.get("filename"), request.path.parent, request.package_dirs)
+    scale = np.broadcast_to(numbers(element, "scale", (1.0,)), 3)
     return meshes.load(path, tuple(scale.tolist())), meshes.files.shown(path)

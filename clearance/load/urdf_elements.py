@@ -1,8 +1,8 @@
 """What a URDF document must look like before anything is made of it: each fault names its element.
 
-The parser behind `urdf` takes the first child of a `<geometry>` and ignores the rest, mends broken
-XML without a word and dies of a missing attribute; so the document is checked here first. Elements
-that say nothing about shape or motion (inertia, colour, transmission, gazebo, …) are taken out.
+Whoever reads the elements after that may take the first child of a `<geometry>` for its shape, and attributes
+for what they must be. Elements that say nothing about shape or motion (inertia, colour, transmission, gazebo, …)
+are taken out.
 """
 
 from __future__ import annotations
@@ -10,7 +10,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite
+from clearance.geometry.pose import pose_from_rpy
 from clearance.load.plausibility import pose_notes
 
 if TYPE_CHECKING:
@@ -76,13 +79,34 @@ def origin_notes(root: Element) -> list[str]:
         owner = origin.getparent()
         if owner.tag != "joint":
             owner = owner.getparent()
-        xyz, rpy = (_numbers(origin.get(key)) for key in ("xyz", "rpy"))
-        notes += pose_notes(f"an origin of {owner.tag} {owner.get('name')!r}", xyz, rpy)
+        notes += pose_notes(f"an origin of {owner.tag} {owner.get('name')!r}", *_origin(origin))
     return notes
 
 
-def _numbers(text: str | None) -> list[float]:
-    return [float(word) for word in (text or "0 0 0").split()]
+def pose_of(element: Element) -> np.ndarray:
+    """The (4, 4) pose [m] of an element in what it belongs to, by its `<origin>`; the identity without one."""
+    origin = element.find("origin")
+    return np.eye(4) if origin is None else pose_from_rpy(*_origin(origin))
+
+
+def number(element: Element, attribute: str, default: float | None = None) -> float:
+    """The number in an attribute of a checked document."""
+    (value,) = numbers(element, attribute, (default,))
+    return value
+
+
+def numbers(
+    element: Element, attribute: str, default: tuple[float, ...] = ()
+) -> tuple[float, ...]:
+    """The numbers in an attribute of a checked document."""
+    text = element.get(attribute)
+    return default if text is None else tuple(map(float, text.split()))
+
+
+def _origin(origin: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Place [m], and roll, pitch, yaw [rad]."""
+    zeros = (0.0, 0.0, 0.0)
+    return numbers(origin, "xyz", zeros), numbers(origin, "rpy", zeros)
 
 
 def _root(data: bytes) -> Element:

@@ -19,7 +19,7 @@ LIBRARIES = (
     "scipy",
     "numba",
     "trimesh",
-    "yourdfpy",
+    "lxml",
     "pybullet",
     "python-fcl",
     "pyarrow",
