@@ -12,7 +12,6 @@ from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import borrow
 from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sight
 from clearance.kernels.face_pair import (
-    OWN_SIGHT,
     Hit,
     limit_of,
     may_meet,
@@ -214,9 +213,7 @@ def descend(
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
             is_near = in_sight <= cut
-            if is_near and (
-                in_sight < (1.0 - OWN_SIGHT) * cut or may_own_nearest(a, face_a, b, face_b, from_a.sight, slack)
-            ):
+            if is_near and may_own_nearest(a, face_a, b, face_b, from_a.sight, in_sight, best_gap, margin):
                 n_faces += 1
                 before_sq = best.gap_sq
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)

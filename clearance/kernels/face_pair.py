@@ -27,6 +27,10 @@ LEANING = 2.0**-6
 OWN_SIGHT = 0.5 * LEANING * LEANING
 """Share of the least distance that the bound of a face pair may be short of it for that."""
 
+CLEARLY = 1.0 + 2.0**-26
+"""Where rounding makes a distance more uncertain than that, all faces are measured: what else they own may be as
+near, and `error_bound` would depend on whether it was seen."""
+
 
 class Hit(NamedTuple):
     """A pair of points, both in the frame of body a until it is the answer, which is in the world.
@@ -236,10 +240,11 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
 
 
 @merged
-def _may_own_farthest(surface, face, u, slack):
+def _may_own_farthest(surface, face, u, depth):
     """False if nothing that a face owns is its farthest along any direction within `LEANING` of `u`.
 
-    A corner, an edge or the face is farthest; all its corners are as high as the highest, but for the leaning.
+    A corner, an edge or the face is farthest; all its corners are as high as the highest, but for the leaning, and
+    `depth` [m] of rounding.
     """
     owns = np.int64(surface.owns[face])
     if owns == ANYTHING:
@@ -255,7 +260,7 @@ def _may_own_farthest(surface, face, u, slack):
     high = 0
     for c in range(first, end):
         below = sub(top, row(surface.vertices, surface.face_vertices[c]))
-        if dot(u, below) <= LEANING * (abs(below.x) + abs(below.y) + abs(below.z)) + slack:
+        if dot(u, below) <= LEANING * (abs(below.x) + abs(below.y) + abs(below.z)) + depth:
             high |= 1 << (c - first)
     edges = high & (high >> 1 | high << (end - first - 1))
     if (owns & high) | (owns >> LISTED & edges):
@@ -265,15 +270,19 @@ def _may_own_farthest(surface, face, u, slack):
 
 
 @merged
-def may_own_nearest(a, face_a, b, face_b, sight, slack):
+def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
     """False if two faces, should they be the nearest of all, are nearest at features that are other faces' own.
 
-    Only for faces of which the bound in sight is at least the least distance less `OWN_SIGHT` of it. Then the
-    direction of their nearest points is within `LEANING` of the sight.
+    Args:
+        in_sight: [m] the bound of the faces along the sight. Where it is within `OWN_SIGHT` of the least distance,
+            the direction of their nearest points is within `LEANING` of the sight.
     """
+    limit = limit_of(a, face_a, b, face_b, best_gap, margin)
+    if in_sight < (1.0 - OWN_SIGHT) * limit or limit > CLEARLY * best_gap:
+        return True
     v = sight.v
-    return _may_own_farthest(a, face_a, sight.u, slack) and _may_own_farthest(
-        b, face_b, Vec3(-v.x, -v.y, -v.z), slack
+    return _may_own_farthest(a, face_a, sight.u, limit - in_sight) and _may_own_farthest(
+        b, face_b, Vec3(-v.x, -v.y, -v.z), limit - in_sight
     )
 
 

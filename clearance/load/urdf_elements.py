@@ -121,6 +121,11 @@ def _root(data: bytes) -> Element:
         raise BadSyntax(
             f"the root element is <{etree.QName(root).localname}>", valid="<robot> is needed"
         )
+    entity = next(root.iter(etree.Entity), None)
+    if entity is not None:
+        raise BadSyntax(
+            f"{entity.text} stands for something among the elements", valid="write out what it stands for"
+        )
     if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter()):
         raise BadSyntax(
             "this is a xacro file", valid="turn it into URDF with the xacro command first"
@@ -179,11 +184,11 @@ def _check_numbers(element: Element, attribute: str, counts: tuple[int, ...], wh
         values = []
     if len(values) != len(words) or len(values) not in counts:
         wanted = " or ".join(str(n) for n in counts)
-        plural = "" if counts == (1,) else "s"
+        plural = " is" if counts == (1,) else "s are"
         raise BadShape(
             f"{attribute}={text!r:.60} is given",
             where=where,
-            valid=f"{wanted} number{plural} are needed",
+            valid=f"{wanted} number{plural} needed",
         )
     if not all(math.isfinite(value) for value in values):
         raise NotFinite(

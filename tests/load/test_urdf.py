@@ -411,3 +411,9 @@ def test_each_fault_is_one_line_with_file_and_element(tmp_path, urdf, fault, say
     assert says in str(caught.value)
     assert str(caught.value).startswith("arm.urdf: ")
     assert "\n" not in str(caught.value)
+
+
+def test_entities_among_the_elements_are_refused(tmp_path):
+    text = "<!DOCTYPE robot [<!ENTITY b '<link name=\"a\"/>'>]>" + robot("&b;")
+    with pytest.raises(BadSyntax, match="&b; stands for something among the elements"):
+        load(tmp_path, text)

@@ -36,6 +36,12 @@ BODIES = {
 }
 
 
+SLIVER = Polyhedron(
+    [[0, 0, 0], [1, 0, 0], [0.5, 1, 1], [0, -3e-6, 1e-5]], [(0, 1, 2), (0, 3, 1)]
+)
+"""An edge with a face so slender that it has no plane in the search."""
+
+
 def in_triangles(shape: Polyhedron) -> Polyhedron:
     faces = np.split(shape.face_vertices, shape.face_starts[1:-1])
     return Polyhedron(shape.vertices, [(f[0], f[i], f[i + 1]) for f in faces for i in range(1, len(f) - 1)])
@@ -108,3 +114,16 @@ def test_most_face_pairs_are_left_out_where_corners_are_nearest():
     _, n_faces = answers(ball, ball, poses, afresh=False)
     _, n_all = answers(whole, whole, poses, afresh=False)
     assert 2 * n_faces < n_all
+
+
+def test_bounds_do_not_depend_on_what_was_asked_before():
+    triangle = Polyhedron([[0.3, -0.5, -1], [0.31, 0.5, -1], [0.3, 0, -3]], [(0, 1, 2)])
+    random = np.random.default_rng(7)
+    poses = around(random, 40, 0.5, 3.0)
+    poses[:3] = np.eye(4)
+    poses[:3, 2, 3] = 0.0, -0.001, -0.002
+    for body in (triangle, BODIES["box"]):
+        a, b = surface_of(SLIVER), surface_of(body)
+        walked, _ = answers(a, b, poses, afresh=False)
+        afresh, _ = answers(a, b, poses, afresh=True)
+        assert walked == afresh
