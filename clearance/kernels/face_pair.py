@@ -20,7 +20,6 @@ ROUGH = 2.0**-44
 """Relative error of a height over a face whose corners are all blunt; it grows as 1 / angle^2: the normal is
 off by 16 u / angle, and a foot next to a corner by that over the angle."""
 
-
 LEANING = 2.0**-6
 """Difference of two unit vectors, within which a face pair is known to be nearest at features of others."""
 

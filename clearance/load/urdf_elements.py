@@ -1,8 +1,7 @@
 """What a URDF document must look like before anything is made of it: each fault names its element.
 
-Whoever reads the elements after that may take the first child of a `<geometry>` for its shape, and attributes
-for what they must be. Elements that say nothing about shape or motion (inertia, colour, transmission, gazebo, …)
-are taken out.
+Elements that say nothing about shape or motion (inertia, colour, transmission, gazebo, …) are taken out. Then a
+`<geometry>` has one child, its shape, and attributes hold what `pose_of` and `numbers` read from them.
 """
 
 from __future__ import annotations

@@ -38,13 +38,10 @@ def test_joints_are_the_same(path):
             np.testing.assert_allclose(ours.axis, axis / np.linalg.norm(axis), rtol=0, atol=4e-16)
         if theirs.type in ("revolute", "prismatic") and theirs.limit.lower is not None:
             assert (ours.lower, ours.upper) == (theirs.limit.lower, theirs.limit.upper)
-        followed = (
-            None
-            if theirs.mimic is None
-            else (theirs.mimic.joint, theirs.mimic.multiplier, theirs.mimic.offset)
-        )
-        if theirs.type != "fixed" and ours.mimic is not None:
-            assert (ours.mimic.joint, ours.mimic.multiplier, ours.mimic.offset) == followed
+        assert (ours.mimic is None) == (theirs.mimic is None)
+        if ours.mimic is not None:
+            for number in ("joint", "multiplier", "offset"):
+                assert getattr(ours.mimic, number) == getattr(theirs.mimic, number)
 
 
 @pytest.mark.parametrize("path", paths(), ids=lambda path: path.stem)
