@@ -1,45 +1,116 @@
-"""Forward kinematics of a tree of links for many steps at once."""
+"""Forward kinematics of trees of links: of one step, or of many at once."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, kernel
+from clearance.jit import kernel, merged
+from clearance.kernels.vec3 import Rigid, Vec3, move, rigid
 
 FIXED, TURNING, SLIDING = 0, 1, 2
 
-
-@inlined
-def _joint_motion(kind, axis, position, out):
-    """Writes the 3 x 4 motion of one joint at `position` into `out`."""
-    for r in range(3):
-        for c in range(4):
-            out[r, c] = 1.0 if r == c else 0.0
-    if kind == SLIDING:
-        for r in range(3):
-            out[r, 3] = axis[r] * position
-    elif kind == TURNING:
-        s = math.sin(position)
-        v = 2.0 * math.sin(0.5 * position) ** 2  # 1 - cos without cancellation
-        x, y, z = axis[0], axis[1], axis[2]
-        out[0, 0] = 1.0 - v * (y * y + z * z)
-        out[1, 1] = 1.0 - v * (x * x + z * z)
-        out[2, 2] = 1.0 - v * (x * x + y * y)
-        out[0, 1] = v * x * y - s * z
-        out[1, 0] = v * x * y + s * z
-        out[0, 2] = v * x * z + s * y
-        out[2, 0] = v * x * z - s * y
-        out[1, 2] = v * y * z - s * x
-        out[2, 1] = v * y * z + s * x
+NO_PARENT, NO_COLUMN = -1, -1
 
 
-@inlined
-def _compose(a, b, out):
-    """Writes the product of two affine maps, of which only the upper 3 x 4 parts are read, into `out`."""
-    for r in range(3):
-        for c in range(4):
-            value = a[r, 0] * b[0, c] + a[r, 1] * b[1, c] + a[r, 2] * b[2, c]
-            out[r, c] = value + a[r, 3] if c == 3 else value
+class Links(NamedTuple):
+    """The links of all robots behind one another, parents before children, and what moves them.
+
+    Attributes:
+        asked: (m,) the links whose poses are wanted, and all above them, in order.
+        parents: (links,) or `NO_PARENT` for a root, which stands.
+        kinds: (links,) of the joint above each link. axes: (links, 3) its unit axis.
+        parent_from_joint: (links, 4, 4) its fixed part [m]; of a root its pose in the world.
+        columns: (links,) of the positions that the joint follows, or `NO_COLUMN`.
+        factors, offsets: (links,) its position is factor times that, plus offset [rad or m].
+    """
+
+    asked: np.ndarray
+    parents: np.ndarray
+    kinds: np.ndarray
+    axes: np.ndarray
+    parent_from_joint: np.ndarray
+    columns: np.ndarray
+    factors: np.ndarray
+    offsets: np.ndarray
+
+
+@merged
+def _turned(m, axis, position):
+    """The motion `m` after a turn about a unit axis."""
+    s = math.sin(position)
+    v = 2.0 * math.sin(0.5 * position) ** 2  # 1 - cos without cancellation
+    x, y, z = axis[0], axis[1], axis[2]
+    xx, yy, zz = 1.0 - v * (y * y + z * z), 1.0 - v * (x * x + z * z), 1.0 - v * (x * x + y * y)
+    xy, yx = v * x * y - s * z, v * x * y + s * z
+    xz, zx = v * x * z + s * y, v * x * z - s * y
+    yz, zy = v * y * z - s * x, v * y * z + s * x
+    return Rigid(
+        m.xx * xx + m.xy * yx + m.xz * zx, m.xx * xy + m.xy * yy + m.xz * zy, m.xx * xz + m.xy * yz + m.xz * zz,
+        m.yx * xx + m.yy * yx + m.yz * zx, m.yx * xy + m.yy * yy + m.yz * zy, m.yx * xz + m.yy * yz + m.yz * zz,
+        m.zx * xx + m.zy * yx + m.zz * zx, m.zx * xy + m.zy * yy + m.zz * zy, m.zx * xz + m.zy * yz + m.zz * zz,
+        m.t,
+    )  # fmt: skip
+
+
+@merged
+def _slid(m, axis, position):
+    """The motion `m` after a slide along an axis."""
+    way = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
+    return Rigid(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
+
+
+@merged
+def _then(a, b):
+    """The motion `b` and then `a`."""
+    return Rigid(
+        a.xx * b.xx + a.xy * b.yx + a.xz * b.zx,
+        a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
+        a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
+        a.yx * b.xx + a.yy * b.yx + a.yz * b.zx,
+        a.yx * b.xy + a.yy * b.yy + a.yz * b.zy,
+        a.yx * b.xz + a.yy * b.yz + a.yz * b.zz,
+        a.zx * b.xx + a.zy * b.yx + a.zz * b.zx,
+        a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
+        a.zx * b.xz + a.zy * b.yz + a.zz * b.zz,
+        move(a, b.t),
+    )  # fmt: skip
+
+
+@merged
+def _write(m, out):
+    """Writes a motion as a (4, 4) pose."""
+    out[0, 0], out[0, 1], out[0, 2], out[0, 3] = m.xx, m.xy, m.xz, m.t.x
+    out[1, 0], out[1, 1], out[1, 2], out[1, 3] = m.yx, m.yy, m.yz, m.t.y
+    out[2, 0], out[2, 1], out[2, 2], out[2, 3] = m.zx, m.zy, m.zz, m.t.z
+    out[3, 0], out[3, 1], out[3, 2], out[3, 3] = 0.0, 0.0, 0.0, 1.0
+
+
+@merged
+def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out):
+    """Writes the pose of a link whose joint is at `position`."""
+    at = _then(rigid(world_from_parent), rigid(parent_from_joint))
+    if kind == TURNING:
+        at = _turned(at, axis, position)
+    elif kind == SLIDING:
+        at = _slid(at, axis, position)
+    _write(at, out)
+
+
+@merged
+def place_links(links, positions, poses):
+    """Fills `poses` (links, 4, 4) of the links that are asked for, the joints at `positions` (columns,)."""
+    for link in links.asked:
+        parent = links.parents[link]
+        if parent == NO_PARENT:
+            _write(rigid(links.parent_from_joint[link]), poses[link])
+            continue
+        column = links.columns[link]
+        position = 0.0 if column == NO_COLUMN else links.factors[link] * positions[column] + links.offsets[link]
+        _place_link(
+            poses[parent], links.parent_from_joint[link], links.kinds[link], links.axes[link],
+            position, poses[link],
+        )  # fmt: skip
 
 
 @kernel
@@ -49,20 +120,10 @@ def forward(world_from_base, parents, kinds, parent_from_joint, axes, positions,
     Link 0 is the root; link i > 0 hangs on link `parents[i]` < i by a joint of kind `kinds[i]` with the
     fixed part `parent_from_joint[i]` (4, 4) and the unit axis `axes[i]`.
     """
-    moved = np.empty((3, 4))
-    placed = np.empty((3, 4))
     for step in range(poses.shape[0]):
-        for link in range(poses.shape[1]):
-            out = poses[step, link]
-            if link == 0:
-                for r in range(3):
-                    for c in range(4):
-                        out[r, c] = world_from_base[r, c]
-            else:
-                _joint_motion(kinds[link], axes[link], positions[step, link], moved)
-                _compose(poses[step, parents[link]], parent_from_joint[link], placed)
-                _compose(placed, moved, out)
-            out[3, 0] = 0.0
-            out[3, 1] = 0.0
-            out[3, 2] = 0.0
-            out[3, 3] = 1.0
+        _write(rigid(world_from_base), poses[step, 0])
+        for link in range(1, poses.shape[1]):
+            _place_link(
+                poses[step, parents[link]], parent_from_joint[link], kinds[link], axes[link],
+                positions[step, link], poses[step, link],
+            )  # fmt: skip

@@ -2,7 +2,8 @@
 
 Between steps no point of a body moves farther than `displacement` says, so that a bound on a pair's
 distance, less what both bodies have moved since, still holds; pairs whose carried bound exceeds the best
-are not asked.
+are not asked. Where only what is near is asked for, steps at which nothing can be, by the positions of the
+joints alone (`stride`), are passed over.
 """
 
 from typing import NamedTuple
@@ -16,7 +17,9 @@ from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_s
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
+from clearance.kernels.kinematics import Links, place_links
 from clearance.kernels.scratch import Scratch, new_scratch
+from clearance.kernels.stride import fill_reach, least_spare
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
@@ -39,16 +42,16 @@ class World(NamedTuple):
     """What moves where.
 
     Attributes:
-        frames: (bodies,) column of `poses` that carries the body, or -1 for one that stands.
+        frames: (bodies,) link that carries the body, or -1 for one that stands.
         standing: (bodies, 4, 4) poses of the bodies that stand [m].
-        poses: (k, frames, 4, 4) `world_from_frame` [m] at the steps of the rows.
         pairs: (p, 2) bodies to measure against each other.
+        links: what moves the links.
     """
 
     frames: np.ndarray
     standing: np.ndarray
-    poses: np.ndarray
     pairs: np.ndarray
+    links: Links
 
 
 class Goal(NamedTuple):
@@ -99,25 +102,25 @@ class PairRows(NamedTuple):
 
 
 @merged
-def pose_of(world, body, row):
-    """Where a body is at a row, as a `Rigid`."""
+def pose_of(world, body, poses):
+    """Where a body is, as a `Rigid`; `poses` (links, 4, 4) are those of the links."""
     if world.frames[body] < 0:
         return rigid(world.standing[body])
-    return rigid(world.poses[row, world.frames[body]])
+    return rigid(poses[world.frames[body]])
 
 
 @merged
-def pair_frames(world, pair, row):
-    """Where both bodies of a pair are at a row."""
-    a = pose_of(world, world.pairs[pair, 0], row)
-    b = pose_of(world, world.pairs[pair, 1], row)
+def pair_frames(world, pair, poses):
+    """Where both bodies of a pair are."""
+    a = pose_of(world, world.pairs[pair, 0], poses)
+    b = pose_of(world, world.pairs[pair, 1], poses)
     return frames_of(a, b)
 
 
 @merged
-def root_bound(surface, world, pair, row):
+def root_bound(surface, world, pair, poses):
     """[m] a lower bound on the distance of the boxes of a pair."""
-    frames = pair_frames(world, pair, row)
+    frames = pair_frames(world, pair, poses)
     root_a = surface.roots[world.pairs[pair, 0]]
     root_b = surface.roots[world.pairs[pair, 1]]
     slack = rounding_slack(surface, root_a, surface, root_b, frames)
@@ -126,13 +129,12 @@ def root_bound(surface, world, pair, row):
 
 
 @merged
-def _add_travel(surface, world, row, travel):
-    """Adds to `travel` (bodies,) [m] what each body moves from the row before to this one."""
+def _add_travel(surface, world, before, after, travel):
+    """Adds to `travel` (bodies,) [m] what each body moves between two poses of the links."""
     for body in range(len(world.frames)):
         frame = world.frames[body]
         if frame >= 0:
-            start, end = world.poses[row - 1, frame], world.poses[row, frame]
-            travel[body] += displacement(surface, surface.roots[body], start, end) * GROWTH
+            travel[body] += displacement(surface, surface.roots[body], before[frame], after[frame]) * GROWTH
 
 
 @merged
@@ -142,22 +144,22 @@ def _floor_of(world, pair, travel, floors):
 
 
 @merged
-def _bounded_again(surface, world, pair, row, travel, floors):
+def _bounded_again(surface, world, pair, poses, travel, floors):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
-    floor = max(_floor_of(world, pair, travel, floors), root_bound(surface, world, pair, row))
+    floor = max(_floor_of(world, pair, travel, floors), root_bound(surface, world, pair, poses))
     moved = travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
     floors[pair] = (floor + moved) * KEPT_DOWN
     return floor
 
 
 @merged
-def _nearest_by_boxes(surface, world, row, travel, floors, winner):
+def _nearest_by_boxes(surface, world, poses, travel, floors, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
     nearest = np.inf
     for pair in range(len(world.pairs)):
         floor = _floor_of(world, pair, travel, floors)
         if floor < nearest:
-            floor = _bounded_again(surface, world, pair, row, travel, floors)
+            floor = _bounded_again(surface, world, pair, poses, travel, floors)
             if floor < nearest:
                 nearest = floor
                 winner = pair
@@ -196,57 +198,107 @@ class Known(NamedTuple):
     """What is carried from step to step, and room for the search.
 
     Attributes:
+        poses: (2, links, 4, 4) of the links at the last two steps that were looked at, in turn [m].
         travel: (bodies,) [m] what each body has moved.
         within: (p,) [m] as in `Goal`, less where that is found.
         floors: (p,) [m] a bound on each pair's distance plus the travel of both bodies when it was found.
         seeds: (p, 2) the faces that were nearest, or NO_FACE.
+        reach, noise: of `fill_reach`, where steps can be passed over.
+        spare: (bodies,) [m] how far each may move before something may come within what is asked.
         fronts, scratch: of `descend`.
     """
 
+    poses: np.ndarray
     travel: np.ndarray
     within: np.ndarray
     floors: np.ndarray
     seeds: np.ndarray
+    reach: np.ndarray
+    noise: np.ndarray
+    spare: np.ndarray
     fronts: Fronts
     scratch: Scratch
 
 
+@merged
+def _spend(world, pair, spare_of_pair, spare):
+    """Notes how far the bodies of a pair may move: each half as far where both do."""
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    if world.frames[body_a] >= 0 and world.frames[body_b] >= 0:
+        spare_of_pair *= 0.5
+    spare[body_a] = min(spare[body_a], spare_of_pair)
+    spare[body_b] = min(spare[body_b], spare_of_pair)
+
+
+@merged
+def _pass_over(world, positions, row, within, known, rows, tally):
+    """The next row to look at; writes those between, at which nothing comes `within` [m]."""
+    after = row + 1
+    while after < len(positions):
+        left = least_spare(world.frames, positions, row, after, known.reach, known.noise, known.spare)
+        if left <= 0.0:
+            break
+        _write(after, -1, nothing_yet(np.inf), within + left, rows)
+        tally[0] += len(world.pairs)
+        tally[4] += 1
+        after += 1
+    return after
+
+
 @kernel
-def sweep(surface, world, steps, goal, rows, pair_rows, tally, table):
-    """Fills `rows` for `steps` (k,) and `tally`: pairs skipped, queries, nodes, faces.
+def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table):
+    """Fills `rows` for `steps` (k,) and `tally`: pairs skipped, queries, nodes, faces, steps passed over.
 
     Ties go to the least pair. What is exact in the rows does not depend on where a sweep starts. Without
     `goal.each`, `pair_rows` is not touched.
+
+    Args:
+        positions: (k, columns) of the joints at the steps [rad or m].
     """
-    n_pairs = len(world.pairs)
+    n_pairs, n_bodies = len(world.pairs), len(world.frames)
     known = Known(
-        np.zeros(len(world.frames)), goal.within.copy(), np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
+        np.empty((2, len(world.links.parents), 4, 4)), np.zeros(n_bodies), goal.within.copy(),
+        np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
+        np.empty((n_bodies, positions.shape[1])), np.empty(n_bodies), np.empty(n_bodies),
         no_fronts(n_pairs, POOL), new_scratch(),
     )  # fmt: skip
-    _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table)
+    _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table)
 
 
 @borrowing
-def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
+def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table):
     """`sweep`, with room for what is known."""
     travel, within, floors, seeds = known.travel, known.within, known.floors, known.seeds
     fronts, scratch = known.fronts, known.scratch
     n_pairs = len(world.pairs)
     for i in range(len(tally)):
         tally[i] = 0
+    poses = known.poses[0]
+    place_links(world.links, positions[0], poses)
     for pair in range(n_pairs):
-        floors[pair] = root_bound(surface, world, pair, 0)
+        floors[pair] = root_bound(surface, world, pair, poses)
     winner = np.argmin(floors)
+    near_only = within[0] < np.inf
+    if near_only:
+        fill_reach(surface, world.frames, world.links, positions, known.reach, known.noise)
     lent = lend(surface)
-    for row in range(len(steps)):
+    row = 0
+    looked_at = 0
+    while row < len(steps):
         if row > 0:
-            _add_travel(surface, world, row, travel)
+            poses, before = known.poses[looked_at % 2], poses
+            place_links(world.links, positions[row], poses)
+            _add_travel(surface, world, before, poses, travel)
+        looked_at += 1
         best = nothing_yet(np.inf)
         best_pair = -1
         lowest = np.inf
-        gap = within[0]
+        asked_within = within[0]
+        gap = asked_within
+        for body in range(len(known.spare)):
+            known.spare[body] = np.inf
         if _floor_of(world, winner, travel, floors) <= 0.0:
-            winner = _nearest_by_boxes(surface, world, row, travel, floors, winner)
+            winner = _nearest_by_boxes(surface, world, poses, travel, floors, winner)
         for turn in range(-1, n_pairs):
             pair = winner if turn < 0 else turn
             if turn == winner:
@@ -255,11 +307,14 @@ def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
             moved = travel[body_a] + travel[body_b]
             floor = floors[pair] - moved
             if floor <= 0.0:
-                floor = _bounded_again(surface, world, pair, row, travel, floors)
+                floor = _bounded_again(surface, world, pair, poses, travel, floors)
             if goal.each:
-                gap = within[pair]
+                asked_within = within[pair]
+                gap = asked_within
             if floor > gap:
                 lowest = min(lowest, floor)
+                if near_only:
+                    _spend(world, pair, floor - asked_within, known.spare)
                 tally[0] += 1
                 continue
             ahead = moved / max(1, row)
@@ -268,10 +323,12 @@ def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
                 forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
             asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
             measured = measure_pair(
-                lent, body_a, lent, body_b, pair_frames(world, pair, row), asked,
+                lent, body_a, lent, body_b, pair_frames(world, pair, poses), asked,
                 fronts, pair, moved, scratch, table,
             )  # fmt: skip
             lowest = min(lowest, measured.lower_bound)
+            if near_only:
+                _spend(world, pair, measured.lower_bound - asked_within, known.spare)
             floors[pair] = (measured.lower_bound + moved) * KEPT_DOWN
             seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
             tally[1] += 1
@@ -294,3 +351,7 @@ def _sweep(surface, world, steps, goal, known, rows, pair_rows, tally, table):
             if goal.lasting and not goal.each:
                 within[0] = min(within[0], np.sqrt(best.gap_sq) * NOT_LESS)
         _write(row, best_pair, best, lowest, rows)
+        if near_only:
+            row = _pass_over(world, positions, row, asked_within, known, rows, tally)
+        else:
+            row += 1

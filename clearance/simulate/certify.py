@@ -144,7 +144,7 @@ def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, Chain, Asked]:
     return (
         _with_whole_faces(layout.surface),
         Chain(np.ascontiguousarray(placed.world_from_base, dtype=np.float64), *chain_arrays(robot)),
-        Asked(layout.pairs, np.array(links, dtype=np.int64), layout.standing),
+        Asked(layout.world.pairs, np.array(links, dtype=np.int64), layout.world.standing),
     )
 
 

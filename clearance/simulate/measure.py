@@ -1,9 +1,8 @@
 """Measures a motion exactly, as far as is asked: every step, every pair, what is near, or the minimum.
 
 The compiled sweep runs over parts of the steps, on several threads, so that progress can be shown and a run
-interrupted; how the steps are parted depends on their number alone, and so does every result. Poses are made a
-part at a time; rows are kept in memory or on disk (`spool`). Not for: where the motion comes from (`kinematic`,
-`bullet`).
+interrupted; how the steps are parted depends on their number alone, and so does every result. Rows are kept in
+memory or on disk (`spool`). Not for: where the motion comes from (`kinematic`, `bullet`).
 """
 
 from __future__ import annotations
@@ -17,8 +16,8 @@ import numpy as np
 
 from clearance.ahead import usable_cores
 from clearance.kernel_table import call
-from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, World, sweep
-from clearance.simulate.layout import Layout, lay_out
+from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
+from clearance.simulate.layout import Layout, lay_out, positions_at
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.spool import Rows
 from clearance.world.case import Case
@@ -41,8 +40,8 @@ Steps = np.ndarray | range
 
 COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
 
-SHORT = 4096
-"""Poses that a run has at most where they are kept: half a megabyte, more costs as much as it saves."""
+SWEEP_COUNTERS = (*COUNTERS, "steps_passed_over")
+"""The last are steps at which no pose was made: all their pairs are skipped."""
 
 HELD = 512
 """Parts after which the memory of rows that are on disk is let go: 5 MB."""
@@ -91,8 +90,7 @@ class _Sweep:
     jobs: int
     kept: Rows
     progress: Progress | None = None
-    tally: np.ndarray = field(default_factory=lambda: np.zeros(len(COUNTERS), dtype=np.int64))
-    worlds: dict[tuple[int, int], World] = field(default_factory=dict)
+    tally: np.ndarray = field(default_factory=lambda: np.zeros(len(SWEEP_COUNTERS), dtype=np.int64))
 
     @property
     def n_steps(self) -> int:
@@ -100,7 +98,7 @@ class _Sweep:
 
     @property
     def n_pairs(self) -> int:
-        return len(self.layout.pairs)
+        return len(self.layout.world.pairs)
 
     @property
     def quiet(self) -> _Sweep:
@@ -140,15 +138,6 @@ class _Sweep:
             array(f"{name}.points", (n_rows, 2, 3)),
         )
 
-    def _world(self, steps: np.ndarray) -> World:
-        """Where everything is; of a short run that is kept, since what asks for less may pass through it twice."""
-        span = int(steps[0]), int(steps[-1])
-        if self.n_steps * self.layout.n_frames > SHORT or len(steps) != 1 + span[1] - span[0]:
-            return self.layout.world(self.motions, steps)
-        if span not in self.worlds:
-            self.worlds[span] = self.layout.world(self.motions, steps)
-        return self.worlds[span]
-
     def _run(
         self,
         name: str,
@@ -159,19 +148,19 @@ class _Sweep:
         every: np.ndarray | None = None,
     ) -> Minima:
         """Fills what rows are given, from the part on that an interrupted run had not reached."""
-        spans = parts(len(steps))
+        spans = parts(len(steps), sparse=bool(goal.within[0] < np.inf))
         log = self.kept.log(name, spans)
-        least, tally = _gathered(log.gathered, self.n_pairs)
+        n_minima = self.n_pairs if goal.each else 0
+        least, tally = _gathered(log.gathered, n_minima)
         nothing = np.empty((0, self.n_pairs))
-        no_minima = _no_minima(self.n_pairs)
 
         def run_part(span: slice) -> tuple[int, PairRows, np.ndarray]:
             these = np.array(steps[span], dtype=np.int64)
-            world = self._world(these)
-            minima = _no_minima(self.n_pairs) if goal.each else no_minima  # which are not written then
-            found = PairRows(nothing if every is None else every[span], *minima)
-            counts = np.zeros(len(COUNTERS), dtype=np.int64)
-            call(sweep, self.layout.surface, world, these, goal, _rows_of(rows, span), found, counts)
+            positions = positions_at(self.motions, these)
+            found = PairRows(nothing if every is None else every[span], *_no_minima(n_minima))
+            counts = np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
+            layout, room = self.layout, _rows_of(rows, span)
+            call(sweep, layout.surface, layout.world, positions, these, goal, room, found, counts)
             return span.stop, found, counts
 
         results = in_order(run_part, spans[log.done :], self.jobs)
@@ -212,7 +201,7 @@ def _rows_of(rows: KeptRows | None, span: slice) -> StepRows:
 def _gathered(known: dict[str, np.ndarray], n_pairs: int) -> tuple[Minima, np.ndarray]:
     """The minima and counters of the parts that are done."""
     if not known:
-        return _no_minima(n_pairs), np.zeros(len(COUNTERS), dtype=np.int64)
+        return _no_minima(n_pairs), np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
     return Minima(known["clearance"], known["step"], known["points"]), known["tally"]
 
 
@@ -251,7 +240,9 @@ def _every_pair(work: _Sweep) -> Measurement:
 
 def _minimum(work: _Sweep) -> Measurement:
     rows = work.step_rows("minimum", range(work.n_steps), _first_least(work), lasting=True)
-    least = int(np.nanargmin(rows.clearance))
+    least = int(np.argmin(rows.clearance))
+    if np.isnan(rows.clearance[least]):  # rows of an interrupted run that had come further
+        least = int(np.nanargmin(rows.clearance))
     rows.pair[:least] = rows.pair[least + 1 :] = -1  # what was met on the way to the least
     return _measurement(work, rows, None)
 
@@ -300,8 +291,8 @@ def _first_least(work: _Sweep) -> float:
 
 
 def _first_steps(n_steps: int) -> np.ndarray:
-    n_looked_at = min(n_steps, 2 + round(FIRST_LOOK * math.sqrt(n_steps)))
-    return np.unique(np.linspace(0, n_steps - 1, n_looked_at).round().astype(np.int64))
+    last = min(n_steps, 2 + round(FIRST_LOOK * math.sqrt(n_steps))) - 1
+    return np.arange(last + 1) * (n_steps - 1) // max(1, last)
 
 
 def _measurement(
@@ -320,7 +311,7 @@ def _measurement(
         rows.floor,
         rows.pair,
         rows.points,
-        dict(zip(COUNTERS, work.tally.tolist(), strict=True)),
+        dict(zip(SWEEP_COUNTERS, work.tally.tolist(), strict=True)),
         find_minima,
         every,
     )

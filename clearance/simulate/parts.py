@@ -9,8 +9,11 @@ from typing import TypeVar
 
 Result = TypeVar("Result")
 
-LONGEST_PART = 128
+LONGEST_PART = 256
 """Rows of a part at most; short enough to show progress, long enough for bounds to be carried."""
+
+SPARSE = 4
+"""Times as long are parts of which many rows need not be looked at."""
 
 WAITING = 8
 """Parts a thread that are handed out ahead: so many results wait at most."""
@@ -19,9 +22,10 @@ BLOCK = 2**16
 """Rows that are looked at together where all rows are gone through: 0.5 MB of each number."""
 
 
-def parts(n_rows: int) -> list[slice]:
-    """The rows in parts of at most `LONGEST_PART`, an even number of them where they are long."""
-    n_parts = 2 * -(-n_rows // (2 * LONGEST_PART)) if n_rows > LONGEST_PART // 2 else 1
+def parts(n_rows: int, *, sparse: bool = False) -> list[slice]:
+    """The rows in parts of at most `LONGEST_PART`, or `SPARSE` times that; an even number where they are long."""
+    longest = LONGEST_PART * (SPARSE if sparse else 1)
+    n_parts = 2 * -(-n_rows // (2 * longest)) if n_rows > longest // 2 else 1
     ends = [n_rows * i // n_parts for i in range(n_parts + 1)]
     return [slice(start, end) for start, end in zip(ends, ends[1:], strict=False)]
 

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
 
 from clearance.errors import UnknownJoint, nearest_name
-from clearance.kernels.kinematics import FIXED, SLIDING, TURNING, forward
+from clearance.kernels.kinematics import (
+    FIXED,
+    NO_COLUMN,
+    NO_PARENT,
+    SLIDING,
+    TURNING,
+    Links,
+    forward,
+)
 from clearance.world.case import PlacedRobot
 from clearance.world.robot import JointKind, Mimic, Robot
 
@@ -54,6 +63,66 @@ def chain_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.n
         parents[i], kinds[i] = index[joint.parent], _KERNEL_KIND[joint.kind]
         fixed_parts[i], axes[i] = joint.parent_from_joint, joint.axis
     return parents, kinds, fixed_parts, axes
+
+
+def joined_links(placed: Sequence[PlacedRobot], asked: Sequence[int]) -> Links:
+    """The links of several robots behind one another, for poses one step at a time.
+
+    Args:
+        asked: the links whose poses are wanted, counted over all robots.
+
+    Returns:
+        Links that follow the columns of all robots' `moving_joints`, robot by robot.
+    """
+    robots = [_links_of(one.robot) for one in placed]
+    links = robots[0] if len(robots) == 1 else _behind_one_another(placed, robots)
+    roots = np.flatnonzero(links.parents == NO_PARENT)
+    parent_from_joint = links.parent_from_joint.copy()
+    parent_from_joint[roots] = [one.world_from_base for one in placed]
+    return links._replace(
+        asked=_with_all_above(asked, links.parents.tolist()), parent_from_joint=parent_from_joint
+    )
+
+
+@lru_cache(maxsize=8)
+def _links_of(robot: Robot) -> Links:
+    """The links of one robot, all asked for, standing at the origin."""
+    parents, kinds, fixed_parts, axes = chain_arrays(robot)
+    parents = parents.copy()
+    parents[0] = NO_PARENT
+    columns = np.full(len(parents), NO_COLUMN)
+    factors, offsets = np.ones(len(parents)), np.zeros(len(parents))
+    links, followed, mimics = _moving_links(robot)
+    columns[links] = followed
+    for link, column, way in mimics:
+        columns[link] = column
+        for mimic in way:
+            factors[link] *= mimic.multiplier
+            offsets[link] = mimic.multiplier * offsets[link] + mimic.offset
+    return Links(np.arange(len(parents)), parents, kinds, axes, fixed_parts, columns, factors, offsets)
+
+
+def _behind_one_another(placed: Sequence[PlacedRobot], robots: Sequence[Links]) -> Links:
+    links_before = np.cumsum([0, *(len(links.parents) for links in robots)])
+    columns_before = np.cumsum([0, *(len(one.robot.moving_joints) for one in placed)])
+    shifted = [
+        links._replace(
+            parents=np.where(links.parents == NO_PARENT, NO_PARENT, links.parents + first),
+            columns=np.where(links.columns == NO_COLUMN, NO_COLUMN, links.columns + column),
+        )
+        for links, first, column in zip(robots, links_before, columns_before, strict=False)
+    ]
+    return Links(*(np.concatenate(arrays) for arrays in zip(*shifted, strict=True)))
+
+
+def _with_all_above(asked: Sequence[int], parents: Sequence[int]) -> np.ndarray:
+    """(m,) the links asked for and all above them, in order."""
+    wanted = set()
+    for link in asked:
+        while link != NO_PARENT and link not in wanted:
+            wanted.add(link)
+            link = parents[link]
+    return np.array(sorted(wanted), dtype=np.int64)
 
 
 def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray) -> np.ndarray:

@@ -43,7 +43,3 @@ class Motion:
     def poses(self, start: int = 0, stop: int | None = None) -> np.ndarray:
         """(steps, n_links, 4, 4) `world_from_link` [m] of the steps `start` to `stop`."""
         return link_poses(self.placed, self.positions[start:stop])
-
-    def poses_at(self, steps: np.ndarray) -> np.ndarray:
-        """(k, n_links, 4, 4) `world_from_link` [m] at `steps` (k,)."""
-        return link_poses(self.placed, self.positions[steps])

@@ -55,6 +55,7 @@ def case() -> Case:
 def saved_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(spool, "SAVE_AFTER", 0.0)
     monkeypatch.setattr(parts, "LONGEST_PART", 16)
+    monkeypatch.setattr(parts, "SPARSE", 1)
 
 
 def answer(case: Case, place: Path, said: list[str], **asked: object) -> dict[str, object]:

@@ -96,10 +96,11 @@ def test_how_steps_are_parted_changes_no_clearance(
 
 
 def test_parts_hold_every_row_once() -> None:
-    for n_rows in (1, 2, 63, 64, 65, 127, 128, 129, 256, 257, 1000, 12345):
-        spans = parts.parts(n_rows)
-        assert [i for span in spans for i in range(span.start, span.stop)] == list(range(n_rows))
-        assert max(span.stop - span.start for span in spans) <= parts.LONGEST_PART
+    for n_rows in (1, 2, 127, 128, 129, 255, 256, 257, 512, 513, 1000, 12345):
+        for sparse, longest in ((False, parts.LONGEST_PART), (True, parts.SPARSE * parts.LONGEST_PART)):
+            spans = parts.parts(n_rows, sparse=sparse)
+            assert [i for span in spans for i in range(span.start, span.stop)] == list(range(n_rows))
+            assert max(span.stop - span.start for span in spans) <= longest
 
 
 def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:

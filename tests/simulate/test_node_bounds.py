@@ -23,6 +23,7 @@ from clearance.kernels.bounds import (
     sight_along,
 )
 from clearance.kernels.double_double import frames_of
+from clearance.kernels.kinematics import Links
 from clearance.kernels.lanes import ALL, WIDTH, lane
 from clearance.kernels.node_pairs import bounds_of_group, views_along
 from clearance.kernels.surface import box_of, group_of
@@ -77,7 +78,7 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
 @kernel
 def root_bound_of(surface, world):
     """The bound that a sweep begins with."""
-    return root_bound(surface, world, 0, 0)
+    return root_bound(surface, world, 0, np.empty((0, 4, 4)))
 
 
 @kernel
@@ -105,6 +106,11 @@ def triangles(random, n, kind):
         corners *= 1e-8
     return Polyhedron(corners.reshape(-1, 3), np.arange(3 * n).reshape(n, 3))
 
+
+NO_LINKS = Links(
+    *(np.empty(0, dtype=np.int64) for _ in range(3)), np.empty((0, 3)), np.empty((0, 4, 4)),
+    np.empty(0, dtype=np.int64), np.empty(0), np.empty(0),
+)  # fmt: skip
 
 KINDS = ("any", "needles", "no area", "flat", "lattice", "far", "tiny")
 
@@ -177,7 +183,7 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, ki
     for f in range(3):
         for g in range(3):
             assert is_at_most(faces[f, g], truth[f][g])
-    world = World(np.array([-1, -1]), np.array([pose_a, pose_b]), np.empty((1, 0, 4, 4)), np.array([[0, 1]]))
+    world = World(np.array([-1, -1]), np.array([pose_a, pose_b]), np.array([[0, 1]]), NO_LINKS)
     assert is_at_most(root_bound_of(join([a, b]), world), min(map(min, truth)))
 
 

@@ -80,6 +80,7 @@ def test_brute_force_over_all_polygons_says_the_same(run):
 @pytest.mark.parametrize("need", ["steps", "limit", "minimum"])
 def test_needs_and_threads_agree(run, need, jobs, monkeypatch):
     monkeypatch.setattr(parts, "LONGEST_PART", 3)
+    monkeypatch.setattr(parts, "SPARSE", 1)
     truth = run.steps["clearance"].to_numpy()
     limit = float(np.median(truth))
     case = replace(run.record.case, limits=cl.Limits(0.0, limit))

@@ -1,0 +1,118 @@
+"""Which steps need not be looked at: how far bodies can have moved, by the positions of their joints alone.
+
+A joint that turns by an angle w moves no point farther than w times its distance from the axis, one that slides by
+w no farther than w; a change of several joints is made one after another. So between any two steps
+
+    |x' - x| <= sum over the joints k above the link of |q_k' - q_k| reach_k,
+
+with reach_k the farthest that a point of the body gets from joint k in any pose. No pose needs to be made for it.
+Not for: the motion between the steps (`drift`).
+"""
+
+import math
+
+import numpy as np
+
+from clearance.jit import inlined, merged
+from clearance.kernels.kinematics import NO_COLUMN, NO_PARENT, SLIDING, TURNING
+from clearance.kernels.surface import box_of, corner_of
+from clearance.kernels.vec3 import Vec3, cross, dot, row
+
+OUTWARD = 1.0 + 2.0**-16
+"""Covers the rounding of the sums here, and rotations that are off orthonormal by `tolerance.ROTATION`."""
+
+POSE_ROUNDING = 2.0**-36
+"""Rounding of the poses of a chain of up to a thousand links, relative to how far from the origin it reaches."""
+
+ANGLE_ROUNDING = 2.0**-50
+"""Rounding of the position of a joint that follows another, relative to the magnitudes of what is added."""
+
+
+@inlined
+def _farthest(surface, root, axis):
+    """[m] how far a body gets from an axis through the origin of its frame, or of no axis from the origin."""
+    box = box_of(surface, root)
+    far_sq = 0.0
+    for corner in range(8):
+        x = corner_of(box, corner)
+        away = cross(x, axis) if dot(axis, axis) > 0.5 else x
+        far_sq = max(far_sq, dot(away, away))
+    return math.sqrt(far_sq)
+
+
+@inlined
+def _length(pose):
+    """[m] of the shift of a pose."""
+    return math.sqrt(pose[0, 3] * pose[0, 3] + pose[1, 3] * pose[1, 3] + pose[2, 3] * pose[2, 3])
+
+
+@inlined
+def _farthest_slide(links, link, positions):
+    """[m] how far the joint above a link slides at most."""
+    column = links.columns[link]
+    most = 0.0
+    for i in range(0 if column == NO_COLUMN else len(positions)):
+        most = max(most, abs(links.factors[link] * positions[i, column] + links.offsets[link]))
+    return most
+
+
+@inlined
+def _reach_of_body(surface, root, links, link, positions, reach):
+    """Fills `reach` (columns,) of one body, and returns what rounding can move it [m]."""
+    nowhere = Vec3(0.0, 0.0, 0.0)
+    beyond = 0.0  # from the origin of the link that is looked at to the body's own
+    own = True  # nothing has turned between that link and the body
+    noise = 0.0
+    radius = _farthest(surface, root, nowhere)
+    while links.parents[link] != NO_PARENT:
+        column = links.columns[link]
+        if links.kinds[link] == SLIDING:
+            beyond += _farthest_slide(links, link, positions)
+            own = False
+        if column != NO_COLUMN:
+            arm = 1.0
+            if links.kinds[link] == TURNING:
+                arm = _farthest(surface, root, row(links.axes, link)) if own else radius + beyond
+            reach[column] += abs(links.factors[link]) * arm * OUTWARD
+            noise += abs(links.offsets[link]) * arm * ANGLE_ROUNDING
+        beyond += _length(links.parent_from_joint[link])
+        own = False
+        link = links.parents[link]
+    return noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link]))
+
+
+@inlined
+def fill_reach(surface, frames, links, positions, reach, noise):
+    """Fills, for each body, how far the unit of each column of `positions` can move it, and what rounding can.
+
+    Args:
+        frames: (bodies,) the link that carries each, or -1.
+        positions: (k, columns) of all steps that are spoken of [rad or m].
+        reach: (bodies, columns) [m per rad or m]. noise: (bodies,) [m].
+    """
+    for body in range(len(frames)):
+        noise[body] = 0.0
+        for column in range(reach.shape[1]):
+            reach[body, column] = 0.0
+        if frames[body] >= 0:
+            root = surface.roots[body]
+            noise[body] = _reach_of_body(surface, root, links, frames[body], positions, reach[body])
+
+
+@merged
+def least_spare(frames, positions, last, step, reach, noise, spare):
+    """[m] the least over the moving bodies of what is left of `spare` (bodies,) from one step to another.
+
+    Args:
+        frames, positions, reach, noise: as in `fill_reach`. last, step: rows of `positions`.
+    """
+    left = np.inf
+    for body in range(len(frames)):
+        if frames[body] < 0:
+            continue
+        way = noise[body]
+        for column in range(reach.shape[1]):
+            before, after = positions[last, column], positions[step, column]
+            way += reach[body, column] * (abs(after - before) + ANGLE_ROUNDING * (abs(after) + abs(before)))
+        left = min(left, spare[body] - way)
+    return left

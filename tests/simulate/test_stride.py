@@ -1,0 +1,110 @@
+"""Steps that are passed over: the bound by joint positions alone, and that nothing is missed by it."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import clearance as cl
+from clearance.geometry.shapes import box
+from clearance.geometry.tree import surface_of
+from clearance.jit import kernel
+from clearance.kernels.stride import fill_reach, least_spare
+from clearance.world.case import PlacedRobot
+from clearance.world.kinematics import joined_links, link_poses
+from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.trajectory import Trajectory
+
+SCENES = Path(__file__).parents[2] / "scenes"
+SHAPE = box((0.3, 0.1, 0.2))
+ASIDE = np.block([[np.eye(3), np.array([[0.4], [0.0], [-0.2]])], [np.zeros((1, 3)), np.ones((1, 1))]])
+
+
+@kernel
+def ways(surface, frames, links, positions):
+    """(k,) [m] the bound on the motion of the body from the first step to each."""
+    reach = np.empty((len(frames), positions.shape[1]))
+    noise = np.empty(len(frames))
+    fill_reach(surface, frames, links, positions, reach, noise)
+    bounds = np.empty(len(positions))
+    for step in range(len(positions)):
+        bounds[step] = -least_spare(frames, positions, 0, step, reach, noise, np.zeros(len(frames)))
+    return bounds
+
+
+def robot_of(rng: np.random.Generator, n_joints: int) -> Robot:
+    """A chain of joints of any kind, some of which follow one before, and those followed perhaps another."""
+    joints: list[Joint] = []
+    for i in range(n_joints):
+        offset = np.eye(4)
+        offset[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        offset[:3, :3] *= np.sign(np.linalg.det(offset[:3, :3]))
+        offset[:3, 3] = rng.uniform(-0.5, 0.5, 3) * rng.choice([0.0, 1.0, 100.0])
+        kind = rng.choice(["revolute", "continuous", "prismatic", "fixed"], p=[0.4, 0.1, 0.3, 0.2])
+        axis = rng.normal(size=3)
+        moving = [joint.name for joint in joints if joint.kind != "fixed"]
+        mimic = None
+        if moving and kind != "fixed" and rng.random() < 0.4:
+            mimic = Mimic(str(rng.choice(moving)), *rng.uniform(-2.0, 2.0, 2))
+        axis /= np.linalg.norm(axis)
+        joints.append(Joint(f"j{i}", JointKind(kind), f"l{i}", f"l{i + 1}", offset, axis, mimic=mimic))
+    return Robot("robot", tuple(f"l{i}" for i in range(n_joints + 1)), tuple(joints), ())
+
+
+def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:
+    base = np.eye(4)
+    base[:3, 3] = rng.uniform(-3.0, 3.0, 3)
+    return PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))), world_from_base=base)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]))
+def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
+    rng = np.random.default_rng(seed)
+    placed = [placed_at(rng, robot_of(rng, n_joints)) for _ in range(2)]
+    moving = [len(one.robot.moving_joints) for one in placed]
+    first = rng.uniform(-4.0, 4.0, sum(moving)) * rng.choice([1.0, 1e3])
+    positions = first + size * rng.uniform(-1.0, 1.0, (20, sum(moving)))
+    positions[0] = first
+    body = SHAPE if rng.random() < 0.5 else SHAPE.transformed(ASIDE)
+    corners = np.column_stack([body.vertices, np.ones(len(body.vertices))])
+    link, i_robot = n_joints, int(rng.integers(2))
+    frame = link + i_robot * (n_joints + 1)
+    columns = slice(0, moving[0]) if i_robot == 0 else slice(moving[0], None)
+    poses = link_poses(placed[i_robot], positions[:, columns])[:, link]
+    world = corners @ poses.transpose(0, 2, 1)
+    moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
+    bound = ways(surface_of(body), np.array([frame]), joined_links(placed, [frame]), positions)
+    assert (moved <= bound).all()
+
+
+def test_the_bound_is_not_idle():
+    """One joint that turns the body about an axis through it, seen to first order; and one that slides it."""
+    for kind, arm in (("revolute", np.hypot(0.15, 0.05)), ("prismatic", 1.0)):
+        joint = Joint("j", JointKind(kind), "a", "b", np.eye(4), np.array([0.0, 0.0, 1.0]))
+        placed = PlacedRobot(Robot("r", ("a", "b"), (joint,), ()), Trajectory(np.zeros(1), (), np.zeros((1, 0))))
+        bound = ways(surface_of(SHAPE), np.array([1]), joined_links([placed], [1]), np.array([[0.0], [0.01]]))
+        assert bound[1] == pytest.approx(0.01 * arm, rel=1e-4)
+
+
+@pytest.mark.parametrize("need", ["minimum", "limit"])
+@pytest.mark.parametrize("name", ["box_box", "box_pipe", "panda_shelf"])
+def test_a_finer_motion_takes_few_more_looks(name, need):
+    """Sixteen times the steps: most are passed over, and the answer is that of the steps asked one by one."""
+    case = cl.load_case(SCENES / name / "case.yaml")
+    (placed,) = case.robots
+    asked = placed.trajectory
+    times = np.linspace(asked.times[0], asked.times[-1], 16 * (asked.n_steps - 1) + 1)
+    positions = np.column_stack([np.interp(times, asked.times, column) for column in asked.positions.T])
+    finer = replace(placed, trajectory=replace(asked, times=times, positions=positions, velocities=None))
+    case = replace(case, robots=(finer,))
+    whole, found = cl.check(case, jobs=1), cl.check(case, need=need, jobs=1)
+    assert found.record.tally["steps_passed_over"] > 0.6 * len(times)
+    truth, told = whole.steps["clearance"].to_numpy(), found.steps["clearance"].to_numpy()
+    known = ~np.isnan(told)
+    assert (told[known] == truth[known]).all()
+    assert known[truth < case.limits.warn].all() if need == "limit" else known[truth.argmin()]
+    assert (found.steps["lower_bound"].to_numpy() <= truth + 1e-15).all()
