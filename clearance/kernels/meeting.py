@@ -6,14 +6,14 @@ definite surface. Not for: where they meet (`common_point`).
 
 from typing import NamedTuple
 
-from clearance.jit import inlined, spliced
+from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import MEETING, Lent, apart, at_address, borrow
 from clearance.kernels.bounds import SLACK
 from clearance.kernels.double_double import FRAMES_AT_REST, size
 from clearance.kernels.face_pair import ROUGH, has_plane, height
 from clearance.kernels.predicates import Posed, room_for_exact, segment_meets_triangle, set_poses
 from clearance.kernels.surface import surface_like
-from clearance.kernels.vec3 import move, move_back, row
+from clearance.kernels.vec3 import dot, move, move_back, row, sub
 
 
 @inlined
@@ -41,28 +41,55 @@ NO_MEETING = Meeting(False, True, 0, 0, 0)
 
 
 @inlined
-def _height(surface, face, v, m, is_a):
-    """(height over a face's plane, magnitude of what it comes from) of a vertex of the other body.
+def _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance):
+    """True if a segment x y (body frame) goes through the plane of a face clearly beyond one of its edges.
+
+    Heights h and what lies beyond an edge, s, are linear along the segment. Where it meets the face |h| is at
+    most the tolerance t and s at most 0; it does not if |h_y| s_x + |h_x| s_y > t |s_x - s_y|. With errors of up
+    to t in each of the four, and t below both |h|, 3 t times the sum of their magnitudes is enough.
+    """
+    if h_x * h_y >= 0.0 or min(abs(h_x), abs(h_y)) <= tolerance:
+        return False
+    start, end = surface.face_starts[face], surface.face_starts[face + 1]
+    for c in range(start, end):
+        outward = row(surface.corner_normals, c)
+        corner = row(surface.vertices, surface.face_vertices[c])
+        s_x, s_y = dot(outward, sub(x, corner)), dot(outward, sub(y, corner))
+        if s_x <= 0.0 and s_y <= 0.0:
+            continue
+        edge = 0.0
+        for k in range(start, end):
+            edge = max(edge, dot(outward, sub(row(surface.vertices, surface.face_vertices[k]), corner)))
+        s_x -= edge
+        s_y -= edge
+        magnitudes = abs(h_x) + abs(h_y) + abs(s_x) + abs(s_y)
+        if abs(h_y) * s_x + abs(h_x) * s_y > 3.0 * tolerance * magnitudes:
+            return True
+    return False
+
+
+@inlined
+def _clearly_misses(surface, face, p, q, frames, is_a):
+    """True if a segment p q of the other body clearly misses a face, told in doubles.
+
+    It lies on one side of the face's plane, or goes through it beyond an edge.
 
     Args:
         is_a: True if the other body is a.
     """
-    x = move_back(m, v) if is_a else move(m, v)
-    far = size(v) + size(m.t) + size(row(surface.vertices, surface.face_vertices[surface.face_starts[face]]))
-    return height(surface, face, x), far
-
-
-@inlined
-def _clearly_beside(surface, face, p, q, frames, is_a):
-    """True if a segment p q of the other body lies clearly on one side of a face's plane, told in doubles."""
     if not has_plane(surface, face):
         return False
-    h_p, far_p = _height(surface, face, p, frames.m, is_a)
-    h_q, far_q = _height(surface, face, q, frames.m, is_a)
+    m = frames.m
+    x, y = (move_back(m, p), move_back(m, q)) if is_a else (move(m, p), move(m, q))
+    h_x, h_y = height(surface, face, x), height(surface, face, y)
+    first = row(surface.vertices, surface.face_vertices[surface.face_starts[face]])
+    far = max(size(p), size(q)) + size(m.t) + size(first)
     blunt = surface.blunt[face]
     share = 4.0 * (SLACK + 8.0 * frames.defect) + ROUGH * blunt * blunt
-    tolerance = 2.0 * surface.width[face] + share * max(far_p, far_q)
-    return min(h_p, h_q) > tolerance or max(h_p, h_q) < -tolerance
+    tolerance = 2.0 * surface.width[face] + share * far
+    if min(h_x, h_y) > tolerance or max(h_x, h_y) < -tolerance:
+        return True
+    return _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance)
 
 
 @inlined
@@ -76,7 +103,7 @@ def _edges_meet_face(one, face_one, two, face_two, edge_of_a, inner, frames, exa
         i = start if inner else start + n
         j = start + 2 + n if inner else start + (n + 1) % (end - start)
         v, w = row(one.vertices, one.face_vertices[i]), row(one.vertices, one.face_vertices[j])
-        if _clearly_beside(two, face_two, v, w, frames, edge_of_a):
+        if _clearly_misses(two, face_two, v, w, frames, edge_of_a):
             continue
         p = _posed(one, i, body_one)
         q = _posed(one, j, body_one)
@@ -86,6 +113,18 @@ def _edges_meet_face(one, face_one, two, face_two, edge_of_a, inner, frames, exa
             if segment_meets_triangle(p, q, a, b, c, exact):
                 return Meeting(True, edge_of_a, i, j, k)
     return Meeting(False, edge_of_a, start, start, other + 1)
+
+
+@merged
+def _edges_clearly_miss(one, face_one, two, face_two, edge_of_a, frames):
+    """True if every edge of `face_one` clearly misses `face_two`."""
+    start, end = one.face_starts[face_one], one.face_starts[face_one + 1]
+    for i in range(start, end):
+        j = i + 1 if i + 1 < end else start
+        v, w = row(one.vertices, one.face_vertices[i]), row(one.vertices, one.face_vertices[j])
+        if not _clearly_misses(two, face_two, v, w, frames, edge_of_a):
+            return False
+    return True
 
 
 def _like():
@@ -100,12 +139,19 @@ def meeting(lent_a, face_a, lent_b, face_b, frames, exact):
     edges too.
     """
     a, b = borrow(lent_a), borrow(lent_b)
+    bent = a.bent[face_a] or b.bent[face_b]
+    if (
+        not bent
+        and _edges_clearly_miss(a, face_a, b, face_b, True, frames)
+        and _edges_clearly_miss(b, face_b, a, face_a, False, frames)
+    ):
+        return NO_MEETING
     set_poses(frames, exact)
     found = NO_MEETING
     one, face_one, two, face_two = a, face_a, b, face_b
     for turn in range(4):
         inner = turn > 1
-        if not inner or a.bent[face_a] or b.bent[face_b]:
+        if not inner or bent:
             found = _edges_meet_face(
                 one, face_one, two, face_two, turn % 2 == 0, inner, frames, exact
             )
