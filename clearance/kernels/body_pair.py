@@ -26,6 +26,9 @@ from clearance.kernels.vec3 import Vec3, move
 
 NO_FACE = -1
 
+TO_THE_END = 2**62
+"""The effort of a search that is not cut short."""
+
 
 class Asked(NamedTuple):
     """What is asked of a body pair.
@@ -35,6 +38,8 @@ class Asked(NamedTuple):
         wanted: [m] points farther apart than this are not wanted; at most `limit`.
         face_a, face_b: faces that were nearest before, or NO_FACE; they change the work, not the answer.
         apart: True if it is known that neither body is inside the other.
+        effort: node pairs after which the search is cut short; what it has found is then a distance that occurs,
+            but perhaps not the least, and nothing is proven. `TO_THE_END` if that is not wanted.
     """
 
     limit: float
@@ -42,6 +47,7 @@ class Asked(NamedTuple):
     face_a: int
     face_b: int
     apart: bool
+    effort: int
 
 
 class Measured(NamedTuple):
@@ -85,7 +91,7 @@ NOTHING_MEASURED = Measured(
 
 
 def _like():
-    asked = Asked(0.0, 0.0, 0, 0, False)
+    asked = Asked(0.0, 0.0, 0, 0, False, 0)
     searched = no_fronts(1, 0), 0, 0.0, new_scratch(), table_like()
     return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, asked, *searched
 
@@ -111,8 +117,9 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     resumed = asked.face_a >= 0 or asked.limit < np.inf
     for _ in range(2):
         found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, wanted, slack, fronts, pair, moved, scratch, table
-        )
+            lent_a, root_a, lent_b, root_b, frames, best, wanted, slack, asked.effort, fronts, pair, moved,
+            scratch, table,
+        )  # fmt: skip
         if not (found.meeting.found and resumed):
             break
         # which of several contacts is found must not depend on where the search began

@@ -149,7 +149,7 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
 
 @spliced
 def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, wanted_gap, slack, fronts, pair, moved, scratch, table
+    lent_a, root_a, lent_b, root_b, frames, best, wanted_gap, slack, effort, fronts, pair, moved, scratch, table
 ):
     """All face pairs of two bodies that can be nearest within the distance of `best`, near node pairs first.
 
@@ -157,6 +157,7 @@ def descend(
         best: where to start: a hit, or `nothing_yet(limit_sq)`; node pairs farther than it are not opened.
         wanted_gap: [m] face pairs farther apart are not refined.
         slack: [m] of `rounding_slack`.
+        effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
         fronts, pair: where the front of the pair is kept.
         moved: [m] what both bodies have moved in all.
         table: of `kernel_table`.
@@ -190,6 +191,9 @@ def descend(
         if best.gap_sq == math.inf:
             n_waiting, n_nodes = guess(a, root_a, b, root_b, from_a, from_b, scratch)
     while n_waiting > 0:
+        if n_nodes > effort and best_gap < math.inf:
+            floor = -math.inf
+            break
         n_waiting -= 1
         node_a = scratch.nodes[n_waiting, 0]
         node_b = scratch.nodes[n_waiting, 1]
@@ -256,13 +260,14 @@ def descend(
         if marks > 0:
             marks += OF_B if is_b else 0
             n_left = _leave(scratch, n_left, group, other, marks, (low + moved) * KEPT_DOWN)
-    if met.found:
-        forget(fronts, pair)
-    else:
+    if not met.found:
         refined = settle(
             lent_a, lent_b, frames, min(best_gap, wanted_gap), margin,
             scratch.waiting, n_pairs, refined, table,
         )
+    if met.found or floor == -math.inf:
+        forget(fronts, pair)
+    else:
         keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
     tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)
     return Found(met, best, min(floor, measured), refined, tally)

@@ -13,7 +13,7 @@ from numba.core import types
 
 from clearance.jit import borrowing, inlined, kernel
 from clearance.kernel_table import lend
-from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
+from clearance.kernels.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
 from clearance.kernels.bounds import displacement, rounding_slack
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import KEPT_DOWN, LONGEST, Fronts, forget, no_fronts
@@ -141,10 +141,10 @@ def _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table):
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _travel(a, b, known, pose_a, pose_b, frames)
     known.carried[FLOOR] = -np.inf  # until the search has come to its end
-    asked = Asked(np.inf, np.inf, known.seeds[0], known.seeds[1], True)
+    asked = Asked(np.inf, np.inf, known.seeds[0], known.seeds[1], True, TO_THE_END)
     if moved == np.inf:
         moved = 0.0
-        asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False)
+        asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END)
         forget(known.fronts, 0)
     measured = measure_pair(lent_a, 0, lent_b, 0, frames, asked, known.fronts, 0, moved, scratch, table)
     known.carried[MOVED] = moved

@@ -62,11 +62,13 @@ class Goal(NamedTuple):
             unless `each`.
         each: every pair has a best of its own; else all pairs of a step share one.
         lasting: a best holds for the later steps too: only what is nearer than all before is measured.
+        effort: of `Asked`; what is found by less than `TO_THE_END` is an upper bound.
     """
 
     within: np.ndarray
     each: bool
     lasting: bool
+    effort: int
 
 
 class StepRows(NamedTuple):
@@ -321,7 +323,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
             limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
             if floor <= 0.0:
                 forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
-            asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0)
+            asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0, goal.effort)
             measured = measure_pair(
                 lent, body_a, lent, body_b, pair_frames(world, pair, poses), asked,
                 fronts, pair, moved, scratch, table,

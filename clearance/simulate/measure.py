@@ -16,6 +16,7 @@ import numpy as np
 
 from clearance.ahead import usable_cores
 from clearance.kernel_table import call
+from clearance.kernels.body_pair import TO_THE_END
 from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
 from clearance.simulate.layout import Layout, lay_out, positions_at
 from clearance.simulate.parts import blocks, in_order, parts
@@ -34,6 +35,9 @@ with a lower bound for the others; the least of all steps only."""
 FIRST_LOOK = 0.5
 """Of so many times the root of their number, steps are looked at first, evenly spread, where only the least of
 many is asked for."""
+
+FIRST_EFFORT = 256
+"""Node pairs of each search in that first look: any distance that occurs will do."""
 
 Steps = np.ndarray | range
 """(k,) increasing step indices."""
@@ -111,23 +115,24 @@ class _Sweep:
         return replace(self, progress=None, kept=Rows())
 
     def step_rows(
-        self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False
-    ) -> KeptRows:
+        self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False,
+        effort: int = TO_THE_END,
+    ) -> KeptRows:  # fmt: skip
         """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
         rows = self._rows(name, len(steps))
-        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting), rows=rows)
+        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting, effort), rows=rows)
         return rows
 
     def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
         """The nearest pair of each step, every pair at every step, and the least of each."""
         rows = self._rows(name, len(steps))
         every = self.kept.array(f"{name}.every", (len(steps), self.n_pairs))
-        goal = Goal(np.full(self.n_pairs, np.inf), True, False)
+        goal = Goal(np.full(self.n_pairs, np.inf), True, False, TO_THE_END)
         return rows, every, self._run(name, steps, goal, rows=rows, every=every)
 
     def least_rows(self, name: str, steps: Steps, within: np.ndarray) -> Minima:
         """The least of every pair by itself, within (p,) [m]."""
-        return self._run(name, steps, Goal(within, True, True))
+        return self._run(name, steps, Goal(within, True, True, TO_THE_END))
 
     def _rows(self, name: str, n_rows: int) -> KeptRows:
         array = self.kept.array
@@ -286,7 +291,8 @@ def _least_as_nearest(work: _Sweep, rows: KeptRows) -> np.ndarray:
 
 def _first_least(work: _Sweep) -> float:
     """[m] a clearance that some step has, or a little more."""
-    rows = work.aside.step_rows("first", _first_steps(work.n_steps), lasting=True)
+    steps = _first_steps(work.n_steps)
+    rows = work.aside.step_rows("first", steps, lasting=True, effort=FIRST_EFFORT)
     return float(rows.clearance.min()) * NOT_LESS
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
-from clearance.simulate import parts
+from clearance.simulate import measure, parts
 
 SCENES = Path(__file__).parents[2] / "scenes"
 
@@ -110,6 +110,23 @@ def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:
     assert limit.worst["clearance"] == steps.worst["clearance"]
     assert limit.worst["step"] == steps.worst["step"]
     assert limit.status == "clear"
+
+
+@pytest.mark.parametrize("effort", [0, 1, 64, 10**9])
+@pytest.mark.parametrize("name", ["box_pipe", "panda_shelf", "iiwa_pipe_rack"])
+def test_how_long_the_first_look_searches_changes_nothing(
+    name: str, effort: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Cut short, it still gives a distance that occurs."""
+    seen: list[float] = []
+    look = measure._first_least
+    monkeypatch.setattr(measure, "FIRST_EFFORT", effort)
+    monkeypatch.setattr(measure, "_first_least", lambda work: seen.append(look(work)) or seen[-1])
+    case = cl.load_case(SCENES / name / "case.yaml")
+    truth = cl.check(case).steps["clearance"].to_numpy()
+    worst = cl.check(case, need="minimum").worst
+    assert (worst["step"], worst["clearance"]) == (truth.argmin(), truth.min())
+    assert truth.min() <= seen[0] < np.inf
 
 
 def test_needs_that_do_not_go_together_are_refused() -> None:
