@@ -28,7 +28,8 @@ GROWTH = 1.0 + 1e-9
 
 
 LOOK_AHEAD = 2.0
-"""Steps of mean travel beyond the best within which a pair is still measured, so that its bound lasts."""
+"""Mean travel between two looks, so many times: within this beyond the best a pair is still measured, so that
+its bound lasts."""
 
 LITTLE = 0.1
 """Of the best: where bodies move more in a step, nothing is measured beyond it."""
@@ -319,7 +320,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
                     _spend(world, pair, floor - asked_within, known.spare)
                 tally[0] += 1
                 continue
-            ahead = moved / max(1, row)
+            ahead = moved / max(1, looked_at - 1)
             limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
             if floor <= 0.0:
                 forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best

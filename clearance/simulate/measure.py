@@ -47,8 +47,8 @@ COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
 SWEEP_COUNTERS = (*COUNTERS, "steps_passed_over")
 """The last are steps at which no pose was made: all their pairs are skipped."""
 
-HELD = 512
-"""Parts after which the memory of rows that are on disk is let go: 5 MB."""
+HELD = 128
+"""Parts after which the memory of rows that are on disk is let go: 10 MB at most."""
 
 
 class Minima(NamedTuple):
