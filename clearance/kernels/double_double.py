@@ -243,7 +243,7 @@ def _row_defect(ax, ay, az, bx, by, bz, expected):
 
 
 @inlined
-def _defect(m):
+def defect_of(m):
     """How far R^T R is from the identity: a bound on the norm of the difference."""
     far = _row_defect(m.xx, m.yx, m.zx, m.xx, m.yx, m.zx, 1.0)
     far += _row_defect(m.xy, m.yy, m.zy, m.xy, m.yy, m.zy, 1.0)
@@ -258,7 +258,7 @@ def frames_of(world_from_a, world_from_b):
     """The frames of two bodies at given poses (`Rigid`)."""
     a, b = world_from_a, world_from_b
     shift = difference(b.t, a.t)
-    return Frames(a, b, relative(a, b), shift, _defect(a) + _defect(b), is_still(a), is_still(b))
+    return Frames(a, b, relative(a, b), shift, defect_of(a) + defect_of(b), is_still(a), is_still(b))
 
 
 @inlined

@@ -14,12 +14,13 @@ import math
 import numpy as np
 
 from clearance.jit import inlined, merged
+from clearance.kernels.double_double import defect_of
 from clearance.kernels.kinematics import NO_COLUMN, NO_PARENT, SLIDING, TURNING
 from clearance.kernels.surface import box_of, corner_of
-from clearance.kernels.vec3 import Vec3, cross, dot, row
+from clearance.kernels.vec3 import cross, dot, rigid, row
 
 OUTWARD = 1.0 + 2.0**-16
-"""Covers the rounding of the sums here, and rotations that are off orthonormal by `tolerance.ROTATION`."""
+"""Covers the rounding of the sums here and of what the rotations of a chain stretch."""
 
 POSE_ROUNDING = 2.0**-36
 """Rounding of the poses of a chain of up to a thousand links, relative to how far from the origin it reaches."""
@@ -29,13 +30,21 @@ ANGLE_ROUNDING = 2.0**-50
 
 
 @inlined
-def _farthest(surface, root, axis):
-    """[m] how far a body gets from an axis through the origin of its frame, or of no axis from the origin."""
-    box = box_of(surface, root)
+def _radius(box):
+    """[m] how far a body gets from the origin of its frame."""
     far_sq = 0.0
     for corner in range(8):
         x = corner_of(box, corner)
-        away = cross(x, axis) if dot(axis, axis) > 0.5 else x
+        far_sq = max(far_sq, dot(x, x))
+    return math.sqrt(far_sq)
+
+
+@inlined
+def _radius_about(box, axis):
+    """[m] how far a body gets from a unit axis through the origin of its frame."""
+    far_sq = 0.0
+    for corner in range(8):
+        away = cross(corner_of(box, corner), axis)
         far_sq = max(far_sq, dot(away, away))
     return math.sqrt(far_sq)
 
@@ -57,28 +66,31 @@ def _farthest_slide(links, link, positions):
 
 
 @inlined
-def _reach_of_body(surface, root, links, link, positions, reach):
+def _reach_of_body(box, links, link, positions, reach):
     """Fills `reach` (columns,) of one body, and returns what rounding can move it [m]."""
-    nowhere = Vec3(0.0, 0.0, 0.0)
-    beyond = 0.0  # from the origin of the link that is looked at to the body's own
-    own = True  # nothing has turned between that link and the body
+    radius = _radius(box)
+    beyond = 0.0  # [m] from the origin of the link that is looked at to the body's own
+    own = True  # nothing moves between that link and the body
+    stretch = OUTWARD  # by rotations that are off orthonormal
     noise = 0.0
-    radius = _farthest(surface, root, nowhere)
     while links.parents[link] != NO_PARENT:
         column = links.columns[link]
         if links.kinds[link] == SLIDING:
             beyond += _farthest_slide(links, link, positions)
-            own = False
         if column != NO_COLUMN:
             arm = 1.0
             if links.kinds[link] == TURNING:
-                arm = _farthest(surface, root, row(links.axes, link)) if own else radius + beyond
-            reach[column] += abs(links.factors[link]) * arm * OUTWARD
+                arm = _radius_about(box, row(links.axes, link)) if own else radius + beyond
+            reach[column] += abs(links.factors[link]) * arm
             noise += abs(links.offsets[link]) * arm * ANGLE_ROUNDING
         beyond += _length(links.parent_from_joint[link])
+        stretch *= 1.0 + defect_of(rigid(links.parent_from_joint[link]))
         own = False
         link = links.parents[link]
-    return noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link]))
+    stretch *= 1.0 + defect_of(rigid(links.parent_from_joint[link]))
+    for column in range(len(reach)):
+        reach[column] *= stretch
+    return stretch * (noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link])))
 
 
 @inlined
@@ -95,8 +107,8 @@ def fill_reach(surface, frames, links, positions, reach, noise):
         for column in range(reach.shape[1]):
             reach[body, column] = 0.0
         if frames[body] >= 0:
-            root = surface.roots[body]
-            noise[body] = _reach_of_body(surface, root, links, frames[body], positions, reach[body])
+            box = box_of(surface, surface.roots[body])
+            noise[body] = _reach_of_body(box, links, frames[body], positions, reach[body])
 
 
 @merged

@@ -81,6 +81,20 @@ def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     assert (moved <= bound).all()
 
 
+def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
+    offset = np.diag([1.0 + 4.9e-7] * 3 + [1.0])
+    offset[0, 3] = 0.5
+    axis = np.array([0.0, 0.0, 1.0])
+    joints = [Joint(f"j{i}", JointKind("fixed"), f"l{i}", f"l{i + 1}", offset, axis) for i in range(1, 200)]
+    joints.insert(0, Joint("j0", JointKind("revolute"), "l0", "l1", np.eye(4), axis))
+    robot = Robot("chain", tuple(f"l{i}" for i in range(201)), tuple(joints), ())
+    placed = PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
+    positions = np.array([[0.0], [0.001]])
+    ends = link_poses(placed, positions)[:, 200] @ np.append(SHAPE.vertices[0], 1.0)
+    bound = ways(surface_of(SHAPE), np.array([200]), joined_links([placed], [200]), positions)
+    assert np.linalg.norm(ends[1] - ends[0]) <= bound[1] <= 0.1 * 1.001
+
+
 def test_the_bound_is_not_idle():
     """One joint that turns the body about an axis through it, seen to first order; and one that slides it."""
     for kind, arm in (("revolute", np.hypot(0.15, 0.05)), ("prismatic", 1.0)):
