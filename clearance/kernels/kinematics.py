@@ -36,31 +36,6 @@ class Links(NamedTuple):
 
 
 @merged
-def _turned(m, axis, position):
-    """The motion `m` after a turn about a unit axis."""
-    s = math.sin(position)
-    v = 2.0 * math.sin(0.5 * position) ** 2  # 1 - cos without cancellation
-    x, y, z = axis[0], axis[1], axis[2]
-    xx, yy, zz = 1.0 - v * (y * y + z * z), 1.0 - v * (x * x + z * z), 1.0 - v * (x * x + y * y)
-    xy, yx = v * x * y - s * z, v * x * y + s * z
-    xz, zx = v * x * z + s * y, v * x * z - s * y
-    yz, zy = v * y * z - s * x, v * y * z + s * x
-    return Rigid(
-        m.xx * xx + m.xy * yx + m.xz * zx, m.xx * xy + m.xy * yy + m.xz * zy, m.xx * xz + m.xy * yz + m.xz * zz,
-        m.yx * xx + m.yy * yx + m.yz * zx, m.yx * xy + m.yy * yy + m.yz * zy, m.yx * xz + m.yy * yz + m.yz * zz,
-        m.zx * xx + m.zy * yx + m.zz * zx, m.zx * xy + m.zy * yy + m.zz * zy, m.zx * xz + m.zy * yz + m.zz * zz,
-        m.t,
-    )  # fmt: skip
-
-
-@merged
-def _slid(m, axis, position):
-    """The motion `m` after a slide along an axis."""
-    way = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
-    return Rigid(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
-
-
-@merged
 def _then(a, b):
     """The motion `b` and then `a`."""
     return Rigid(
@@ -75,6 +50,28 @@ def _then(a, b):
         a.zx * b.xz + a.zy * b.yz + a.zz * b.zz,
         move(a, b.t),
     )  # fmt: skip
+
+
+@merged
+def _turned(m, axis, position):
+    """The motion `m` after a turn about a unit axis."""
+    s = math.sin(position)
+    v = 2.0 * math.sin(0.5 * position) ** 2  # 1 - cos without cancellation
+    x, y, z = axis[0], axis[1], axis[2]
+    turn = Rigid(
+        1.0 - v * (y * y + z * z), v * x * y - s * z, v * x * z + s * y,
+        v * x * y + s * z, 1.0 - v * (x * x + z * z), v * y * z - s * x,
+        v * x * z - s * y, v * y * z + s * x, 1.0 - v * (x * x + y * y),
+        Vec3(0.0, 0.0, 0.0),
+    )  # fmt: skip
+    return _then(m, turn)
+
+
+@merged
+def _slid(m, axis, position):
+    """The motion `m` after a slide along an axis."""
+    way = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
+    return Rigid(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
 
 
 @merged

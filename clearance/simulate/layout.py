@@ -18,8 +18,6 @@ from clearance.world.kinematics import joined_links
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
-_AT_REST = np.eye(4)
-
 
 @dataclass(frozen=True, eq=False)
 class Layout:
@@ -55,7 +53,7 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     return Layout(join(shapes), world)
 
 
-def positions_at(motions: Sequence[Motion], steps: slice | np.ndarray) -> np.ndarray:
+def positions_at(motions: Sequence[Motion], steps: np.ndarray) -> np.ndarray:
     """(k, columns) [rad or m] the positions of the moving joints of all robots, robot by robot."""
     if len(motions) == 1:
         return np.ascontiguousarray(motions[0].positions[steps], dtype=np.float64)
@@ -71,7 +69,7 @@ def _frame(case: Case, i_robot: int, i_body: int) -> int:
 
 def _standing(case: Case, n_links: int, obstacles: Sequence[int]) -> np.ndarray:
     standing = np.empty((n_links + len(obstacles), 4, 4))
-    standing[:] = _AT_REST
+    standing[:] = np.eye(4)
     for place, k in enumerate(obstacles, start=n_links):
         standing[place] = case.obstacles[k].world_from_body
     return standing

@@ -21,6 +21,7 @@ from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
 from clearance.simulate.replay_contact import DrawnContact, drawn_contacts
 from clearance.simulate.steps import STATUSES
+from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion
 
 MAX_FRAMES = 3000
@@ -255,7 +256,7 @@ def _drawn_bodies(record: Record, kept: np.ndarray) -> tuple[tuple, tuple, tuple
     poses: list[np.ndarray] = []
     for motion in record.motions:
         placed = motion.placed
-        world_from_link = _poses_at(motion, kept)
+        world_from_link = link_poses(motion.placed, motion.positions[kept])
         for body in placed.robot.bodies:
             i_link = placed.robot.link_names.index(body.name)
             name, measured = (
@@ -275,14 +276,6 @@ def link_label(record: Record, motion: Motion, link: str) -> str:
     """A link's name as the tables of a record give it: with its robot's name where there are
     several."""
     return f"{motion.placed.robot.name}/{link}" if len(record.motions) > 1 else link
-
-
-def _poses_at(motion: Motion, kept: np.ndarray) -> np.ndarray:
-    """(frames, n_links, 4, 4), computed for the kept steps only."""
-    chosen = Motion(
-        motion.placed, motion.times[kept], motion.positions[kept], motion.tracking_error[kept]
-    )
-    return chosen.poses()
 
 
 def _packed(poses: np.ndarray) -> np.ndarray:

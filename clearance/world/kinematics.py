@@ -19,7 +19,7 @@ from clearance.kernels.kinematics import (
     forward,
 )
 from clearance.world.case import PlacedRobot
-from clearance.world.robot import JointKind, Mimic, Robot
+from clearance.world.robot import JointKind, Robot
 
 _KERNEL_KIND = {
     JointKind.FIXED: FIXED,
@@ -94,11 +94,8 @@ def _links_of(robot: Robot) -> Links:
     factors, offsets = np.ones(len(parents)), np.zeros(len(parents))
     links, followed, mimics = _moving_links(robot)
     columns[links] = followed
-    for link, column, way in mimics:
-        columns[link] = column
-        for mimic in way:
-            factors[link] *= mimic.multiplier
-            offsets[link] = mimic.multiplier * offsets[link] + mimic.offset
+    for link, column, factor, offset in mimics:
+        columns[link], factors[link], offsets[link] = column, factor, offset
     return Links(np.arange(len(parents)), parents, kinds, axes, fixed_parts, columns, factors, offsets)
 
 
@@ -160,19 +157,16 @@ def positions_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
     links, columns, mimics = _moving_links(robot)
     positions = np.zeros((len(moving), len(robot.link_names)))
     positions[:, links] = moving[:, columns]
-    for link, column, way in mimics:
-        position = moving[:, column]
-        for mimic in way:
-            position = mimic.multiplier * position + mimic.offset
-        positions[:, link] = position
+    for link, column, factor, offset in mimics:
+        positions[:, link] = factor * moving[:, column] + offset
     return positions
 
 
 @lru_cache(maxsize=8)
-def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, int, list[Mimic]]]]:
+def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, int, float, float]]]:
     """(links, columns, mimics): which link a column of the moving joints moves, and which links follow a column.
 
-    Those that follow have the rules to apply, one after another.
+    Those that follow have a factor and an offset, of all the joints between taken together.
     """
     index = {name: i for i, name in enumerate(robot.link_names)}
     column_of = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
@@ -181,12 +175,13 @@ def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, i
     for joint in robot.joints:
         if joint.kind is JointKind.FIXED:
             continue
-        link, way = index[joint.child], []
+        link, follows = index[joint.child], joint.mimic is not None
+        factor, offset = 1.0, 0.0
         while joint.mimic is not None:
-            way.insert(0, joint.mimic)
+            factor, offset = factor * joint.mimic.multiplier, factor * joint.mimic.offset + offset
             joint = by_name[joint.mimic.joint]
-        if way:
-            mimics.append((link, column_of[joint.name], way))
+        if follows:
+            mimics.append((link, column_of[joint.name], factor, offset))
         else:
             links.append(link)
             columns.append(column_of[joint.name])
