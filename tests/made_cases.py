@@ -6,14 +6,14 @@ such cases, small enough for tests at their default size. Not for: exact answers
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
 from tests.strategies import rotations
 
@@ -203,3 +203,29 @@ WORST: dict[str, Callable[..., Case]] = {
     "facing_plates": facing_plates,
     "teleporting": teleporting,
 }
+
+
+def random_robot(
+    rng: np.random.Generator, n_joints: int, *, sizes: Sequence[float] = (0.5,), mimics: float = 0.0
+) -> Robot:
+    """A chain of joints of any kind, turned and shifted at random.
+
+    Args:
+        sizes: [m] one of them bounds each shift along an axis.
+        mimics: share of the moving joints that follow one before, which may follow another.
+    """
+    joints: list[Joint] = []
+    for i in range(n_joints):
+        offset = np.eye(4)
+        offset[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+        offset[:3, :3] *= np.sign(np.linalg.det(offset[:3, :3]))
+        offset[:3, 3] = rng.uniform(-1.0, 1.0, 3) * rng.choice(sizes)
+        kind = JointKind(rng.choice(["revolute", "continuous", "prismatic", "fixed"], p=[0.4, 0.1, 0.3, 0.2]))
+        axis = rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        before = [joint.name for joint in joints if joint.kind is not JointKind.FIXED]
+        mimic = None
+        if before and kind is not JointKind.FIXED and rng.random() < mimics:
+            mimic = Mimic(str(rng.choice(before)), *rng.uniform(-2.0, 2.0, 2))
+        joints.append(Joint(f"j{i}", kind, f"l{i}", f"l{i + 1}", offset, axis, mimic=mimic))
+    return Robot("robot", tuple(f"l{i}" for i in range(n_joints + 1)), tuple(joints), ())

@@ -15,6 +15,7 @@ from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import chain_arrays, link_poses, positions_by_link
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.made_cases import random_robot
 
 SHAPE = box((0.3, 0.1, 0.2))
 
@@ -25,23 +26,6 @@ def drifts(surface, chain, link, poses, swing, bend, direction):
     drift = drift_of(surface, surface.roots[0], chain, link, poses, swing, bend, pose)
     along = drift_of_box_along(box_of(surface, 0), Vec3(direction[0], direction[1], direction[2]), drift)
     return drift_of_box(box_of(surface, 0), drift), along
-
-
-def random_robot(rng, n_joints):
-    joints = []
-    for i in range(n_joints):
-        offset = np.eye(4)
-        offset[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-        offset[:3, :3] *= np.sign(np.linalg.det(offset[:3, :3]))
-        offset[:3, 3] = rng.uniform(-0.5, 0.5, 3)
-        kind = rng.choice(
-            [JointKind.REVOLUTE, JointKind.PRISMATIC, JointKind.FIXED], p=[0.6, 0.25, 0.15]
-        )
-        axis = rng.normal(size=3)
-        axis /= np.linalg.norm(axis)
-        joints.append(Joint(f"j{i}", JointKind(kind), f"l{i}", f"l{i + 1}", offset, axis))
-    names = tuple(f"l{i}" for i in range(n_joints + 1))
-    return Robot("robot", names, tuple(joints), ())
 
 
 @settings(max_examples=60, deadline=None)

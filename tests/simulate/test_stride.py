@@ -15,8 +15,9 @@ from clearance.jit import kernel
 from clearance.kernels.stride import fill_reach, least_spare
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import joined_links, link_poses
-from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.made_cases import random_robot
 
 SCENES = Path(__file__).parents[2] / "scenes"
 SHAPE = box((0.3, 0.1, 0.2))
@@ -35,25 +36,6 @@ def ways(surface, frames, links, positions):
     return bounds
 
 
-def robot_of(rng: np.random.Generator, n_joints: int) -> Robot:
-    """A chain of joints of any kind, some of which follow one before, and those followed perhaps another."""
-    joints: list[Joint] = []
-    for i in range(n_joints):
-        offset = np.eye(4)
-        offset[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
-        offset[:3, :3] *= np.sign(np.linalg.det(offset[:3, :3]))
-        offset[:3, 3] = rng.uniform(-0.5, 0.5, 3) * rng.choice([0.0, 1.0, 100.0])
-        kind = rng.choice(["revolute", "continuous", "prismatic", "fixed"], p=[0.4, 0.1, 0.3, 0.2])
-        axis = rng.normal(size=3)
-        moving = [joint.name for joint in joints if joint.kind != "fixed"]
-        mimic = None
-        if moving and kind != "fixed" and rng.random() < 0.4:
-            mimic = Mimic(str(rng.choice(moving)), *rng.uniform(-2.0, 2.0, 2))
-        axis /= np.linalg.norm(axis)
-        joints.append(Joint(f"j{i}", JointKind(kind), f"l{i}", f"l{i + 1}", offset, axis, mimic=mimic))
-    return Robot("robot", tuple(f"l{i}" for i in range(n_joints + 1)), tuple(joints), ())
-
-
 def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:
     base = np.eye(4)
     base[:3, 3] = rng.uniform(-3.0, 3.0, 3)
@@ -64,7 +46,7 @@ def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:
 @given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]))
 def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     rng = np.random.default_rng(seed)
-    placed = [placed_at(rng, robot_of(rng, n_joints)) for _ in range(2)]
+    placed = [placed_at(rng, random_robot(rng, n_joints, sizes=(0.0, 0.5, 50.0), mimics=0.4)) for _ in range(2)]
     moving = [len(one.robot.moving_joints) for one in placed]
     first = rng.uniform(-4.0, 4.0, sum(moving)) * rng.choice([1.0, 1e3])
     positions = first + size * rng.uniform(-1.0, 1.0, (20, sum(moving)))
