@@ -27,13 +27,9 @@ def _axis_gap(centre, half_a, half_b, slack):
 
 
 @merged
-def _between_boxes(p, q, m):
-    """The rotation from the axes of box q to those of box p; its `t` is q's centre in the frame of box p."""
-    u = turn(m, q.x)
-    v = turn(m, q.y)
-    w = turn(m, q.z)
+def between_boxes(p, u, v, w, d):
+    """The motion between two boxes: from the axes u, v, w of one to those of p; d is from centre to centre."""
     x, y, z = p.x, p.y, p.z
-    d = sub(turn(m, q.centre), sub(p.centre, m.t))
     return Rigid(
         dot(x, u), dot(x, v), dot(x, w),
         dot(y, u), dot(y, v), dot(y, w),
@@ -52,8 +48,14 @@ def lower_bound_boxes(p, q, m, slack):
     only, which each of the three can lengthen by that share of the centres' distance. Where the boxes overlap
     it is the last one, and the less the more they do.
     """
-    n = _between_boxes(p, q, m)
-    h, k = p.half, q.half
+    d = sub(turn(m, q.centre), sub(p.centre, m.t))
+    n = between_boxes(p, turn(m, q.x), turn(m, q.y), turn(m, q.z), d)
+    return lower_bound_between(p.half, q.half, n, slack)
+
+
+@merged
+def lower_bound_between(h, k, n, slack):
+    """[m] `lower_bound_boxes` from the half sizes of both boxes and the motion `between_boxes`."""
     d = n.t
     slack = slack + LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
     x = _axis_gap(d.x, h.x, abs(n.xx) * k.x + abs(n.xy) * k.y + abs(n.xz) * k.z, slack)

@@ -12,15 +12,15 @@ import numpy as np
 
 from clearance.jit import borrowing, inlined, kernel, merged
 from clearance.kernel_table import lend
+from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
-from clearance.kernels.bounds import displacement, lower_bound_boxes, rounding_slack
+from clearance.kernels.bounds import displacement
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
 from clearance.kernels.kinematics import Links, place_links
 from clearance.kernels.scratch import Scratch, new_scratch
 from clearance.kernels.stride import fill_reach, least_spare
-from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
 
 GROWTH = 1.0 + 1e-9
@@ -121,14 +121,19 @@ def pair_frames(world, pair, poses):
 
 
 @merged
-def root_bound(surface, world, pair, poses):
-    """[m] a lower bound on the distance of the boxes of a pair."""
-    frames = pair_frames(world, pair, poses)
-    root_a = surface.roots[world.pairs[pair, 0]]
-    root_b = surface.roots[world.pairs[pair, 1]]
-    slack = rounding_slack(surface, root_a, surface, root_b, frames)
-    bound = lower_bound_boxes(box_of(surface, root_a), box_of(surface, root_b), frames.m, slack)
-    return max(0.0, bound - slack)
+def box_bound(surface, world, pair, poses, look, boxes, enough):
+    """[m] a lower bound on the distance of a pair by the boxes of both bodies; one above `enough` will do.
+
+    Args:
+        look: rises whenever the links have moved.
+    """
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    for body in (body_a, body_b):
+        last = boxes.looks[body]
+        if last < 0 or (last < look and world.frames[body] >= 0):
+            place_box(surface, body, pose_of(world, body, poses), boxes)
+            boxes.looks[body] = look
+    return bound_of_bodies(boxes, body_a, body_b, enough)
 
 
 @merged
@@ -144,29 +149,6 @@ def _add_travel(surface, world, before, after, travel):
 def _floor_of(world, pair, travel, floors):
     """[m] the carried bound of a pair."""
     return floors[pair] - (travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]])
-
-
-@merged
-def _bounded_again(surface, world, pair, poses, travel, floors):
-    """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
-    floor = max(_floor_of(world, pair, travel, floors), root_bound(surface, world, pair, poses))
-    moved = travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
-    floors[pair] = (floor + moved) * KEPT_DOWN
-    return floor
-
-
-@merged
-def _nearest_by_boxes(surface, world, poses, travel, floors, winner):
-    """The pair to ask first where the last winner has moved farther than it was apart."""
-    nearest = np.inf
-    for pair in range(len(world.pairs)):
-        floor = _floor_of(world, pair, travel, floors)
-        if floor < nearest:
-            floor = _bounded_again(surface, world, pair, poses, travel, floors)
-            if floor < nearest:
-                nearest = floor
-                winner = pair
-    return winner
 
 
 @inlined
@@ -208,6 +190,7 @@ class Known(NamedTuple):
         seeds: (p, 2) the faces that were nearest, or NO_FACE.
         reach, noise: of `fill_reach`, where steps can be passed over.
         spare: (bodies,) [m] how far each may move before something may come within what is asked.
+        boxes: of the bodies at the last look that asked for them.
         fronts, scratch: of `descend`.
     """
 
@@ -219,8 +202,33 @@ class Known(NamedTuple):
     reach: np.ndarray
     noise: np.ndarray
     spare: np.ndarray
+    boxes: BodyBoxes
     fronts: Fronts
     scratch: Scratch
+
+
+@merged
+def _bounded_again(surface, world, pair, poses, look, known, enough):
+    """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
+    travel, floors = known.travel, known.floors
+    moved = travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
+    floor = max(floors[pair] - moved, box_bound(surface, world, pair, poses, look, known.boxes, enough))
+    floors[pair] = (floor + moved) * KEPT_DOWN
+    return floor
+
+
+@merged
+def _nearest_by_boxes(surface, world, poses, look, known, winner):
+    """The pair to ask first where the last winner has moved farther than it was apart."""
+    nearest = np.inf
+    for pair in range(len(world.pairs)):
+        floor = _floor_of(world, pair, known.travel, known.floors)
+        if floor < nearest:
+            floor = _bounded_again(surface, world, pair, poses, look, known, nearest)
+            if floor < nearest:
+                nearest = floor
+                winner = pair
+    return winner
 
 
 @merged
@@ -263,7 +271,7 @@ def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table)
         np.empty((2, len(world.links.parents), 4, 4)), np.zeros(n_bodies), goal.within.copy(),
         np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
         np.empty((n_bodies, positions.shape[1])), np.empty(n_bodies), np.empty(n_bodies),
-        no_fronts(n_pairs, POOL), new_scratch(),
+        room_for_boxes(n_bodies), no_fronts(n_pairs, POOL), new_scratch(),
     )  # fmt: skip
     _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table)
 
@@ -279,7 +287,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
     poses = known.poses[0]
     place_links(world.links, positions[0], poses)
     for pair in range(n_pairs):
-        floors[pair] = root_bound(surface, world, pair, poses)
+        floors[pair] = box_bound(surface, world, pair, poses, 0, known.boxes, np.inf)
     winner = np.argmin(floors)
     near_only = within[0] < np.inf
     if near_only:
@@ -301,7 +309,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
         for body in range(len(known.spare)):
             known.spare[body] = np.inf
         if _floor_of(world, winner, travel, floors) <= 0.0:
-            winner = _nearest_by_boxes(surface, world, poses, travel, floors, winner)
+            winner = _nearest_by_boxes(surface, world, poses, looked_at, known, winner)
         for turn in range(-1, n_pairs):
             pair = winner if turn < 0 else turn
             if turn == winner:
@@ -309,11 +317,11 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
             body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
             moved = travel[body_a] + travel[body_b]
             floor = floors[pair] - moved
-            if floor <= 0.0:
-                floor = _bounded_again(surface, world, pair, poses, travel, floors)
             if goal.each:
                 asked_within = within[pair]
                 gap = asked_within
+            if floor <= 0.0:
+                floor = _bounded_again(surface, world, pair, poses, looked_at, known, gap)
             if floor > gap:
                 lowest = min(lowest, floor)
                 if near_only:

@@ -11,9 +11,11 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+import clearance as cl
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import join, surface_of
 from clearance.jit import kernel
+from clearance.kernels.body_boxes import room_for_boxes
 from clearance.kernels.bounds import (
     displacement,
     lower_bound_boxes,
@@ -27,7 +29,7 @@ from clearance.kernels.kinematics import Links
 from clearance.kernels.lanes import ALL, WIDTH, lane
 from clearance.kernels.node_pairs import bounds_of_group, views_along
 from clearance.kernels.surface import box_of, group_of
-from clearance.kernels.sweep import World, root_bound
+from clearance.kernels.sweep import World, box_bound
 from clearance.kernels.vec3 import Vec3, rigid
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
@@ -76,9 +78,9 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
 
 
 @kernel
-def root_bound_of(surface, world):
-    """The bound that a sweep begins with."""
-    return root_bound(surface, world, 0, np.empty((0, 4, 4)))
+def body_bound_of(surface, world, enough):
+    """What a sweep knows of a pair by the boxes of its bodies."""
+    return box_bound(surface, world, 0, np.empty((0, 4, 4)), 0, room_for_boxes(2), enough)
 
 
 @kernel
@@ -183,8 +185,38 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, ki
     for f in range(3):
         for g in range(3):
             assert is_at_most(faces[f, g], truth[f][g])
-    world = World(np.array([-1, -1]), np.array([pose_a, pose_b]), np.array([[0, 1]]), NO_LINKS)
-    assert is_at_most(root_bound_of(join([a, b]), world), min(map(min, truth)))
+
+
+@settings(max_examples=120, deadline=None)
+@example(0, "far", "needles", 1e5, 0.0)
+@example(1, "tiny", "far", 1e-7, 4e-7)
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.sampled_from(KINDS),
+    st.sampled_from([0.0, 1e-7, 1.0, 4.0, 1e5]), st.sampled_from([0.0, 1e-12, 4e-7]),
+)  # fmt: skip
+def test_no_bound_of_two_bodies_is_above_the_exact_distance(seed, kind_a, kind_b, reach, off):
+    """By their balls and by their boxes, also where a rotation is `off` from orthonormal."""
+    random = np.random.default_rng(seed)
+    a, b = triangles(random, 3, kind_a), triangles(random, 3, kind_b)
+    poses = np.array([pose(random, reach, True), pose(random, reach, True)])
+    poses[:, :3, :3] += off / 3.0 * random.uniform(-1.0, 1.0, size=(2, 3, 3))
+    surface, world = join([a, b]), World(np.array([-1, -1]), poses, np.array([[0, 1]]), NO_LINKS)
+    truth = min(map(min, exact_distances_sq(a, b, *poses)))
+    by_balls, by_boxes = (body_bound_of(surface, world, enough) for enough in (-np.inf, np.inf))
+    assert is_at_most(by_balls, truth)
+    assert is_at_most(by_boxes, truth)
+    assert by_boxes >= by_balls
+
+
+def test_balls_are_enough_over_a_board():
+    """A small body high over a large flat one: what its ball takes from the bound is its own size."""
+    board, small = cl.box((10.0, 10.0, 0.1)), cl.box((0.2, 0.2, 0.2))
+    over = np.eye(4)
+    over[:3, 3] = 4.0, -3.0, 2.15
+    poses = np.array([np.eye(4), over])
+    surface, world = join([board, small]), World(np.array([-1, -1]), poses, np.array([[0, 1]]), NO_LINKS)
+    assert body_bound_of(surface, world, 1.8) == pytest.approx(2.1 - 0.1 * 3**0.5, abs=1e-4)
+    assert body_bound_of(surface, world, 1.95) == pytest.approx(2.0, abs=1e-4)
 
 
 def test_bounds_are_not_idle():
