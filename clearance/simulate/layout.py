@@ -53,11 +53,12 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     return Layout(join(shapes), world)
 
 
-def positions_at(motions: Sequence[Motion], steps: np.ndarray) -> np.ndarray:
-    """(k, columns) [rad or m] the positions of the moving joints of all robots, robot by robot."""
+def positions_at(motions: Sequence[Motion], steps: np.ndarray | range) -> np.ndarray:
+    """(k, columns) [rad or m] the positions of the moving joints of all robots, robot by robot; a copy."""
+    these = slice(steps.start, steps.stop) if isinstance(steps, range) else steps
     if len(motions) == 1:
-        return np.ascontiguousarray(motions[0].positions[steps], dtype=np.float64)
-    return np.concatenate([motion.positions[steps] for motion in motions], axis=1)
+        return np.array(motions[0].positions[these], dtype=np.float64, order="C")
+    return np.concatenate([motion.positions[these] for motion in motions], axis=1)
 
 
 def _frame(case: Case, i_robot: int, i_body: int) -> int:

@@ -40,7 +40,7 @@ FIRST_EFFORT = 256
 """Node pairs of each search in that first look: any distance that occurs will do."""
 
 Steps = np.ndarray | range
-"""(k,) increasing step indices."""
+"""(k,) increasing step indices; a range is of all steps between two."""
 
 COUNTERS = ("pairs_skipped", "queries", "node_tests", "polygon_tests")
 
@@ -160,12 +160,13 @@ class _Sweep:
         nothing = np.empty((0, self.n_pairs))
 
         def run_part(span: slice) -> tuple[int, PairRows, np.ndarray]:
-            these = np.array(steps[span], dtype=np.int64)
+            these = steps[span]
             positions = positions_at(self.motions, these)
+            numbers = np.arange(these.start, these.stop) if isinstance(these, range) else these
             found = PairRows(nothing if every is None else every[span], *_no_minima(n_minima))
             counts = np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
             layout, room = self.layout, _rows_of(rows, span)
-            call(sweep, layout.surface, layout.world, positions, these, goal, room, found, counts)
+            call(sweep, layout.surface, layout.world, positions, numbers, goal, room, found, counts)
             return span.stop, found, counts
 
         results = in_order(run_part, spans[log.done :], self.jobs)
