@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from clearance.geometry.cones import face_cones, node_cones
 from clearance.geometry.edges import edge_keys, rings_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.face_planes import face_planes
@@ -76,6 +77,7 @@ def _join(parts: Sequence[Surface]) -> Surface:
         owns=stacked("owns"),
         centres=stacked("centres"),
         boxes=stacked("boxes"),
+        cones=stacked("cones"),
         children=_joined_children(parts, n_before["children"] // WIDTH, n_before["normals"]),
         roots=stacked("roots", "children"),
         probe_starts=starts("probe_starts", "probes"),
@@ -140,6 +142,7 @@ def _build(shape: Polyhedron) -> Surface:
         owns=_owns(first_corners, first_uses, ring.face, starts, bent),
         centres=centres,
         boxes=boxes,
+        cones=node_cones(children, boxes, *face_cones(ring, corners, normals, bent)),
         children=children,
         roots=np.zeros(1, dtype=np.int64),
         probe_starts=np.array([0, len(probes)]),

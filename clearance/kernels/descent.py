@@ -16,7 +16,13 @@ from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
 from clearance.kernels.lanes import WIDTH, first_of, how_many, lane, least_of, marks_within
 from clearance.kernels.meeting import NO_MEETING, Meeting, meeting_of
-from clearance.kernels.node_pairs import bounds_of_group, opened, pair_in_group, views_of
+from clearance.kernels.node_pairs import (
+    bounds_of_group,
+    opened,
+    pair_in_group,
+    turned_away,
+    views_of,
+)
 from clearance.kernels.refine import N_WAITING, NOTHING_REFINED, Refined, put, settle, shed
 from clearance.kernels.scratch import STACK_DEPTH, swap, wait
 from clearance.kernels.surface import box_of, is_leaf
@@ -56,16 +62,21 @@ def nothing_yet(limit_sq):
 
 
 @merged
-def _wait_for_near(a, b, scratch, n_waiting, group, other, is_b, marks, bounds, cut):
-    """Lets the marked nodes of a group wait that are not beyond `cut` from a node of the other body.
+def _wait_for_near(a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut):
+    """Lets the marked nodes of a group wait that may hold nearest points with a node of the other body.
 
-    Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. Returns
-    (waiting, marks that stay, the least bound of those, that of those which do not wait).
+    Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. What is turned
+    away stays too. Returns (waiting, marks that stay, the least bound of those, that of those beyond `cut`).
     """
     near = marks & marks_within(bounds, cut)
     far = least_of(bounds, marks ^ near)
     first = n_waiting
     low = math.inf
+    apart = near & ~marks_within(bounds, 0.0)
+    if apart:
+        away = apart & turned_away(a, b, from_a, from_b, group, other, is_b, slack)
+        low = least_of(bounds, away)
+        near ^= away
     while near:
         i = first_of(near)
         near &= near - 1
@@ -127,7 +138,7 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
             bounds = bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
             n_before = n_waiting
             n_waiting, marks, low, far = _wait_for_near(
-                a, b, scratch, n_waiting, group, other, is_b, marks, bounds, cut
+                a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut
             )
             if n_waiting > n_before and scratch.bounds[n_waiting - 1] < scratch.bounds[nearest]:
                 nearest = n_waiting - 1
@@ -254,7 +265,7 @@ def descend(
         n_nodes += count
         assert n_waiting + WIDTH <= STACK_DEPTH
         n_waiting, marks, low, far = _wait_for_near(
-            a, b, scratch, n_waiting, group, other, is_b, marks, bounds, cut
+            a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut
         )
         floor = min(floor, far)
         if marks > 0:

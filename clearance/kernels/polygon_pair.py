@@ -45,7 +45,7 @@ class Answers(NamedTuple):
 @inlined
 def _empty_surface(n):
     """Room for one polygon of n vertices that owns all its features."""
-    nodes = np.empty((0, 3))
+    nodes, singles = np.empty((0, 3)), np.empty((0, 4), dtype=np.float32)
     none = np.empty(0, dtype=np.int64)
     ends = np.array([0, n])
     around = np.arange(n)
@@ -57,7 +57,7 @@ def _empty_surface(n):
         np.empty((n, 3)), np.empty((n, 3)), ends, around, np.empty((1, 3)), np.empty(1), np.empty(1),
         np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, ends, edges,
         np.full(1, ANYTHING, dtype=np.uint16),
-        nodes, np.empty((0, 12), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
+        nodes, singles, singles, np.empty((0, 2), dtype=np.int32),
         none, none, none, np.empty(0, dtype=np.bool_),
     )  # fmt: skip
 

@@ -39,6 +39,8 @@ class Surface(NamedTuple):
         centres: (3 g, 4) [m] of the boxes of the tree's nodes, in the body frame. Node n is lane n % 4 of group
             n // 4; lanes without a node repeat the first.
         boxes: (12 g, 4) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
+        cones: (6 g, 4) in single precision: axis, cosine and sine of the half angle of each node's normal cone
+            (`facing`; its `NO_CONE` for the sine where there is none), and the radius of a ball about its box [m].
         children: (4 g, 2) of node n: a group and how many nodes of it, or for a leaf (face, 0).
         roots: (bodies,) root nodes, each alone in its group.
         probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
@@ -61,6 +63,7 @@ class Surface(NamedTuple):
     owns: np.ndarray
     centres: np.ndarray
     boxes: np.ndarray
+    cones: np.ndarray
     children: np.ndarray
     roots: np.ndarray
     probe_starts: np.ndarray
@@ -72,10 +75,11 @@ def surface_like():
     """A surface of nothing, by its types."""
     points, numbers = np.empty((0, 3)), np.empty(0)
     indices, pairs = np.empty(0, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
+    singles = np.empty((0, 4), dtype=np.float32)
     return Surface(
         points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
         indices, indices, indices, pairs, np.empty(0, dtype=np.uint16),
-        np.empty((0, 4)), np.empty((0, 4), dtype=np.float32), np.empty((0, 2), dtype=np.int32),
+        np.empty((0, 4)), singles, singles, np.empty((0, 2), dtype=np.int32),
         indices, indices, indices, np.empty(0, dtype=np.bool_),
     )  # fmt: skip
 

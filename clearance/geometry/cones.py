@@ -1,0 +1,95 @@
+"""Normal cones of a tree's nodes: which way the faces look that could hold the nearest point to another body.
+
+What a cone must hold, and why, is said in `kernels.facing`. Not for: how two cones are told apart (there).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from clearance.geometry.edges import Ring, twins
+from clearance.kernels.facing import CONE_ROWS, MARGIN, NO_CONE, WIDEST
+from clearance.kernels.lanes import WIDTH
+
+OUTWARD = 1.0 + 2.0**-20
+"""Covers the rounding of a radius, and of the box's axes, to single precision."""
+
+
+def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles: np.ndarray) -> np.ndarray:
+    """(6 g, 4) `Surface.cones` from the axes (f, 3) and half angles (f,) [rad] of the faces' cones.
+
+    The cone of a node is about the mean of the axes below it.
+    """
+    n_nodes = len(children)
+    total, angle = np.zeros((n_nodes, 3)), np.zeros(n_nodes)
+    for node, face in _nodes_above_faces(children):
+        total += np.stack([np.bincount(node, axes[face, k], n_nodes) for k in range(3)], axis=1)
+    axis = _unit(total)
+    for node, face in _nodes_above_faces(children):
+        np.maximum.at(angle, node, _angles(axis[node], axes[face]) + angles[face])
+    wide = ~(angle <= WIDEST)
+    axis[wide] = 0.0
+    cosine = np.cos(angle, where=~wide, out=np.zeros(n_nodes))
+    sine = np.sin(angle, where=~wide, out=np.full(n_nodes, NO_CONE))
+    half = boxes.reshape(-1, 12, WIDTH)[:, 9:].astype(np.float64)
+    radius = OUTWARD * np.sqrt((half**2).sum(axis=1)).reshape(-1)
+    rows = np.stack([*axis.T, cosine, sine, radius]).astype(np.float32)
+    return rows.reshape(CONE_ROWS, -1, WIDTH).swapaxes(0, 1).reshape(-1, WIDTH)
+
+
+def _nodes_above_faces(children: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """(k,) nodes and a face that lies below each: first all leaves, then the nodes above those, up to the root."""
+    parent = np.full(len(children), -1)
+    inner = np.flatnonzero(children[:, 1] > 0)
+    for k in range(WIDTH):
+        has = inner[children[inner, 1] > k]
+        parent[WIDTH * children[has, 0] + k] = has
+    node = np.flatnonzero(children[:, 1] == 0)
+    face = children[node, 0]
+    while len(node):
+        yield node, face
+        node = parent[node]
+        has_parent = node >= 0
+        node, face = node[has_parent], face[has_parent]
+
+
+def face_cones(
+    ring: Ring, corners: np.ndarray, normals: np.ndarray, bent: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Axis (f, 3) and half angle (f,) [rad] of the cone of each face, infinite where it has none.
+
+    Args:
+        corners: (c,) the vertex at which each half-edge starts.
+        normals: (f, 3) unit, or zeros. bent: (f,) as in `Surface`.
+    """
+    n_faces = len(normals)
+    ends = corners[ring.ahead]
+    twin = twins(corners, ends)
+    owner_of_vertex = np.full(corners.max() + 1, n_faces)
+    np.minimum.at(owner_of_vertex, corners, ring.face)
+    owner_of_edge = np.minimum(ring.face, np.where(twin >= 0, ring.face[twin], n_faces))
+    owner = np.concatenate([np.arange(n_faces), owner_of_vertex[corners], owner_of_edge])
+    around = np.concatenate([np.arange(n_faces), ring.face, ring.face])
+    axes = _unit(np.stack([np.bincount(owner, normals[around, k], n_faces) for k in range(3)], axis=1))
+    angles = np.zeros(n_faces)
+    np.maximum.at(angles, owner, _angles(normals[around], axes[owner]))
+    angles += MARGIN
+    flawed = bent | ~normals.any(axis=1)
+    angles[owner[flawed[around]]] = np.inf
+    loose = twin < 0  # not between two faces that go along it in opposite directions
+    for faces in (ring.face, owner_of_vertex[corners], owner_of_vertex[ends]):
+        angles[faces[loose]] = np.inf
+    return axes, angles
+
+
+def _angles(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """[rad] between unit vectors, row by row."""
+    return np.arccos(np.clip((u * v).sum(axis=1), -1.0, 1.0))
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    """The vectors at length 1; those that are next to nothing are zero."""
+    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 2.0**-20)
