@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.facing import CONE_ROWS, NO_CONE
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
@@ -77,6 +78,13 @@ def ball(radius: float, n_halvings: int) -> Polyhedron:
 
     mesh = trimesh.creation.icosphere(subdivisions=n_halvings, radius=radius)
     return Polyhedron.from_triangles(mesh.vertices, mesh.faces)
+
+
+def without_cones(cones: np.ndarray) -> np.ndarray:
+    """`Surface.cones` as if no node had one."""
+    rows = cones.reshape(-1, CONE_ROWS, 4).copy()
+    rows[:, :4], rows[:, 4] = 0.0, NO_CONE
+    return rows.reshape(cones.shape)
 
 
 def at(x: float = 0.0, y: float = 0.0, z: float = 0.0, turned: np.ndarray = AXES) -> np.ndarray:

@@ -29,7 +29,7 @@ def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles
     axis = _unit(total)
     for node, face in _nodes_above_faces(children):
         np.maximum.at(angle, node, _angles(axis[node], axes[face]) + angles[face])
-    wide = ~(angle <= WIDEST)
+    wide = ~(angle <= WIDEST) | ~axis.any(axis=1)  # the latter are lanes without a node
     axis[wide] = 0.0
     cosine = np.cos(angle, where=~wide, out=np.zeros(n_nodes))
     sine = np.sin(angle, where=~wide, out=np.full(n_nodes, NO_CONE))

@@ -62,6 +62,7 @@ def answers_without_rules(n):
         "lower_bound_boxes_in_sight": nothing_known,
         "lower_bound_faces_in_sight": lambda *_: -np.inf,
         "may_meet": lambda *_: True,
+        "turned_away": lambda *_: 0,
     }
     found = {}
     for name, never in rules.items():

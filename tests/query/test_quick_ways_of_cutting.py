@@ -26,15 +26,18 @@ def cluster(m: int, n: int, seed: int, spread: float = 0.2) -> list[Polytope]:
 @pytest.mark.parametrize("n", [4, 9, 300])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
+    """But for what the corners of so slender a body stand out of its own planes, relatively (`polytope_exits`)."""
     rng = np.random.default_rng(n)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     body = Polytope(rng.normal(size=(n, 3)) * shape @ turn)
     numbers, indices = body.packed
+    gauges = (body.normals / body.face_widths[:, None]).T
+    standing_out = max(0.0, ((body.vertices - body.centroid) @ gauges).max() - 1.0)
     on_surface = rng.normal(size=(2000, 3)) * shape @ turn
-    on_surface /= (on_surface @ (body.normals / body.face_widths[:, None]).T).max(axis=1)[:, None]
+    on_surface /= (on_surface @ gauges).max(axis=1)[:, None]
     for x in on_surface:
         assert not reached(is_in_ball)(numbers, *(x * (1.0 - 1e-9)))
-        assert reached(cell_of)(numbers, indices, *x)[1] >= 1.0 - 1e-13
+        assert reached(cell_of)(numbers, indices, *x)[1] >= 1.0 - 1e-13 - standing_out
     if n == 300:
         assert any(reached(is_in_ball)(numbers, *(0.9 * x)) for x in on_surface)
 

@@ -1,0 +1,247 @@
+"""Normal cones: nodes that are turned away hold no nearest points, by exact rationals on hostile surfaces."""
+
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+import clearance as cl
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.tree import surface_of
+from clearance.jit import kernel
+from clearance.kernel_table import call
+from clearance.kernels.bounds import rounding_slack, sight_along
+from clearance.kernels.double_double import frames_of
+from clearance.kernels.facing import CONE_ROWS, NO_CONE
+from clearance.kernels.lanes import ALL, WIDTH, lane
+from clearance.kernels.node_pairs import bounds_of_group, turned_away, views_along
+from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.scratch import new_scratch
+from clearance.kernels.vec3 import Vec3, rigid
+from clearance.query.one_pair import answer_rows
+from tests import oracle
+from tests.made_cases import at, ball, torus, without_cones
+from tests.oracle.rationals import posed
+from tests.strategies import rotations
+
+
+@kernel
+def all_turned_away(a, b, pose_a, pose_b, of_a, of_b):
+    """Fills, for each pair of nodes (i, j) that are apart, if i is left out from j, and j from i."""
+    frames = frames_of(rigid(pose_a), rigid(pose_b))
+    slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
+    from_a, from_b = views_along(sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m)
+    for i in range(len(a.children)):
+        for j in range(len(b.children)):
+            bounds = bounds_of_group(a, b, from_a, from_b, i // WIDTH, j, False, ALL, slack, np.inf)
+            away = turned_away(a, b, from_a, from_b, i // WIDTH, j, False, slack)
+            of_a[i, j] = lane(bounds, i % WIDTH) > 0.0 and away >> i % WIDTH & 1
+            bounds = bounds_of_group(a, b, from_a, from_b, j // WIDTH, i, True, ALL, slack, np.inf)
+            away = turned_away(a, b, from_a, from_b, j // WIDTH, i, True, slack)
+            of_b[i, j] = lane(bounds, j % WIDTH) > 0.0 and away >> j % WIDTH & 1
+
+
+def dented(random, n_halvings=1, depth=0.6):
+    """A ball whose corners are pushed in and out: ridges, valleys and saddles."""
+    shape = ball(1.0, n_halvings)
+    pushed = random.uniform(1.0 - depth, 1.0 + depth, (len(shape.vertices), 1))
+    return corners_moved(shape, shape.vertices * pushed)
+
+
+def corners_moved(shape, vertices):
+    return Polyhedron(vertices, triangles_of(shape))
+
+
+def triangles_of(shape):
+    starts = shape.face_starts
+    return [tuple(shape.face_vertices[i:j]) for i, j in zip(starts, starts[1:], strict=False)]
+
+
+def crossing(random):
+    """Two dented balls in one surface that cut each other; what is near may be inside the other one."""
+    one, two = dented(random, 0), dented(random, 0)
+    vertices = np.concatenate([one.vertices, two.vertices + random.normal(scale=0.4, size=3)])
+    beside = [tuple(len(one.vertices) + np.array(face)) for face in triangles_of(two)]
+    return Polyhedron(vertices, triangles_of(one) + beside)
+
+
+def flipped(shape, which):
+    faces = [face[::-1] if turned else face for face, turned in zip(triangles_of(shape), which, strict=True)]
+    return Polyhedron(shape.vertices, faces)
+
+
+def fan(random):
+    """Faces round one corner, some two fans of them, pinched."""
+    n = int(random.integers(3, 8))
+    turn = np.sort(random.uniform(0.0, 2.0 * np.pi, n))
+    rim = np.stack([np.cos(turn), np.sin(turn), random.uniform(-1.5, 1.5, n)], axis=1)
+    vertices = np.concatenate([[[0.0, 0.0, 0.0]], rim, -rim * random.uniform(0.5, 2.0, (n, 1))])
+    faces = [(0, 1 + k, 1 + (k + 1) % n) for k in range(n)]
+    if random.random() < 0.5:
+        faces += [(0, 1 + n + (k + 1) % n, 1 + n + k) for k in range(n)]
+    return Polyhedron(vertices, faces)
+
+
+def half(random):
+    shape = dented(random)
+    return Polyhedron(shape.vertices, triangles_of(shape)[: shape.n_faces // 2])
+
+
+def twice(random):
+    shape = dented(random, 0)
+    return Polyhedron(shape.vertices, triangles_of(shape) + [face[::-1] for face in triangles_of(shape)])
+
+
+def turned_round(random, share):
+    shape = dented(random)
+    return flipped(shape, random.random(shape.n_faces) < share)
+
+
+def dented_ring(random):
+    shape = torus(1.0, 0.3, 9, 5)
+    return corners_moved(shape, shape.vertices + random.normal(scale=0.08, size=shape.vertices.shape))
+
+
+def squeezed(random, height):
+    shape = dented(random, 0)
+    return corners_moved(shape, shape.vertices * (1.0, height, 1.0))
+
+
+KINDS = {
+    "ball": lambda random: ball(1.0, 1),
+    "dented": dented,
+    "ring": lambda random: torus(1.0, 0.3, 9, 5),
+    "dented ring": dented_ring,
+    "inside out": lambda random: turned_round(random, 1.1),
+    "some turned round": lambda random: turned_round(random, 0.1),
+    "half": half,
+    "crossing": crossing,
+    "fan": fan,
+    "twice": twice,
+    "needles": lambda random: squeezed(random, 1e-5),
+    "flat": lambda random: squeezed(random, 0.0),
+    "box": lambda random: cl.box((1.0, 0.6, 0.3)),
+    "pipe": lambda random: cl.pipe(inner_radius=0.4, outer_radius=0.5, length=1.0, sections=6),
+}
+
+
+def faces_below(surface):
+    """(nodes, f) True where the face lies below the node."""
+    below = np.zeros((len(surface.children), len(surface.normals)), dtype=bool)
+    for node in reversed(range(len(surface.children))):
+        first, count = surface.children[node]
+        if count == 0:
+            below[node, first] = True
+        elif count > 0:
+            below[node] = below[WIDTH * first : WIDTH * first + count].any(axis=0)
+    return below
+
+
+def corners_of(shape, pose):
+    """The corners of each face where it is, as Fractions."""
+    points = posed(shape.vertices, pose)
+    starts, flat = shape.face_starts.tolist(), shape.face_vertices.tolist()
+    return [[points[v] for v in flat[i:j]] for i, j in zip(starts, starts[1:], strict=False)]
+
+
+def owners_of_the_nearest(a, b, pose_a, pose_b):
+    """The faces of least index that hold the nearest points; None where the bodies touch."""
+    ours, theirs = corners_of(a, pose_a), corners_of(b, pose_b)
+    near = [[oracle.polygon_distance_sq(p, q) for q in theirs] for p in ours]
+    least = min(map(min, near))
+    attained = [(f, g) for f, row in enumerate(near) for g, sq in enumerate(row) if sq == least]
+    return None if least == 0 else (min(f for f, _ in attained), min(g for _, g in attained))
+
+
+def far_enough(random, reach):
+    pose = at(turned=rotations(random, 1)[0])
+    pose[:3, 3] = reach * random.normal(size=3)
+    return pose
+
+
+@settings(max_examples=120, deadline=None)
+@example(0, "dented", "fan", 2.0, 0.0)
+@example(1, "crossing", "twice", 1.0, 4e-7)
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),
+    st.sampled_from([0.5, 1.0, 2.0, 10.0]), st.sampled_from([0.0, 4e-7]),
+)  # fmt: skip
+def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, reach, off):
+    random = np.random.default_rng(seed)
+    a, b = KINDS[kind_a](random), KINDS[kind_b](random)
+    pose_a, pose_b = far_enough(random, 0.0), far_enough(random, reach)
+    pose_b[:3, :3] += off / 3.0 * random.uniform(-1.0, 1.0, size=(3, 3))
+    owners = owners_of_the_nearest(a, b, pose_a, pose_b)
+    if owners is None:
+        return
+    one, two = surface_of(a), surface_of(b)
+    of_a, of_b = np.zeros((2, len(one.children), len(two.children)), dtype=bool)
+    all_turned_away(one, two, pose_a, pose_b, of_a, of_b)
+    holds = np.ix_(faces_below(one)[:, owners[0]], faces_below(two)[:, owners[1]])
+    assert not of_a[holds].any()
+    assert not of_b[holds].any()
+
+
+def asked(a, b, poses):
+    """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took."""
+    numbers, points, counts = answer_rows(len(poses))
+    held = hold_pair(a, b, ROOM, new_scratch())
+    call(nearest_at_poses, held, np.eye(4)[None], poses, True, False, numbers, points, counts)
+    apart = numbers[:, 0] > 0.0
+    told = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
+    return told, counts[:, 2:4].sum(axis=0)
+
+
+def bare(surface):
+    return surface._replace(cones=without_cones(surface.cones))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@settings(max_examples=12, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), other=st.sampled_from(sorted(KINDS)))
+def test_cones_change_no_bit(kind, seed, other):
+    random = np.random.default_rng(seed)
+    a, b = (surface_of(KINDS[name](random)) for name in (kind, other))
+    turned, away = rotations(random, 2)[0], random.normal(size=3)
+    poses = np.array([at(*(away * (2.0 - 0.15 * k)), turned) for k in range(12)])
+    found, _ = asked(a, b, poses)
+    expected, _ = asked(bare(a), bare(b), poses)
+    assert found == expected
+
+
+def test_cones_leave_out_most_of_two_rings():
+    shape = torus(1.0, 0.25, 32, 16)
+    one = surface_of(shape)
+    tilt = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    poses = np.array([at(1.0 + 0.02 * k, 0.03, -0.02, tilt) for k in range(4)])
+    found, (n_nodes, n_faces) = asked(one, one, poses)
+    expected, (n_nodes_bare, n_faces_bare) = asked(bare(one), bare(one), poses)
+    assert found == expected
+    assert 1.2 * n_nodes < n_nodes_bare
+    assert 3 * n_faces < n_faces_bare
+
+
+def test_a_cone_holds_the_normals_round_what_its_faces_own():
+    shape = dented(np.random.default_rng(3), 2, depth=0.1)
+    surface = surface_of(shape)
+    rows = surface.cones.reshape(-1, CONE_ROWS, WIDTH).astype(np.float64)
+    at_vertex = {}
+    for face, (i, j) in enumerate(zip(surface.face_starts, surface.face_starts[1:], strict=False)):
+        for v in surface.face_vertices[i:j]:
+            at_vertex.setdefault(int(v), []).append(face)
+    n_cones = 0
+    for node, below in enumerate(faces_below(surface)):
+        axis, cosine, sine = rows[node // WIDTH, :3, node % WIDTH], *rows[node // WIDTH, 3:5, node % WIDTH]
+        if sine == np.float32(NO_CONE):
+            continue
+        n_cones += below.any()
+        for face in np.flatnonzero(below):
+            assert surface.normals[face] @ axis >= cosine
+            for v in surface.owned_vertices[surface.vertex_starts[face] : surface.vertex_starts[face + 1]]:
+                assert (surface.normals[at_vertex[int(v)]] @ axis >= cosine).all()
+    assert n_cones > shape.n_faces
+
+
+def test_where_faces_do_not_meet_two_by_two_there_are_no_cones():
+    cones = surface_of(twice(np.random.default_rng(1))).cones.reshape(-1, CONE_ROWS, WIDTH)
+    assert (cones[:, 4] == np.float32(NO_CONE)).all()
