@@ -18,24 +18,23 @@ OUTWARD = 1.0 + 2.0**-20
 
 
 def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles: np.ndarray) -> np.ndarray:
-    """(6 g, 4) `Surface.cones` from the axes (f, 3) and half angles (f,) [rad] of the faces' cones.
+    """(6 g, 4) `Surface.cones` from the axes (3, f) and half angles (f,) [rad] of the faces' cones.
 
     The cone of a node is about the mean of the axes below it.
     """
     n_nodes = len(children)
-    total, angle = np.zeros((n_nodes, 3)), np.zeros(n_nodes)
-    for node, face in _nodes_above_faces(children):
-        total += np.stack([np.bincount(node, axes[face, k], n_nodes) for k in range(3)], axis=1)
-    axis = _unit(total)
-    for node, face in _nodes_above_faces(children):
-        np.maximum.at(angle, node, _angles(axis[node], axes[face]) + angles[face])
-    wide = ~(angle <= WIDEST) | ~axis.any(axis=1)  # the latter are lanes without a node
-    axis[wide] = 0.0
+    above = list(_nodes_above_faces(children))
+    axis = _unit(sum(_sums(axes[:, face], node, n_nodes) for node, face in above))
+    angle = np.zeros(n_nodes)
+    for node, face in above:
+        np.maximum.at(angle, node, np.arccos(_cosines(axis, node, axes, face)) + angles[face])
+    wide = ~(angle <= WIDEST) | ~axis.any(axis=0)  # the latter are lanes without a node
+    axis[:, wide] = 0.0
     cosine = np.cos(angle, where=~wide, out=np.zeros(n_nodes))
     sine = np.sin(angle, where=~wide, out=np.full(n_nodes, NO_CONE))
     half = boxes.reshape(-1, 12, WIDTH)[:, 9:].astype(np.float64)
     radius = OUTWARD * np.sqrt((half**2).sum(axis=1)).reshape(-1)
-    rows = np.stack([*axis.T, cosine, sine, radius]).astype(np.float32)
+    rows = np.stack([*axis, cosine, sine, radius]).astype(np.float32)
     return rows.reshape(CONE_ROWS, -1, WIDTH).swapaxes(0, 1).reshape(-1, WIDTH)
 
 
@@ -58,7 +57,7 @@ def _nodes_above_faces(children: np.ndarray) -> Iterator[tuple[np.ndarray, np.nd
 def face_cones(
     ring: Ring, corners: np.ndarray, normals: np.ndarray, bent: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Axis (f, 3) and half angle (f,) [rad] of the cone of each face, infinite where it has none.
+    """Axis (3, f) and half angle (f,) [rad] of the cone of each face, infinite where it has none.
 
     Args:
         corners: (c,) the vertex at which each half-edge starts.
@@ -72,10 +71,11 @@ def face_cones(
     owner_of_edge = np.minimum(ring.face, np.where(twin >= 0, ring.face[twin], n_faces))
     owner = np.concatenate([np.arange(n_faces), owner_of_vertex[corners], owner_of_edge])
     around = np.concatenate([np.arange(n_faces), ring.face, ring.face])
-    axes = _unit(np.stack([np.bincount(owner, normals[around, k], n_faces) for k in range(3)], axis=1))
-    angles = np.zeros(n_faces)
-    np.maximum.at(angles, owner, _angles(normals[around], axes[owner]))
-    angles += MARGIN
+    across = np.ascontiguousarray(normals.T)
+    axes = _unit(_sums(across[:, around], owner, n_faces))
+    least = np.ones(n_faces)
+    np.minimum.at(least, owner, _cosines(across, around, axes, owner))
+    angles = np.arccos(least) + MARGIN
     flawed = bent | ~normals.any(axis=1)
     angles[owner[flawed[around]]] = np.inf
     loose = twin < 0  # not between two faces that go along it in opposite directions
@@ -84,12 +84,20 @@ def face_cones(
     return axes, angles
 
 
-def _angles(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """[rad] between unit vectors, row by row."""
-    return np.arccos(np.clip((u * v).sum(axis=1), -1.0, 1.0))
+def _sums(vectors: np.ndarray, places: np.ndarray, n: int) -> np.ndarray:
+    """(3, n) the sums of the vectors (3, k) at each of the `places` (k,)."""
+    return np.stack([np.bincount(places, row, n) for row in vectors])
+
+
+def _cosines(us: np.ndarray, i: np.ndarray, vs: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """(k,) of the angles between the unit vectors `us[:, i]` and `vs[:, j]`."""
+    cosine = us[0][i] * vs[0][j]
+    cosine += us[1][i] * vs[1][j]
+    cosine += us[2][i] * vs[2][j]
+    return np.clip(cosine, -1.0, 1.0, out=cosine)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
-    """The vectors at length 1; those that are next to nothing are zero."""
-    length = np.sqrt((vectors**2).sum(axis=1, keepdims=True))
+    """The vectors (3, k) at length 1; those that are next to nothing are zero."""
+    length = np.sqrt((vectors**2).sum(axis=0))
     return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 2.0**-20)

@@ -159,7 +159,7 @@ def far_enough(random, reach):
     return pose
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=60, deadline=None)
 @example(0, "dented", "fan", 2.0, 0.0)
 @example(1, "crossing", "twice", 1.0, 4e-7)
 @given(
