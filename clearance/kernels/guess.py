@@ -8,7 +8,7 @@ from clearance.kernels.node_pairs import between_centres, opened, pair_in_group
 from clearance.kernels.scratch import copy, wait
 from clearance.kernels.surface import is_leaf
 
-GUESSES = 10
+GUESSES = 5
 """Node pairs that a search which knows nothing yet follows down to faces before it begins at the roots."""
 
 
