@@ -13,6 +13,9 @@ from clearance.geometry.edges import Ring, twins
 from clearance.kernels.facing import CONE_ROWS, MARGIN, NO_CONE, WIDEST
 from clearance.kernels.lanes import WIDTH
 
+LEAST_TURN = 1e-12
+"""Sine of an angle that rounding does not turn into its opposite."""
+
 OUTWARD = 1.0 + 2.0**-20
 """Covers the rounding of a radius, and of the box's axes, to single precision."""
 
@@ -55,12 +58,12 @@ def _nodes_above_faces(children: np.ndarray) -> Iterator[tuple[np.ndarray, np.nd
 
 
 def face_cones(
-    ring: Ring, corners: np.ndarray, normals: np.ndarray, bent: np.ndarray
+    ring: Ring, vertices: np.ndarray, corners: np.ndarray, normals: np.ndarray, bent: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Axis (3, f) and half angle (f,) [rad] of the cone of each face, infinite where it has none.
 
     Args:
-        corners: (c,) the vertex at which each half-edge starts.
+        vertices: (v, 3) [m]. corners: (c,) the vertex at which each half-edge starts.
         normals: (f, 3) unit, or zeros. bent: (f,) as in `Surface`.
     """
     n_faces = len(normals)
@@ -76,12 +79,23 @@ def face_cones(
     least = np.ones(n_faces)
     np.minimum.at(least, owner, _cosines(across, around, axes, owner))
     angles = np.arccos(least) + MARGIN
-    flawed = bent | ~normals.any(axis=1)
+    flawed = bent | ~normals.any(axis=1) | ~_surely_convex(vertices[corners], ring, normals)
     angles[owner[flawed[around]]] = np.inf
     loose = twin < 0  # not between two faces that go along it in opposite directions
     for faces in (ring.face, owner_of_vertex[corners], owner_of_vertex[ends]):
         angles[faces[loose]] = np.inf
     return axes, angles
+
+
+def _surely_convex(points: np.ndarray, ring: Ring, normals: np.ndarray) -> np.ndarray:
+    """(f,) True where the boundary turns at each corner (c, 3) [m]; else diagonals may stand out of the face."""
+    at = np.flatnonzero(np.bincount(ring.face)[ring.face] > 3)  # triangles do
+    arriving, leaving = points[at] - points[ring.behind[at]], points[ring.ahead[at]] - points[at]
+    bends = (np.cross(arriving, leaving) * normals[ring.face[at]]).sum(axis=1)
+    turns = bends > LEAST_TURN * np.sqrt((arriving**2).sum(axis=1) * (leaving**2).sum(axis=1))
+    convex = np.ones(len(normals), dtype=bool)
+    convex[ring.face[at[~turns]]] = False
+    return convex
 
 
 def _sums(vectors: np.ndarray, places: np.ndarray, n: int) -> np.ndarray:

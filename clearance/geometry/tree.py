@@ -142,7 +142,7 @@ def _build(shape: Polyhedron) -> Surface:
         owns=_owns(first_corners, first_uses, ring.face, starts, bent),
         centres=centres,
         boxes=boxes,
-        cones=node_cones(children, boxes, *face_cones(ring, corners, normals, bent)),
+        cones=node_cones(children, boxes, *face_cones(ring, vertices, corners, normals, bent)),
         children=children,
         roots=np.zeros(1, dtype=np.int64),
         probe_starts=np.array([0, len(probes)]),

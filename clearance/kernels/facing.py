@@ -1,8 +1,8 @@
 """Which nodes can hold the nearest points of two bodies, by the way their faces look: normal cones.
 
 Let p and q be nearest, at a distance above 0, and d the direction from p to q. Let the faces round the vertex or
-edge that p is on be planar, and meet two by two, in opposite directions, along each edge there. Then d or -d
-is in the convex cone of their normals:
+edge that p is on be planar and convex, and meet two by two, in opposite directions, along each edge there. Then d
+or -d is in the convex cone of their normals:
 
 - In a face, d is its normal or the opposite.
 - On an edge, d is at a right angle or more to both faces. Such directions are the arc between the two normals on
@@ -17,7 +17,7 @@ The same is true of -d at q. A node's cone holds the normals round each vertex a
 direction in common, or if one of them has none in common with the directions from the one box to the other. It
 does not matter which side is inside, whether the surface is closed, or whether it cuts itself elsewhere.
 
-Source: Johnson & Cohen, Spatialized normal cone hierarchies, 2001, there for local minima of smooth models.
+Source: Johnson & Cohen, Spatialized normal cone hierarchies, 2001 (local minimum distances).
 """
 
 from clearance.jit import merged

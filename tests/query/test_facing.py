@@ -242,6 +242,26 @@ def test_a_cone_holds_the_normals_round_what_its_faces_own():
     assert n_cones > shape.n_faces
 
 
+def test_a_face_that_hardly_turns_at_a_corner_has_no_cone():
+    """A diagonal of its fan can stand out of it there, and what is nearest lie along no normal."""
+    n = 7
+    vertices = [(x, y, 0.0) for y in range(n + 1) for x in range(n + 1)] + [(4.0, 3.5, 0.0)]
+    faces = []
+    for y in range(n):
+        for x in range(n):
+            corner = y * (n + 1) + x
+            faces.append([corner, corner + 1, corner + n + 2, corner + n + 1])
+    left, right = 3 * n + 3, 3 * n + 4
+    faces[left].insert(2, len(vertices) - 1)
+    faces[right].append(len(vertices) - 1)
+    surface = surface_of(Polyhedron(np.array(vertices), faces))
+    sines = surface.cones.reshape(-1, CONE_ROWS, WIDTH)[:, 4].reshape(-1)
+    of_face = {int(first): node for node, (first, count) in enumerate(surface.children) if count == 0}
+    without = {face for face, node in of_face.items() if sines[node] == np.float32(NO_CONE)}
+    assert {left, right} <= without
+    assert n + 1 not in without and 5 * n + 5 not in without
+
+
 def test_where_faces_do_not_meet_two_by_two_there_are_no_cones():
     cones = surface_of(twice(np.random.default_rng(1))).cones.reshape(-1, CONE_ROWS, WIDTH)
     assert (cones[:, 4] == np.float32(NO_CONE)).all()
