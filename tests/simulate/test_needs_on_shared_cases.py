@@ -55,11 +55,12 @@ def test_pairs_asks_every_pair_at_every_step_and_steps_a_quarter_at_most(runs):
 
 
 def test_what_is_not_asked_for_is_not_done(runs):
-    """Of the polygon pairs that all pairs take, the others take less than half; the steps less than a fifth."""
-    every = tally(runs, "pairs")["polygon_tests"]
-    assert tally(runs, "minimum")["polygon_tests"] < every / 2
-    assert tally(runs, "limit")["polygon_tests"] < every / 2
-    assert tally(runs, "steps")["polygon_tests"] < every / 5
+    """Of the polygon and node pairs that all pairs take, the steps take less than half, the others a fifth."""
+    for counter in ("polygon_tests", "node_tests"):
+        every = tally(runs, "pairs")[counter]
+        assert tally(runs, "steps")[counter] < every / 2
+        assert tally(runs, "minimum")[counter] < every / 5
+        assert tally(runs, "limit")[counter] < every / 5
 
 
 def test_the_minimum_leaves_most_pairs_unasked(runs):
