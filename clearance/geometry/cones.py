@@ -17,7 +17,8 @@ LEAST_TURN = 1e-12
 """Sine of an angle that rounding does not turn into its opposite."""
 
 OUTWARD = 1.0 + 2.0**-20
-"""Covers the rounding of a radius, and of the box's axes, to single precision."""
+"""Covers the rounding of a radius, and of the box's axes, to single precision; half sizes are no less than
+`tree_build.LEAST_HALF`, where that has its usual precision."""
 
 
 def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles: np.ndarray) -> np.ndarray:
@@ -37,7 +38,8 @@ def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles
     sine = np.sin(angle, where=~wide, out=np.full(n_nodes, NO_CONE))
     half = boxes.reshape(-1, 12, WIDTH)[:, 9:].astype(np.float64)
     radius = OUTWARD * np.sqrt((half**2).sum(axis=1)).reshape(-1)
-    rows = np.stack([*axis, cosine, sine, radius]).astype(np.float32)
+    with np.errstate(over="ignore"):  # an infinite radius says nothing of any direction
+        rows = np.stack([*axis, cosine, sine, radius]).astype(np.float32)
     return rows.reshape(CONE_ROWS, -1, WIDTH).swapaxes(0, 1).reshape(-1, WIDTH)
 
 
