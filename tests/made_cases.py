@@ -6,12 +6,15 @@ such cases, small enough for tests at their default size. Not for: exact answers
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.facing import CONE_ROWS, NO_CONE
+from clearance.kernels.lanes import WIDTH
+from clearance.kernels.surface import Surface
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
@@ -80,9 +83,26 @@ def ball(radius: float, n_halvings: int) -> Polyhedron:
     return Polyhedron.from_triangles(mesh.vertices, mesh.faces)
 
 
+def faces_of(shape: Polyhedron) -> list[list[int]]:
+    """The vertex indices of each face, as the oracle takes them."""
+    return [shape.face_vertices[i:j].tolist() for i, j in itertools.pairwise(shape.face_starts)]
+
+
+def faces_below(surface: Surface) -> list[set[int]]:
+    """For each node of the tree the faces below it."""
+    below: list[set[int]] = [set() for _ in surface.children]
+    for node in reversed(range(len(surface.children))):
+        first, count = surface.children[node]
+        if count == 0:
+            below[node] = {int(first)}
+        elif count > 0:
+            below[node] = set().union(*below[WIDTH * first : WIDTH * first + count])
+    return below
+
+
 def without_cones(cones: np.ndarray) -> np.ndarray:
     """`Surface.cones` as if no node had one."""
-    rows = cones.reshape(-1, CONE_ROWS, 4).copy()
+    rows = cones.reshape(-1, CONE_ROWS, WIDTH).copy()
     rows[:, :4], rows[:, 4] = 0.0, NO_CONE
     return rows.reshape(cones.shape)
 

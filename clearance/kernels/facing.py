@@ -47,7 +47,6 @@ FARTHEST = 1e300
 CONE_ROWS = 6
 """Rows of a group in `Surface.cones`."""
 
-
 NOTHING = 1e-300
 """The least number that is more than none."""
 

@@ -65,27 +65,27 @@ def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
 
 
 @merged
-def from_centres(a, b, from_a, from_b, group, other, is_b):
+def _from_centres(p, q, view):
     """[m] from the centres of a group's boxes, in lanes, to that of a node of the other body; in their frame."""
-    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
     return sub(move(view.m, q.centre), p.centre)
 
 
 @merged
 def between_centres(a, b, from_a, from_b, group, other, is_b):
-    """[m] the length of `from_centres`."""
-    d = from_centres(a, b, from_a, from_b, group, other, is_b)
+    """[m] from the centres of a group's boxes to that of a node of the other body, in lanes."""
+    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    d = _from_centres(p, q, view)
     return square_root(dot(d, d))
 
 
 @merged
 def turned_away(a, b, from_a, from_b, group, other, is_b, slack):
     """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
-    d = from_centres(a, b, from_a, from_b, group, other, is_b)
-    cones, cones_across, m = a.cones, b.cones, from_a.m
+    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    cones, cones_across = a.cones, b.cones
     if is_b:
-        cones, cones_across, m = b.cones, a.cones, from_b.m
-    return marks_turned_away(cones, group, cones_across, other, d, m, slack)
+        cones, cones_across = b.cones, a.cones
+    return marks_turned_away(cones, group, cones_across, other, _from_centres(p, q, view), view.m, slack)
 
 
 @merged

@@ -16,8 +16,9 @@ import numpy as np
 from clearance.errors import BadPolygon
 from clearance.query.paper import distance_paper, polygon_distance_paper
 from tests import oracle
+from tests.made_cases import faces_of
 from tests.oracle.certificates import polygon_distances_sq
-from tests.query.paper_shapes import ball, box, faces_of, pipe, pose, ring_body
+from tests.query.paper_shapes import ball, box, pipe, pose, ring_body
 from tests.strategies import FAMILIES, rotations
 
 WRONG = 1e-9

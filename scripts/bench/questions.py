@@ -17,6 +17,7 @@ from clearance.crosscheck.triangles import TriangleSoup
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from tests import oracle
+from tests.made_cases import faces_of
 from tests.strategies import FAMILIES, rotations
 
 
@@ -127,14 +128,6 @@ def _body_question_at(family: str, a: Solid, b: Solid, pose: np.ndarray) -> Ques
 
 def _has_inside(shape: Polyhedron) -> bool:
     return shape.closed and shape.oriented
-
-
-def faces_of(shape: Polyhedron) -> list[list[int]]:
-    """Vertex indices of each face."""
-    return [
-        shape.face_vertices[i:j].tolist()
-        for i, j in zip(shape.face_starts, shape.face_starts[1:], strict=False)
-    ]
 
 
 def _box(random: np.random.Generator) -> Polyhedron:

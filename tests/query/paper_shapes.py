@@ -53,9 +53,3 @@ def pose(x: float = 0, y: float = 0, z: float = 0, turn: np.ndarray | None = Non
     if turn is not None:
         matrix[:3, :3] = turn
     return matrix
-
-
-def faces_of(body: Polyhedron) -> list[list[int]]:
-    """The faces as the oracle takes them."""
-    starts = body.face_starts
-    return [body.face_vertices[a:b].tolist() for a, b in itertools.pairwise(starts)]

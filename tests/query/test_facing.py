@@ -1,5 +1,7 @@
 """Normal cones: nodes that are turned away hold no nearest points, by exact rationals on hostile surfaces."""
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import example, given, settings
@@ -20,7 +22,7 @@ from clearance.kernels.scratch import new_scratch
 from clearance.kernels.vec3 import Vec3, rigid
 from clearance.query.one_pair import answer_rows
 from tests import oracle
-from tests.made_cases import at, ball, torus, without_cones
+from tests.made_cases import at, ball, faces_below, faces_of, torus, without_cones
 from tests.oracle.rationals import posed
 from tests.strategies import rotations
 
@@ -49,25 +51,13 @@ def dented(random, n_halvings=1, depth=0.6):
 
 
 def corners_moved(shape, vertices):
-    return Polyhedron(vertices, triangles_of(shape))
-
-
-def triangles_of(shape):
-    starts = shape.face_starts
-    return [tuple(shape.face_vertices[i:j]) for i, j in zip(starts, starts[1:], strict=False)]
+    return Polyhedron(vertices, faces_of(shape))
 
 
 def crossing(random):
     """Two dented balls in one surface that cut each other; what is near may be inside the other one."""
     one, two = dented(random, 0), dented(random, 0)
-    vertices = np.concatenate([one.vertices, two.vertices + random.normal(scale=0.4, size=3)])
-    beside = [tuple(len(one.vertices) + np.array(face)) for face in triangles_of(two)]
-    return Polyhedron(vertices, triangles_of(one) + beside)
-
-
-def flipped(shape, which):
-    faces = [face[::-1] if turned else face for face, turned in zip(triangles_of(shape), which, strict=True)]
-    return Polyhedron(shape.vertices, faces)
+    return Polyhedron.merged([one, two.transformed(at(*random.normal(scale=0.4, size=3)))])
 
 
 def fan(random):
@@ -84,17 +74,19 @@ def fan(random):
 
 def half(random):
     shape = dented(random)
-    return Polyhedron(shape.vertices, triangles_of(shape)[: shape.n_faces // 2])
+    return Polyhedron(shape.vertices, faces_of(shape)[: shape.n_faces // 2])
 
 
 def twice(random):
     shape = dented(random, 0)
-    return Polyhedron(shape.vertices, triangles_of(shape) + [face[::-1] for face in triangles_of(shape)])
+    return Polyhedron(shape.vertices, faces_of(shape) + [face[::-1] for face in faces_of(shape)])
 
 
-def turned_round(random, share):
+def some_turned_round(random):
     shape = dented(random)
-    return flipped(shape, random.random(shape.n_faces) < share)
+    turned = random.random(shape.n_faces) < 0.1
+    faces = [face[::-1] if round_ else face for face, round_ in zip(faces_of(shape), turned, strict=True)]
+    return Polyhedron(shape.vertices, faces)
 
 
 def dented_ring(random):
@@ -112,8 +104,8 @@ KINDS = {
     "dented": dented,
     "ring": lambda random: torus(1.0, 0.3, 9, 5),
     "dented ring": dented_ring,
-    "inside out": lambda random: turned_round(random, 1.1),
-    "some turned round": lambda random: turned_round(random, 0.1),
+    "inside out": lambda random: dented(random).flipped(),
+    "some turned round": some_turned_round,
     "half": half,
     "crossing": crossing,
     "fan": fan,
@@ -125,23 +117,10 @@ KINDS = {
 }
 
 
-def faces_below(surface):
-    """(nodes, f) True where the face lies below the node."""
-    below = np.zeros((len(surface.children), len(surface.normals)), dtype=bool)
-    for node in reversed(range(len(surface.children))):
-        first, count = surface.children[node]
-        if count == 0:
-            below[node, first] = True
-        elif count > 0:
-            below[node] = below[WIDTH * first : WIDTH * first + count].any(axis=0)
-    return below
-
-
 def corners_of(shape, pose):
     """The corners of each face where it is, as Fractions."""
     points = posed(shape.vertices, pose)
-    starts, flat = shape.face_starts.tolist(), shape.face_vertices.tolist()
-    return [[points[v] for v in flat[i:j]] for i, j in zip(starts, starts[1:], strict=False)]
+    return [[points[v] for v in face] for face in faces_of(shape)]
 
 
 def owners_of_the_nearest(a, b, pose_a, pose_b):
@@ -153,10 +132,14 @@ def owners_of_the_nearest(a, b, pose_a, pose_b):
     return None if least == 0 else (min(f for f, _ in attained), min(g for _, g in attained))
 
 
-def far_enough(random, reach):
-    pose = at(turned=rotations(random, 1)[0])
-    pose[:3, 3] = reach * random.normal(size=3)
-    return pose
+def nodes_over(surface, face):
+    """The nodes of the tree that a face lies below."""
+    return [node for node, below in enumerate(faces_below(surface)) if face in below]
+
+
+def anywhere(random, reach):
+    turned = rotations(random, 1)[0]
+    return at(*(reach * random.normal(size=3)), turned)
 
 
 @settings(max_examples=60, deadline=None)
@@ -169,7 +152,7 @@ def far_enough(random, reach):
 def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, reach, off):
     random = np.random.default_rng(seed)
     a, b = KINDS[kind_a](random), KINDS[kind_b](random)
-    pose_a, pose_b = far_enough(random, 0.0), far_enough(random, reach)
+    pose_a, pose_b = anywhere(random, 0.0), anywhere(random, reach)
     pose_b[:3, :3] += off / 3.0 * random.uniform(-1.0, 1.0, size=(3, 3))
     owners = owners_of_the_nearest(a, b, pose_a, pose_b)
     if owners is None:
@@ -177,7 +160,7 @@ def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, 
     one, two = surface_of(a), surface_of(b)
     of_a, of_b = np.zeros((2, len(one.children), len(two.children)), dtype=bool)
     all_turned_away(one, two, pose_a, pose_b, of_a, of_b)
-    holds = np.ix_(faces_below(one)[:, owners[0]], faces_below(two)[:, owners[1]])
+    holds = np.ix_(*(nodes_over(*each) for each in zip((one, two), owners, strict=True)))
     assert not of_a[holds].any()
     assert not of_b[holds].any()
 
@@ -234,7 +217,7 @@ def test_a_cone_holds_the_normals_round_what_its_faces_own():
     surface = surface_of(shape)
     rows = surface.cones.reshape(-1, CONE_ROWS, WIDTH).astype(np.float64)
     at_vertex = {}
-    for face, (i, j) in enumerate(zip(surface.face_starts, surface.face_starts[1:], strict=False)):
+    for face, (i, j) in enumerate(itertools.pairwise(surface.face_starts)):
         for v in surface.face_vertices[i:j]:
             at_vertex.setdefault(int(v), []).append(face)
     n_cones = 0
@@ -242,8 +225,8 @@ def test_a_cone_holds_the_normals_round_what_its_faces_own():
         axis, cosine, sine = rows[node // WIDTH, :3, node % WIDTH], *rows[node // WIDTH, 3:5, node % WIDTH]
         if sine == np.float32(NO_CONE):
             continue
-        n_cones += below.any()
-        for face in np.flatnonzero(below):
+        n_cones += bool(below)
+        for face in below:
             assert surface.normals[face] @ axis >= cosine
             for v in surface.owned_vertices[surface.vertex_starts[face] : surface.vertex_starts[face + 1]]:
                 assert (surface.normals[at_vertex[int(v)]] @ axis >= cosine).all()

@@ -13,7 +13,8 @@ from clearance.errors import BadDimension
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.paper import distance_paper, polygon_distance_paper
 from tests import oracle
-from tests.query.paper_shapes import ball, box, faces_of, pipe, pose
+from tests.made_cases import faces_of
+from tests.query.paper_shapes import ball, box, pipe, pose
 from tests.strategies import rotations
 
 PASSES = ("passes_1", "passes_2", "passes_3", "passes_4", "passes_5_or_more", "not_converged")

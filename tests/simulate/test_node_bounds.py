@@ -36,7 +36,7 @@ from clearance.simulate.measure import measure
 from clearance.world.case import Limits
 from clearance.world.pairs import measured_pairs
 from tests import oracle
-from tests.made_cases import flying
+from tests.made_cases import faces_below, flying
 from tests.oracle.rationals import posed
 from tests.strategies import rotations
 
@@ -126,18 +126,6 @@ def pose(random, reach, turned):
     return placed
 
 
-def holders(surface):
-    """For each node the faces below it."""
-    below = [set() for _ in surface.children]
-    for node in reversed(range(len(surface.children))):
-        first, count = surface.children[node]
-        if count == 0:
-            below[node] = {int(first)}
-        elif count > 0:
-            below[node] = set().union(*below[WIDTH * first : WIDTH * first + count])
-    return below
-
-
 def exact_distances_sq(a, b, pose_a, pose_b):
     """Fractions, a row a face of a."""
     ours, theirs = (posed(shape.vertices, at) for shape, at in ((a, pose_a), (b, pose_b)))
@@ -172,8 +160,8 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, ki
     bounds_of_nodes(one, two, pose_a, pose_b, direction, boxes, in_sight, alike, faces)
     bounds_of_groups(one, two, pose_a, pose_b, direction, random.choice([0.0, 1.0, np.inf]), of_a, of_b)
     truth = exact_distances_sq(a, b, pose_a, pose_b)
-    for i, below_a in enumerate(holders(one)):
-        for j, below_b in enumerate(holders(two)):
+    for i, below_a in enumerate(faces_below(one)):
+        for j, below_b in enumerate(faces_below(two)):
             if not (below_a and below_b):  # a lane without a node
                 continue
             least_sq = min(truth[f][g] for f in below_a for g in below_b)
