@@ -17,7 +17,7 @@ from clearance.kernels.double_double import (
     rounded,
     wide,
 )
-from clearance.kernels.face_pair import Hit, nearest_of_faces
+from clearance.kernels.face_pair import PASSED_OVER, Hit, nearest_of_faces
 from clearance.kernels.front import forget, no_fronts
 from clearance.kernels.refine import error_of
 from clearance.kernels.scratch import new_scratch
@@ -143,7 +143,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     if refined.face_a == 2**62:
         return Measured(nothing_yet(asked.wanted * asked.wanted), floor, 0.0, face_a, face_b, tally)
     distance = refined.length.hi
-    error = error_of(refined, distance)
+    error = error_of(refined, distance) + PASSED_OVER * distance
     hit = Hit(
         distance * distance,
         refined.face_a,

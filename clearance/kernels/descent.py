@@ -11,7 +11,14 @@ import numpy as np
 from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import borrow
 from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sight
-from clearance.kernels.face_pair import Hit, limit_of, may_meet, may_own_nearest, nearest_of_faces
+from clearance.kernels.face_pair import (
+    Hit,
+    hidden_within,
+    limit_of,
+    may_meet,
+    may_own_nearest,
+    nearest_of_faces,
+)
 from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
 from clearance.kernels.lanes import WIDTH, first_of, how_many, lane, least_of, marks_within
@@ -239,7 +246,9 @@ def descend(
                         break
                 if n_waiting > 1 and best.gap_sq < before_sq:
                     _nearest_last(scratch, n_waiting)
-                if near.seen.near_sq < math.inf:
+                hidden_sq = hidden_within(a, face_a, b, face_b, m, margin, in_sight)
+                least_sq = min(near.seen.near_sq, hidden_sq)
+                if least_sq < math.inf:
                     if n_pairs == N_WAITING:
                         n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
                         if n_pairs > N_WAITING // 2:
@@ -248,9 +257,9 @@ def descend(
                                 scratch.waiting, n_pairs, refined, table,
                             )
                             n_pairs = 0
-                    put(scratch.waiting, n_pairs, face_a, face_b, near.seen)
+                    put(scratch.waiting, n_pairs, face_a, face_b, near.seen, least_sq)
                     n_pairs += 1
-                    gap = math.sqrt(near.seen.near_sq)
+                    gap = math.sqrt(least_sq)
                     measured = min(measured, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
                 else:
                     floor = min(floor, cut)

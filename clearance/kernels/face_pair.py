@@ -31,6 +31,19 @@ CLEARLY = 1.0 + 2.0**-26
 near, and `error_bound` would depend on whether it was seen."""
 
 
+TOLD = 2.0**-26
+"""Share of their distance below which rounding aside, with room, does not hide features of two faces."""
+
+PASSED_OVER = 2.0**-56
+"""Share of a distance by which a face pair that was passed over can be nearer than the answer.
+
+Its features were taken for outside, so that others beside them are measured, off to the side by 2^-28 of the
+distance at most; that lengthens it by half the square. `TOLD` grants 64 times what points are off, and four
+times the width of a face without a plane. Directions are off by 2^-34 where a normal is the least certain, and by
+2^-28 where an edge is as short as 2^-24 of the bodies' size.
+"""
+
+
 class Hit(NamedTuple):
     """A pair of points, both in the frame of body a until it is the answer, which is in the world.
 
@@ -46,8 +59,8 @@ class Hit(NamedTuple):
     q: Vec3
 
 
-CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES = range(6)
-"""Kinds of feature pairs, that of a first."""
+CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES, UNSEEN = range(7)
+"""Kinds of feature pairs, that of a first; none that was seen."""
 
 
 class Seen(NamedTuple):
@@ -64,7 +77,7 @@ class Seen(NamedTuple):
     j: int
 
 
-NOTHING_SEEN = Seen(math.inf, CORNERS, 0, 0)
+NOTHING_SEEN = Seen(math.inf, UNSEEN, 0, 0)
 
 
 class Near(NamedTuple):
@@ -182,7 +195,7 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
 
 
 @spliced
-def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
+def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`."""
     for e in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
         q0 = move(m, row(b.vertices, b.owned_edges[e, 0]))
@@ -198,7 +211,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, near):
         for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[i, 0])
             p1 = row(a.vertices, a.owned_edges[i, 1])
-            inside, p, q = common_perpendicular(p0, p1, q0, q1)
+            inside, p, q = common_perpendicular(p0, p1, q0, q1, margin)
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
@@ -235,7 +248,7 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     near = vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near)
     near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
     near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)
-    return edges_to_edges(a, face_a, b, face_b, m, limit_sq, near)
+    return edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near)
 
 
 @merged
@@ -283,6 +296,39 @@ def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
     return _may_own_farthest(a, face_a, sight.u, limit - in_sight) and _may_own_farthest(
         b, face_b, Vec3(-v.x, -v.y, -v.z), limit - in_sight
     )
+
+
+@merged
+def _unsure(surface, face):
+    """[m] how far its triangles, or its inside where it has no plane, may be off what stands for a face."""
+    if surface.bent[face] or not has_plane(surface, face):
+        return surface.width[face]
+    return 0.0
+
+
+@merged
+def told_apart(a, face_a, b, face_b, gap, margin):
+    """True if what rounding can hide of two faces that are `gap` apart is no nearer than by `PASSED_OVER`."""
+    return 2.0 * margin + 4.0 * (_unsure(a, face_a) + _unsure(b, face_b)) <= TOLD * gap
+
+
+@merged
+def hidden_within(a, face_a, b, face_b, m, margin, in_sight):
+    """[m^2] how near features of two faces can be, squared, that were taken for outside; infinity if `told_apart`.
+
+    Whether the foot of a corner is inside a face or an edge is known to rounding only. Where it is outside but
+    for rounding, another face's feature beside it is measured, which is as near only where faces are told apart.
+
+    Args:
+        in_sight: [m] a lower bound on the distance of the faces.
+    """
+    if told_apart(a, face_a, b, face_b, in_sight, margin):
+        return math.inf
+    beside = sight_beside(a, face_a, b, face_b, m, inverse(m))
+    gap = max(in_sight, lower_bound_faces_in_sight(a, face_a, b, face_b, beside) - margin)
+    if told_apart(a, face_a, b, face_b, gap, margin):
+        return math.inf
+    return max(0.0, gap) * max(0.0, gap)
 
 
 @merged

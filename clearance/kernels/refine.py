@@ -29,7 +29,7 @@ from clearance.kernels.double_double import (
 )
 from clearance.kernels.every_feature import Ask, nearest_of_every
 from clearance.kernels.face_floor import SURE, UNSURE, floor_of
-from clearance.kernels.face_pair import NOTHING_SEEN, Seen, limit_of
+from clearance.kernels.face_pair import NOTHING_SEEN, UNSEEN, Seen, limit_of, told_apart
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.surface import surface_like
@@ -147,7 +147,7 @@ def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best):
 def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
     """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
     a, b = borrow(lent_a), borrow(lent_b)
-    if seen.near_sq < math.inf:
+    if seen.kind != UNSEEN:
         feature = nearest_feature(a, face_a, b, face_b, frames.m, seen)
         one = simplex_here(a, face_a, feature.n_a, feature.i)
         two = simplex_here(b, face_b, feature.n_b, feature.j)
@@ -175,42 +175,58 @@ class Waiting(NamedTuple):
 
     Attributes:
         faces: (n, 2) int64. near_sq: (n,) [m^2]. features: (n, 3) int64 kind, i, j.
+        least_sq: (n,) [m^2] a face pair whose features are no nearer needs not be refined: near_sq, or less.
     """
 
     faces: np.ndarray
     near_sq: np.ndarray
     features: np.ndarray
+    least_sq: np.ndarray
 
 
 @shared
 def room_for_waiting():
     """Room for `N_WAITING` face pairs."""
     return Waiting(
-        np.empty((N_WAITING, 2), dtype=np.int64), np.empty(N_WAITING), np.empty((N_WAITING, 3), dtype=np.int64)
+        np.empty((N_WAITING, 2), dtype=np.int64),
+        np.empty(N_WAITING),
+        np.empty((N_WAITING, 3), dtype=np.int64),
+        np.empty(N_WAITING),
     )
 
 
 @merged
-def put(waiting, at, face_a, face_b, seen):
+def put(waiting, at, face_a, face_b, seen, least_sq):
     """Lets a face pair wait at a place."""
     waiting.faces[at, 0], waiting.faces[at, 1] = face_a, face_b
-    waiting.near_sq[at] = seen.near_sq
+    waiting.near_sq[at], waiting.least_sq[at] = seen.near_sq, least_sq
     features = waiting.features
     features[at, 0], features[at, 1], features[at, 2] = seen.kind, seen.i, seen.j
 
 
 @merged
 def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, best, table):
-    """`best` after all waiting face pairs that can still win."""
+    """`best` after all waiting face pairs that can still win: those seen near enough, then those that may hide it.
+
+    Faces that hide nothing do not count: they can be nearest at others' features, which no floor shows. What they
+    hide counts only where they are not `told_apart`, whatever made them wait.
+    """
     a, b = borrow(lent_a), borrow(lent_b)
-    for i in range(n_waiting):
-        face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
-        limit = limit_of(a, face_a, b, face_b, best_gap, margin)
-        near_sq = waiting.near_sq[i]
-        if near_sq <= limit * limit:
-            features = waiting.features
-            seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
-            best = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, Ask(limit, margin), best)
+    for may_hide in (False, True):
+        for i in range(n_waiting):
+            face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
+            limit = limit_of(a, face_a, b, face_b, best_gap, margin)
+            near_sq = waiting.near_sq[i]
+            if waiting.least_sq[i] <= limit * limit and (near_sq > limit * limit) == may_hide:
+                features = waiting.features
+                seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
+                ask = Ask(limit, margin)
+                found = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best)
+                if may_hide:
+                    is_nearest = found.face_a == face_a and found.face_b == face_b
+                    if not is_nearest or told_apart(a, face_a, b, face_b, found.length.hi, margin):
+                        continue
+                best = found
     return best
 
 
@@ -220,8 +236,8 @@ def shed(a, b, best_gap, margin, waiting, n_waiting):
     kept = 0
     for i in range(n_waiting):
         limit = limit_of(a, waiting.faces[i, 0], b, waiting.faces[i, 1], best_gap, margin)
-        if waiting.near_sq[i] <= limit * limit:
-            waiting.near_sq[kept] = waiting.near_sq[i]
+        if waiting.least_sq[i] <= limit * limit:
+            waiting.near_sq[kept], waiting.least_sq[kept] = waiting.near_sq[i], waiting.least_sq[i]
             for k in range(2):
                 waiting.faces[kept, k] = waiting.faces[i, k]
             for k in range(3):

@@ -1,5 +1,7 @@
 """Nearest points of points and segments, and of two segments inside both, in doubles."""
 
+import math
+
 from clearance.jit import merged
 from clearance.kernels.vec3 import along, cross, dot, sub
 
@@ -35,9 +37,21 @@ def foot_inside(x, start, end):
 
 
 @merged
-def common_perpendicular(p0, p1, q0, q1):
+def _may_still_be_inside(over, u, v, r, n_sq, margin):
+    """True if feet that are `over` beyond the ends, times |n|^2, may be inside but for rounding of the ends.
+
+    Not if the segments are parallel but for it: then they are no nearer inside than at the ends, but for it.
+    """
+    u_sq, v_sq = dot(u, u), dot(v, v)
+    rounding = margin * math.sqrt(u_sq * v_sq) * math.sqrt(u_sq + v_sq + dot(r, r))
+    return over <= rounding and n_sq > margin * margin * (u_sq + v_sq)
+
+
+@merged
+def common_perpendicular(p0, p1, q0, q1, margin):
     """(inside, p, q): the feet of the common perpendicular of two segments, if inside both.
 
+    Near parallelism rounding moves the feet far: those that are beyond the ends but for it are taken at the ends.
     Parallel segments have none: their minimum is attained at an end point, which other candidates cover. The
     second foot is that of the first one: near parallelism both would be rounded independently, and their
     distance off by the root of the rounding instead of the rounding itself.
@@ -50,9 +64,14 @@ def common_perpendicular(p0, p1, q0, q1):
     n_sq = dot(n, n)
     s = dot(cross(r, v), n)
     t = dot(cross(r, u), n)
-    if not (0.0 < s < n_sq and 0.0 < t < n_sq):
-        return False, p0, q0
+    is_inside = 0.0 < s < n_sq and 0.0 < t < n_sq
+    if not is_inside:
+        over = max(max(-s, s - n_sq), max(-t, t - n_sq))
+        if not _may_still_be_inside(over, u, v, r, n_sq, margin):
+            return False, p0, q0
     p = along(p0, s / n_sq, u)
+    if not is_inside:
+        p = nearest_on_segment(p, p0, p1)
     return True, p, nearest_on_segment(p, q0, q1)
 
 
