@@ -2,9 +2,12 @@
 
 In the middle of an interval the trees are descended as for a distance, but each bound is lowered by how far
 the link can move in the interval: along the direction of the nearest points where two faces or boxes are
-seen apart, so that sliding past costs nothing in the first order. What does not stay above the target is
-halved. A bound on a pair holds for later intervals less what its link moves in them: pairs that it keeps above the
-target are not asked. Not for: the steps themselves (`sweep`).
+seen apart, so that sliding past costs nothing in the first order. Nodes that are turned away in all of the
+interval are passed over (`facing`): at its first instant the distance is above 0, or nothing is asked. What does
+not stay above the target is halved, the earlier half first. A bound on a pair holds for later intervals less what
+its link moves in them: pairs that it keeps above the target are not asked.
+
+Not for: the steps themselves (`sweep`).
 """
 
 import math
@@ -37,7 +40,7 @@ from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
 from clearance.kernels.lanes import WIDTH, lane, larger, marks_within
 from clearance.kernels.meeting import meeting_of
-from clearance.kernels.node_pairs import opened, pair_in_group
+from clearance.kernels.node_pairs import opened, pair_in_group, turned_away_while, views_along
 from clearance.kernels.scratch import STACK_DEPTH, Scratch, new_scratch, wait
 from clearance.kernels.surface import box_of, group_of, is_leaf
 from clearance.kernels.sweep import GROWTH
@@ -58,6 +61,10 @@ cannot help, and the bound stands as it is."""
 
 CHAIN_SLACK = 8.0
 """Rounding slacks of a body pair that cover poses computed along a chain of links as well."""
+
+
+MOST_TURNED = 0.25
+"""[rad] Where a body turns farther in half an interval, its normals say little: cones stay below a right angle."""
 
 
 class Asked(NamedTuple):
@@ -89,7 +96,7 @@ class Known(NamedTuple):
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
         links: (bodies,) the link of each body that moves, else -1.
-        drifts: (bodies, 7) numbers of the `Drift` of each in the interval.
+        drifts: (bodies, 8) numbers of the `Drift` of each in the interval.
         travel: (bodies,) [m] how far each can have moved in all.
         floors: (p,) [m] a bound on each pair's distance over an interval, plus the travel at its end.
         seeds: (p, 2) the faces that were nearest, or -1.
@@ -164,6 +171,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
     slack = CHAIN_SLACK * rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
     moved = drift_of_box(box_of(a, root_a), drift)
+    cos_turn, sin_turn = math.cos(drift.turn), math.sin(drift.turn)
     near_a, near_b = seed_a, seed_b
     best = nothing_yet(math.inf)
     if seed_a >= 0:
@@ -213,9 +221,17 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
         is_b, group, count, other = opened(a, node_a, b, node_b)
         floors = _floors_of_group(a, b, group, other, is_b, m, sight, slack, drift, target)
         tally[2] += count
+        away = 0
+        if drift.turn < MOST_TURNED and marks_within(floors, target):
+            from_a, from_b = views_along(sight, m)
+            away = turned_away_while(
+                a, b, from_a, from_b, group, other, is_b, slack, cos_turn, sin_turn, moved
+            )
         assert n_waiting + WIDTH <= STACK_DEPTH
         first = n_waiting
         for k in range(count):
+            if away >> k & 1:
+                continue
             bound = lane(floors, k)
             if bound >= target:
                 floor = min(floor, bound)
@@ -270,7 +286,7 @@ def _drift_in(surface, chain, body, link, middle):
 @inlined
 def _drift_at(drifts, body):
     d = drifts[body]
-    return Drift(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6])
+    return Drift(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
 
 
 @inlined
@@ -285,7 +301,7 @@ def _go_on(surface, chain, path, step, known):
         numbers = known.drifts[body]
         numbers[0], numbers[1], numbers[2] = drift.velocity.x, drift.velocity.y, drift.velocity.z
         numbers[3], numbers[4], numbers[5] = drift.spin.x, drift.spin.y, drift.spin.z
-        numbers[6] = drift.rest
+        numbers[6], numbers[7] = drift.rest, drift.turn
         known.travel[body] += 2.0 * GROWTH * drift_of_box(box_of(surface, surface.roots[body]), drift)
 
 
@@ -320,7 +336,7 @@ def certify(
     """
     n_links, n_pairs, n_bodies = path.positions.shape[1], len(asked.bodies), len(surface.roots)
     known = Known(
-        _new_middle(n_links), _new_middle(n_links), np.full(n_bodies, -1), np.empty((n_bodies, 7)),
+        _new_middle(n_links), _new_middle(n_links), np.full(n_bodies, -1), np.empty((n_bodies, 8)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip

@@ -36,11 +36,13 @@ class Drift(NamedTuple):
     Attributes:
         velocity, spin: a point x moves by s (velocity + spin x x) + r, |s| <= 1 [m], [rad].
         rest: [m] a bound on |r| over the body.
+        turn: [rad] a bound on the angle that the body turns by.
     """
 
     velocity: Vec3
     spin: Vec3
     rest: float
+    turn: float
 
 
 @inlined
@@ -87,6 +89,7 @@ def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
         if chain.kinds[i] == TURNING:
             shallower += abs(swing[i]) + bend[i]
         i = chain.parents[i]
+    turn = shallower
     spin, velocity = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
     rest = 0.0
     moved = 0.0  # how far the joints up to here move any point of the body
@@ -112,6 +115,7 @@ def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
         turn_back(world_from_body, at_origin),
         turn_back(world_from_body, spin),
         rest * (1.0 + 1e-12),
+        turn,
     )
 
 

@@ -17,8 +17,14 @@ The same is true of -d at q. A node's cone holds the normals round each vertex a
 direction in common, or if one of them has none in common with the directions from the one box to the other. It
 does not matter which side is inside, whether the surface is closed, or whether it cuts itself elsewhere.
 
+While a body moves, its normals turn by no more than the motion does. Two nodes that are turned away in all of an
+interval hold the nearest points at no instant of it before the bodies meet. If the others stay apart by some
+distance, so do the bodies: their distance is above 0 at first, is that of the others while it is, and cannot leap.
+
 Source: Johnson & Cohen, Spatialized normal cone hierarchies, 2001 (local minimum distances).
 """
+
+from typing import NamedTuple
 
 from clearance.jit import merged
 from clearance.kernels.lanes import (
@@ -51,13 +57,29 @@ NOTHING = 1e-300
 """The least number that is more than none."""
 
 
+class Facing(NamedTuple):
+    """The cones of a group p, in lanes, and of a node q of the other body, in the frame of p.
+
+    Attributes:
+        u, v: the axes of p and q. cos_u, sin_u, cos_v, sin_v: of the angles to either side.
+        reach: [m] of both boxes from their centres.
+    """
+
+    u: Vec3
+    cos_u: float  # in lanes
+    sin_u: float  # in lanes
+    v: Vec3
+    cos_v: float
+    sin_v: float
+    reach: float  # in lanes
+
+
 @merged
-def marks_turned_away(cones_p, group, cones_q, other, d, m, slack):
-    """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with.
+def facing_of(cones_p, group, cones_q, other, m, slack):
+    """How a group and a node of the other body face each other.
 
     Args:
         cones_p, cones_q: `Surface.cones` of the group's body and the other. m: from the frame of q to that of p.
-        d: [m] from the centres of the group's boxes, in lanes, to that of the other node, in the frame of p.
         slack: [m] rounding of coordinates.
     """
     first, across, k = CONE_ROWS * group, CONE_ROWS * (other // WIDTH), other % WIDTH
@@ -67,6 +89,33 @@ def marks_turned_away(cones_p, group, cones_q, other, d, m, slack):
     v = turn(m, v)
     cos_v, sin_v = number_at(cones_q, across + 3, k), number_at(cones_q, across + 4, k)
     reach = lanes_at(cones_p, first + 5) + (number_at(cones_q, across + 5, k) + slack)
+    return Facing(u, cos_u, sin_u, v, cos_v, sin_v, reach)
+
+
+@merged
+def while_moving(facing, cos_turn, sin_turn, way):
+    """What holds of both at every instant of a motion.
+
+    Args:
+        cos_turn, sin_turn: of the angle that the bodies turn by at most, less than a right angle with `WIDEST`.
+        way: [m] how far any point moves at most.
+    """
+    u, cos_u, sin_u, v, cos_v, sin_v, reach = facing
+    return Facing(
+        u, cos_u * cos_turn - sin_u * sin_turn, sin_u * cos_turn + cos_u * sin_turn,
+        v, cos_v * cos_turn - sin_v * sin_turn, sin_v * cos_turn + cos_v * sin_turn,
+        reach + way,
+    )  # fmt: skip
+
+
+@merged
+def marks_turned_away(facing, d):
+    """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with.
+
+    Args:
+        d: [m] from the centres of the group's boxes, in lanes, to that of the other node, in the frame of p.
+    """
+    u, cos_u, sin_u, v, cos_v, sin_v, reach = facing
     onward_sq = dot(d, d) - reach * reach
     onward = square_root(larger(onward_sq, 0.0))
     reach = where_positive(onward_sq, reach, FARTHEST)

@@ -10,7 +10,7 @@ from clearance.kernels.bounds import (
     opposite,
     sight_along,
 )
-from clearance.kernels.facing import marks_turned_away
+from clearance.kernels.facing import facing_of, marks_turned_away, while_moving
 from clearance.kernels.lanes import WIDTH, larger, marks_within, square_root
 from clearance.kernels.surface import box_at, box_of, group_at, is_leaf
 from clearance.kernels.vec3 import Rigid, dot, inverse, move, sub
@@ -79,13 +79,27 @@ def between_centres(a, b, from_a, from_b, group, other, is_b):
 
 
 @merged
-def turned_away(a, b, from_a, from_b, group, other, is_b, slack):
-    """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
+def _facing(a, b, from_a, from_b, group, other, is_b, slack):
+    """How a group and a node of the other body face each other, and what is from centre to centre."""
     p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
     cones, cones_across = a.cones, b.cones
     if is_b:
         cones, cones_across = b.cones, a.cones
-    return marks_turned_away(cones, group, cones_across, other, _from_centres(p, q, view), view.m, slack)
+    return facing_of(cones, group, cones_across, other, view.m, slack), _from_centres(p, q, view)
+
+
+@merged
+def turned_away(a, b, from_a, from_b, group, other, is_b, slack):
+    """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
+    facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
+    return marks_turned_away(facing, d)
+
+
+@merged
+def turned_away_while(a, b, from_a, from_b, group, other, is_b, slack, cos_turn, sin_turn, way):
+    """The same at every instant of a motion about the views' `m`: see `while_moving`."""
+    facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
+    return marks_turned_away(while_moving(facing, cos_turn, sin_turn, way), d)
 
 
 @merged

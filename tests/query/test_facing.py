@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 import clearance as cl
 from clearance.geometry.polyhedron import Polyhedron
@@ -16,7 +17,12 @@ from clearance.kernels.bounds import rounding_slack, sight_along
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.facing import CONE_ROWS, NO_CONE
 from clearance.kernels.lanes import ALL, WIDTH, lane
-from clearance.kernels.node_pairs import bounds_of_group, turned_away, views_along
+from clearance.kernels.node_pairs import (
+    bounds_of_group,
+    turned_away,
+    turned_away_while,
+    views_along,
+)
 from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
 from clearance.kernels.scratch import new_scratch
 from clearance.kernels.vec3 import Vec3, rigid
@@ -163,6 +169,60 @@ def test_what_holds_the_nearest_points_is_not_turned_away(seed, kind_a, kind_b, 
     holds = np.ix_(*(nodes_over(*each) for each in zip((one, two), owners, strict=True)))
     assert not of_a[holds].any()
     assert not of_b[holds].any()
+
+
+@kernel
+def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
+    """As `all_turned_away`, in all of a motion about these poses, also where nodes are not apart."""
+    frames = frames_of(rigid(pose_a), rigid(pose_b))
+    slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
+    from_a, from_b = views_along(sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m)
+    motion = np.cos(turn), np.sin(turn), way
+    for i in range(len(a.children)):
+        for j in range(len(b.children)):
+            away = turned_away_while(a, b, from_a, from_b, i // WIDTH, j, False, slack, *motion)
+            of_a[i, j] = away >> i % WIDTH & 1
+            away = turned_away_while(a, b, from_a, from_b, j // WIDTH, i, True, slack, *motion)
+            of_b[i, j] = away >> j % WIDTH & 1
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),
+    st.sampled_from([0.5, 1.0, 2.0, 10.0]), st.floats(0.0, 0.25), st.floats(0.0, 0.3),
+)  # fmt: skip
+def test_what_holds_them_at_some_instant_is_not_turned_away_while_moving(seed, kind_a, kind_b, reach, turn, way):
+    """Seen from the middle of a motion, at an instant at which the first body is turned and shifted."""
+    random = np.random.default_rng(seed)
+    a, b = KINDS[kind_a](random), KINDS[kind_b](random)
+    middle, pose_b = anywhere(random, 0.0), anywhere(random, reach)
+    one, two = surface_of(a), surface_of(b)
+    axis = random.normal(size=3)
+    leant = Rotation.from_rotvec(turn * axis / np.linalg.norm(axis)).as_matrix()
+    push = random.normal(size=3)
+    shift = way * push / np.linalg.norm(push)
+    pose_a = at(*(leant @ middle[:3, 3] + shift), leant @ middle[:3, :3])
+    farthest = np.linalg.norm((a.vertices @ (pose_a - middle)[:3, :3].T) + (pose_a - middle)[:3, 3], axis=1).max()
+    owners = owners_of_the_nearest(a, b, pose_a, pose_b)
+    if owners is None:
+        return
+    of_a, of_b = np.zeros((2, len(one.children), len(two.children)), dtype=bool)
+    all_turned_away_while(one, two, middle, pose_b, turn, farthest, of_a, of_b)
+    holds = np.ix_(*(nodes_over(*each) for each in zip((one, two), owners, strict=True)))
+    assert not of_a[holds].any()
+    assert not of_b[holds].any()
+
+
+def test_much_is_turned_away_while_moving_a_little():
+    """A twentieth of a radian and of the distance: not much less than at rest."""
+    a = surface_of(ball(1.0, 3))
+    here, there = np.eye(4), at(3.0)
+    at_rest, moving, farther = np.zeros((3, 2, len(a.children), len(a.children)), dtype=bool)
+    all_turned_away_while(a, a, here, there, 0.0, 0.0, *at_rest)
+    all_turned_away_while(a, a, here, there, 0.05, 0.05, *moving)
+    all_turned_away_while(a, a, here, there, 0.25, 1.0, *farther)
+    assert 0 < farther.sum() < moving.sum() < at_rest.sum()
+    assert moving.sum() > 0.8 * at_rest.sum()
 
 
 def asked(a, b, poses):
