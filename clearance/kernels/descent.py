@@ -254,7 +254,7 @@ def descend(
                         if n_pairs > N_WAITING // 2:
                             refined = settle(
                                 lent_a, lent_b, frames, min(best_gap, wanted_gap), margin,
-                                scratch.waiting, n_pairs, refined, table,
+                                scratch.waiting, n_pairs, from_a.sight, slack, 0.0, refined, table,
                             )
                             n_pairs = 0
                     put(scratch.waiting, n_pairs, face_a, face_b, near.seen, least_sq)
@@ -283,7 +283,7 @@ def descend(
     if not met.found:
         refined = settle(
             lent_a, lent_b, frames, min(best_gap, wanted_gap), margin,
-            scratch.waiting, n_pairs, refined, table,
+            scratch.waiting, n_pairs, from_a.sight, slack, best_gap, refined, table,
         )
     if met.found or floor == -math.inf:
         forget(fronts, pair)

@@ -290,7 +290,13 @@ def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
             the direction of their nearest points is within `LEANING` of the sight.
     """
     limit = limit_of(a, face_a, b, face_b, best_gap, margin)
-    if in_sight < (1.0 - OWN_SIGHT) * limit or limit > CLEARLY * best_gap:
+    return limit > CLEARLY * best_gap or may_own_within(a, face_a, b, face_b, sight, in_sight, limit)
+
+
+@merged
+def may_own_within(a, face_a, b, face_b, sight, in_sight, limit):
+    """The same for a least distance within a limit [m]: whatever rounding hides."""
+    if in_sight < (1.0 - OWN_SIGHT) * limit:
         return True
     v = sight.v
     return _may_own_farthest(a, face_a, sight.u, limit - in_sight) and _may_own_farthest(

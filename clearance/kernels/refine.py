@@ -13,6 +13,7 @@ import numpy as np
 
 from clearance.jit import inlined, merged, shared, spliced
 from clearance.kernel_table import REFINE, REFINE_EVERY, Lent, apart, at_address, borrow, table_like
+from clearance.kernels.bounds import lower_bound_faces_in_sight
 from clearance.kernels.double_double import (
     FRAMES_AT_REST,
     NOISE,
@@ -29,7 +30,14 @@ from clearance.kernels.double_double import (
 )
 from clearance.kernels.every_feature import Ask, nearest_of_every
 from clearance.kernels.face_floor import SURE, UNSURE, floor_of
-from clearance.kernels.face_pair import NOTHING_SEEN, UNSEEN, Seen, limit_of, told_apart
+from clearance.kernels.face_pair import (
+    NOTHING_SEEN,
+    UNSEEN,
+    Seen,
+    limit_of,
+    may_own_within,
+    told_apart,
+)
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.surface import surface_like
@@ -205,11 +213,13 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
 
 
 @merged
-def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, best, table):
+def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table):
     """`best` after all waiting face pairs that can still win: those seen near enough, then those that may hide it.
 
-    Faces that hide nothing do not count: they can be nearest at others' features, which no floor shows. What they
-    hide counts only where they are not `told_apart`, whatever made them wait.
+    Faces that hide nothing do not count: they can be nearest at others' features, which no floor shows.
+
+    Args:
+        least: [m] no two faces are nearer but for what rounding can hide.
     """
     a, b = borrow(lent_a), borrow(lent_b)
     for may_hide in (False, True):
@@ -219,14 +229,17 @@ def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, best, t
             near_sq = waiting.near_sq[i]
             if waiting.least_sq[i] <= limit * limit and (near_sq > limit * limit) == may_hide:
                 features = waiting.features
+                if may_hide:
+                    if told_apart(a, face_a, b, face_b, least, margin):
+                        continue
+                    in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
+                    if in_sight > limit or not may_own_within(a, face_a, b, face_b, sight, in_sight, limit):
+                        continue
                 seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
                 ask = Ask(limit, margin)
                 found = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best)
-                if may_hide:
-                    is_nearest = found.face_a == face_a and found.face_b == face_b
-                    if not is_nearest or told_apart(a, face_a, b, face_b, found.length.hi, margin):
-                        continue
-                best = found
+                if not may_hide or (found.face_a == face_a and found.face_b == face_b):
+                    best = found
     return best
 
 
