@@ -122,6 +122,7 @@ def _build(shape: Polyhedron) -> Surface:
     edges = np.stack([corners, corners[ring.ahead]], axis=1)
     first_uses, edge_starts = _owned(edge_keys(*edges.T, len(vertices)), ring.face, shape.n_faces)
     owned_edges = np.sort(edges[first_uses], axis=1)
+    owned_edges, edge_starts = _with_diagonals(owned_edges, edge_starts, corners, starts, bent)
     centres, boxes, children = _tree(vertices[corners], starts)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
@@ -170,6 +171,23 @@ def _owned(features: np.ndarray, face_of_corner: np.ndarray, n_faces: int) -> tu
     first.sort()
     counts = np.bincount(face_of_corner[first], minlength=n_faces)
     return first, np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+
+
+def _with_diagonals(
+    owned: np.ndarray, owned_starts: np.ndarray, corners: np.ndarray, starts: np.ndarray, bent: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """`Surface.owned_edges` and `edge_starts`: after the edges of a bent face the diagonals of its fan."""
+    if not bent.any():
+        return owned, owned_starts
+    ring = rings_of(starts)
+    place = np.arange(len(corners)) - starts[ring.face]
+    at = np.flatnonzero(bent[ring.face] & (place >= 2) & (place < np.diff(starts)[ring.face] - 1))
+    diagonals = np.stack([corners[starts[ring.face[at]]], corners[at]], axis=1)
+    of_face = np.concatenate([np.repeat(np.arange(len(bent)), np.diff(owned_starts)), ring.face[at]])
+    order = np.argsort(of_face, kind="stable")
+    counts = np.bincount(of_face, minlength=len(bent))
+    both = np.concatenate([owned, diagonals])
+    return both[order], np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
 
 
 def _owns(

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.expansion import N_TERMS, orient3d
+from clearance.kernels.expansion import N_TERMS, orient2d, orient3d
 from clearance.kernels.vec3 import Vec3, add, cross, dot, row, sub
 
 SLENDER = 2.0**-15
@@ -55,6 +55,64 @@ def plane_of(points, flat, start, end):
     return normal, 1.0 / angle, warp + ROUNDING * reach / angle
 
 
+@inlined
+def _far_corners(points, flat, start, end):
+    """The corner farthest from the first one, and the one farthest from the line through both."""
+    first = row(points, flat[start])
+    second = third = start
+    most = 0.0
+    for c in range(start + 1, end):
+        u = sub(row(points, flat[c]), first)
+        if dot(u, u) > most:
+            second, most = c, dot(u, u)
+    u = sub(row(points, flat[second]), first)
+    most = 0.0
+    for c in range(start + 1, end):
+        n = cross(u, sub(row(points, flat[c]), first))
+        if dot(n, n) > most:
+            third, most = c, dot(n, n)
+    return second, third
+
+
+@inlined
+def _is_bent(points, flat, start, end, normal, terms):
+    """True unless the corners are exactly in one plane and the boundary turns the wrong way nowhere."""
+    n = end - start
+    if n == 3:
+        return False
+    second, third = _far_corners(points, flat, start, end)
+    for c in range(start + 1, end):
+        if orient3d(points[flat[start]], points[flat[second]], points[flat[third]], points[flat[c]], terms) != 0:
+            return True
+    axis = 0
+    for other in range(1, 3):
+        if abs(normal[other]) > abs(normal[axis]):
+            axis = other
+    if normal[axis] == 0.0:
+        return True
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    for c in range(n):
+        p, q, r = points[flat[start + c]], points[flat[start + (c + 1) % n]], points[flat[start + (c + 2) % n]]
+        turn = orient2d(p[i], p[j], q[i], q[j], r[i], r[j], terms)
+        onward = (q[i] - p[i]) * (r[i] - q[i]) + (q[j] - p[j]) * (r[j] - q[j])
+        if turn * normal[axis] < 0.0 or (turn == 0 and onward < 0.0):
+            return True
+    return False
+
+
+@inlined
+def _cut_off(points, flat, start, end, normal):
+    """[m] how far corners are beyond the line of an edge: so far outside may seem what is over the face."""
+    most = 0.0
+    for c in range(start, end):
+        first = row(points, flat[c])
+        after = row(points, flat[c + 1 if c + 1 < end else start])
+        outward = unit(cross(sub(after, first), normal))
+        for k in range(start, end):
+            most = max(most, dot(outward, sub(row(points, flat[k]), first)))
+    return most
+
+
 @kernel
 def face_planes(points, starts, flat, normals, blunt, width, bent):
     """Fills the fields of `Surface` for all faces."""
@@ -64,10 +122,6 @@ def face_planes(points, starts, flat, normals, blunt, width, bent):
         normal, blunt[face], width[face] = plane_of(points, flat, start, end)
         for axis in range(3):
             normals[face, axis] = normal[axis]
-        bent[face] = False
-        for c in range(start + 2, end - 1):
-            if orient3d(
-                points[flat[start]], points[flat[start + 1]], points[flat[c]], points[flat[c + 1]], terms
-            ) != 0:  # fmt: skip
-                bent[face] = True
-                break
+        bent[face] = _is_bent(points, flat, start, end, normals[face], terms)
+        if bent[face]:
+            width[face] += _cut_off(points, flat, start, end, normal)

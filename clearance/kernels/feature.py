@@ -26,21 +26,14 @@ class Feature(NamedTuple):
 @inlined
 def n_segments(surface, face):
     """Edges that a face owns, and the diagonals of its fan if it is bent."""
-    owned = surface.edge_starts[face + 1] - surface.edge_starts[face]
-    if surface.bent[face]:
-        return owned + surface.face_starts[face + 1] - surface.face_starts[face] - 3
-    return owned
+    return surface.edge_starts[face + 1] - surface.edge_starts[face]
 
 
 @inlined
 def segment(surface, face, s):
     """The two vertices of segment `s` of a face: owned edges, then diagonals."""
-    first = surface.edge_starts[face]
-    if first + s < surface.edge_starts[face + 1]:
-        return surface.owned_edges[first + s, 0], surface.owned_edges[first + s, 1]
-    start = surface.face_starts[face]
-    corner = start + 2 + s - (surface.edge_starts[face + 1] - first)
-    return surface.face_vertices[start], surface.face_vertices[corner]
+    at = surface.edge_starts[face] + s
+    return surface.owned_edges[at, 0], surface.owned_edges[at, 1]
 
 
 def _simplex(surface, face, n, i):

@@ -49,13 +49,17 @@ def _empty_surface(n):
     none = np.empty(0, dtype=np.int64)
     ends = np.array([0, n])
     around = np.arange(n)
-    edges = np.empty((n, 2), dtype=np.int64)
+    n_edges = n + max(0, n - 3)
+    edges = np.empty((n_edges, 2), dtype=np.int64)
     for i in range(n):
         edges[i, 0] = i
         edges[i, 1] = (i + 1) % n
+    for i in range(n, n_edges):  # diagonals
+        edges[i, 0] = 0
+        edges[i, 1] = i - n + 2
     return Surface(
         np.empty((n, 3)), np.empty((n, 3)), ends, around, np.empty((1, 3)), np.empty(1), np.empty(1),
-        np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, ends, edges,
+        np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, np.array([0, n_edges]), edges,
         np.full(1, ANYTHING, dtype=np.uint16),
         nodes, singles, singles, np.empty((0, 2), dtype=np.int32),
         none, none, none, np.empty(0, dtype=np.bool_),

@@ -49,7 +49,7 @@ N_WAITING = 64
 
 
 SLENDER = 2.0**6
-"""The reciprocal sine of a triangle's corner up to which the noise in every floor covers its normal's rounding."""
+"""The reciprocal sine of an angle up to which the noise in every floor covers the rounding of its normal."""
 
 
 class Refined(NamedTuple):
@@ -57,7 +57,7 @@ class Refined(NamedTuple):
 
     Attributes:
         length: [m] their distance, the root of `gap_sq`.
-        floor: [m] a lower bound on the distance of all face pairs refined so far.
+        floor: [m] a lower bound on the distance of its two faces.
     """
 
     gap_sq: Wide
@@ -110,19 +110,24 @@ def _unevenness(frames, corners, is_a, pair):
 
 
 @inlined
-def _lowered(floor, frames, one, two, pair):
-    """A floor less what the measured distance of a corner and a triangle may be off either way."""
+def _lowered(floor, frames, one, two, pair, length):
+    """A floor less what a height along a rounded normal, of a triangle or two segments, may be below the truth."""
+    if one.n == 2 and two.n == 2:
+        u, v = sub(one.v, one.u), sub(two.v, two.u)
+        if dot(u, u) * dot(v, v) <= SLENDER * SLENDER * pair.w_sq.hi:
+            return floor
+        between = minus3(pair.q, pair.p)
+        short = minus(root(dot3(between, between)), length)
+        return minus(floor, short) if short.hi > 0.0 else floor
     return minus(floor, wide(_unevenness(frames, one, True, pair) + _unevenness(frames, two, False, pair)))
 
 
 @inlined
 def _better(best, pair, length, face_a, face_b, floor):
-    """`best` after a face pair."""
-    if less(best.floor, floor):
-        floor = best.floor
+    """`best` after a face pair. The floor of one that does not win may be low: it is nearest at others' own."""
     if _wins(pair.gap_sq, face_a, face_b, best):
         return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor)
-    return Refined(best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, floor)
+    return best
 
 
 def _two_faces_like():
@@ -145,7 +150,7 @@ def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best):
     enough = _enough(length, ask.margin)
     if less(floor, enough) and (a.bent[face_a] or b.bent[face_b]):
         floor = floor_of_fans(a, face_a, b, face_b, frames, pair, enough, floor)
-    return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair))
+    return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair, length))
 
 
 @apart(
@@ -164,7 +169,7 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
             floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
             length = root(pair.gap_sq)
             if not less(floor, _enough(length, ask.margin)):
-                return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair))
+                return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair, length))
     return at_address(
         table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best)
     )
@@ -216,8 +221,6 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
 def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table):
     """`best` after all waiting face pairs that can still win: those seen near enough, then those that may hide it.
 
-    Faces that hide nothing do not count: they can be nearest at others' features, which no floor shows.
-
     Args:
         least: [m] no two faces are nearer but for what rounding can hide.
     """
@@ -237,9 +240,7 @@ def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, 
                         continue
                 seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
                 ask = Ask(limit, margin)
-                found = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best)
-                if not may_hide or (found.face_a == face_a and found.face_b == face_b):
-                    best = found
+                best = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best)
     return best
 
 

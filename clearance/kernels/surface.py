@@ -29,11 +29,12 @@ class Surface(NamedTuple):
         face_starts, face_vertices: (f + 1,), (c,) corners of the faces in order.
         normals: (f, 3) unit outward, zeros where a face is so slender that rounding decides them.
         blunt: (f,) the reciprocal of a lower bound on the sharpest corner's angle; 1 without a normal.
-        width: (f,) [m] how far the fan of the face may be from its plane, or from its edges without one.
-        bent: (f,) True where the corners are not exactly in one plane.
+        width: (f,) [m] how far the fan of the face may be from its plane, or from its edges without one; where it
+            bends inward, also how far beside it what is over it may seem.
+        bent: (f,) True where the corners are not exactly in one plane or the boundary turns the wrong way.
         corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
         vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
-        edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns.
+        edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns, a bent one then its diagonals.
         owns: (f,) the same by bits: k of corner k, `LISTED` + k of the edge that starts there; all are set where a
             face has more than `LISTED` corners or is bent.
         centres: (3 g, 4) [m] of the boxes of the tree's nodes, in the body frame. Node n is lane n % 4 of group

@@ -41,7 +41,6 @@ class Query:
     """The distance of one pair of polyhedra at many poses.
 
     The answers are those of `distance`, whatever was asked before; poses near the last ones are answered faster.
-    The error bound always holds; where faces are needles it may be tighter than that of `distance`.
     Threads may share a query, but its questions are answered one at a time; give each thread its own.
 
     Args:

@@ -226,15 +226,12 @@ def test_much_is_turned_away_while_moving_a_little():
 
 
 def asked(a, b, poses):
-    """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took.
-
-    Error bounds are not among them: they depend on which needles were measured that were not the nearest.
-    """
+    """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took."""
     numbers, points, counts = answer_rows(len(poses))
     held = hold_pair(a, b, ROOM, new_scratch())
     call(nearest_at_poses, held, np.eye(4)[None], poses, True, False, numbers, points, counts)
     apart = numbers[:, 0] > 0.0
-    told = numbers[:, 0].tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
+    told = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
     return told, counts[:, 2:4].sum(axis=0)
 
 

@@ -1,7 +1,8 @@
-"""Feature pairs that rounding hides: feet on the edge between two faces, or at the end of nearly parallel edges.
+"""Feature pairs that rounding hides: feet on the edge between two faces, at the end of nearly parallel edges, or
+over what a face that rounding has bent has beside its edges.
 
-In doubles a face may seem to have no feature of its own there, and what is measured beside it is farther by half
-the square of the rounding aside. No bound along the measured direction shows that: the face has to be asked.
+In doubles a face may seem to have no feature of its own there, and what is measured beside it is farther. No bound
+along the measured direction shows that: the face has to be asked.
 """
 
 from fractions import Fraction
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.geometry.tree import surface_of
 from tests import oracle
 from tests.strategies import rotations
 
@@ -69,6 +71,53 @@ def ridges_nearly_parallel(random):
     return shuffled(random, a, RIDGE), shuffled(random, b, upside_down), pose_a, pose_b
 
 
+def spike_at(random, shape, foot, upward, height):
+    """(a, b, pose_a, pose_b): a spike whose tip stands off a point of b, turned anyhow."""
+    spike = np.array([[0, 0, 0], [1, 0, 1], [-0.5, 0.8, 1], [-0.5, -0.8, 1]]) * random.uniform(0.1, 1.0)
+    turn, shift = rotations(random, 1)[0], random.uniform(-1, 1, 3)
+    across = np.cross(upward, random.normal(size=3))
+    across /= np.linalg.norm(across)
+    upright = np.stack([across, np.cross(upward, across), upward], axis=1)
+    pose_a = posed(random, turn @ upright, turn @ (np.asarray(foot) + height * upward) + shift)
+    return shuffled(random, spike, SPIKE), shuffled(random, *shape), pose_a, posed(random, turn, shift)
+
+
+def box_with_corners_along_edges(random):
+    """Over a top face with corners in the middle of its edges, turned and rounded: no longer one plane."""
+    ring = np.array([[-1, -1], [0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0]], dtype=float)
+    corners = np.vstack([np.column_stack([ring, np.full(8, z)]) for z in (0.5, -0.5)])
+    sides = [(j + 8, k + 8, k, j) for j, k in zip(range(8), [*range(1, 8), 0], strict=True)]
+    shape = corners @ rotations(random, 1)[0].T, [tuple(range(8)), tuple(range(8, 16))[::-1], *sides]
+    first, second = shape[0][[k := random.integers(8), (k + 1) % 8]]
+    share = random.uniform(0, 1)
+    upward = shape[0][0] - shape[0][8]
+    aside = first - shape[0][4] if random.random() < 0.5 else 0.0
+    return spike_at(
+        random, shape, first * (1.0 - share) + second * share,
+        (away := upward + random.uniform(0, 0.5) * aside) / np.linalg.norm(away), 10.0 ** random.uniform(-7, -1),
+    )  # fmt: skip
+
+
+def face_with_a_ridge(random):
+    """Over a face of four corners that is warped by less than is refused: its diagonal stands out of its edges."""
+    aside, down = 10.0 ** random.uniform(-12, -9, 2)
+    corners = np.array([[0, 0, 0], [0.5, -aside, -down], [1, 0, 0], [0.5, 1, 0], [0.3, 0.2, -1]])
+    shape = corners, [(0, 4, 1), (1, 4, 2), (2, 4, 3), (3, 4, 0), (0, 1, 2, 3)]
+    lean = random.uniform(0.0, 1.2)
+    foot, upward = (random.uniform(0.3, 0.7), 0.0, 0.0), np.array([0.0, -np.sin(lean), np.cos(lean)])
+    return spike_at(random, shape, foot, upward, 10.0 ** random.uniform(-6, -1))
+
+
+def face_that_bends_inward(random):
+    """Over a face with a corner that turns the wrong way by less than is refused, beyond the line of an edge."""
+    inward, share = 10.0 ** random.uniform(-12, -9.5), random.uniform(0, 1)
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 0.5, 0], [1 + inward, 1, 0], [0, 1, 0], [0.5, 0.5, -1]])
+    sides = [(k, j, 5) for j, k in zip(range(5), [1, 2, 3, 4, 0], strict=True)]
+    foot = (1.0 + inward * share * random.uniform(0, 1), 0.5 + 0.5 * share, 0.0)
+    shape = corners, [*sides, tuple(np.roll(range(5), random.integers(5)).tolist())]
+    return spike_at(random, shape, foot, np.array([0.0, 0.0, 1.0]), 10.0 ** random.uniform(-7, -1))
+
+
 def cases():
     """(name, how a case is made)."""
 
@@ -83,6 +132,9 @@ def cases():
         "over a needle's edge": lambda random: spike_over_edge(random, by_the_rim(random), 0.0),
         "poses off orthonormal": lambda random: spike_over_edge(random, by_the_rim(random), 2e-7),
         "nearly parallel edges": ridges_nearly_parallel,
+        "corners along edges": box_with_corners_along_edges,
+        "a ridge": face_with_a_ridge,
+        "a face that bends inward": face_that_bends_inward,
     }
 
 
@@ -99,6 +151,7 @@ def test_no_distance_is_off_by_more_than_its_bound(name):
         n_apart += not near.contact
         assert near.contact == (sq == 0)
         assert oracle.error(near.distance, sq) <= Fraction(near.error_bound)
+        assert near.error_bound <= 1e-15 + 1e-9 * near.distance
         kept = cl.Query(one, other).distance(pose_a, pose_b)
         assert (kept.distance, kept.error_bound) == (near.distance, near.error_bound)
     assert n_apart > 100
@@ -120,3 +173,11 @@ def test_what_begins_where_it_last_ended_finds_the_same(gap):
         sq = oracle.polyhedron_distance_sq(*a, *b, pose_a, pose_b)
         assert oracle.error(kept.distance, sq) <= Fraction(kept.error_bound)
         assert (kept.distance, kept.face_a, kept.face_b) == (near.distance, near.face_a, near.face_b)
+
+
+def test_a_face_with_the_same_corner_twice_is_in_one_plane_only_if_all_of_it_is():
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 1e-10], [0.4, 0.4, -1]])
+    sides = [(k, j, 4) for j, k in zip(range(4), [1, 2, 3, 0], strict=True)]
+    once = surface_of(cl.Polyhedron(corners, [(0, 1, 2, 3), *sides]))
+    twice = surface_of(cl.Polyhedron(np.vstack([corners, corners[:1]]), [(0, 5, 1, 2, 3), *sides]))
+    assert once.bent.tolist() == twice.bent.tolist() == [True, False, False, False, False]
