@@ -290,13 +290,7 @@ def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
             the direction of their nearest points is within `LEANING` of the sight.
     """
     limit = limit_of(a, face_a, b, face_b, best_gap, margin)
-    return limit > CLEARLY * best_gap or may_own_within(a, face_a, b, face_b, sight, in_sight, limit)
-
-
-@merged
-def may_own_within(a, face_a, b, face_b, sight, in_sight, limit):
-    """The same for a least distance within a limit [m]: whatever rounding hides."""
-    if in_sight < (1.0 - OWN_SIGHT) * limit:
+    if in_sight < (1.0 - OWN_SIGHT) * limit or limit > CLEARLY * best_gap:
         return True
     v = sight.v
     return _may_own_farthest(a, face_a, sight.u, limit - in_sight) and _may_own_farthest(
@@ -319,6 +313,13 @@ def told_apart(a, face_a, b, face_b, gap, margin):
 
 
 @merged
+def _gap_beside(a, face_a, b, face_b, m):
+    """[m] a lower bound on the distance of two faces but for rounding, up from a plane and away from an edge."""
+    beside = sight_beside(a, face_a, b, face_b, m, inverse(m))
+    return lower_bound_faces_in_sight(a, face_a, b, face_b, beside)
+
+
+@merged
 def hidden_within(a, face_a, b, face_b, m, margin, in_sight):
     """[m^2] how near features of two faces can be, squared, that were taken for outside; infinity if `told_apart`.
 
@@ -330,8 +331,7 @@ def hidden_within(a, face_a, b, face_b, m, margin, in_sight):
     """
     if told_apart(a, face_a, b, face_b, in_sight, margin):
         return math.inf
-    beside = sight_beside(a, face_a, b, face_b, m, inverse(m))
-    gap = max(in_sight, lower_bound_faces_in_sight(a, face_a, b, face_b, beside) - margin)
+    gap = max(in_sight, _gap_beside(a, face_a, b, face_b, m) - margin)
     if told_apart(a, face_a, b, face_b, gap, margin):
         return math.inf
     return max(0.0, gap) * max(0.0, gap)
@@ -340,5 +340,4 @@ def hidden_within(a, face_a, b, face_b, m, margin, in_sight):
 @merged
 def may_meet(a, face_a, b, face_b, m, margin):
     """False only if two faces are clearly apart, seen up from the plane of one and away from its nearest edge."""
-    beside = sight_beside(a, face_a, b, face_b, m, inverse(m))
-    return lower_bound_faces_in_sight(a, face_a, b, face_b, beside) <= margin
+    return _gap_beside(a, face_a, b, face_b, m) <= margin

@@ -35,7 +35,6 @@ from clearance.kernels.face_pair import (
     UNSEEN,
     Seen,
     limit_of,
-    may_own_within,
     told_apart,
 )
 from clearance.kernels.fan_floor import floor_of_fans
@@ -219,28 +218,26 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
 
 @merged
 def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table):
-    """`best` after all waiting face pairs that can still win: those seen near enough, then those that may hide it.
+    """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
 
     Args:
-        least: [m] no two faces are nearer but for what rounding can hide.
+        sight: the best one so far. slack: [m] its rounding.
+        least: [m] no two faces are nearer but for what rounding hides.
     """
     a, b = borrow(lent_a), borrow(lent_b)
-    for may_hide in (False, True):
-        for i in range(n_waiting):
-            face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
-            limit = limit_of(a, face_a, b, face_b, best_gap, margin)
-            near_sq = waiting.near_sq[i]
-            if waiting.least_sq[i] <= limit * limit and (near_sq > limit * limit) == may_hide:
-                features = waiting.features
-                if may_hide:
-                    if told_apart(a, face_a, b, face_b, least, margin):
-                        continue
-                    in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-                    if in_sight > limit or not may_own_within(a, face_a, b, face_b, sight, in_sight, limit):
-                        continue
-                seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
-                ask = Ask(limit, margin)
-                best = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best)
+    for i in range(n_waiting):
+        face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
+        limit = limit_of(a, face_a, b, face_b, best_gap, margin)
+        near_sq = waiting.near_sq[i]
+        if waiting.least_sq[i] > limit * limit:
+            continue
+        if near_sq > limit * limit:
+            in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
+            if in_sight > limit or told_apart(a, face_a, b, face_b, least, margin):
+                continue
+        features = waiting.features
+        seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
+        best = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, Ask(limit, margin), best)
     return best
 
 
