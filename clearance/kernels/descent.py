@@ -13,11 +13,11 @@ from clearance.kernel_table import borrow
 from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sight
 from clearance.kernels.face_pair import (
     Hit,
-    hidden_within,
     limit_of,
-    may_meet,
     may_own_nearest,
     nearest_of_faces,
+    sure_gap,
+    told_apart,
 )
 from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
@@ -239,15 +239,17 @@ def descend(
                     cut = best_gap + margin
                     from_a, from_b = views_of(best, m)
                     in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
-                if bound <= 0.0 and in_sight <= 0.0 and may_meet(a, face_a, b, face_b, m, margin):
+                gap = sure_gap(a, face_a, b, face_b, m, margin, in_sight)
+                if bound <= 0.0 and gap <= 0.0:
                     met = meeting_of(table, lent_a, face_a, lent_b, face_b, frames, scratch.exact)
                     if met.found:
                         best = Hit(0.0, face_a, face_b, m.t, m.t)
                         break
                 if n_waiting > 1 and best.gap_sq < before_sq:
                     _nearest_last(scratch, n_waiting)
-                hidden_sq = hidden_within(a, face_a, b, face_b, m, margin, in_sight)
-                least_sq = min(near.seen.near_sq, hidden_sq)
+                least_sq = near.seen.near_sq
+                if not told_apart(a, face_a, b, face_b, gap, margin):  # nearer ones may be hidden
+                    least_sq = min(least_sq, max(0.0, gap) * max(0.0, gap))
                 if least_sq < math.inf:
                     if n_pairs == N_WAITING:
                         n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)

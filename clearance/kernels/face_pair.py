@@ -320,21 +320,15 @@ def _gap_beside(a, face_a, b, face_b, m):
 
 
 @merged
-def hidden_within(a, face_a, b, face_b, m, margin, in_sight):
-    """[m^2] how near features of two faces can be, squared, that were taken for outside; infinity if `told_apart`.
+def sure_gap(a, face_a, b, face_b, m, margin, in_sight):
+    """[m] a lower bound on the distance of two faces: that in sight, or a greater one if it leaves them untold.
 
     Whether the foot of a corner is inside a face or an edge is known to rounding only. Where it is outside but
-    for rounding, another face's feature beside it is measured, which is as near only where faces are told apart.
-
-    Args:
-        in_sight: [m] a lower bound on the distance of the faces.
+    for rounding, another face's feature beside it is measured, which is as near only where faces are `told_apart`.
     """
     if told_apart(a, face_a, b, face_b, in_sight, margin):
-        return math.inf
-    gap = max(in_sight, _gap_beside(a, face_a, b, face_b, m) - margin)
-    if told_apart(a, face_a, b, face_b, gap, margin):
-        return math.inf
-    return max(0.0, gap) * max(0.0, gap)
+        return in_sight
+    return max(in_sight, _gap_beside(a, face_a, b, face_b, m) - margin)
 
 
 @merged
