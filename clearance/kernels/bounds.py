@@ -9,7 +9,19 @@ from typing import NamedTuple
 from clearance.jit import merged
 from clearance.kernels.lanes import larger, square_root, where_positive
 from clearance.kernels.surface import box_of
-from clearance.kernels.vec3 import Rigid, Vec3, along, dot, move, rigid, row, sub, turn, turn_back
+from clearance.kernels.vec3 import (
+    Rigid,
+    Vec3,
+    along,
+    cross,
+    dot,
+    move,
+    rigid,
+    row,
+    sub,
+    turn,
+    turn_back,
+)
 
 SLACK = 128.0 * 2.0**-53
 """Rounding of a box bound, relative to the sum of the coordinates' magnitudes: 40 operations, doubled."""
@@ -75,6 +87,10 @@ def lower_bound_between(h, k, n, slack):
     return where_positive(outside, larger(outside, between_centres), between_centres)
 
 
+CROSSED = 64
+"""Pairs of edges that are worth crossing."""
+
+
 class Sight(NamedTuple):
     """A direction in which two bodies are seen apart: along `u` in the frame of a, `v` in that of b, from a to b.
 
@@ -94,6 +110,13 @@ def sight_along(p, q, m):
     if length > 0.0:
         d = Vec3(d.x / length, d.y / length, d.z / length)
     return Sight(d, turn_back(m, d), dot(d, m.t))
+
+
+@merged
+def _back(sight):
+    """The other way along the same line."""
+    u, v = sight.u, sight.v
+    return Sight(Vec3(-u.x, -u.y, -u.z), Vec3(-v.x, -v.y, -v.z), -sight.offset)
 
 
 @merged
@@ -175,6 +198,30 @@ def sight_beside(a, face_a, b, face_b, from_a, from_b):
     if of_b > of_a:
         d = turn(from_a, Vec3(-e.x, -e.y, -e.z))
     return sight_along(Vec3(0.0, 0.0, 0.0), d, from_a)
+
+
+@merged
+def sight_across(a, face_a, b, face_b, m):
+    """The best sight in which two faces are apart across an edge of each, or one that bounds nothing."""
+    best, most = sight_along(m.t, m.t, m), 0.0
+    first_a, last_a = a.face_starts[face_a], a.face_starts[face_a + 1]
+    first_b, last_b = b.face_starts[face_b], b.face_starts[face_b + 1]
+    if (last_a - first_a) * (last_b - first_b) > CROSSED:
+        return best
+    p = row(a.vertices, a.face_vertices[last_a - 1])
+    for c in range(first_a, last_a):
+        before, p = p, row(a.vertices, a.face_vertices[c])
+        u = sub(p, before)
+        q = row(b.vertices, b.face_vertices[last_b - 1])
+        for k in range(first_b, last_b):
+            behind, q = q, row(b.vertices, b.face_vertices[k])
+            sight = sight_along(Vec3(0.0, 0.0, 0.0), cross(u, turn(m, sub(q, behind))), m)
+            for _ in range(2):
+                apart = lower_bound_faces_in_sight(a, face_a, b, face_b, sight)
+                if apart > most:
+                    best, most = sight, apart
+                sight = _back(sight)
+    return best
 
 
 @merged

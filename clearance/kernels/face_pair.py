@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import merged, spliced
-from clearance.kernels.bounds import lower_bound_faces_in_sight, sight_beside
+from clearance.kernels.bounds import lower_bound_faces_in_sight, sight_across, sight_beside
 from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
 from clearance.kernels.surface import ANYTHING, LISTED
 from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, inverse, move, move_back, row, sub
@@ -328,7 +328,11 @@ def sure_gap(a, face_a, b, face_b, m, margin, in_sight):
     """
     if told_apart(a, face_a, b, face_b, in_sight, margin):
         return in_sight
-    return max(in_sight, _gap_beside(a, face_a, b, face_b, m) - margin)
+    gap = max(in_sight, _gap_beside(a, face_a, b, face_b, m) - margin)
+    if gap > 0.0:
+        return gap
+    across = sight_across(a, face_a, b, face_b, m)
+    return max(gap, lower_bound_faces_in_sight(a, face_a, b, face_b, across) - margin)
 
 
 @merged

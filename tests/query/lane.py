@@ -61,7 +61,7 @@ def answers_without_rules(n):
         "lower_bound_boxes": nothing_known,
         "lower_bound_boxes_in_sight": nothing_known,
         "lower_bound_faces_in_sight": lambda *_: -np.inf,
-        "may_meet": lambda *_: True,
+        "sure_gap": lambda *_: -np.inf,
         "turned_away": lambda *_: 0,
     }
     found = {}

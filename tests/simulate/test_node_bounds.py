@@ -22,6 +22,7 @@ from clearance.kernels.bounds import (
     lower_bound_boxes_in_sight,
     lower_bound_faces_in_sight,
     rounding_slack,
+    sight_across,
     sight_along,
 )
 from clearance.kernels.double_double import frames_of
@@ -61,6 +62,8 @@ def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, fac
     for i in range(len(a.normals)):
         for j in range(len(b.normals)):
             faces[i, j] = lower_bound_faces_in_sight(a, i, b, j, sight) - slack
+            across = sight_across(a, i, b, j, frames.m)
+            faces[i, j] = max(faces[i, j], lower_bound_faces_in_sight(a, i, b, j, across) - slack)
 
 
 @kernel
@@ -221,6 +224,18 @@ def test_bounds_are_not_idle():
     bounds_of_groups(one, two, np.eye(4), above, along, np.inf, of_a, of_b)
     for bounds in (boxes, in_sight, of_a, of_b, faces):
         assert bounds.min() == pytest.approx(5.0, rel=1e-5)
+
+
+def test_edges_that_cross_are_told_apart_across_both():
+    """Two upright triangles, point on point but for their edges that cross: no plane of either parts them."""
+    a = Polyhedron([[-1, 0, 0], [1, 0, 0], [0, 0.1, -1]], [(0, 1, 2)])
+    b = Polyhedron([[0, -1, 0.01], [0, 1, 0.01], [0.1, 0, 1]], [(0, 1, 2)])
+    boxes, in_sight, alike = np.empty((3, 4, 4))
+    faces = np.empty((1, 1))
+    bounds_of_nodes(
+        surface_of(a), surface_of(b), np.eye(4), np.eye(4), np.array([1.0, 0, 0]), boxes, in_sight, alike, faces
+    )
+    assert faces[0, 0] == pytest.approx(0.01, abs=1e-12)
 
 
 @settings(max_examples=100, deadline=None)
