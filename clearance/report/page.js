@@ -92,7 +92,17 @@
 
   function limitLabel(name, metres, colour) {
     return {xref: "paper", x: 1, xanchor: "left", xshift: 4, y: toPlot(metres), yanchor: name === "warn" ? "bottom" : "top", yshift: name === "warn" ? -9 : 9, showarrow: false,
-      text: `${name} ${Number((metres * 1000).toPrecision(6))} mm`, font: {color: colour, size: 11}};
+      text: limitText(name, metres), font: {color: colour, size: 11}};
+  }
+
+  function limitText(name, metres) {
+    return `${name} ${Number((metres * 1000).toPrecision(6))} mm`;
+  }
+
+  function roomForLimits() { // px, right of the plot
+    const pen = document.createElement("canvas").getContext("2d");
+    pen.font = `11px ${getComputedStyle(document.body).fontFamily}`;
+    return 20 + Math.ceil(Math.max(0, ...shownLimits().map(([name, limit]) => pen.measureText(limitText(name, limit)).width)));
   }
 
   function shownLimits() {
@@ -107,7 +117,7 @@
     const axis = {gridcolor: css("--grid"), zerolinecolor: css("--rule"), linecolor: css("--rule"), ticks: "outside", tickcolor: css("--rule"), fixedrange: false};
     const traces = [hoverTrace(), ...data.statuses.map((_, code) => statusTrace(code)), worstTrace()];
     const layout = {
-      margin: {l: 58, r: 70, t: 8, b: 46}, showlegend: false, hovermode: "x", hoverdistance: -1, dragmode: "zoom",
+      margin: {l: 58, r: roomForLimits(), t: 8, b: 46}, showlegend: false, hovermode: "x", hoverdistance: -1, dragmode: "zoom",
       font: {family: getComputedStyle(document.body).fontFamily, size: 12, color: css("--soft")},
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
       xaxis: {...axis, title: {text: "time, s", standoff: 6}, range: [times[0], n > 1 ? times[n - 1] : times[0] + 1]},
