@@ -12,7 +12,7 @@ import numpy as np
 
 from clearance.jit import merged, spliced
 from clearance.kernels.bounds import lower_bound_faces_in_sight, sight_across, sight_beside
-from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
+from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside, nearest_on_segment
 from clearance.kernels.surface import ANYTHING, LISTED
 from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, inverse, move, move_back, row, sub
 
@@ -317,6 +317,45 @@ def _gap_beside(a, face_a, b, face_b, m):
     """[m] a lower bound on the distance of two faces but for rounding, up from a plane and away from an edge."""
     beside = sight_beside(a, face_a, b, face_b, m, inverse(m))
     return lower_bound_faces_in_sight(a, face_a, b, face_b, beside)
+
+
+@merged
+def _corner_near(one, face_one, two, face_two, two_from_one, limit):
+    """True if a corner that a face owns may be within a limit of the inside of one that is bent or has no plane.
+
+    What has no plane is no farther from its edges than its width.
+    """
+    if has_plane(two, face_two):
+        return two.bent[face_two]
+    limit += two.width[face_two]
+    first, end = two.face_starts[face_two], two.face_starts[face_two + 1]
+    for k in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
+        x = move(two_from_one, row(one.vertices, one.owned_vertices[k]))
+        before = row(two.vertices, two.face_vertices[end - 1])
+        for c in range(first, end):
+            after = row(two.vertices, two.face_vertices[c])
+            if gap_sq(x, nearest_on_segment(x, before, after)) <= limit * limit:
+                return True
+            before = after
+    return False
+
+
+@merged
+def may_hide(a, face_a, b, face_b, m, margin, limit, least):
+    """True if rounding can hide features of two faces within a limit, whatever was seen.
+
+    Nothing is hidden where faces are `told_apart`; if only their own shape leaves them untold, corners are.
+
+    Args:
+        least: [m] no two faces are nearer but for what is hidden.
+    """
+    if told_apart(a, face_a, b, face_b, least, margin):
+        return False
+    return (
+        2.0 * margin > TOLD * least
+        or _corner_near(a, face_a, b, face_b, inverse(m), limit + margin)
+        or _corner_near(b, face_b, a, face_a, m, limit + margin)
+    )
 
 
 @merged

@@ -35,7 +35,7 @@ from clearance.kernels.face_pair import (
     UNSEEN,
     Seen,
     limit_of,
-    told_apart,
+    may_hide,
 )
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
@@ -233,7 +233,7 @@ def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, 
             continue
         if near_sq > limit * limit:
             in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-            if in_sight > limit or told_apart(a, face_a, b, face_b, least, margin):
+            if in_sight > limit or not may_hide(a, face_a, b, face_b, frames.m, margin, limit, least):
                 continue
         features = waiting.features
         seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
