@@ -17,8 +17,9 @@ from clearance.kernels.double_double import (
     rounded,
     wide,
 )
-from clearance.kernels.face_pair import PASSED_OVER, Hit, nearest_of_faces
+from clearance.kernels.face_pair import Hit, nearest_of_faces
 from clearance.kernels.front import forget, no_fronts
+from clearance.kernels.hidden import PASSED_OVER
 from clearance.kernels.refine import error_of
 from clearance.kernels.scratch import new_scratch
 from clearance.kernels.surface import surface_like

@@ -15,6 +15,7 @@ from clearance.kernels.vec3 import (
     along,
     cross,
     dot,
+    inverse,
     move,
     rigid,
     row,
@@ -198,6 +199,18 @@ def sight_beside(a, face_a, b, face_b, from_a, from_b):
     if of_b > of_a:
         d = turn(from_a, Vec3(-e.x, -e.y, -e.z))
     return sight_along(Vec3(0.0, 0.0, 0.0), d, from_a)
+
+
+@merged
+def lower_bound_faces_beside(a, face_a, b, face_b, m):
+    """[m] a lower bound on the distance of two faces but for rounding, `sight_beside`."""
+    return lower_bound_faces_in_sight(a, face_a, b, face_b, sight_beside(a, face_a, b, face_b, m, inverse(m)))
+
+
+@merged
+def lower_bound_faces_across(a, face_a, b, face_b, m):
+    """[m] the same, `sight_across`."""
+    return lower_bound_faces_in_sight(a, face_a, b, face_b, sight_across(a, face_a, b, face_b, m))
 
 
 @merged

@@ -11,16 +11,10 @@ import numpy as np
 from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import borrow
 from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sight
-from clearance.kernels.face_pair import (
-    Hit,
-    limit_of,
-    may_own_nearest,
-    nearest_of_faces,
-    sure_gap,
-    told_apart,
-)
+from clearance.kernels.face_pair import Hit, limit_of, may_own_nearest, nearest_of_faces
 from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
+from clearance.kernels.hidden import sure_gap, told_apart
 from clearance.kernels.lanes import WIDTH, first_of, how_many, lane, least_of, marks_within
 from clearance.kernels.meeting import NO_MEETING, Meeting, meeting_of
 from clearance.kernels.node_pairs import (

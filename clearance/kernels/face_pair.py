@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import merged, spliced
-from clearance.kernels.bounds import lower_bound_faces_in_sight, sight_across, sight_beside
-from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside, nearest_on_segment
+from clearance.kernels.bounds import lower_bound_faces_beside
+from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
 from clearance.kernels.surface import ANYTHING, LISTED
-from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, inverse, move, move_back, row, sub
+from clearance.kernels.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
 
 ROUGH = 2.0**-44
 """Relative error of a height over a face whose corners are all blunt; it grows as 1 / angle^2: the normal is
@@ -29,19 +29,6 @@ OWN_SIGHT = 0.5 * LEANING * LEANING
 CLEARLY = 1.0 + 2.0**-26
 """Where rounding makes a distance more uncertain than that, all faces are measured: what else they own may be as
 near, and `error_bound` would depend on whether it was seen."""
-
-
-TOLD = 2.0**-26
-"""Share of their distance below which rounding aside, with room, does not hide features of two faces."""
-
-PASSED_OVER = 2.0**-56
-"""Share of a distance by which a face pair that was passed over can be nearer than the answer.
-
-Its features were taken for outside, so that others beside them are measured, off to the side by 2^-28 of the
-distance at most; that lengthens it by half the square. `TOLD` grants 64 times what points are off, and four
-times the width of a face without a plane. Directions are off by 2^-34 where a normal is the least certain, and by
-2^-28 where an edge is as short as 2^-24 of the bodies' size.
-"""
 
 
 class Hit(NamedTuple):
@@ -299,82 +286,6 @@ def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
 
 
 @merged
-def _unsure(surface, face):
-    """[m] how far its triangles, or its inside where it has no plane, may be off what stands for a face."""
-    if surface.bent[face] or not has_plane(surface, face):
-        return surface.width[face]
-    return 0.0
-
-
-@merged
-def told_apart(a, face_a, b, face_b, gap, margin):
-    """True if what rounding can hide of two faces that are `gap` apart is no nearer than by `PASSED_OVER`."""
-    return 2.0 * margin + 4.0 * (_unsure(a, face_a) + _unsure(b, face_b)) <= TOLD * gap
-
-
-@merged
-def _gap_beside(a, face_a, b, face_b, m):
-    """[m] a lower bound on the distance of two faces but for rounding, up from a plane and away from an edge."""
-    beside = sight_beside(a, face_a, b, face_b, m, inverse(m))
-    return lower_bound_faces_in_sight(a, face_a, b, face_b, beside)
-
-
-@merged
-def _corner_near(one, face_one, two, face_two, two_from_one, limit):
-    """True if a corner that a face owns may be within a limit of the inside of one that is bent or has no plane.
-
-    What has no plane is no farther from its edges than its width.
-    """
-    if has_plane(two, face_two):
-        return two.bent[face_two]
-    limit += two.width[face_two]
-    first, end = two.face_starts[face_two], two.face_starts[face_two + 1]
-    for k in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
-        x = move(two_from_one, row(one.vertices, one.owned_vertices[k]))
-        before = row(two.vertices, two.face_vertices[end - 1])
-        for c in range(first, end):
-            after = row(two.vertices, two.face_vertices[c])
-            if gap_sq(x, nearest_on_segment(x, before, after)) <= limit * limit:
-                return True
-            before = after
-    return False
-
-
-@merged
-def may_hide(a, face_a, b, face_b, m, margin, limit, least):
-    """True if rounding can hide features of two faces within a limit, whatever was seen.
-
-    Nothing is hidden where faces are `told_apart`; if only their own shape leaves them untold, corners are.
-
-    Args:
-        least: [m] no two faces are nearer but for what is hidden.
-    """
-    if told_apart(a, face_a, b, face_b, least, margin):
-        return False
-    return (
-        2.0 * margin > TOLD * least
-        or _corner_near(a, face_a, b, face_b, inverse(m), limit + margin)
-        or _corner_near(b, face_b, a, face_a, m, limit + margin)
-    )
-
-
-@merged
-def sure_gap(a, face_a, b, face_b, m, margin, in_sight):
-    """[m] a lower bound on the distance of two faces: that in sight, or a greater one if it leaves them untold.
-
-    Whether the foot of a corner is inside a face or an edge is known to rounding only. Where it is outside but
-    for rounding, another face's feature beside it is measured, which is as near only where faces are `told_apart`.
-    """
-    if told_apart(a, face_a, b, face_b, in_sight, margin):
-        return in_sight
-    gap = max(in_sight, _gap_beside(a, face_a, b, face_b, m) - margin)
-    if gap > 0.0:
-        return gap
-    across = sight_across(a, face_a, b, face_b, m)
-    return max(gap, lower_bound_faces_in_sight(a, face_a, b, face_b, across) - margin)
-
-
-@merged
 def may_meet(a, face_a, b, face_b, m, margin):
     """False only if two faces are clearly apart, seen up from the plane of one and away from its nearest edge."""
-    return _gap_beside(a, face_a, b, face_b, m) <= margin
+    return lower_bound_faces_beside(a, face_a, b, face_b, m) <= margin

@@ -35,10 +35,10 @@ from clearance.kernels.face_pair import (
     UNSEEN,
     Seen,
     limit_of,
-    may_hide,
 )
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
+from clearance.kernels.hidden import may_hide
 from clearance.kernels.surface import surface_like
 from clearance.kernels.vec3 import dot, sub
 from clearance.kernels.wide_features import wide_feature, wide_feature_here
