@@ -100,9 +100,15 @@
   }
 
   function roomForLimits() { // px, right of the plot
-    const pen = document.createElement("canvas").getContext("2d");
-    pen.font = `11px ${getComputedStyle(document.body).fontFamily}`;
-    return 20 + Math.ceil(Math.max(0, ...shownLimits().map(([name, limit]) => pen.measureText(limitText(name, limit)).width)));
+    const ruler = document.createElement("span");
+    ruler.style.cssText = "position: absolute; visibility: hidden; white-space: nowrap; font-size: 11px";
+    document.body.append(ruler);
+    const widths = shownLimits().map(([name, limit]) => {
+      ruler.textContent = limitText(name, limit);
+      return ruler.offsetWidth;
+    });
+    ruler.remove();
+    return 20 + Math.max(0, ...widths);
   }
 
   function shownLimits() {
