@@ -122,7 +122,7 @@ def _build(shape: Polyhedron) -> Surface:
     edges = np.stack([corners, corners[ring.ahead]], axis=1)
     first_uses, edge_starts = _owned(edge_keys(*edges.T, len(vertices)), ring.face, shape.n_faces)
     owned_edges = np.sort(edges[first_uses], axis=1)
-    owned_edges, edge_starts = _with_diagonals(owned_edges, edge_starts, corners, starts, bent)
+    owned_edges, edge_starts = _with_diagonals(owned_edges, edge_starts, corners, ring.face, starts, bent)
     centres, boxes, children = _tree(vertices[corners], starts)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
@@ -174,16 +174,16 @@ def _owned(features: np.ndarray, face_of_corner: np.ndarray, n_faces: int) -> tu
 
 
 def _with_diagonals(
-    owned: np.ndarray, owned_starts: np.ndarray, corners: np.ndarray, starts: np.ndarray, bent: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+    owned: np.ndarray, owned_starts: np.ndarray,
+    corners: np.ndarray, face: np.ndarray, starts: np.ndarray, bent: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
     """`Surface.owned_edges` and `edge_starts`: after the edges of a bent face the diagonals of its fan."""
     if not bent.any():
         return owned, owned_starts
-    ring = rings_of(starts)
-    place = np.arange(len(corners)) - starts[ring.face]
-    at = np.flatnonzero(bent[ring.face] & (place >= 2) & (place < np.diff(starts)[ring.face] - 1))
-    diagonals = np.stack([corners[starts[ring.face[at]]], corners[at]], axis=1)
-    of_face = np.concatenate([np.repeat(np.arange(len(bent)), np.diff(owned_starts)), ring.face[at]])
+    place = np.arange(len(corners)) - starts[face]
+    at = np.flatnonzero(bent[face] & (place >= 2) & (place < np.diff(starts)[face] - 1))
+    diagonals = np.stack([corners[starts[face[at]]], corners[at]], axis=1)
+    of_face = np.concatenate([np.repeat(np.arange(len(bent)), np.diff(owned_starts)), face[at]])
     order = np.argsort(of_face, kind="stable")
     counts = np.bincount(of_face, minlength=len(bent))
     both = np.concatenate([owned, diagonals])

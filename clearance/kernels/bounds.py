@@ -34,6 +34,10 @@ LEAN = 2.0**-20
 """Four times what rounding to single precision can turn the axes of a box, relative to 1."""
 
 
+CROSSED = 64
+"""Pairs of edges that are worth crossing."""
+
+
 @merged
 def _axis_gap(centre, half_a, half_b, slack):
     return larger(abs(centre) - half_a - half_b - slack, 0.0)
@@ -86,10 +90,6 @@ def lower_bound_between(h, k, n, slack):
     between_centres = larger((gap_sq - reach) / square_root(gap_sq) - slack, -NO_REACH)  # NaN where they coincide
     outside = square_root(larger(in_p, in_q))
     return where_positive(outside, larger(outside, between_centres), between_centres)
-
-
-CROSSED = 64
-"""Pairs of edges that are worth crossing."""
 
 
 class Sight(NamedTuple):
@@ -209,18 +209,12 @@ def lower_bound_faces_beside(a, face_a, b, face_b, m):
 
 @merged
 def lower_bound_faces_across(a, face_a, b, face_b, m):
-    """[m] the same, `sight_across`."""
-    return lower_bound_faces_in_sight(a, face_a, b, face_b, sight_across(a, face_a, b, face_b, m))
-
-
-@merged
-def sight_across(a, face_a, b, face_b, m):
-    """The best sight in which two faces are apart across an edge of each, or one that bounds nothing."""
-    best, most = sight_along(m.t, m.t, m), 0.0
+    """[m] the same, across an edge of each: the greatest of all pairs; 0 where none parts the faces."""
+    most = 0.0
     first_a, last_a = a.face_starts[face_a], a.face_starts[face_a + 1]
     first_b, last_b = b.face_starts[face_b], b.face_starts[face_b + 1]
     if (last_a - first_a) * (last_b - first_b) > CROSSED:
-        return best
+        return most
     p = row(a.vertices, a.face_vertices[last_a - 1])
     for c in range(first_a, last_a):
         before, p = p, row(a.vertices, a.face_vertices[c])
@@ -229,12 +223,9 @@ def sight_across(a, face_a, b, face_b, m):
         for k in range(first_b, last_b):
             behind, q = q, row(b.vertices, b.face_vertices[k])
             sight = sight_along(Vec3(0.0, 0.0, 0.0), cross(u, turn(m, sub(q, behind))), m)
-            for _ in range(2):
-                apart = lower_bound_faces_in_sight(a, face_a, b, face_b, sight)
-                if apart > most:
-                    best, most = sight, apart
-                sight = _back(sight)
-    return best
+            most = max(most, lower_bound_faces_in_sight(a, face_a, b, face_b, sight))
+            most = max(most, lower_bound_faces_in_sight(a, face_a, b, face_b, _back(sight)))
+    return most
 
 
 @merged

@@ -6,10 +6,7 @@ wait with a lower bound in place of what was seen. Not for: what is seen (`face_
 """
 
 from clearance.jit import merged
-from clearance.kernels.bounds import (
-    lower_bound_faces_across,
-    lower_bound_faces_beside,
-)
+from clearance.kernels.bounds import lower_bound_faces_across, lower_bound_faces_beside
 from clearance.kernels.face_pair import has_plane
 from clearance.kernels.segments import nearest_on_segment
 from clearance.kernels.vec3 import gap_sq, inverse, move, row

@@ -30,12 +30,7 @@ from clearance.kernels.double_double import (
 )
 from clearance.kernels.every_feature import Ask, nearest_of_every
 from clearance.kernels.face_floor import SURE, UNSURE, floor_of
-from clearance.kernels.face_pair import (
-    NOTHING_SEEN,
-    UNSEEN,
-    Seen,
-    limit_of,
-)
+from clearance.kernels.face_pair import NOTHING_SEEN, UNSEEN, Seen, limit_of
 from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.hidden import may_hide

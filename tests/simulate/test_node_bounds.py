@@ -20,9 +20,9 @@ from clearance.kernels.bounds import (
     displacement,
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
+    lower_bound_faces_across,
     lower_bound_faces_in_sight,
     rounding_slack,
-    sight_across,
     sight_along,
 )
 from clearance.kernels.double_double import frames_of
@@ -62,8 +62,7 @@ def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, fac
     for i in range(len(a.normals)):
         for j in range(len(b.normals)):
             faces[i, j] = lower_bound_faces_in_sight(a, i, b, j, sight) - slack
-            across = sight_across(a, i, b, j, frames.m)
-            faces[i, j] = max(faces[i, j], lower_bound_faces_in_sight(a, i, b, j, across) - slack)
+            faces[i, j] = max(faces[i, j], lower_bound_faces_across(a, i, b, j, frames.m) - slack)
 
 
 @kernel
