@@ -12,6 +12,14 @@ import numpy as np
 
 from clearance.jit import borrowing, inlined, kernel, merged
 from clearance.kernel_table import lend
+from clearance.kernels.answers import (
+    Answers,
+    answer_of,
+    has_moved,
+    no_answers,
+    note_answer,
+    still_holds,
+)
 from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement
@@ -137,11 +145,12 @@ def box_bound(surface, world, pair, poses, look, boxes, enough):
 
 
 @merged
-def _add_travel(surface, world, before, after, travel):
-    """Adds to `travel` (bodies,) [m] what each body moves between two poses of the links."""
+def _add_travel(surface, world, before, after, travel, moves):
+    """Adds to `travel` (bodies,) [m] what each body moves between two poses of the links, and 1 to its `moves`."""
     for body in range(len(world.frames)):
         frame = world.frames[body]
-        if frame >= 0:
+        if frame >= 0 and has_moved(before[frame], after[frame]):
+            moves[body] += 1
             travel[body] += displacement(surface, surface.roots[body], before[frame], after[frame]) * GROWTH
 
 
@@ -191,6 +200,7 @@ class Known(NamedTuple):
         reach, noise: of `fill_reach`, where steps can be passed over.
         spare: (bodies,) [m] how far each may move before something may come within what is asked.
         boxes: of the bodies at the last look that asked for them.
+        answers: the last ones of the pairs.
         fronts, scratch: of `descend`.
     """
 
@@ -203,6 +213,7 @@ class Known(NamedTuple):
     noise: np.ndarray
     spare: np.ndarray
     boxes: BodyBoxes
+    answers: Answers
     fronts: Fronts
     scratch: Scratch
 
@@ -271,7 +282,7 @@ def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table)
         np.empty((2, len(world.links.parents), 4, 4)), np.zeros(n_bodies), goal.within.copy(),
         np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
         np.empty((n_bodies, positions.shape[1])), np.empty(n_bodies), np.empty(n_bodies),
-        room_for_boxes(n_bodies), no_fronts(n_pairs, POOL), new_scratch(),
+        room_for_boxes(n_bodies), no_answers(n_bodies, n_pairs), no_fronts(n_pairs, POOL), new_scratch(),
     )  # fmt: skip
     _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table)
 
@@ -280,7 +291,7 @@ def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table)
 def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table):
     """`sweep`, with room for what is known."""
     travel, within, floors, seeds = known.travel, known.within, known.floors, known.seeds
-    fronts, scratch = known.fronts, known.scratch
+    answers, fronts, scratch = known.answers, known.fronts, known.scratch
     n_pairs = len(world.pairs)
     for i in range(len(tally)):
         tally[i] = 0
@@ -299,7 +310,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
         if row > 0:
             poses, before = known.poses[looked_at % 2], poses
             place_links(world.links, positions[row], poses)
-            _add_travel(surface, world, before, poses, travel)
+            _add_travel(surface, world, before, poses, travel, answers.moves)
         looked_at += 1
         best = nothing_yet(np.inf)
         best_pair = -1
@@ -328,24 +339,29 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
                     _spend(world, pair, floor - asked_within, known.spare)
                 tally[0] += 1
                 continue
-            ahead = moved / max(1, looked_at - 1)
-            limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
-            if floor <= 0.0:
-                forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
-            asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0, goal.effort)
-            measured = measure_pair(
-                lent, body_a, lent, body_b, pair_frames(world, pair, poses), asked,
-                fronts, pair, moved, scratch, table,
-            )  # fmt: skip
-            lowest = min(lowest, measured.lower_bound)
+            if still_holds(answers, pair, body_a, body_b, gap):
+                hit, floor = answer_of(answers, pair)
+                tally[0] += 1
+            else:
+                ahead = moved / max(1, looked_at - 1)
+                limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
+                if floor <= 0.0:
+                    forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
+                asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0, goal.effort)
+                measured = measure_pair(
+                    lent, body_a, lent, body_b, pair_frames(world, pair, poses), asked,
+                    fronts, pair, moved, scratch, table,
+                )  # fmt: skip
+                hit, floor = measured.hit, measured.lower_bound
+                note_answer(answers, pair, body_a, body_b, hit, floor)
+                floors[pair] = (floor + moved) * KEPT_DOWN
+                seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
+                tally[1] += 1
+                tally[2] += measured.tally.nodes
+                tally[3] += measured.tally.faces
+            lowest = min(lowest, floor)
             if near_only:
-                _spend(world, pair, measured.lower_bound - asked_within, known.spare)
-            floors[pair] = (measured.lower_bound + moved) * KEPT_DOWN
-            seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
-            tally[1] += 1
-            tally[2] += measured.tally.nodes
-            tally[3] += measured.tally.faces
-            hit = measured.hit
+                _spend(world, pair, floor - asked_within, known.spare)
             if hit.face_a == 2**62:
                 continue
             if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):

@@ -11,6 +11,7 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.simulate import measure, parts
+from tests.made_cases import arm, at, spindle, torus
 
 SCENES = Path(__file__).parents[2] / "scenes"
 
@@ -93,6 +94,29 @@ def test_how_steps_are_parted_changes_no_clearance(
     whole = cl.check(case)
     monkeypatch.setattr(parts, "LONGEST_PART", longest)
     assert cl.check(case).steps.equals(whole.steps)
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs"])
+def test_a_pair_of_which_nothing_has_moved_is_not_asked_again(
+    need: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last link of three moves all the time, the others from step 20 to 29 only."""
+    swing = 0.4 * np.sin(0.1 * np.arange(60.0))
+    positions = np.stack([np.where(np.arange(60) < 20, 0.0, swing)] * 2 + [swing], axis=1)
+    positions[30:, :2] = positions[29, :2]
+    shapes = [spindle(0.05, 0.1, 6)] * 3
+    near, far = (torus(0.12, 0.05, 12, 6), at(0.3, 0.25, 0.2)), (spindle(0.1, 0.2, 6), at(0.5, -0.4, 0.3))
+    case = arm("resting", shapes, [near, far], positions)
+    run = cl.check(case, need=need)
+    tally = run.record.tally
+    assert tally["queries"] + tally["pairs_skipped"] == 60 * 6
+    assert tally["queries"] <= 60 * 2 + 11 * 4
+    assert need == "steps" or tally["queries"] == 60 * 2 + 11 * 4
+    monkeypatch.setattr(parts, "LONGEST_PART", 1)  # nothing is carried from step to step
+    afresh = cl.check(case, need=need)
+    assert afresh.steps.equals(run.steps)
+    assert list(afresh.record.pair_minima) == list(run.record.pair_minima)
+    assert need == "steps" or afresh.pairs.equals(run.pairs)
 
 
 def test_parts_hold_every_row_once() -> None:

@@ -1,0 +1,80 @@
+"""What each pair was last found to be: it holds for as long as neither of its bodies has moved.
+
+A base on its stand, an arm that waits for another, a joint that a program leaves alone: their pairs are measured
+once. Not for: bounds on what has moved (`sweep`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.jit import inlined, merged, shared
+from clearance.kernels.face_pair import Hit
+from clearance.kernels.vec3 import row
+
+NEVER = -1
+
+
+class Answers(NamedTuple):
+    """The last answers.
+
+    Attributes:
+        moves: (bodies,) how often each body has moved so far.
+        asked: (p,) the sum of that of both bodies when the pair was measured, or `NEVER` if nothing was found.
+        gaps_sq, floors: (p,) [m^2] the squared distance, [m] the proven bound.
+        faces: (p, 2). points: (p, 2, 3) in the world [m].
+    """
+
+    moves: np.ndarray
+    asked: np.ndarray
+    gaps_sq: np.ndarray
+    floors: np.ndarray
+    faces: np.ndarray
+    points: np.ndarray
+
+
+@shared
+def no_answers(n_bodies, n_pairs):
+    """Nothing is known yet."""
+    return Answers(
+        np.zeros(n_bodies, dtype=np.int64), np.full(n_pairs, NEVER), np.empty(n_pairs), np.empty(n_pairs),
+        np.empty((n_pairs, 2), dtype=np.int64), np.empty((n_pairs, 2, 3)),
+    )  # fmt: skip
+
+
+@merged
+def has_moved(before, after):
+    """True if two (4, 4) poses are not the same to the last bit of each number."""
+    for i in range(3):
+        for k in range(4):
+            if before[i, k] != after[i, k]:
+                return True
+    return False
+
+
+@merged
+def still_holds(answers, pair, body_a, body_b, gap):
+    """True if a pair need not be measured to know whether it is within `gap` [m], and how near."""
+    asked = answers.asked[pair]
+    return asked == answers.moves[body_a] + answers.moves[body_b] and answers.gaps_sq[pair] <= gap * gap
+
+
+@inlined
+def answer_of(answers, pair):
+    """(the hit, the proven bound [m]) of a pair."""
+    face_a, face_b = answers.faces[pair]
+    p, q = row(answers.points[pair], 0), row(answers.points[pair], 1)
+    return Hit(answers.gaps_sq[pair], face_a, face_b, p, q), answers.floors[pair]
+
+
+@inlined
+def note_answer(answers, pair, body_a, body_b, hit, floor):
+    """Keeps what a pair was found to be; `hit.face_a` is 2**62 if nothing was found."""
+    answers.asked[pair] = NEVER
+    if hit.face_a == 2**62:
+        return
+    answers.asked[pair] = answers.moves[body_a] + answers.moves[body_b]
+    answers.gaps_sq[pair], answers.floors[pair] = hit.gap_sq, floor
+    answers.faces[pair, 0], answers.faces[pair, 1] = hit.face_a, hit.face_b
+    for axis in range(3):
+        answers.points[pair, 0, axis], answers.points[pair, 1, axis] = hit.p[axis], hit.q[axis]
