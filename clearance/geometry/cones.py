@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from clearance.geometry.edges import Ring, twins
+from clearance.geometry.edges import Ring
 from clearance.kernels.facing import CONE_ROWS, MARGIN, NO_CONE, WIDEST
 from clearance.kernels.lanes import WIDTH
 
@@ -24,14 +24,14 @@ OUTWARD = 1.0 + 2.0**-20
 def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """(6 g, 4) `Surface.cones` from the axes (3, f) and half angles (f,) [rad] of the faces' cones.
 
-    The cone of a node is about the mean of the axes below it.
+    A cone stands for itself and its opposite, so that both sides of a thin wall have one in common. That of a node
+    is about the mean of the axes below it, each taken the way that the others look.
     """
     n_nodes = len(children)
-    above = list(_nodes_above_faces(children))
-    axis = _unit(sum(_sums(axes[:, face], node, n_nodes) for node, face in above))
+    axis = _unit(_aligned_sums(children, axes))
     angle = np.zeros(n_nodes)
-    for node, face in above:
-        np.maximum.at(angle, node, np.arccos(_cosines(axis, node, axes, face)) + angles[face])
+    for node, face in _nodes_above_faces(children):
+        np.maximum.at(angle, node, np.arccos(np.abs(_cosines(axis, node, axes, face))) + angles[face])
     wide = ~(angle <= WIDEST) | ~axis.any(axis=0)  # the latter are lanes without a node
     axis[:, wide] = 0.0
     cosine = np.cos(angle, where=~wide, out=np.zeros(n_nodes))
@@ -41,6 +41,29 @@ def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles
     with np.errstate(over="ignore"):  # an infinite radius says nothing of any direction
         rows = np.stack([*axis, cosine, sine, radius]).astype(np.float32)
     return rows.reshape(CONE_ROWS, -1, WIDTH).swapaxes(0, 1).reshape(-1, WIDTH)
+
+
+def _aligned_sums(children: np.ndarray, axes: np.ndarray) -> np.ndarray:
+    """(3, n) for each node the sum of the axes below it, those of a child turned round where they look away."""
+    total = np.zeros((3, len(children)))
+    leaf = children[:, 1] == 0
+    total[:, leaf] = axes[:, children[leaf, 0]]
+    for inner in reversed(list(_levels(children))):
+        for k in range(WIDTH):
+            node = inner[children[inner, 1] > k]
+            child = WIDTH * children[node, 0] + k
+            away = (total[:, node] * total[:, child]).sum(axis=0) < 0.0
+            total[:, node] += np.where(away, -total[:, child], total[:, child])
+    return total
+
+
+def _levels(children: np.ndarray) -> Iterator[np.ndarray]:
+    """The nodes that are no leaves, level by level from the root down."""
+    inner = np.flatnonzero(children[:1, 1] > 0)
+    while len(inner):
+        yield inner
+        below = np.concatenate([WIDTH * children[inner[children[inner, 1] > k], 0] + k for k in range(WIDTH)])
+        inner = below[children[below, 1] > 0]
 
 
 def _nodes_above_faces(children: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -60,17 +83,16 @@ def _nodes_above_faces(children: np.ndarray) -> Iterator[tuple[np.ndarray, np.nd
 
 
 def face_cones(
-    ring: Ring, vertices: np.ndarray, corners: np.ndarray, normals: np.ndarray, bent: np.ndarray
+    ring: Ring, twin: np.ndarray, vertices: np.ndarray, corners: np.ndarray, normals: np.ndarray, bent: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Axis (3, f) and half angle (f,) [rad] of the cone of each face, infinite where it has none.
 
     Args:
-        vertices: (v, 3) [m]. corners: (c,) the vertex at which each half-edge starts.
+        twin: (c,) of `edges.twins`. vertices: (v, 3) [m]. corners: (c,) the vertex at which each half-edge starts.
         normals: (f, 3) unit, or zeros. bent: (f,) as in `Surface`.
     """
     n_faces = len(normals)
     ends = corners[ring.ahead]
-    twin = twins(corners, ends)
     owner_of_vertex = np.full(corners.max() + 1, n_faces)
     np.minimum.at(owner_of_vertex, corners, ring.face)
     owner_of_edge = np.minimum(ring.face, np.where(twin >= 0, ring.face[twin], n_faces))

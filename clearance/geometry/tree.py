@@ -12,7 +12,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.geometry.cones import face_cones, node_cones
-from clearance.geometry.edges import edge_keys, rings_of
+from clearance.geometry.copies import Copies, copies_of
+from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.face_planes import face_planes
 from clearance.kernels.lanes import WIDTH
@@ -82,7 +83,7 @@ def _join(parts: Sequence[Surface]) -> Surface:
         roots=stacked("roots", "children"),
         probe_starts=starts("probe_starts", "probes"),
         probes=stacked("probes", "vertices"),
-        solid=stacked("solid"),
+        turns=stacked("turns"),
     )
 
 
@@ -123,7 +124,9 @@ def _build(shape: Polyhedron) -> Surface:
     first_uses, edge_starts = _owned(edge_keys(*edges.T, len(vertices)), ring.face, shape.n_faces)
     owned_edges = np.sort(edges[first_uses], axis=1)
     owned_edges, edge_starts = _with_diagonals(owned_edges, edge_starts, corners, ring.face, starts, bent)
-    centres, boxes, children = _tree(vertices[corners], starts)
+    twin = twins(*edges.T)
+    copies = copies_of(corners, starts, ring, twin, bent)
+    centres, boxes, children = _tree(vertices[corners], starts, copies.kept)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
     return Surface(
@@ -143,12 +146,12 @@ def _build(shape: Polyhedron) -> Surface:
         owns=_owns(first_corners, first_uses, ring.face, starts, bent),
         centres=centres,
         boxes=boxes,
-        cones=node_cones(children, boxes, *face_cones(ring, vertices, corners, normals, bent)),
+        cones=node_cones(children, boxes, *_cones(copies.kept, ring, twin, vertices, corners, normals, bent)),
         children=children,
         roots=np.zeros(1, dtype=np.int64),
         probe_starts=np.array([0, len(probes)]),
         probes=probes,
-        solid=shape.component_closed[shape.face_component],
+        turns=_turns(copies, shape.component_closed[shape.face_component]),
     )
 
 
@@ -203,11 +206,34 @@ def _owns(
     return np.where(bent | (np.diff(starts) > LISTED), ANYTHING, bits).astype(np.uint16)
 
 
-def _tree(corner_points: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Centres, boxes and children of the tree's nodes."""
-    most = most_groups(len(starts) - 1)
+def _turns(copies: Copies, closed: np.ndarray) -> np.ndarray:
+    """(f,) `Surface.turns`, from whether each face is of a closed component."""
+    turns = np.zeros(len(closed), dtype=np.int32)
+    np.add.at(turns, copies.first, copies.way * closed)
+    return turns
+
+
+def _cones(
+    kept: np.ndarray, ring: Ring, twin: np.ndarray, vertices: np.ndarray, corners: np.ndarray,
+    normals: np.ndarray, bent: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """`face_cones` of the faces that are kept, as if there were no others."""
+    n_faces = len(bent)
+    if len(kept) == n_faces:
+        return face_cones(ring, twin, vertices, corners, normals, bent)
+    left = corners[np.isin(ring.face, kept)]
+    ring = rings_of(np.concatenate([[0], np.cumsum(np.bincount(ring.face)[kept])]))
+    axes, angles = np.zeros((3, n_faces)), np.full(n_faces, np.inf)
+    twin = twins(left, left[ring.ahead])
+    axes[:, kept], angles[kept] = face_cones(ring, twin, vertices, left, normals[kept], bent[kept])
+    return axes, angles
+
+
+def _tree(corner_points: np.ndarray, starts: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Centres, boxes and children of the nodes of a tree over some of the faces."""
+    most = most_groups(len(faces))
     centres = np.empty((3 * most, WIDTH))
     boxes = np.empty((12 * most, WIDTH), dtype=np.float32)
     children = np.empty((WIDTH * most, 2), dtype=np.int32)
-    n = build_tree(corner_points, starts, centres, boxes, children)
+    n = build_tree(corner_points, starts, faces.copy(), centres, boxes, children)
     return centres[: 3 * n].copy(), boxes[: 12 * n].copy(), children[: WIDTH * n].copy()

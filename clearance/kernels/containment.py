@@ -149,8 +149,8 @@ def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
             for k in range(surface.children[node, 1]):
                 nodes[n_waiting, 0] = WIDTH * first + k
                 n_waiting += 1
-        elif surface.solid[first]:
-            number += _crossings(surface, first, side, probe, exact)
+        elif surface.turns[first] != 0:
+            number += surface.turns[first] * _crossings(surface, first, side, probe, exact)
     return number
 
 

@@ -42,10 +42,12 @@ class Surface(NamedTuple):
         boxes: (12 g, 4) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
         cones: (6 g, 4) in single precision: axis, cosine and sine of the half angle of each node's normal cone
             (`facing`; its `NO_CONE` for the sine where there is none), and the radius of a ball about its box [m].
-        children: (4 g, 2) of node n: a group and how many nodes of it, or for a leaf (face, 0).
+        children: (4 g, 2) of node n: a group and how many nodes of it, or for a leaf (face, 0). Of faces with the
+            same corners, either way round, only the least has a leaf.
         roots: (bodies,) root nodes, each alone in its group.
         probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
-        solid: (f,) True for the faces of closed, consistently oriented components.
+        turns: (f,) how often a face counts in a winding number: once for each copy that runs the same way, less
+            those that run the other way; 0 in components that are not closed and consistently oriented.
     """
 
     vertices: np.ndarray
@@ -69,7 +71,7 @@ class Surface(NamedTuple):
     roots: np.ndarray
     probe_starts: np.ndarray
     probes: np.ndarray
-    solid: np.ndarray
+    turns: np.ndarray
 
 
 def surface_like():
@@ -81,7 +83,7 @@ def surface_like():
         points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
         indices, indices, indices, pairs, np.empty(0, dtype=np.uint16),
         np.empty((0, 4)), singles, singles, np.empty((0, 2), dtype=np.int32),
-        indices, indices, indices, np.empty(0, dtype=np.bool_),
+        indices, indices, indices, np.empty(0, dtype=np.int32),
     )  # fmt: skip
 
 

@@ -234,15 +234,14 @@ def _write_group(room, n_parts, group, centres, boxes):
 
 
 @kernel
-def build_tree(points, starts, centres, boxes, children):
-    """Fills the nodes of a tree over f faces with corners `points[starts[i]:starts[i + 1]]`.
+def build_tree(points, starts, order, centres, boxes, children):
+    """Fills the nodes of a tree over the f faces in `order`, with corners `points[starts[i]:starts[i + 1]]`.
 
-    `centres`, `boxes` and `children` are those of `Surface`, with room for `most_groups(f)`; node 0 is the root.
-    Returns how many groups there are.
+    The order becomes that of the leaves. `centres`, `boxes` and `children` are those of `Surface`, with room for
+    `most_groups(f)`; node 0 is the root. Returns how many groups there are.
     """
-    n_faces = len(starts) - 1
-    order = np.arange(n_faces)
-    middles = np.empty(n_faces)
+    n_faces = len(order)
+    middles = np.empty(len(starts) - 1)
     room = _room()
     waiting = np.empty((3 * n_faces + 1, 3), dtype=np.int64)
     _set_part(points, starts, order, 0, 0, n_faces, room)

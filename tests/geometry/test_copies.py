@@ -1,0 +1,77 @@
+"""Meshes that hold faces more than once are searched as if they did not; what is inside stays inside."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from clearance import distance
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.tree import surface_of
+from clearance.kernels.facing import CONE_ROWS, NO_CONE
+from clearance.kernels.lanes import WIDTH
+from tests.made_cases import at, ball, faces_below, faces_of
+from tests.strategies import rotations
+
+BALL = ball(1.0, 3)
+TINY = ball(0.05, 1)
+
+
+def with_copies(shape: Polyhedron, faces: list[int], *, turned_round: bool) -> Polyhedron:
+    """The shape with some of its faces once more, each from another corner on."""
+    copies = [np.roll(faces_of(shape)[face], 1 + face % 2) for face in faces]
+    return Polyhedron(shape.vertices, faces_of(shape) + [tuple(f[::-1] if turned_round else f) for f in copies])
+
+
+@pytest.mark.parametrize("turned_round", [False, True])
+@pytest.mark.parametrize("every", [1, 3])
+def test_a_face_and_its_copies_have_one_leaf_and_the_same_answer(every: int, turned_round: bool) -> None:
+    doubled = with_copies(BALL, list(range(0, BALL.n_faces, every)), turned_round=turned_round)
+    assert sorted(faces_below(surface_of(doubled))[surface_of(doubled).roots[0]]) == list(range(BALL.n_faces))
+    assert (surface_of(doubled).cones == surface_of(BALL).cones).all()
+    random = np.random.default_rng(5)
+    for turn in rotations(random, 10):
+        pose = at(*(1.5 * random.normal(size=3)), turned=turn)
+        one, two = distance(BALL, TINY, pose_b=pose), distance(doubled, TINY, pose_b=pose)
+        if one.contact:
+            continue
+        assert (one.distance, one.face_a, one.face_b) == (two.distance, two.face_a, two.face_b)
+        assert one.tally == two.tally
+
+
+def test_a_face_that_another_one_shares_two_corners_with_is_no_copy() -> None:
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)]
+    fans = Polyhedron(np.array(corners, dtype=float), [(0, 1, 4), (0, 1, 2, 3), (0, 1, 2), (1, 0, 4), (0, 1, 4)])
+    leaves = faces_below(surface_of(fans))[surface_of(fans).roots[0]]
+    assert sorted(leaves) == [0, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("faces", "turned_round", "holds"),
+    [
+        (range(BALL.n_faces), False, True),  # winds twice
+        (range(BALL.n_faces), True, False),  # not at all
+        (range(0, BALL.n_faces, 3), False, False),  # not closed
+    ],
+)
+def test_copies_count_in_what_is_inside(faces: range, turned_round: bool, holds: bool) -> None:
+    doubled = with_copies(BALL, list(faces), turned_round=turned_round)
+    assert distance(doubled, TINY, pose_b=at(0.3, 0.2, 0.1)).contact == holds
+
+
+def test_a_cavity_that_is_there_twice_is_still_wound_round() -> None:
+    """Once outward and twice inward: not zero, as without a tree."""
+    hollow = Polyhedron.merged([ball(2.0, 2), BALL.flipped(), BALL.flipped()])
+    assert distance(hollow, TINY).contact
+    assert not distance(Polyhedron.merged([ball(2.0, 2), BALL.flipped()]), TINY).contact
+
+
+def test_both_sides_of_a_thin_wall_share_a_cone() -> None:
+    """Of the nodes over few faces nearly all have one, though they hold faces that look away from each other."""
+    shell = Polyhedron.merged([BALL, ball(0.99, 3).flipped()])
+    surface = surface_of(shell)
+    sines = surface.cones.reshape(-1, CONE_ROWS, WIDTH)[:, 4].reshape(-1)
+    few = [node for node, below in enumerate(faces_below(surface)) if 1 < len(below) <= 40]
+    both = [node for node in few if len({face < BALL.n_faces for face in faces_below(surface)[node]}) == 2]
+    assert len(both) > 0.5 * len(few)
+    assert (sines[both] < NO_CONE).mean() > 0.95
