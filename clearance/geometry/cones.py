@@ -21,17 +21,31 @@ OUTWARD = 1.0 + 2.0**-20
 `tree_build.LEAST_HALF`, where that has its usual precision."""
 
 
+NARROW = 0.25
+"""[rad] Cones no wider than this to either side are left about the mean."""
+
+FEW = 128
+"""Nodes over more faces than that are left about the mean: hardly one of them has a cone in the end."""
+
+STEPS = 8
+"""Times that the axis of a cone is moved towards what is farthest from it."""
+
+
 def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles: np.ndarray) -> np.ndarray:
     """(6 g, 4) `Surface.cones` from the axes (3, f) and half angles (f,) [rad] of the faces' cones.
 
     A cone stands for itself and its opposite, so that both sides of a thin wall have one in common. That of a node
-    is about the mean of the axes below it, each taken the way that the others look.
+    is about the mean of the axes below it, each taken the way that the others look, or better.
     """
     n_nodes = len(children)
     axis = _unit(_aligned_sums(children, axes))
-    angle = np.zeros(n_nodes)
+    angle, n_below = np.zeros(n_nodes), np.zeros(n_nodes, dtype=np.int64)
     for node, face in _nodes_above_faces(children):
         np.maximum.at(angle, node, np.arccos(np.abs(_cosines(axis, node, axes, face))) + angles[face])
+        n_below += np.bincount(node, minlength=n_nodes)
+    few = (n_below > 1) & (n_below <= FEW)
+    pairs = [np.stack([node, face])[:, few[node]] for node, face in _nodes_above_faces(children)]
+    _narrow(axis, angle, *np.concatenate(pairs, axis=1), axes, angles, either_way=True)
     wide = ~(angle <= WIDEST) | ~axis.any(axis=0)  # the latter are lanes without a node
     axis[:, wide] = 0.0
     cosine = np.cos(angle, where=~wide, out=np.zeros(n_nodes))
@@ -102,13 +116,51 @@ def face_cones(
     axes = _unit(_sums(across[:, around], owner, n_faces))
     least = np.ones(n_faces)
     np.minimum.at(least, owner, _cosines(across, around, axes, owner))
-    angles = np.arccos(least) + MARGIN
+    angles = np.arccos(least)
+    _narrow(axes, angles, owner, around, across, np.zeros(n_faces), either_way=False)
+    angles += MARGIN
     flawed = bent | ~normals.any(axis=1) | ~_surely_convex(vertices[corners], ring, normals)
     angles[owner[flawed[around]]] = np.inf
     loose = twin < 0  # not between two faces that go along it in opposite directions
     for faces in (ring.face, owner_of_vertex[corners], owner_of_vertex[ends]):
         angles[faces[loose]] = np.inf
     return axes, angles
+
+
+def _narrow(
+    axes: np.ndarray, angles: np.ndarray, cone: np.ndarray, item: np.ndarray, items: np.ndarray,
+    widths: np.ndarray, *, either_way: bool,
+) -> None:  # fmt: skip
+    """Moves axes (3, n) towards what is farthest from them, where that makes the half angles (n,) [rad] less.
+
+    Source: Bădoiu & Clarkson 2003, smaller core-sets for balls.
+
+    Args:
+        cone, item: (k,) which cone holds which item.
+        items, widths: (3, m) unit vectors and (m,) [rad] how far to all sides each reaches.
+        either_way: True if an item or its opposite will do.
+    """
+    asked = np.flatnonzero(((angles > NARROW) & np.isfinite(angles))[cone])
+    if not len(asked):
+        return
+    asked = asked[np.argsort(cone[asked], kind="stable")]
+    cone, items, widths = cone[asked], items[:, item[asked]], widths[item[asked]]
+    is_first = np.concatenate([[True], cone[1:] != cone[:-1]])
+    starts, number = np.flatnonzero(is_first), np.cumsum(is_first) - 1
+    cones = cone[starts]
+    here = axes[:, cones]
+    for step in range(STEPS):
+        cosine = _cosines(here, number, items, slice(None))
+        away = np.arccos(np.abs(cosine) if either_way else cosine) + widths
+        most = np.maximum.reduceat(away, starts)
+        less = most < angles[cones]
+        axes[:, cones[less]], angles[cones[less]] = here[:, less], most[less]
+        far = np.flatnonzero(away == most[number])
+        to = items[:, far]
+        if either_way:
+            to = np.where(cosine[far] < 0.0, -to, to)
+        here[:, number[far]] += (to - here[:, number[far]]) / (step + 3.0)  # of several, the last
+        here = _unit(here)
 
 
 def _surely_convex(points: np.ndarray, ring: Ring, normals: np.ndarray) -> np.ndarray:
@@ -127,7 +179,7 @@ def _sums(vectors: np.ndarray, places: np.ndarray, n: int) -> np.ndarray:
     return np.stack([np.bincount(places, row, n) for row in vectors])
 
 
-def _cosines(us: np.ndarray, i: np.ndarray, vs: np.ndarray, j: np.ndarray) -> np.ndarray:
+def _cosines(us: np.ndarray, i: np.ndarray, vs: np.ndarray, j: np.ndarray | slice) -> np.ndarray:
     """(k,) of the angles between the unit vectors `us[:, i]` and `vs[:, j]`."""
     cosine = us[0][i] * vs[0][j]
     cosine += us[1][i] * vs[1][j]
