@@ -183,10 +183,22 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
 
 @spliced
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
-    """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`."""
+    """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`.
+
+    Edges that the direction `d` of the best points so far tells apart are not measured: of faces with many corners
+    most. Without such points it is zero, which tells nothing.
+    """
+    d = sub(near.best.q, near.best.p)
+    reach = (min(math.sqrt(limit_sq), math.sqrt(near.seen.near_sq)) + margin) * math.sqrt(dot(d, d))
+    top = -math.inf
+    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
+        top = max(top, dot(d, row(a.vertices, a.face_vertices[c])))
     for e in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
         q0 = move(m, row(b.vertices, b.owned_edges[e, 0]))
         q1 = move(m, row(b.vertices, b.owned_edges[e, 1]))
+        near_end = min(dot(d, q0), dot(d, q1)) - reach
+        if near_end > top:
+            continue
         for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
             i = a.owned_vertices[k]
             p = row(a.vertices, i)
@@ -198,6 +210,8 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
         for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[i, 0])
             p1 = row(a.vertices, a.owned_edges[i, 1])
+            if near_end > max(dot(d, p0), dot(d, p1)):
+                continue
             inside, p, q = common_perpendicular(p0, p1, q0, q1, margin)
             if inside:
                 found_sq = gap_sq(p, q)

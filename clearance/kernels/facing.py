@@ -13,9 +13,10 @@ or -d is in the convex cone of their normals:
   both, and facets that meet do so along an edge or face of the surface, which says the same of both.
 
 The same is true of -d at q. A face's cone holds the normals round each vertex and edge that it answers for
-(`Surface`), and that of a node each of these cones or its opposite. So two nodes without a common point hold no nearest points if their cones, taken both ways, have no
-direction in common, or if one of them has none in common with the directions from the one box to the other. It
-does not matter which side is inside, whether the surface is closed, or whether it cuts itself elsewhere.
+(`Surface`), and that of a node each of these cones or its opposite. So two nodes without a common point hold no
+nearest points if their cones, taken both ways, have no direction in common, or if one of them has none in common
+with the directions from the one box to the other. It does not matter which side is inside, whether the surface is
+closed, or whether it cuts itself elsewhere.
 
 While a body moves, its normals turn by no more than the motion does. Two nodes that are turned away in all of an
 interval hold the nearest points at no instant of it before the bodies meet. If the others stay apart by some
