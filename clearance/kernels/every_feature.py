@@ -8,12 +8,12 @@ import math
 from typing import NamedTuple
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.double_double import Wide, less, wide
+from clearance.kernels.double_double import Wide, less, minus, root, wide
 from clearance.kernels.face_pair import has_plane, height, may_be_over
 from clearance.kernels.feature import Feature, n_segments, segment, simplex
 from clearance.kernels.segments import may_be_inside, may_be_inside_both, nearest_on_segment
 from clearance.kernels.vec3 import Vec3, dot, gap_sq, move, move_back, row, sub
-from clearance.kernels.wide_features import Simplex, wide_feature
+from clearance.kernels.wide_features import Simplex, too_far, wide_feature
 
 
 class Ask(NamedTuple):
@@ -28,17 +28,32 @@ class Ask(NamedTuple):
 
 
 class Chosen(NamedTuple):
-    """The nearest feature pair so far and its squared distance [m^2]."""
+    """The nearest feature pair so far, its squared distance [m^2], and what all measured ones are beyond [m]."""
 
     gap_sq: Wide
     feature: Feature
+    sure: Wide
+
+
+@kernel
+def _measured(frames, one, two):
+    """The squared distance of a feature pair [m^2] and a lower bound on its distance [m]."""
+    pair = wide_feature(frames, one, two)
+    if pair.gap_sq.hi == math.inf:
+        return pair.gap_sq, pair.gap_sq
+    length = root(pair.gap_sq)
+    return pair.gap_sq, minus(length, too_far(frames, one, two, pair, length))
 
 
 @inlined
 def _take(frames, one, two, feature, best):
     """`best`, or a feature pair that is nearer."""
-    found_sq = wide_feature(frames, one, two).gap_sq
-    return Chosen(found_sq, feature) if less(found_sq, best.gap_sq) else best
+    found_sq, sure = _measured(frames, one, two)
+    if less(best.sure, sure):
+        sure = best.sure
+    if less(found_sq, best.gap_sq):
+        return Chosen(found_sq, feature, sure)
+    return Chosen(best.gap_sq, best.feature, sure)
 
 
 @inlined
@@ -130,7 +145,7 @@ def _between_segments(a, face_a, b, face_b, frames, ask, best):
 @kernel
 def nearest_of_every(a, face_a, b, face_b, frames, ask):
     """The nearest feature pair of two faces among those within the limit; infinitely far if there is none."""
-    best = Chosen(wide(math.inf), Feature(1, 0, 1, 0))
+    best = Chosen(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))
     one, face_one, two, face_two = a, face_a, b, face_b
     for side in range(2):
         is_a = side == 0

@@ -19,12 +19,8 @@ from clearance.kernels.double_double import (
     NOISE,
     Wide,
     Wide3,
-    dot3,
     less,
     minus,
-    minus3,
-    point_of_a,
-    point_of_b,
     root,
     wide,
 )
@@ -35,15 +31,10 @@ from clearance.kernels.fan_floor import floor_of_fans
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.hidden import may_hide
 from clearance.kernels.surface import surface_like
-from clearance.kernels.vec3 import dot, sub
-from clearance.kernels.wide_features import wide_feature, wide_feature_here
+from clearance.kernels.wide_features import too_far, wide_feature, wide_feature_here
 
 N_WAITING = 64
 """Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
-
-
-SLENDER = 2.0**6
-"""The reciprocal sine of an angle up to which the noise in every floor covers the rounding of its normal."""
 
 
 class Refined(NamedTuple):
@@ -52,6 +43,7 @@ class Refined(NamedTuple):
     Attributes:
         length: [m] their distance, the root of `gap_sq`.
         floor: [m] a lower bound on the distance of its two faces.
+        sure: [m] a lower bound on the distances of all feature pairs that were measured, whichever won.
     """
 
     gap_sq: Wide
@@ -61,13 +53,14 @@ class Refined(NamedTuple):
     p: Wide3
     q: Wide3
     floor: Wide
+    sure: Wide
 
 
 _ZERO = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
 
 _FAR = Wide(math.inf, 0.0)
 
-NOTHING_REFINED = Refined(_FAR, _FAR, 2**62, 2**62, _ZERO, _ZERO, _FAR)
+NOTHING_REFINED = Refined(_FAR, _FAR, 2**62, 2**62, _ZERO, _ZERO, _FAR, _FAR)
 """What any pair of points beats."""
 
 
@@ -88,40 +81,13 @@ def _enough(length, margin):
 
 
 @inlined
-def _unevenness(frames, corners, is_a, pair):
-    """[m] how far a triangle's corners are off the plane of its rounded normal, along which a height was taken."""
-    if corners.n < 3:
-        return 0.0
-    u, v = sub(corners.v, corners.u), sub(corners.w, corners.u)
-    u_sq, v_sq = dot(u, u), dot(v, v)
-    if u_sq * v_sq <= SLENDER * SLENDER * pair.w_sq.hi:
-        return 0.0
-    first = point_of_a(frames, corners.u) if is_a else point_of_b(frames, corners.u)
-    second = point_of_a(frames, corners.v) if is_a else point_of_b(frames, corners.v)
-    third = point_of_a(frames, corners.w) if is_a else point_of_b(frames, corners.w)
-    off = abs(dot3(pair.w, minus3(second, first)).hi) + abs(dot3(pair.w, minus3(third, first)).hi)
-    return 2.0 * off / math.sqrt(pair.w_sq.hi)
-
-
-@inlined
-def _lowered(floor, frames, one, two, pair, length):
-    """A floor less what a height along a rounded normal, of a triangle or two segments, may be below the truth."""
-    if one.n == 2 and two.n == 2:
-        u, v = sub(one.v, one.u), sub(two.v, two.u)
-        if dot(u, u) * dot(v, v) <= SLENDER * SLENDER * pair.w_sq.hi:
-            return floor
-        between = minus3(pair.q, pair.p)
-        short = minus(root(dot3(between, between)), length)
-        return minus(floor, short) if short.hi > 0.0 else floor
-    return minus(floor, wide(_unevenness(frames, one, True, pair) + _unevenness(frames, two, False, pair)))
-
-
-@inlined
-def _better(best, pair, length, face_a, face_b, floor):
+def _better(best, pair, length, face_a, face_b, floor, sure):
     """`best` after a face pair. The floor of one that does not win may be low: it is nearest at others' own."""
+    if less(best.sure, sure):
+        sure = best.sure
     if _wins(pair.gap_sq, face_a, face_b, best):
-        return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor)
-    return best
+        return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor, sure)
+    return Refined(best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, best.floor, sure)
 
 
 def _two_faces_like():
@@ -144,7 +110,8 @@ def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best):
     enough = _enough(length, ask.margin)
     if less(floor, enough) and (a.bent[face_a] or b.bent[face_b]):
         floor = floor_of_fans(a, face_a, b, face_b, frames, pair, enough, floor)
-    return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair, length))
+    floor = minus(floor, too_far(frames, one, two, pair, length))
+    return _better(best, pair, length, face_a, face_b, floor, chosen.sure)
 
 
 @apart(
@@ -163,7 +130,8 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
             floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
             length = root(pair.gap_sq)
             if not less(floor, _enough(length, ask.margin)):
-                return _better(best, pair, length, face_a, face_b, _lowered(floor, frames, one, two, pair, length))
+                off = too_far(frames, one, two, pair, length)
+                return _better(best, pair, length, face_a, face_b, minus(floor, off), minus(length, off))
     return at_address(
         table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best)
     )
@@ -255,6 +223,7 @@ def shed(a, b, best_gap, margin, waiting, n_waiting):
 @inlined
 def error_of(refined, distance):
     """[m] a bound on |distance - true distance|, `distance` being the refined one rounded."""
-    short = minus(refined.length, refined.floor)
+    floor = refined.sure if less(refined.sure, refined.floor) else refined.floor
+    short = minus(refined.length, floor)
     below = abs(distance - refined.length.hi) + abs(refined.length.lo)
     return (below + max(0.0, short.hi)) * (1.0 + 2.0**-50) + NOISE * distance

@@ -23,18 +23,23 @@ from clearance.kernels.double_double import (
     plus,
     point_of_a,
     point_of_b,
+    root,
     rounded,
     scaled3,
     times,
     wide,
 )
-from clearance.kernels.vec3 import Vec3, dot
+from clearance.kernels.vec3 import Vec3, dot, sub
 
 WELL_APART = 2.0**-40
 """Squared sine of the angle above which the vector product of two edges keeps 80 bits."""
 
 LONG = 2.0**-20
 """Squared length of a connecting line, in those of the edge, above which it keeps 90 bits of direction."""
+
+
+SLENDER = 2.0**6
+"""The reciprocal sine of an angle up to which the noise in every floor covers the rounding of its normal."""
 
 
 class Simplex(NamedTuple):
@@ -177,3 +182,32 @@ def _wide_feature(frames, one, two):
 wide_feature = kernel(_wide_feature)
 wide_feature_here = spliced(_wide_feature)
 """The same, copied into the caller."""
+
+
+@inlined
+def _unevenness(frames, corners, is_a, pair):
+    """[m] how far a triangle's corners are off the plane of its rounded normal, along which a height was taken."""
+    if corners.n < 3:
+        return 0.0
+    u, v = sub(corners.v, corners.u), sub(corners.w, corners.u)
+    u_sq, v_sq = dot(u, u), dot(v, v)
+    if u_sq * v_sq <= SLENDER * SLENDER * pair.w_sq.hi:
+        return 0.0
+    first = point_of_a(frames, corners.u) if is_a else point_of_b(frames, corners.u)
+    second = point_of_a(frames, corners.v) if is_a else point_of_b(frames, corners.v)
+    third = point_of_a(frames, corners.w) if is_a else point_of_b(frames, corners.w)
+    off = abs(dot3(pair.w, minus3(second, first)).hi) + abs(dot3(pair.w, minus3(third, first)).hi)
+    return 2.0 * off / math.sqrt(pair.w_sq.hi)
+
+
+@inlined
+def too_far(frames, one, two, pair, length):
+    """[m] how much a height along a rounded normal, of a triangle or two segments, may be above the truth."""
+    if one.n == 2 and two.n == 2:
+        u, v = sub(one.v, one.u), sub(two.v, two.u)
+        if dot(u, u) * dot(v, v) <= SLENDER * SLENDER * pair.w_sq.hi:
+            return wide(0.0)
+        between = minus3(pair.q, pair.p)
+        short = minus(root(dot3(between, between)), length)
+        return short if short.hi > 0.0 else wide(0.0)
+    return wide(_unevenness(frames, one, True, pair) + _unevenness(frames, two, False, pair))

@@ -33,11 +33,16 @@ def shuffled(random, vertices, faces):
     return vertices, [faces[k] for k in random.permutation(len(faces))]
 
 
-def spike_over_edge(random, inner, skew):
-    """(a, b, pose_a, pose_b): the tip of a over the inside of an edge between faces of b that lie in one plane."""
+def spike_over_edge(random, inner, skew, share=None, height=None):
+    """(a, b, pose_a, pose_b): the tip of a over the inside of an edge between faces of b that lie in one plane.
+
+    Args:
+        share: of the edge, from its outer end on. height: [m] of the tip.
+    """
     top = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [*inner, 0], [0, 0, -1]], dtype=float)
     spike = np.array([[0, 0, 0], [1, 0, 1], [-0.5, 0.8, 1], [-0.5, -0.8, 1]]) * random.uniform(0.1, 1.0)
-    share, height = random.uniform(0.1, 0.9), 10.0 ** random.uniform(-16.5, -1)
+    share = random.uniform(0.1, 0.9) if share is None else share
+    height = 10.0 ** random.uniform(-16.5, -1) if height is None else height
     foot = top[random.integers(4)] * (1.0 - share) + top[4] * share
     turn, lean = rotations(random, 2)
     pose_b = posed(random, turn, random.uniform(-1, 1, 3), skew)
@@ -124,12 +129,17 @@ def cases():
     def anywhere(random):
         return random.uniform(-0.3, 0.3, 2)
 
+    def over_a_needles_corner(random):
+        inner = random.uniform(-0.5, 0.5), -1.0 + 10.0 ** random.uniform(-9, -8.5)
+        return spike_over_edge(random, inner, 0.0, share=1.0, height=10.0 ** random.uniform(-10, -8.5))
+
     def by_the_rim(random):
         return random.uniform(-0.5, 0.5), -1.0 + 10.0 ** random.uniform(-9, -1)
 
     return {
         "over an edge": lambda random: spike_over_edge(random, anywhere(random), 0.0),
         "over a needle's edge": lambda random: spike_over_edge(random, by_the_rim(random), 0.0),
+        "over a needle's corner": over_a_needles_corner,
         "poses off orthonormal": lambda random: spike_over_edge(random, by_the_rim(random), 2e-7),
         "nearly parallel edges": ridges_nearly_parallel,
         "corners along edges": box_with_corners_along_edges,
