@@ -83,6 +83,20 @@ def ball(radius: float, n_halvings: int) -> Polyhedron:
     return Polyhedron.from_triangles(mesh.vertices, mesh.faces)
 
 
+def corners_moved(shape: Polyhedron, vertices: np.ndarray) -> Polyhedron:
+    """The faces of a shape between other corners (n, 3)."""
+    return Polyhedron(vertices, faces_of(shape))
+
+
+def dented(
+    random: np.random.Generator, n_halvings: int = 1, depth: float = 0.6, radius: float = 1.0
+) -> Polyhedron:
+    """A ball whose corners are pushed in and out: ridges, valleys and saddles."""
+    shape = ball(radius, n_halvings)
+    pushed = random.uniform(1.0 - depth, 1.0 + depth, (len(shape.vertices), 1))
+    return corners_moved(shape, shape.vertices * pushed)
+
+
 def faces_of(shape: Polyhedron) -> list[list[int]]:
     """The vertex indices of each face, as the oracle takes them."""
     return [shape.face_vertices[i:j].tolist() for i, j in itertools.pairwise(shape.face_starts)]

@@ -28,7 +28,16 @@ from clearance.kernels.scratch import new_scratch
 from clearance.kernels.vec3 import Vec3, rigid
 from clearance.query.one_pair import answer_rows
 from tests import oracle
-from tests.made_cases import at, ball, faces_below, faces_of, torus, without_cones
+from tests.made_cases import (
+    at,
+    ball,
+    corners_moved,
+    dented,
+    faces_below,
+    faces_of,
+    torus,
+    without_cones,
+)
 from tests.oracle.rationals import posed
 from tests.strategies import rotations
 
@@ -47,17 +56,6 @@ def all_turned_away(a, b, pose_a, pose_b, of_a, of_b):
             bounds = bounds_of_group(a, b, from_a, from_b, j // WIDTH, i, True, ALL, slack, np.inf)
             away = turned_away(a, b, from_a, from_b, j // WIDTH, i, True, slack)
             of_b[i, j] = lane(bounds, j % WIDTH) > 0.0 and away >> j % WIDTH & 1
-
-
-def dented(random, n_halvings=1, depth=0.6):
-    """A ball whose corners are pushed in and out: ridges, valleys and saddles."""
-    shape = ball(1.0, n_halvings)
-    pushed = random.uniform(1.0 - depth, 1.0 + depth, (len(shape.vertices), 1))
-    return corners_moved(shape, shape.vertices * pushed)
-
-
-def corners_moved(shape, vertices):
-    return Polyhedron(vertices, faces_of(shape))
 
 
 def crossing(random):

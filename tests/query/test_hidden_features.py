@@ -16,6 +16,7 @@ from tests import oracle
 from tests.strategies import rotations
 
 ROOF = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (1, 0, 5), (2, 1, 5), (3, 2, 5), (0, 3, 5)]
+SPIKE_CORNERS = np.array([[0, 0, 0], [1, 0, 1], [-0.5, 0.8, 1], [-0.5, -0.8, 1]])
 SPIKE = [(0, 2, 1), (0, 3, 2), (0, 1, 3), (1, 2, 3)]
 RIDGE = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 4), (1, 4, 3), (2, 3, 4)]
 
@@ -40,7 +41,7 @@ def spike_over_edge(random, inner, skew, share=None, height=None):
         share: of the edge, from its outer end on. height: [m] of the tip.
     """
     top = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [*inner, 0], [0, 0, -1]], dtype=float)
-    spike = np.array([[0, 0, 0], [1, 0, 1], [-0.5, 0.8, 1], [-0.5, -0.8, 1]]) * random.uniform(0.1, 1.0)
+    spike = SPIKE_CORNERS * random.uniform(0.1, 1.0)
     share = random.uniform(0.1, 0.9) if share is None else share
     height = 10.0 ** random.uniform(-16.5, -1) if height is None else height
     foot = top[random.integers(4)] * (1.0 - share) + top[4] * share
@@ -78,7 +79,7 @@ def ridges_nearly_parallel(random):
 
 def spike_at(random, shape, foot, upward, height):
     """(a, b, pose_a, pose_b): a spike whose tip stands off a point of b, turned anyhow."""
-    spike = np.array([[0, 0, 0], [1, 0, 1], [-0.5, 0.8, 1], [-0.5, -0.8, 1]]) * random.uniform(0.1, 1.0)
+    spike = SPIKE_CORNERS * random.uniform(0.1, 1.0)
     turn, shift = rotations(random, 1)[0], random.uniform(-1, 1, 3)
     across = np.cross(upward, random.normal(size=3))
     across /= np.linalg.norm(across)

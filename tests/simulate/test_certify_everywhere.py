@@ -8,7 +8,7 @@ import pytest
 
 import clearance as cl
 from clearance.world.trajectory import Trajectory
-from tests.made_cases import WORST, at, ball, faces_of, flying
+from tests.made_cases import WORST, at, dented, flying
 from tests.simulate.certified import assert_as_tight_as_asked, assert_never_above_samples
 
 SCENES = sorted((Path(__file__).parents[2] / "scenes").glob("*/case.yaml"))
@@ -61,13 +61,6 @@ def test_the_bound_holds_where_all_is_near(name, fineness):
     assert_as_tight_as_asked(run)
 
 
-def dented(seed):
-    """A ball whose corners are pushed in and out."""
-    shape = ball(0.1, 2)
-    pushed = np.random.default_rng(seed).uniform(0.6, 1.4, (len(shape.vertices), 1))
-    return cl.Polyhedron(shape.vertices * pushed, faces_of(shape))
-
-
 @pytest.mark.parametrize("seed", range(6))
 def test_the_bound_holds_for_dented_bodies_that_turn(seed):
     """A rotation of up to 0.9 rad a step: what is turned away at its middle may face the other at its ends."""
@@ -75,7 +68,8 @@ def test_the_bound_holds_for_dented_bodies_that_turn(seed):
     turns = random.uniform(-0.3, 0.3, (8, 3)).cumsum(axis=0)
     gap = 10.0 ** random.uniform(-4, -2)
     away = np.column_stack([np.linspace(-0.05, 0.05, 8), np.full(8, 0.28 + gap), np.zeros(8)])
-    case = flying("turning", dented(seed), [(dented(seed + 100), np.eye(4))], np.hstack([away, turns]))
+    one, other = (dented(np.random.default_rng(s), 2, depth=0.4, radius=0.1) for s in (seed, seed + 100))
+    case = flying("turning", one, [(other, np.eye(4))], np.hstack([away, turns]))
     run = cl.check(case, certify=True)
     assert run.record.clearances.min() > 0.0
     assert_never_above_samples(run, finer, 3)
