@@ -20,7 +20,6 @@ OUTWARD = 1.0 + 2.0**-20
 """Covers the rounding of a radius, and of the box's axes, to single precision; half sizes are no less than
 `tree_build.LEAST_HALF`, where that has its usual precision."""
 
-
 NARROW = 0.25
 """[rad] Cones no wider than this to either side are left about the mean."""
 
@@ -40,11 +39,12 @@ def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles
     n_nodes = len(children)
     axis = _unit(_aligned_sums(children, axes))
     angle, n_below = np.zeros(n_nodes), np.zeros(n_nodes, dtype=np.int64)
-    for node, face in _nodes_above_faces(children):
+    above = list(_nodes_above_faces(children))
+    for node, face in above:
         np.maximum.at(angle, node, np.arccos(np.abs(_cosines(axis, node, axes, face))) + angles[face])
         n_below += np.bincount(node, minlength=n_nodes)
     few = (n_below > 1) & (n_below <= FEW)
-    pairs = [np.stack([node, face])[:, few[node]] for node, face in _nodes_above_faces(children)]
+    pairs = [np.stack([node, face])[:, few[node]] for node, face in above]
     _narrow(axis, angle, *np.concatenate(pairs, axis=1), axes, angles, either_way=True)
     wide = ~(angle <= WIDEST) | ~axis.any(axis=0)  # the latter are lanes without a node
     axis[:, wide] = 0.0

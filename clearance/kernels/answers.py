@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, merged, shared
-from clearance.kernels.face_pair import Hit
+from clearance.kernels.face_pair import Hit, write_points
 from clearance.kernels.vec3 import row
 
 NEVER = -1
@@ -76,5 +76,4 @@ def note_answer(answers, pair, body_a, body_b, hit, floor):
     answers.asked[pair] = answers.moves[body_a] + answers.moves[body_b]
     answers.gaps_sq[pair], answers.floors[pair] = hit.gap_sq, floor
     answers.faces[pair, 0], answers.faces[pair, 1] = hit.face_a, hit.face_b
-    for axis in range(3):
-        answers.points[pair, 0, axis], answers.points[pair, 1, axis] = hit.p[axis], hit.q[axis]
+    write_points(hit, answers.points[pair])

@@ -146,6 +146,12 @@ def less(a, b):
 
 
 @inlined
+def lesser(a, b):
+    """The lesser of two."""
+    return a if less(a, b) else b
+
+
+@inlined
 def plus3(a, b):
     """a + b."""
     return Wide3(plus(a.x, b.x), plus(a.y, b.y), plus(a.z, b.z))

@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.double_double import Wide, less, minus, root, wide
+from clearance.kernels.double_double import Wide, less, lesser, minus, root, wide
 from clearance.kernels.face_pair import has_plane, height, may_be_over
 from clearance.kernels.feature import Feature, n_segments, segment, simplex
 from clearance.kernels.segments import may_be_inside, may_be_inside_both, nearest_on_segment
@@ -49,8 +49,7 @@ def _measured(frames, one, two):
 def _take(frames, one, two, feature, best):
     """`best`, or a feature pair that is nearer."""
     found_sq, sure = _measured(frames, one, two)
-    if less(best.sure, sure):
-        sure = best.sure
+    sure = lesser(best.sure, sure)
     if less(found_sq, best.gap_sq):
         return Chosen(found_sq, feature, sure)
     return Chosen(best.gap_sq, best.feature, sure)

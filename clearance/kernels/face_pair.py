@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import merged, spliced
+from clearance.jit import inlined, merged, spliced
 from clearance.kernels.bounds import lower_bound_faces_beside
 from clearance.kernels.segments import LOOSE, common_perpendicular, foot_inside
 from clearance.kernels.surface import ANYTHING, LISTED
@@ -44,6 +44,13 @@ class Hit(NamedTuple):
     face_b: int
     p: Vec3
     q: Vec3
+
+
+@inlined
+def write_points(hit, points):
+    """Fills `points` (2, 3) with those of a hit."""
+    for axis in range(3):
+        points[0, axis], points[1, axis] = hit.p[axis], hit.q[axis]
 
 
 CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES, UNSEEN = range(7)
@@ -189,7 +196,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     most. Without such points it is zero, which tells nothing.
     """
     d = sub(near.best.q, near.best.p)
-    reach = (min(math.sqrt(limit_sq), math.sqrt(near.seen.near_sq)) + margin) * math.sqrt(dot(d, d))
+    reach = (math.sqrt(min(limit_sq, near.seen.near_sq)) + margin) * math.sqrt(dot(d, d))
     top = -math.inf
     for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
         top = max(top, dot(d, row(a.vertices, a.face_vertices[c])))

@@ -5,7 +5,7 @@ apart. Each pair of triangles is convex and has one that does: that between its 
 """
 
 from clearance.jit import kernel, merged
-from clearance.kernels.double_double import less
+from clearance.kernels.double_double import less, lesser
 from clearance.kernels.face_floor import Part, corners_of, floor_along
 from clearance.kernels.feature import simplex
 from clearance.kernels.wide_features import Simplex, wide_feature
@@ -68,6 +68,5 @@ def floor_of_fans(a, face_a, b, face_b, frames, pair, least, floor):
                     break
                 one, two = simplex(a, face_a, 3, i), simplex(b, face_b, 3, j)
                 direction = _nearest_of_triangles(frames, one, two)
-            if less(own, least_floor):
-                least_floor = own
+            least_floor = lesser(own, least_floor)
     return floor if less(least_floor, floor) else least_floor

@@ -16,6 +16,7 @@ from clearance.kernel_table import lend
 from clearance.kernels.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
 from clearance.kernels.bounds import displacement, rounding_slack
 from clearance.kernels.double_double import frames_of
+from clearance.kernels.face_pair import write_points
 from clearance.kernels.front import KEPT_DOWN, LONGEST, Fronts, forget, no_fronts
 from clearance.kernels.surface import box_of
 from clearance.kernels.vec3 import rigid
@@ -189,7 +190,6 @@ def _nearest(a, b, known, scratch, poses_a, poses_b, afresh, numbers, points, co
         measured = _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table)
         hit, tally = measured.hit, measured.tally
         numbers[i, 0], numbers[i, 1] = np.sqrt(hit.gap_sq), measured.error
-        for axis in range(3):
-            points[i, 0, axis], points[i, 1, axis] = hit.p[axis], hit.q[axis]
+        write_points(hit, points[i])
         counts[i, 0], counts[i, 1] = hit.face_a, hit.face_b
         counts[i, 2], counts[i, 3], counts[i, 4] = tally.nodes, tally.faces, tally.exact_decisions

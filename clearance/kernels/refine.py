@@ -20,6 +20,7 @@ from clearance.kernels.double_double import (
     Wide,
     Wide3,
     less,
+    lesser,
     minus,
     root,
     wide,
@@ -83,8 +84,7 @@ def _enough(length, margin):
 @inlined
 def _better(best, pair, length, face_a, face_b, floor, sure):
     """`best` after a face pair. The floor of one that does not win may be low: it is nearest at others' own."""
-    if less(best.sure, sure):
-        sure = best.sure
+    sure = lesser(best.sure, sure)
     if _wins(pair.gap_sq, face_a, face_b, best):
         return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor, sure)
     return Refined(best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, best.floor, sure)
@@ -223,7 +223,6 @@ def shed(a, b, best_gap, margin, waiting, n_waiting):
 @inlined
 def error_of(refined, distance):
     """[m] a bound on |distance - true distance|, `distance` being the refined one rounded."""
-    floor = refined.sure if less(refined.sure, refined.floor) else refined.floor
-    short = minus(refined.length, floor)
+    short = minus(refined.length, lesser(refined.sure, refined.floor))
     below = abs(distance - refined.length.hi) + abs(refined.length.lo)
     return (below + max(0.0, short.hi)) * (1.0 + 2.0**-50) + NOISE * distance

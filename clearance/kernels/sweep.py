@@ -25,6 +25,7 @@ from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
 from clearance.kernels.bounds import displacement
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
+from clearance.kernels.face_pair import write_points
 from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
 from clearance.kernels.kinematics import Links, place_links
 from clearance.kernels.scratch import Scratch, new_scratch
@@ -161,20 +162,13 @@ def _floor_of(world, pair, travel, floors):
 
 
 @inlined
-def _write_points(hit, points):
-    for axis in range(3):
-        points[0, axis] = hit.p[axis]
-        points[1, axis] = hit.q[axis]
-
-
-@inlined
 def _write(row, pair, hit, floor, rows):
     rows.pair[row] = pair
     rows.clearance[row] = np.sqrt(hit.gap_sq) if pair >= 0 else np.inf
     rows.floor[row] = min(floor, rows.clearance[row])
     rows.faces[row, 0] = hit.face_a
     rows.faces[row, 1] = hit.face_b
-    _write_points(hit, rows.points[row])
+    write_points(hit, rows.points[row])
 
 
 @inlined
@@ -185,7 +179,7 @@ def _write_pair(row, step, pair, hit, pair_rows):
     if gap < pair_rows.clearance[pair]:
         pair_rows.clearance[pair] = gap
         pair_rows.step[pair] = step
-        _write_points(hit, pair_rows.points[pair])
+        write_points(hit, pair_rows.points[pair])
 
 
 class Known(NamedTuple):
