@@ -19,13 +19,11 @@ class Answers(NamedTuple):
     """The last answers.
 
     Attributes:
-        moves: (bodies,) how often each body has moved so far.
-        asked: (p,) the sum of that of both bodies when the pair was measured, or `NEVER` if nothing was found.
+        asked: (p,) how often both bodies had moved when the pair was measured, or `NEVER` if nothing was found.
         gaps_sq, floors: (p,) [m^2] the squared distance, [m] the proven bound.
         faces: (p, 2). points: (p, 2, 3) in the world [m].
     """
 
-    moves: np.ndarray
     asked: np.ndarray
     gaps_sq: np.ndarray
     floors: np.ndarray
@@ -34,29 +32,22 @@ class Answers(NamedTuple):
 
 
 @shared
-def no_answers(n_bodies, n_pairs):
+def no_answers(n_pairs):
     """Nothing is known yet."""
     return Answers(
-        np.zeros(n_bodies, dtype=np.int64), np.full(n_pairs, NEVER), np.empty(n_pairs), np.empty(n_pairs),
+        np.full(n_pairs, NEVER), np.empty(n_pairs), np.empty(n_pairs),
         np.empty((n_pairs, 2), dtype=np.int64), np.empty((n_pairs, 2, 3)),
     )  # fmt: skip
 
 
 @merged
-def has_moved(before, after):
-    """True if two (4, 4) poses are not the same to the last bit of each number."""
-    for i in range(3):
-        for k in range(4):
-            if before[i, k] != after[i, k]:
-                return True
-    return False
+def still_holds(answers, pair, moves, gap):
+    """True if a pair need not be measured to know whether it is within `gap` [m], and how near.
 
-
-@merged
-def still_holds(answers, pair, body_a, body_b, gap):
-    """True if a pair need not be measured to know whether it is within `gap` [m], and how near."""
-    asked = answers.asked[pair]
-    return asked == answers.moves[body_a] + answers.moves[body_b] and answers.gaps_sq[pair] <= gap * gap
+    Args:
+        moves: how often both bodies have moved so far.
+    """
+    return answers.asked[pair] == moves and answers.gaps_sq[pair] <= gap * gap
 
 
 @inlined
@@ -68,12 +59,12 @@ def answer_of(answers, pair):
 
 
 @inlined
-def note_answer(answers, pair, body_a, body_b, hit, floor):
-    """Keeps what a pair was found to be; `hit.face_a` is 2**62 if nothing was found."""
+def note_answer(answers, pair, moves, hit, floor):
+    """Keeps what a pair was found to be; `hit.face_a` is 2**62 if nothing was found. `moves` as above."""
     answers.asked[pair] = NEVER
     if hit.face_a == 2**62:
         return
-    answers.asked[pair] = answers.moves[body_a] + answers.moves[body_b]
+    answers.asked[pair] = moves
     answers.gaps_sq[pair], answers.floors[pair] = hit.gap_sq, floor
     answers.faces[pair, 0], answers.faces[pair, 1] = hit.face_a, hit.face_b
     write_points(hit, answers.points[pair])

@@ -26,7 +26,7 @@ class BodyBoxes(NamedTuple):
         axes: (bodies, 3, 3) of each box, a row an axis. centres, halves: (bodies, 3) [m], in the world.
         radii: (bodies,) [m] of the balls about the centres.
         slacks: (bodies,) [m] what rounding, and a rotation that is not quite orthonormal, can raise a bound.
-        looks: (bodies,) the look that each was placed for, or -1.
+        moves: (bodies,) how often each body had moved when its box was placed, or -1.
     """
 
     axes: np.ndarray
@@ -34,7 +34,7 @@ class BodyBoxes(NamedTuple):
     halves: np.ndarray
     radii: np.ndarray
     slacks: np.ndarray
-    looks: np.ndarray
+    moves: np.ndarray
 
 
 @shared

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import inlined, spliced
+from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import SEARCH, Lent, apart, at_address, borrow, table_like
 from clearance.kernels.bounds import rounding_slack
 from clearance.kernels.common_point import common_point_of
@@ -22,7 +22,7 @@ from clearance.kernels.front import forget, no_fronts
 from clearance.kernels.hidden import PASSED_OVER
 from clearance.kernels.refine import error_of
 from clearance.kernels.scratch import new_scratch
-from clearance.kernels.surface import surface_like
+from clearance.kernels.surface import box_of, surface_like
 from clearance.kernels.vec3 import Vec3, move
 
 NO_FACE = -1
@@ -58,7 +58,7 @@ class Measured(NamedTuple):
         hit: the nearest points in the world, if nearer than the distance wanted; else faces of 2**62.
         lower_bound: [m] proven.
         error: [m] a bound on how far the distance of `hit` is from the truth.
-        face_a, face_b: where to begin the next time; NO_FACE if nothing was found within the limit.
+        face_a, face_b: where to begin the next time; those that were asked with if nothing was found in the limit.
     """
 
     hit: Hit
@@ -97,6 +97,24 @@ def _like():
     return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, asked, *searched
 
 
+@merged
+def _begin(a, root_a, b, root_b, m, margin, asked):
+    """The hit that a search begins with: of the faces that were nearest, or one of no faces at the limit.
+
+    Also where it is none, its points give the direction in which the search sees the bodies apart.
+    """
+    limit = asked.limit + margin
+    limit_sq = limit * limit
+    best = nothing_yet(np.inf)
+    if asked.face_a >= 0:
+        best = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, best).best
+        if best.gap_sq < limit_sq:
+            return best
+    elif asked.limit < np.inf:
+        best = Hit(np.inf, 2**62, 2**62, box_of(a, root_a).centre, move(m, box_of(b, root_b).centre))
+    return Hit(limit_sq, 2**62, 2**62, best.p, best.q)
+
+
 @apart(SEARCH, _like)
 def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
@@ -110,10 +128,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
-    limit = asked.limit + margin
-    best = nothing_yet(limit * limit)
-    if asked.face_a >= 0:
-        best = nearest_of_faces(a, asked.face_a, b, asked.face_b, frames.m, margin, best).best
+    best = _begin(a, root_a, b, root_b, frames.m, margin, asked)
     wanted = asked.wanted
     resumed = asked.face_a >= 0 or asked.limit < np.inf
     for _ in range(2):
@@ -139,7 +154,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     floor = max(0.0, found.floor - slack - 2.0 * margin)
     face_a, face_b = found.hit.face_a, found.hit.face_b
     if face_a == 2**62:
-        face_a, face_b = NO_FACE, NO_FACE
+        face_a, face_b = asked.face_a, asked.face_b
     refined = found.refined
     if refined.face_a == 2**62:
         return Measured(nothing_yet(asked.wanted * asked.wanted), floor, 0.0, face_a, face_b, tally)

@@ -22,9 +22,9 @@ from clearance.kernels.front import KEPT_DOWN
 from clearance.kernels.hold import Held, allowed_gap, hold
 from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
+from clearance.kernels.placed import GROWTH
 from clearance.kernels.scratch import Scratch, new_scratch
 from clearance.kernels.surface import box_of
-from clearance.kernels.sweep import GROWTH
 from clearance.kernels.vec3 import Vec3, rigid
 
 DEPTH = 64

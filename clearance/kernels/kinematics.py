@@ -95,9 +95,14 @@ def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out)
 
 
 @merged
-def place_links(links, positions, poses):
-    """Fills `poses` (links, 4, 4) of the links that are asked for, the joints at `positions` (columns,)."""
+def place_links(links, positions, poses, wanted, look):
+    """Fills `poses` (links, 4, 4) of the links whose `wanted` (links,) is `look`, the joints at `positions`.
+
+    With a link all above it must be wanted. Poses [m]; positions (columns,) [rad or m].
+    """
     for link in links.asked:
+        if wanted[link] != look:
+            continue
         parent = links.parents[link]
         if parent == NO_PARENT:
             _write(rigid(links.parent_from_joint[link]), poses[link])

@@ -112,19 +112,14 @@ def fill_reach(surface, frames, links, positions, reach, noise):
 
 
 @merged
-def least_spare(frames, positions, last, step, reach, noise, spare):
-    """[m] the least over the moving bodies of what is left of `spare` (bodies,) from one step to another.
+def stride_of(positions, last, step, reach, noise):
+    """[m] no less than what a body moves from one step to another.
 
     Args:
-        frames, positions, reach, noise: as in `fill_reach`. last, step: rows of `positions`.
+        positions: as in `fill_reach`; last, step: rows of it. reach: (columns,), noise: of the body.
     """
-    left = np.inf
-    for body in range(len(frames)):
-        if frames[body] < 0:
-            continue
-        way = noise[body]
-        for column in range(reach.shape[1]):
-            before, after = positions[last, column], positions[step, column]
-            way += reach[body, column] * (abs(after - before) + ANGLE_ROUNDING * (abs(after) + abs(before)))
-        left = min(left, spare[body] - way)
-    return left
+    way = noise
+    for column in range(len(reach)):
+        before, after = positions[last, column], positions[step, column]
+        way += reach[column] * (abs(after - before) + ANGLE_ROUNDING * (abs(after) + abs(before)))
+    return way

@@ -2,8 +2,7 @@
 
 Between steps no point of a body moves farther than `displacement` says, so that a bound on a pair's
 distance, less what both bodies have moved since, still holds; pairs whose carried bound exceeds the best
-are not asked. Where only what is near is asked for, steps at which nothing can be, by the positions of the
-joints alone (`stride`), are passed over.
+are not asked. Where only what is near is asked for, only the bodies are looked at that may have come near (`due`).
 """
 
 from typing import NamedTuple
@@ -12,29 +11,18 @@ import numpy as np
 
 from clearance.jit import borrowing, inlined, kernel, merged
 from clearance.kernel_table import lend
-from clearance.kernels.answers import (
-    Answers,
-    answer_of,
-    has_moved,
-    no_answers,
-    note_answer,
-    still_holds,
-)
+from clearance.kernels.answers import Answers, answer_of, no_answers, note_answer, still_holds
 from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
 from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
-from clearance.kernels.bounds import displacement
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
+from clearance.kernels.due import Due, all_due, fill_due, find_due, gather, room_for_due, spend
 from clearance.kernels.face_pair import write_points
 from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
-from clearance.kernels.kinematics import Links, place_links
+from clearance.kernels.kinematics import Links
+from clearance.kernels.placed import Placed, bring, put_all, room_for_bodies
 from clearance.kernels.scratch import Scratch, new_scratch
-from clearance.kernels.stride import fill_reach, least_spare
 from clearance.kernels.vec3 import rigid
-
-GROWTH = 1.0 + 1e-9
-"""Covers the rounding of a sum of up to four million displacements."""
-
 
 LOOK_AHEAD = 2.0
 """Mean travel between two looks, so many times: within this beyond the best a pair is still measured, so that
@@ -114,51 +102,26 @@ class PairRows(NamedTuple):
 
 
 @merged
-def pose_of(world, body, poses):
-    """Where a body is, as a `Rigid`; `poses` (links, 4, 4) are those of the links."""
-    if world.frames[body] < 0:
-        return rigid(world.standing[body])
-    return rigid(poses[world.frames[body]])
-
-
-@merged
 def pair_frames(world, pair, poses):
-    """Where both bodies of a pair are."""
-    a = pose_of(world, world.pairs[pair, 0], poses)
-    b = pose_of(world, world.pairs[pair, 1], poses)
-    return frames_of(a, b)
+    """Where both bodies of a pair are, of `poses` (bodies, 4, 4)."""
+    return frames_of(rigid(poses[world.pairs[pair, 0]]), rigid(poses[world.pairs[pair, 1]]))
 
 
 @merged
-def box_bound(surface, world, pair, poses, look, boxes, enough):
-    """[m] a lower bound on the distance of a pair by the boxes of both bodies; one above `enough` will do.
-
-    Args:
-        look: rises whenever the links have moved.
-    """
+def box_bound(surface, world, pair, placed, boxes, enough):
+    """[m] a lower bound on the distance of a pair by the boxes of both bodies; one above `enough` will do."""
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     for body in (body_a, body_b):
-        last = boxes.looks[body]
-        if last < 0 or (last < look and world.frames[body] >= 0):
-            place_box(surface, body, pose_of(world, body, poses), boxes)
-            boxes.looks[body] = look
+        if boxes.moves[body] != placed.moves[body]:
+            place_box(surface, body, rigid(placed.poses[body]), boxes)
+            boxes.moves[body] = placed.moves[body]
     return bound_of_bodies(boxes, body_a, body_b, enough)
 
 
 @merged
-def _add_travel(surface, world, before, after, travel, moves):
-    """Adds to `travel` (bodies,) [m] what each body moves between two poses of the links, and 1 to its `moves`."""
-    for body in range(len(world.frames)):
-        frame = world.frames[body]
-        if frame >= 0 and has_moved(before[frame], after[frame]):
-            moves[body] += 1
-            travel[body] += displacement(surface, surface.roots[body], before[frame], after[frame]) * GROWTH
-
-
-@merged
-def _floor_of(world, pair, travel, floors):
-    """[m] the carried bound of a pair."""
-    return floors[pair] - (travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]])
+def _moved(world, pair, travel):
+    """[m] what both bodies of a pair have moved in all."""
+    return travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
 
 
 @inlined
@@ -186,26 +149,20 @@ class Known(NamedTuple):
     """What is carried from step to step, and room for the search.
 
     Attributes:
-        poses: (2, links, 4, 4) of the links at the last two steps that were looked at, in turn [m].
-        travel: (bodies,) [m] what each body has moved.
         within: (p,) [m] as in `Goal`, less where that is found.
         floors: (p,) [m] a bound on each pair's distance plus the travel of both bodies when it was found.
         seeds: (p, 2) the faces that were nearest, or NO_FACE.
-        reach, noise: of `fill_reach`, where steps can be passed over.
-        spare: (bodies,) [m] how far each may move before something may come within what is asked.
-        boxes: of the bodies at the last look that asked for them.
+        placed: where the bodies are. due: which of them need a look.
+        boxes: of the bodies where they were last asked for.
         answers: the last ones of the pairs.
         fronts, scratch: of `descend`.
     """
 
-    poses: np.ndarray
-    travel: np.ndarray
     within: np.ndarray
     floors: np.ndarray
     seeds: np.ndarray
-    reach: np.ndarray
-    noise: np.ndarray
-    spare: np.ndarray
+    placed: Placed
+    due: Due
     boxes: BodyBoxes
     answers: Answers
     fronts: Fronts
@@ -213,23 +170,23 @@ class Known(NamedTuple):
 
 
 @merged
-def _bounded_again(surface, world, pair, poses, look, known, enough):
+def _bounded_again(surface, world, pair, known, enough):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
-    travel, floors = known.travel, known.floors
-    moved = travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
-    floor = max(floors[pair] - moved, box_bound(surface, world, pair, poses, look, known.boxes, enough))
-    floors[pair] = (floor + moved) * KEPT_DOWN
+    moved = _moved(world, pair, known.placed.travel)
+    by_boxes = box_bound(surface, world, pair, known.placed, known.boxes, enough)
+    floor = max(known.floors[pair] - moved, by_boxes)
+    known.floors[pair] = (floor + moved) * KEPT_DOWN
     return floor
 
 
 @merged
-def _nearest_by_boxes(surface, world, poses, look, known, winner):
+def _nearest_by_boxes(surface, world, pairs, known, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
     nearest = np.inf
-    for pair in range(len(world.pairs)):
-        floor = _floor_of(world, pair, known.travel, known.floors)
+    for pair in pairs:
+        floor = known.floors[pair] - _moved(world, pair, known.placed.travel)
         if floor < nearest:
-            floor = _bounded_again(surface, world, pair, poses, look, known, nearest)
+            floor = _bounded_again(surface, world, pair, known, nearest)
             if floor < nearest:
                 nearest = floor
                 winner = pair
@@ -237,28 +194,19 @@ def _nearest_by_boxes(surface, world, poses, look, known, winner):
 
 
 @merged
-def _spend(world, pair, spare_of_pair, spare):
-    """Notes how far the bodies of a pair may move: each half as far where both do."""
+def _is_seen(world, pair, look, due):
+    """True if both bodies of a pair are looked at, as far as they move."""
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    if world.frames[body_a] >= 0 and world.frames[body_b] >= 0:
-        spare_of_pair *= 0.5
-    spare[body_a] = min(spare[body_a], spare_of_pair)
-    spare[body_b] = min(spare[body_b], spare_of_pair)
+    seen_a = world.frames[body_a] < 0 or due.looks[body_a] == look
+    return seen_a and (world.frames[body_b] < 0 or due.looks[body_b] == look)
 
 
 @merged
-def _pass_over(world, positions, row, within, known, rows, tally):
-    """The next row to look at; writes those between, at which nothing comes `within` [m]."""
-    after = row + 1
-    while after < len(positions):
-        left = least_spare(world.frames, positions, row, after, known.reach, known.noise, known.spare)
-        if left <= 0.0:
-            break
-        _write(after, -1, nothing_yet(np.inf), within + left, rows)
-        tally[0] += len(world.pairs)
-        tally[4] += 1
-        after += 1
-    return after
+def _pass_over(world, row, floor, rows, tally):
+    """Writes a row at which nothing needs a look: no pair is nearer than `floor` [m]."""
+    _write(row, -1, nothing_yet(np.inf), floor, rows)
+    tally[0] += len(world.pairs)
+    tally[4] += 1
 
 
 @kernel
@@ -273,10 +221,9 @@ def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table)
     """
     n_pairs, n_bodies = len(world.pairs), len(world.frames)
     known = Known(
-        np.empty((2, len(world.links.parents), 4, 4)), np.zeros(n_bodies), goal.within.copy(),
-        np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
-        np.empty((n_bodies, positions.shape[1])), np.empty(n_bodies), np.empty(n_bodies),
-        room_for_boxes(n_bodies), no_answers(n_bodies, n_pairs), no_fronts(n_pairs, POOL), new_scratch(),
+        goal.within.copy(), np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
+        room_for_bodies(len(world.links.parents), n_bodies), room_for_due(n_bodies, n_pairs, positions.shape[1]),
+        room_for_boxes(n_bodies), no_answers(n_pairs), no_fronts(n_pairs, POOL), new_scratch(),
     )  # fmt: skip
     _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table)
 
@@ -284,78 +231,76 @@ def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table)
 @borrowing
 def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table):
     """`sweep`, with room for what is known."""
-    travel, within, floors, seeds = known.travel, known.within, known.floors, known.seeds
+    within, floors, seeds, placed, due = known.within, known.floors, known.seeds, known.placed, known.due
     answers, fronts, scratch = known.answers, known.fronts, known.scratch
-    n_pairs = len(world.pairs)
     for i in range(len(tally)):
         tally[i] = 0
-    poses = known.poses[0]
-    place_links(world.links, positions[0], poses)
-    for pair in range(n_pairs):
-        floors[pair] = box_bound(surface, world, pair, poses, 0, known.boxes, np.inf)
+    put_all(world, positions[0], placed)
+    for pair in range(len(world.pairs)):
+        floors[pair] = box_bound(surface, world, pair, placed, known.boxes, np.inf)
     winner = np.argmin(floors)
     near_only = within[0] < np.inf
     if near_only:
-        fill_reach(surface, world.frames, world.links, positions, known.reach, known.noise)
+        fill_due(surface, world, positions, due)
+    n_seen = all_due(world.frames, due)
+    n_asked = len(world.pairs)
     lent = lend(surface)
+    lowest = np.inf
     row = 0
-    looked_at = 0
+    look = 0
     while row < len(steps):
-        if row > 0:
-            poses, before = known.poses[looked_at % 2], poses
-            place_links(world.links, positions[row], poses)
-            _add_travel(surface, world, before, poses, travel, answers.moves)
-        looked_at += 1
+        if look > 0:
+            bring(surface, world, due.bodies[:n_seen], positions[row], look, placed)
+        asked_pairs = due.asked[:n_asked]
         best = nothing_yet(np.inf)
         best_pair = -1
-        lowest = np.inf
         asked_within = within[0]
         gap = asked_within
-        for body in range(len(known.spare)):
-            known.spare[body] = np.inf
-        if _floor_of(world, winner, travel, floors) <= 0.0:
-            winner = _nearest_by_boxes(surface, world, poses, looked_at, known, winner)
-        for turn in range(-1, n_pairs):
-            pair = winner if turn < 0 else turn
-            if turn == winner:
+        first = winner if not near_only or _is_seen(world, winner, look, due) else -1
+        if first >= 0 and floors[first] - _moved(world, first, placed.travel) <= 0.0:
+            first = _nearest_by_boxes(surface, world, asked_pairs, known, first)
+        tally[0] += len(world.pairs)
+        for turn in range(-1 if first >= 0 else 0, n_asked):
+            pair = first if turn < 0 else asked_pairs[turn]
+            if turn >= 0 and pair == first:
                 continue
             body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-            moved = travel[body_a] + travel[body_b]
+            moved = placed.travel[body_a] + placed.travel[body_b]
             floor = floors[pair] - moved
             if goal.each:
                 asked_within = within[pair]
                 gap = asked_within
-            if floor <= 0.0:
-                floor = _bounded_again(surface, world, pair, poses, looked_at, known, gap)
+            if floor <= 0.0 or floor <= gap < np.inf:
+                floor = _bounded_again(surface, world, pair, known, gap)
             if floor > gap:
                 lowest = min(lowest, floor)
                 if near_only:
-                    _spend(world, pair, floor - asked_within, known.spare)
-                tally[0] += 1
+                    spend(world, pair, floor - asked_within, due)
                 continue
-            if still_holds(answers, pair, body_a, body_b, gap):
+            moves = placed.moves[body_a] + placed.moves[body_b]
+            if still_holds(answers, pair, moves, gap):
                 hit, floor = answer_of(answers, pair)
-                tally[0] += 1
             else:
-                ahead = moved / max(1, looked_at - 1)
+                ahead = moved / max(1, placed.looks[body_a], placed.looks[body_b])
                 limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
                 if floor <= 0.0:
                     forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
                 asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0, goal.effort)
                 measured = measure_pair(
-                    lent, body_a, lent, body_b, pair_frames(world, pair, poses), asked,
+                    lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses), asked,
                     fronts, pair, moved, scratch, table,
                 )  # fmt: skip
                 hit, floor = measured.hit, measured.lower_bound
-                note_answer(answers, pair, body_a, body_b, hit, floor)
+                note_answer(answers, pair, moves, hit, floor)
                 floors[pair] = (floor + moved) * KEPT_DOWN
                 seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
+                tally[0] -= 1
                 tally[1] += 1
                 tally[2] += measured.tally.nodes
                 tally[3] += measured.tally.faces
             lowest = min(lowest, floor)
             if near_only:
-                _spend(world, pair, floor - asked_within, known.spare)
+                spend(world, pair, floor - asked_within, due)
             if hit.face_a == 2**62:
                 continue
             if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
@@ -372,7 +317,19 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
             if goal.lasting and not goal.each:
                 within[0] = min(within[0], np.sqrt(best.gap_sq) * NOT_LESS)
         _write(row, best_pair, best, lowest, rows)
+        row += 1
+        look += 1
+        lowest = np.inf
+        if goal.lasting and not goal.each and best.gap_sq == 0.0:  # nothing is nearer than contact
+            for after in range(row, len(steps)):
+                _pass_over(world, after, 0.0, rows, tally)
+            break
         if near_only:
-            row = _pass_over(world, positions, row, asked_within, known, rows, tally)
-        else:
-            row += 1
+            n_due = 0
+            while n_due == 0 and row < len(steps):
+                n_due, left = find_due(world.frames, positions, row, due)
+                lowest = asked_within + left
+                if n_due == 0:
+                    _pass_over(world, row, lowest, rows, tally)
+                    row += 1
+            n_asked, n_seen = gather(world, positions, row, look, n_due, due)
