@@ -99,20 +99,10 @@ def _like():
 
 @merged
 def _begin(a, root_a, b, root_b, m, margin, asked):
-    """The hit that a search begins with: of the faces that were nearest, or one of no faces at the limit.
-
-    Also where it is none, its points give the direction in which the search sees the bodies apart.
-    """
-    limit = asked.limit + margin
-    limit_sq = limit * limit
-    best = nothing_yet(np.inf)
+    """What a search begins with: the nearest points of the faces that were nearest, or the bodies' centres."""
     if asked.face_a >= 0:
-        best = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, best).best
-        if best.gap_sq < limit_sq:
-            return best
-    elif asked.limit < np.inf:
-        best = Hit(np.inf, 2**62, 2**62, box_of(a, root_a).centre, move(m, box_of(b, root_b).centre))
-    return Hit(limit_sq, 2**62, 2**62, best.p, best.q)
+        return nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf)).best
+    return Hit(np.inf, 2**62, 2**62, box_of(a, root_a).centre, move(m, box_of(b, root_b).centre))
 
 
 @apart(SEARCH, _like)
@@ -129,17 +119,19 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     slack = rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
     best = _begin(a, root_a, b, root_b, frames.m, margin, asked)
+    limit = asked.limit + margin
     wanted = asked.wanted
     resumed = asked.face_a >= 0 or asked.limit < np.inf
     for _ in range(2):
         found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, wanted, slack, asked.effort, fronts, pair, moved,
-            scratch, table,
+            lent_a, root_a, lent_b, root_b, frames, best, limit, wanted, slack, asked.effort, fronts, pair,
+            moved, scratch, table,
         )  # fmt: skip
         if not (found.meeting.found and resumed):
             break
         # which of several contacts is found must not depend on where the search began
         best = nothing_yet(np.inf)
+        limit = np.inf
         wanted = np.inf
         resumed = False
     tally = found.tally

@@ -43,7 +43,7 @@ class Found(NamedTuple):
 
     Attributes:
         meeting: whether and where the bodies have a common point, in the faces of `hit`.
-        hit: the best pair of points in doubles, no worse than what was given.
+        hit: the best pair of points in doubles, within the limit or not, no worse than what was given.
         floor: [m] a lower bound on the distance of the face pairs that were not refined.
         refined: the answer in wide numbers, if there is one within the limit.
     """
@@ -161,12 +161,15 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
 
 @spliced
 def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, wanted_gap, slack, effort, fronts, pair, moved, scratch, table
-):
-    """All face pairs of two bodies that can be nearest within the distance of `best`, near node pairs first.
+    lent_a, root_a, lent_b, root_b, frames, best, limit, wanted_gap, slack, effort, fronts, pair, moved, scratch,
+    table,
+):  # fmt: skip
+    """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
 
     Args:
-        best: where to start: a hit, or `nothing_yet(limit_sq)`; node pairs farther than it are not opened.
+        best: where to start: a hit, or none; its points say in which direction the bodies are seen apart, also
+            where they are farther apart than the limit.
+        limit: [m] node pairs farther than this, or than the best, are not opened.
         wanted_gap: [m] face pairs farther apart are not refined.
         slack: [m] of `rounding_slack`.
         effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
@@ -181,7 +184,7 @@ def descend(
     a, b = borrow(lent_a), borrow(lent_b)
     m = frames.m
     margin = margin_of(slack)
-    best_gap = math.sqrt(best.gap_sq)
+    best_gap = min(limit, math.sqrt(best.gap_sq))
     cut = best_gap + margin
     from_a, from_b = views_of(best, m)
     refined = NOTHING_REFINED
@@ -190,7 +193,7 @@ def descend(
     n_pairs = 0
     met = NO_MEETING
     n_left = 0
-    measured = math.inf
+    untold_wait = False
     if fronts.spans[pair, 1] > 0:
         n_kept, n_waiting, n_nodes, floor = _resume(
             a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch
@@ -200,7 +203,7 @@ def descend(
         scratch.nodes[0, 0] = root_a
         scratch.nodes[0, 1] = root_b
         scratch.bounds[0] = lower_bound_boxes(box_of(a, root_a), box_of(b, root_b), m, slack)
-        if best.gap_sq == math.inf:
+        if best_gap == math.inf:
             n_waiting, n_nodes = guess(a, root_a, b, root_b, from_a, from_b, scratch)
     while n_waiting > 0:
         if n_nodes > effort and best_gap < math.inf:
@@ -222,14 +225,17 @@ def descend(
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
-            is_near = in_sight <= cut
-            if is_near and may_own_nearest(a, face_a, b, face_b, from_a.sight, in_sight, best_gap, margin):
+            if in_sight > cut:
+                floor = min(floor, in_sight)
+            elif best.gap_sq > limit * limit or may_own_nearest(
+                a, face_a, b, face_b, from_a.sight, in_sight, best_gap, margin
+            ):
                 n_faces += 1
-                before_sq = best.gap_sq
+                before_sq, before_gap = best.gap_sq, best_gap
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
                 best = near.best
                 if best.gap_sq < before_sq:
-                    best_gap = math.sqrt(best.gap_sq)
+                    best_gap = min(limit, math.sqrt(best.gap_sq))
                     cut = best_gap + margin
                     from_a, from_b = views_of(best, m)
                     in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
@@ -239,12 +245,15 @@ def descend(
                     if met.found:
                         best = Hit(0.0, face_a, face_b, m.t, m.t)
                         break
-                if n_waiting > 1 and best.gap_sq < before_sq:
+                if n_waiting > 1 and best_gap < before_gap:
                     _nearest_last(scratch, n_waiting)
                 least_sq = near.seen.near_sq
-                if not told_apart(a, face_a, b, face_b, gap, margin):  # nearer ones may be hidden
+                is_told = told_apart(a, face_a, b, face_b, gap, margin)
+                if not is_told:  # nearer ones may be hidden
                     least_sq = min(least_sq, max(0.0, gap) * max(0.0, gap))
-                if least_sq < math.inf:
+                reach = limit_of(a, face_a, b, face_b, before_gap, margin)
+                may_win = least_sq <= reach * reach
+                if may_win:
                     if n_pairs == N_WAITING:
                         n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
                         if n_pairs > N_WAITING // 2:
@@ -255,12 +264,13 @@ def descend(
                             n_pairs = 0
                     put(scratch.waiting, n_pairs, face_a, face_b, near.seen, least_sq)
                     n_pairs += 1
+                if may_win and not is_told:
+                    untold_wait = True
+                elif least_sq < math.inf:
                     gap = math.sqrt(least_sq)
-                    measured = min(measured, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
+                    floor = min(floor, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
                 else:
-                    floor = min(floor, cut)
-            elif not is_near:
-                floor = min(floor, in_sight)
+                    floor = min(floor, math.sqrt(best.gap_sq) + margin)
             if not is_kept:  # the roots
                 n_left = _leave(scratch, n_left, node_a // WIDTH, node_b, 1, (bound + moved) * KEPT_DOWN)
             continue
@@ -285,5 +295,7 @@ def descend(
         forget(fronts, pair)
     else:
         keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
+    if untold_wait:  # they are no nearer than what is wanted, or refined
+        floor = min(floor, min(best_gap, wanted_gap))
     tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)
-    return Found(met, best, min(floor, measured), refined, tally)
+    return Found(met, best, floor, refined, tally)

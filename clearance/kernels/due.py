@@ -42,8 +42,9 @@ class Due(NamedTuple):
 def room_for_due(n_bodies, n_pairs, n_columns):
     """Nothing is said yet."""
     return Due(
-        np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.empty(n_bodies), np.zeros(n_bodies, dtype=np.int64),
-        np.full(n_bodies, -1), np.zeros(n_bodies + 1, dtype=np.int64), np.empty(2 * n_pairs, dtype=np.int64),
+        np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.empty(n_bodies),
+        np.zeros(n_bodies, dtype=np.int64), np.full(n_bodies, -1),
+        np.zeros(n_bodies + 1, dtype=np.int64), np.empty(2 * n_pairs, dtype=np.int64),
         np.empty(n_bodies, dtype=np.int64), np.arange(n_pairs), np.full(n_pairs, -1),
     )  # fmt: skip
 
@@ -107,9 +108,9 @@ def _comes_along(positions, row, look, body, due):
 
 @merged
 def gather(world, positions, row, look, n_due, due):
-    """Fills `due.asked` with the pairs of the bodies that are due, and adds those they are paired with to `bodies`.
+    """Fills `due.asked` with the pairs of the bodies that are due; `bodies` then holds the others of these too.
 
-    Returns (pairs, bodies to be looked at).
+    Returns how many (pairs, bodies).
     """
     for i in range(n_due):
         body = due.bodies[i]

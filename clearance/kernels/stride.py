@@ -11,8 +11,6 @@ Not for: the motion between the steps (`drift`).
 
 import math
 
-import numpy as np
-
 from clearance.jit import inlined, merged
 from clearance.kernels.double_double import defect_of
 from clearance.kernels.kinematics import NO_COLUMN, NO_PARENT, SLIDING, TURNING

@@ -29,6 +29,7 @@ from clearance.kernels.double_double import frames_of
 from clearance.kernels.kinematics import Links
 from clearance.kernels.lanes import ALL, WIDTH, lane
 from clearance.kernels.node_pairs import bounds_of_group, views_along
+from clearance.kernels.placed import put_all, room_for_bodies
 from clearance.kernels.surface import box_of, group_of
 from clearance.kernels.sweep import World, box_bound
 from clearance.kernels.vec3 import Vec3, rigid
@@ -82,7 +83,9 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
 @kernel
 def body_bound_of(surface, world, enough):
     """What a sweep knows of a pair by the boxes of its bodies."""
-    return box_bound(surface, world, 0, np.empty((0, 4, 4)), 0, room_for_boxes(2), enough)
+    placed = room_for_bodies(0, 2)
+    put_all(world, np.empty(0), placed)
+    return box_bound(surface, world, 0, placed, room_for_boxes(2), enough)
 
 
 @kernel

@@ -12,7 +12,7 @@ import clearance as cl
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
 from clearance.jit import kernel
-from clearance.kernels.stride import fill_reach, least_spare
+from clearance.kernels.stride import fill_reach, stride_of
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import joined_links, link_poses
 from clearance.world.robot import Joint, JointKind, Robot
@@ -32,7 +32,7 @@ def ways(surface, frames, links, positions):
     fill_reach(surface, frames, links, positions, reach, noise)
     bounds = np.empty(len(positions))
     for step in range(len(positions)):
-        bounds[step] = -least_spare(frames, positions, 0, step, reach, noise, np.zeros(len(frames)))
+        bounds[step] = stride_of(positions, 0, step, reach[0], noise[0])
     return bounds
 
 
