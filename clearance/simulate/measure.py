@@ -115,12 +115,11 @@ class _Sweep:
         return replace(self, progress=None, kept=Rows())
 
     def step_rows(
-        self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False,
-        effort: int = TO_THE_END,
-    ) -> KeptRows:  # fmt: skip
+        self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False
+    ) -> KeptRows:
         """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
         rows = self._rows(name, len(steps))
-        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting, effort), rows=rows)
+        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting, TO_THE_END), rows=rows)
         return rows
 
     def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
@@ -143,6 +142,14 @@ class _Sweep:
             array(f"{name}.points", (n_rows, 2, 3)),
         )
 
+    def sweep_steps(self, steps: Steps, goal: Goal, rows: StepRows, found: PairRows) -> np.ndarray:
+        """Fills the rows of a few steps in one go; the counters, as in `SWEEP_COUNTERS`."""
+        positions = positions_at(self.motions, steps)
+        numbers = np.arange(steps.start, steps.stop) if isinstance(steps, range) else steps
+        counts = np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
+        call(sweep, self.layout.surface, self.layout.world, positions, numbers, goal, rows, found, counts)
+        return counts
+
     def _run(
         self,
         name: str,
@@ -157,16 +164,10 @@ class _Sweep:
         log = self.kept.log(name, spans)
         n_minima = self.n_pairs if goal.each else 0
         least, tally = _gathered(log.gathered, n_minima)
-        nothing = np.empty((0, self.n_pairs))
 
         def run_part(span: slice) -> tuple[int, PairRows, np.ndarray]:
-            these = steps[span]
-            positions = positions_at(self.motions, these)
-            numbers = np.arange(these.start, these.stop) if isinstance(these, range) else these
-            found = PairRows(nothing if every is None else every[span], *_no_minima(n_minima))
-            counts = np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
-            layout, room = self.layout, _rows_of(rows, span)
-            call(sweep, layout.surface, layout.world, positions, numbers, goal, room, found, counts)
+            found = _no_pair_rows(self.n_pairs, n_minima, None if every is None else every[span])
+            counts = self.sweep_steps(steps[span], goal, _rows_of(rows, span), found)
             return span.stop, found, counts
 
         results = in_order(run_part, spans[log.done :], self.jobs)
@@ -293,7 +294,9 @@ def _least_as_nearest(work: _Sweep, rows: KeptRows) -> np.ndarray:
 def _first_least(work: _Sweep) -> float:
     """[m] a clearance that some step has, or a little more."""
     steps = _first_steps(work.n_steps)
-    rows = work.aside.step_rows("first", steps, lasting=True, effort=FIRST_EFFORT)
+    rows = _rows_of(None, slice(0, len(steps)))
+    goal = Goal(np.full(work.n_pairs, np.inf), False, True, FIRST_EFFORT)
+    work.tally[:] += work.sweep_steps(steps, goal, rows, _no_pair_rows(work.n_pairs, 0))
     return float(rows.clearance.min()) * NOT_LESS
 
 
@@ -328,6 +331,11 @@ def _no_minima(n_pairs: int) -> Minima:
     return Minima(
         np.full(n_pairs, np.inf), np.full(n_pairs, -1, dtype=np.int64), np.full((n_pairs, 2, 3), np.nan)
     )
+
+
+def _no_pair_rows(n_pairs: int, n_minima: int, every: np.ndarray | None = None) -> PairRows:
+    """Room for what a part finds of each pair: at every step, if `every` is given, and its least, if asked for."""
+    return PairRows(np.empty((0, n_pairs)) if every is None else every, *_no_minima(n_minima))
 
 
 def _take_lesser(least: Minima, found: PairRows) -> None:

@@ -90,7 +90,10 @@ def test_the_bound_is_not_idle():
 @pytest.mark.parametrize("need", ["minimum", "limit"])
 @pytest.mark.parametrize("name", ["box_box", "box_pipe", "panda_shelf"])
 def test_a_finer_motion_takes_few_more_looks(name, need):
-    """Sixteen times the steps: most are passed over, and the answer is that of the steps asked one by one."""
+    """Sixteen times the steps: most are passed over, and the answer is that of the steps asked one by one.
+
+    Where several bodies are near each has its own looks, so that fewer steps are without any.
+    """
     case = cl.load_case(SCENES / name / "case.yaml")
     (placed,) = case.robots
     asked = placed.trajectory
@@ -99,7 +102,7 @@ def test_a_finer_motion_takes_few_more_looks(name, need):
     finer = replace(placed, trajectory=replace(asked, times=times, positions=positions, velocities=None))
     case = replace(case, robots=(finer,))
     whole, found = cl.check(case, jobs=1), cl.check(case, need=need, jobs=1)
-    assert found.record.tally["steps_passed_over"] > 0.6 * len(times)
+    assert found.record.tally["steps_passed_over"] > 0.5 * len(times)
     truth, told = whole.steps["clearance"].to_numpy(), found.steps["clearance"].to_numpy()
     known = ~np.isnan(told)
     assert (told[known] == truth[known]).all()
