@@ -28,7 +28,7 @@ LOOK_AHEAD = 2.0
 """Mean travel between two looks, so many times: within this beyond the best a pair is still measured, so that
 its bound lasts."""
 
-LITTLE = 0.1
+LITTLE = 0.03
 """Of the best: where bodies move more in a step, nothing is measured beyond it."""
 
 
