@@ -13,7 +13,7 @@ from clearance.jit import borrowing, inlined, kernel, merged
 from clearance.kernel_table import lend
 from clearance.kernels.answers import Answers, answer_of, no_answers, note_answer, still_holds
 from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
-from clearance.kernels.body_pair import NO_FACE, Asked, measure_pair
+from clearance.kernels.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.due import Due, all_due, fill_due, find_due, gather, room_for_due, spend
@@ -285,7 +285,8 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
                 limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
                 if floor <= 0.0:
                     forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
-                asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], floor > 0.0, goal.effort)
+                apart = floor > 0.0 or goal.effort < TO_THE_END  # an upper bound is one inside, too
+                asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, goal.effort)
                 measured = measure_pair(
                     lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses), asked,
                     fronts, pair, moved, scratch, table,
