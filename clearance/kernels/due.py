@@ -1,9 +1,8 @@
 """Which bodies need a look, where only what is near is asked for: those that may have moved as far as they may.
 
-A body may move as far as the bounds of all its pairs exceed what is asked, half of that where both of a pair move;
-until then, by the positions of the joints alone (`stride`), no pair of it can come within what is asked. So every
-body has a clock of its own: at a step at which none is due, no pose is made, and where one is, only its pairs are
-looked at.
+A body may move as far as the least bound of its pairs exceeds what is asked; until then, by the positions of the
+joints alone (`stride`), no pair of it can come within what is asked. So every body has a clock of its own: at a
+step at which none is due, no pose is made, and where one is, only its pairs are looked at.
 """
 
 from typing import NamedTuple
@@ -20,10 +19,9 @@ class Due(NamedTuple):
     Attributes:
         reach, noise: of `fill_reach`.
         spare: (bodies,) [m] how far each may move from where it was at the last look at it.
-        rows, looks: (bodies,) the step and the number of that look; of a body that stands the look is -1.
-        starts, pairs: (bodies + 1,), (2 p,) the pairs of body k are `pairs[starts[k]:starts[k + 1]]`.
-        bodies: (bodies,) in front those that are looked at.
-        asked: (p,) in front the pairs to look at. taken: (p,) the last look at which each was among them.
+        rows, looks: (bodies,) the step and the number of that look.
+        starts, pairs: (bodies + 1,), (p,) the pairs of body k are `pairs[starts[k]:starts[k + 1]]`.
+        bodies: (bodies,) in front those that are due. asked: (p,) in front the pairs to look at.
     """
 
     reach: np.ndarray
@@ -35,28 +33,25 @@ class Due(NamedTuple):
     pairs: np.ndarray
     bodies: np.ndarray
     asked: np.ndarray
-    taken: np.ndarray
 
 
 @shared
 def room_for_due(n_bodies, n_pairs, n_columns):
-    """Nothing is said yet."""
+    """Every pair is to be looked at; nothing else is said yet."""
     return Due(
-        np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.empty(n_bodies),
-        np.zeros(n_bodies, dtype=np.int64), np.full(n_bodies, -1),
-        np.zeros(n_bodies + 1, dtype=np.int64), np.empty(2 * n_pairs, dtype=np.int64),
-        np.empty(n_bodies, dtype=np.int64), np.arange(n_pairs), np.full(n_pairs, -1),
+        np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.full(n_bodies, np.inf),
+        np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
+        np.zeros(n_bodies + 1, dtype=np.int64), np.empty(n_pairs, dtype=np.int64),
+        np.empty(n_bodies, dtype=np.int64), np.arange(n_pairs),
     )  # fmt: skip
 
 
 @inlined
 def all_due(frames, due):
-    """Makes all bodies due that links carry; the number of them. All pairs are to be looked at."""
+    """Makes all bodies due that links carry; the number of them."""
     n_due = 0
     for body in range(len(frames)):
-        due.spare[body] = np.inf
         if frames[body] >= 0:
-            due.looks[body] = 0
             due.bodies[n_due] = body
             n_due += 1
     return n_due
@@ -66,19 +61,17 @@ def all_due(frames, due):
 def fill_due(surface, world, positions, due):
     """Fills what is known of all steps beforehand."""
     fill_reach(surface, world.frames, world.links, positions, due.reach, due.noise)
-    pairs, starts = world.pairs, due.starts
-    for pair in range(len(pairs)):
-        starts[pairs[pair, 0]] += 1
-        starts[pairs[pair, 1]] += 1
+    starts = due.starts
+    for pair in range(len(world.pairs)):
+        starts[world.pairs[pair, 0]] += 1
     end = 0
     for body in range(len(starts)):
         end += starts[body]
         starts[body] = end
-    for pair in range(len(pairs) - 1, -1, -1):
-        for side in range(2):
-            body = pairs[pair, side]
-            starts[body] -= 1
-            due.pairs[starts[body]] = pair
+    for pair in range(len(world.pairs) - 1, -1, -1):
+        body = world.pairs[pair, 0]
+        starts[body] -= 1
+        due.pairs[starts[body]] = pair
 
 
 @merged
@@ -99,48 +92,19 @@ def find_due(frames, positions, row, due):
 
 
 @merged
-def _comes_along(positions, row, look, body, due):
-    """Notes that a body is looked at that is not due: what it may move is less by what it has moved."""
-    due.spare[body] -= stride_of(positions, due.rows[body], row, due.reach[body], due.noise[body])
-    due.rows[body] = row
-    due.looks[body] = look
-
-
-@merged
-def gather(world, positions, row, look, n_due, due):
-    """Fills `due.asked` with the pairs of the bodies that are due; `bodies` then holds the others of these too.
-
-    Returns how many (pairs, bodies).
-    """
-    for i in range(n_due):
-        body = due.bodies[i]
-        due.spare[body] = np.inf
-        due.rows[body] = row
-        due.looks[body] = look
+def gather(row, look, n_due, due):
+    """Fills `due.asked` with the pairs of the bodies that are due and looked at now; how many."""
     n_pairs = 0
-    n_bodies = n_due
     for i in range(n_due):
         body = due.bodies[i]
+        due.spare[body], due.rows[body], due.looks[body] = np.inf, row, look
         for k in range(due.starts[body], due.starts[body + 1]):
-            pair = due.pairs[k]
-            if due.taken[pair] == look:
-                continue
-            due.taken[pair] = look
-            due.asked[n_pairs] = pair
+            due.asked[n_pairs] = due.pairs[k]
             n_pairs += 1
-            other = world.pairs[pair, 0] + world.pairs[pair, 1] - body
-            if world.frames[other] >= 0 and due.looks[other] != look:
-                _comes_along(positions, row, look, other, due)
-                due.bodies[n_bodies] = other
-                n_bodies += 1
-    return n_pairs, n_bodies
+    return n_pairs
 
 
 @merged
-def spend(world, pair, spare_of_pair, due):
-    """Notes how far the bodies of a pair may move from where they are: each half as far where both do."""
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    if world.frames[body_a] >= 0 and world.frames[body_b] >= 0:
-        spare_of_pair *= 0.5
-    due.spare[body_a] = min(due.spare[body_a], spare_of_pair)
-    due.spare[body_b] = min(due.spare[body_b], spare_of_pair)
+def spend(body, spare, due):
+    """Notes that a body may move no farther than `spare` [m] from where it is, for one of its pairs."""
+    due.spare[body] = min(due.spare[body], spare)

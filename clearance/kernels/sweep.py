@@ -42,7 +42,7 @@ class World(NamedTuple):
     Attributes:
         frames: (bodies,) link that carries the body, or -1 for one that stands.
         standing: (bodies, 4, 4) poses of the bodies that stand [m].
-        pairs: (p, 2) bodies to measure against each other.
+        pairs: (p, 2) bodies to measure against each other: one that a link carries and one that stands.
         links: what moves the links.
     """
 
@@ -194,19 +194,28 @@ def _nearest_by_boxes(surface, world, pairs, known, winner):
 
 
 @merged
-def _is_seen(world, pair, look, due):
-    """True if both bodies of a pair are looked at, as far as they move."""
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    seen_a = world.frames[body_a] < 0 or due.looks[body_a] == look
-    return seen_a and (world.frames[body_b] < 0 or due.looks[body_b] == look)
-
-
-@merged
 def _pass_over(world, row, floor, rows, tally):
     """Writes a row at which nothing needs a look: no pair is nearer than `floor` [m]."""
     _write(row, -1, nothing_yet(np.inf), floor, rows)
     tally[0] += len(world.pairs)
     tally[4] += 1
+
+
+@merged
+def _next_look(world, positions, row, within, due, rows, tally):
+    """The next row, from `row` on, at which a body is due; writes those before, where nothing comes `within` [m].
+
+    Returns (row, how many bodies are due, [m] how near those can be that are not).
+    """
+    n_due = 0
+    lowest = np.inf
+    while n_due == 0 and row < len(positions):
+        n_due, left = find_due(world.frames, positions, row, due)
+        lowest = within + left
+        if n_due == 0:
+            _pass_over(world, row, lowest, rows, tally)
+            row += 1
+    return row, n_due, lowest
 
 
 @kernel
@@ -242,7 +251,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
     near_only = within[0] < np.inf
     if near_only:
         fill_due(surface, world, positions, due)
-    n_seen = all_due(world.frames, due)
+    n_due = all_due(world.frames, due)
     n_asked = len(world.pairs)
     lent = lend(surface)
     lowest = np.inf
@@ -250,13 +259,13 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
     look = 0
     while row < len(steps):
         if look > 0:
-            bring(surface, world, due.bodies[:n_seen], positions[row], look, placed)
+            bring(surface, world, due.bodies[:n_due], positions[row], look, placed)
         asked_pairs = due.asked[:n_asked]
         best = nothing_yet(np.inf)
         best_pair = -1
         asked_within = within[0]
         gap = asked_within
-        first = winner if not near_only or _is_seen(world, winner, look, due) else -1
+        first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
         if first >= 0 and floors[first] - _moved(world, first, placed.travel) <= 0.0:
             first = _nearest_by_boxes(surface, world, asked_pairs, known, first)
         tally[0] += len(world.pairs)
@@ -275,7 +284,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
             if floor > gap:
                 lowest = min(lowest, floor)
                 if near_only:
-                    spend(world, pair, floor - asked_within, due)
+                    spend(body_a, floor - asked_within, due)
                 continue
             moves = placed.moves[body_a] + placed.moves[body_b]
             if still_holds(answers, pair, moves, gap):
@@ -301,7 +310,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
                 tally[3] += measured.tally.faces
             lowest = min(lowest, floor)
             if near_only:
-                spend(world, pair, floor - asked_within, due)
+                spend(body_a, floor - asked_within, due)
             if hit.face_a == 2**62:
                 continue
             if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
@@ -320,17 +329,11 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
         _write(row, best_pair, best, lowest, rows)
         row += 1
         look += 1
-        lowest = np.inf
         if goal.lasting and not goal.each and best.gap_sq == 0.0:  # nothing is nearer than contact
             for after in range(row, len(steps)):
                 _pass_over(world, after, 0.0, rows, tally)
             break
+        lowest = np.inf
         if near_only:
-            n_due = 0
-            while n_due == 0 and row < len(steps):
-                n_due, left = find_due(world.frames, positions, row, due)
-                lowest = asked_within + left
-                if n_due == 0:
-                    _pass_over(world, row, lowest, rows, tally)
-                    row += 1
-            n_asked, n_seen = gather(world, positions, row, look, n_due, due)
+            row, n_due, lowest = _next_look(world, positions, row, asked_within, due, rows, tally)
+            n_asked = gather(row, look, n_due, due)

@@ -21,8 +21,8 @@ from tests.strategies import rotations
 def searches(a, b, poses, limits, wanted, seeds, moved, out, table):
     """Fills `out` (n, 2) [m]: the distance found, or infinity, and the bound proven.
 
-    All are of one pair that goes on from its front, b at `poses` (n, 4, 4) in the frame of a, which have `moved` (n,)
-    from one to the next. Seeds (n, 2) of -2 stand for those that the last search gave back.
+    All are of one pair that goes on from its front, b at `poses` (n, 4, 4) in the frame of a, which it has `moved`
+    (n,) [m] to from the one before. Seeds (n, 2) of -2 stand for those that the last search gave back.
     """
     fronts, scratch = no_fronts(1, POOL), new_scratch()
     lent_a, lent_b = lend(a), lend(b)
