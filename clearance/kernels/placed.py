@@ -80,7 +80,7 @@ def put_all(world, positions, placed):
         _put(placed.links[frame] if frame >= 0 else world.standing[body], placed, body)
 
 
-@inlined
+@merged
 def bring(surface, world, bodies, positions, look, placed):
     """Brings those of `bodies` that links carry to where they are with the joints at `positions` (columns,)."""
     for body in bodies:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import borrowing, inlined, kernel, merged
+from clearance.jit import borrowing, inlined, kernel, merged, spliced
 from clearance.kernel_table import lend
 from clearance.kernels.answers import Answers, answer_of, no_answers, note_answer, still_holds
 from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
@@ -201,7 +201,7 @@ def _pass_over(world, row, floor, rows, tally):
     tally[4] += 1
 
 
-@merged
+@spliced
 def _next_look(world, positions, row, within, due, rows, tally):
     """The next row, from `row` on, at which a body is due; writes those before, where nothing comes `within` [m].
 
