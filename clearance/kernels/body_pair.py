@@ -58,7 +58,7 @@ class Measured(NamedTuple):
         hit: the nearest points in the world, if nearer than the distance wanted; else faces of 2**62.
         lower_bound: [m] proven.
         error: [m] a bound on how far the distance of `hit` is from the truth.
-        face_a, face_b: where to begin the next time; those that were asked with if nothing was found in the limit.
+        face_a, face_b: where to begin the next time: the nearest faces met, within the limit or not.
     """
 
     hit: Hit
