@@ -5,6 +5,7 @@ Not for: the measuring (`measure`) and the motion itself (`kinematic`, `bullet`)
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -40,14 +41,14 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     shapes += [case.obstacles[k].body.shape for k in obstacles]
     place_of_link = {link: place for place, link in enumerate(links)}
     place_of_obstacle = {k: len(links) + place for place, k in enumerate(obstacles)}
-    measured = [
-        (place_of_link[pair.i_robot, pair.i_body], place_of_obstacle[pair.i_obstacle]) for pair in pairs
-    ]
-    frames = [_frame(case, i, j) for i, j in links]
+    measured = np.empty((len(pairs), 2), dtype=np.int64)
+    measured[:, 0] = [place_of_link[pair.i_robot, pair.i_body] for pair in pairs]
+    measured[:, 1] = [place_of_obstacle[pair.i_obstacle] for pair in pairs]
+    frames = _frames(case, links)
     world = World(
         frames=np.array([*frames, *[-1] * len(obstacles)], dtype=np.int64),
         standing=_standing(case, len(links), obstacles),
-        pairs=np.array(measured, dtype=np.int64),
+        pairs=measured,
         links=joined_links(case.robots, frames),
     )
     return Layout(join(shapes), world)
@@ -61,11 +62,11 @@ def positions_at(motions: Sequence[Motion], steps: np.ndarray | range) -> np.nda
     return np.concatenate([motion.positions[these] for motion in motions], axis=1)
 
 
-def _frame(case: Case, i_robot: int, i_body: int) -> int:
-    """The link that carries a body, counted over all robots."""
-    robot = case.robots[i_robot].robot
-    before = sum(len(placed.robot.link_names) for placed in case.robots[:i_robot])
-    return before + robot.link_names.index(robot.bodies[i_body].name)
+def _frames(case: Case, links: Sequence[tuple[int, int]]) -> list[int]:
+    """The links that carry bodies, given as (robot, body), counted over all robots."""
+    robots = [placed.robot for placed in case.robots]
+    before = list(itertools.accumulate((len(robot.link_names) for robot in robots), initial=0))
+    return [before[i] + robots[i].link_names.index(robots[i].bodies[j].name) for i, j in links]
 
 
 def _standing(case: Case, n_links: int, obstacles: Sequence[int]) -> np.ndarray:

@@ -327,7 +327,13 @@ def _measurement(
     )
 
 
+_NO_PAIRS = Minima(np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 2, 3)))
+"""The minima of no pairs."""
+
+
 def _no_minima(n_pairs: int) -> Minima:
+    if n_pairs == 0:
+        return _NO_PAIRS
     return Minima(
         np.full(n_pairs, np.inf), np.full(n_pairs, -1, dtype=np.int64), np.full((n_pairs, 2, 3), np.nan)
     )
