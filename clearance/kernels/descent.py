@@ -252,7 +252,7 @@ def descend(
                 if not is_told:  # nearer ones may be hidden
                     least_sq = min(least_sq, max(0.0, gap) * max(0.0, gap))
                 reach = limit_of(a, face_a, b, face_b, before_gap, margin)
-                may_win = least_sq <= reach * reach
+                may_win = least_sq < math.inf and least_sq <= reach * reach
                 if may_win:
                     if n_pairs == N_WAITING:
                         n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
