@@ -17,7 +17,6 @@ class Links(NamedTuple):
     """The links of all robots behind one another, parents before children, and what moves them.
 
     Attributes:
-        asked: (m,) the links whose poses are wanted, and all above them, in order.
         parents: (links,) or `NO_PARENT` for a root, which stands.
         kinds: (links,) of the joint above each link. axes: (links, 3) its unit axis.
         parent_from_joint: (links, 4, 4) its fixed part [m]; of a root its pose in the world.
@@ -25,7 +24,6 @@ class Links(NamedTuple):
         factors, offsets: (links,) its position is factor times that, plus offset [rad or m].
     """
 
-    asked: np.ndarray
     parents: np.ndarray
     kinds: np.ndarray
     axes: np.ndarray
@@ -100,7 +98,7 @@ def place_links(links, positions, poses, wanted, look):
 
     With a link all above it must be wanted. Poses [m]; positions (columns,) [rad or m].
     """
-    for link in links.asked:
+    for link in range(len(links.parents)):
         if wanted[link] != look:
             continue
         parent = links.parents[link]

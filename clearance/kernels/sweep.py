@@ -274,7 +274,7 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
             if turn >= 0 and pair == first:
                 continue
             body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-            moved = placed.travel[body_a] + placed.travel[body_b]
+            moved = _moved(world, pair, placed.travel)
             floor = floors[pair] - moved
             if goal.each:
                 asked_within = within[pair]

@@ -49,7 +49,7 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
         frames=np.array([*frames, *[-1] * len(obstacles)], dtype=np.int64),
         standing=_standing(case, len(links), obstacles),
         pairs=measured,
-        links=joined_links(case.robots, frames),
+        links=joined_links(case.robots),
     )
     return Layout(join(shapes), world)
 

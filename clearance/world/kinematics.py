@@ -65,28 +65,22 @@ def chain_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.n
     return parents, kinds, fixed_parts, axes
 
 
-def joined_links(placed: Sequence[PlacedRobot], asked: Sequence[int]) -> Links:
+def joined_links(placed: Sequence[PlacedRobot]) -> Links:
     """The links of several robots behind one another, for poses one step at a time.
 
-    Args:
-        asked: the links whose poses are wanted, counted over all robots.
-
-    Returns:
-        Links that follow the columns of all robots' `moving_joints`, robot by robot.
+    They follow the columns of all robots' `moving_joints`, robot by robot.
     """
     robots = [_links_of(one.robot) for one in placed]
     links = robots[0] if len(robots) == 1 else _behind_one_another(placed, robots)
     roots = np.flatnonzero(links.parents == NO_PARENT)
     parent_from_joint = links.parent_from_joint.copy()
     parent_from_joint[roots] = [one.world_from_base for one in placed]
-    return links._replace(
-        asked=_with_all_above(asked, links.parents.tolist()), parent_from_joint=parent_from_joint
-    )
+    return links._replace(parent_from_joint=parent_from_joint)
 
 
 @lru_cache(maxsize=8)
 def _links_of(robot: Robot) -> Links:
-    """The links of one robot, all asked for, standing at the origin."""
+    """The links of one robot, standing at the origin."""
     parents, kinds, fixed_parts, axes = chain_arrays(robot)
     parents = parents.copy()
     parents[0] = NO_PARENT
@@ -96,7 +90,7 @@ def _links_of(robot: Robot) -> Links:
     columns[links] = followed
     for link, column, factor, offset in mimics:
         columns[link], factors[link], offsets[link] = column, factor, offset
-    return Links(np.arange(len(parents)), parents, kinds, axes, fixed_parts, columns, factors, offsets)
+    return Links(parents, kinds, axes, fixed_parts, columns, factors, offsets)
 
 
 def _behind_one_another(placed: Sequence[PlacedRobot], robots: Sequence[Links]) -> Links:
@@ -110,16 +104,6 @@ def _behind_one_another(placed: Sequence[PlacedRobot], robots: Sequence[Links]) 
         for links, first, column in zip(robots, links_before, columns_before, strict=False)
     ]
     return Links(*(np.concatenate(arrays) for arrays in zip(*shifted, strict=True)))
-
-
-def _with_all_above(asked: Sequence[int], parents: Sequence[int]) -> np.ndarray:
-    """(m,) the links asked for and all above them, in order."""
-    wanted = set()
-    for link in asked:
-        while link != NO_PARENT and link not in wanted:
-            wanted.add(link)
-            link = parents[link]
-    return np.array(sorted(wanted), dtype=np.int64)
 
 
 def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray) -> np.ndarray:

@@ -115,7 +115,7 @@ def triangles(random, n, kind):
 
 
 NO_LINKS = Links(
-    *(np.empty(0, dtype=np.int64) for _ in range(3)), np.empty((0, 3)), np.empty((0, 4, 4)),
+    *(np.empty(0, dtype=np.int64) for _ in range(2)), np.empty((0, 3)), np.empty((0, 4, 4)),
     np.empty(0, dtype=np.int64), np.empty(0), np.empty(0),
 )  # fmt: skip
 

@@ -59,7 +59,7 @@ def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     poses = link_poses(placed[i_robot], positions[:, columns])[:, link]
     world = corners @ poses.transpose(0, 2, 1)
     moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
-    bound = ways(surface_of(body), np.array([frame]), joined_links(placed, [frame]), positions)
+    bound = ways(surface_of(body), np.array([frame]), joined_links(placed), positions)
     assert (moved <= bound).all()
 
 
@@ -74,7 +74,7 @@ def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
     positions = np.array([[0.0], [0.001]])
     speck = box((1e-4, 1e-4, 1e-4))
     ends = link_poses(placed, positions)[:, 200, :, 3]
-    bound = ways(surface_of(speck), np.array([200]), joined_links([placed], [200]), positions)
+    bound = ways(surface_of(speck), np.array([200]), joined_links([placed]), positions)
     assert np.linalg.norm(ends[1] - ends[0]) <= bound[1] <= 0.1 * 1.001
 
 
@@ -83,7 +83,7 @@ def test_the_bound_is_not_idle():
     for kind, arm in (("revolute", np.hypot(0.15, 0.05)), ("prismatic", 1.0)):
         joint = Joint("j", JointKind(kind), "a", "b", np.eye(4), np.array([0.0, 0.0, 1.0]))
         placed = PlacedRobot(Robot("r", ("a", "b"), (joint,), ()), Trajectory(np.zeros(1), (), np.zeros((1, 0))))
-        bound = ways(surface_of(SHAPE), np.array([1]), joined_links([placed], [1]), np.array([[0.0], [0.01]]))
+        bound = ways(surface_of(SHAPE), np.array([1]), joined_links([placed]), np.array([[0.0], [0.01]]))
         assert bound[1] == pytest.approx(0.01 * arm, rel=1e-4)
 
 
@@ -92,7 +92,7 @@ def test_the_bound_is_not_idle():
 def test_a_finer_motion_takes_few_more_looks(name, need):
     """Sixteen times the steps: most are passed over, and the answer is that of the steps asked one by one.
 
-    Where several bodies are near each has its own looks, so that fewer steps are without any.
+    Where several bodies come within the limit each has its own looks, so that fewer steps are without any.
     """
     case = cl.load_case(SCENES / name / "case.yaml")
     (placed,) = case.robots
@@ -102,7 +102,8 @@ def test_a_finer_motion_takes_few_more_looks(name, need):
     finer = replace(placed, trajectory=replace(asked, times=times, positions=positions, velocities=None))
     case = replace(case, robots=(finer,))
     whole, found = cl.check(case, jobs=1), cl.check(case, need=need, jobs=1)
-    assert found.record.tally["steps_passed_over"] > 0.5 * len(times)
+    share = 0.5 if (name, need) == ("panda_shelf", "limit") else 0.6
+    assert found.record.tally["steps_passed_over"] > share * len(times)
     truth, told = whole.steps["clearance"].to_numpy(), found.steps["clearance"].to_numpy()
     known = ~np.isnan(told)
     assert (told[known] == truth[known]).all()
