@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.jit import inlined, merged, shared
-from clearance.kernels.stride import fill_reach, stride_of
+from clearance.kernels.stride import stride_of
 
 
 class Due(NamedTuple):
@@ -18,31 +18,26 @@ class Due(NamedTuple):
 
     Attributes:
         reach, noise: of `fill_reach`.
-        spare: (bodies,) [m] how far each may move from where it was at the last look at it.
-        rows, looks: (bodies,) the step and the number of that look.
-        starts, pairs: (bodies + 1,), (p,) the pairs of body k are `pairs[starts[k]:starts[k + 1]]`.
-        bodies: (bodies,) in front those that are due. asked: (p,) in front the pairs to look at.
+        nearest: (bodies,) [m] the least bound of the pairs of each at the last look at it.
+        rows, looks: (bodies,) the step of that look and its number.
+        bodies: (bodies,) in front those that are due.
     """
 
     reach: np.ndarray
     noise: np.ndarray
-    spare: np.ndarray
+    nearest: np.ndarray
     rows: np.ndarray
     looks: np.ndarray
-    starts: np.ndarray
-    pairs: np.ndarray
     bodies: np.ndarray
-    asked: np.ndarray
 
 
 @shared
-def room_for_due(n_bodies, n_pairs, n_columns):
-    """Every pair is to be looked at; nothing else is said yet."""
+def room_for_due(n_bodies, n_columns):
+    """Nothing is said yet."""
     return Due(
-        np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.full(n_bodies, np.inf),
+        np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.empty(n_bodies),
         np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
-        np.zeros(n_bodies + 1, dtype=np.int64), np.empty(n_pairs, dtype=np.int64),
-        np.empty(n_bodies, dtype=np.int64), np.arange(n_pairs),
+        np.empty(n_bodies, dtype=np.int64),
     )  # fmt: skip
 
 
@@ -57,54 +52,28 @@ def all_due(frames, due):
     return n_due
 
 
-@inlined
-def fill_due(surface, world, positions, due):
-    """Fills what is known of all steps beforehand."""
-    fill_reach(surface, world.frames, world.links, positions, due.reach, due.noise)
-    starts = due.starts
-    for pair in range(len(world.pairs)):
-        starts[world.pairs[pair, 0]] += 1
-    end = 0
-    for body in range(len(starts)):
-        end += starts[body]
-        starts[body] = end
-    for pair in range(len(world.pairs) - 1, -1, -1):
-        body = world.pairs[pair, 0]
-        starts[body] -= 1
-        due.pairs[starts[body]] = pair
-
-
 @merged
-def find_due(frames, positions, row, due):
-    """Finds who is due at a row of `positions`: (how many, [m] the least that the others may still move)."""
+def find_due(frames, positions, row, look, within, due):
+    """Finds who can come `within` [m] at a row of `positions`: (how many, [m] how near the others can be).
+
+    Args:
+        look: the number of the look that follows.
+    """
     n_due = 0
     least = np.inf
     for body in range(len(frames)):
         if frames[body] < 0:
             continue
-        left = due.spare[body] - stride_of(positions, due.rows[body], row, due.reach[body], due.noise[body])
-        if left <= 0.0:
-            due.bodies[n_due] = body
+        way = stride_of(positions, due.rows[body], row, due.reach[body], due.noise[body])
+        if due.nearest[body] - way <= within:
+            due.bodies[n_due], due.looks[body] = body, look
             n_due += 1
         else:
-            least = min(least, left)
+            least = min(least, due.nearest[body] - way)
     return n_due, least
 
 
 @merged
-def gather(row, look, n_due, due):
-    """Fills `due.asked` with the pairs of the bodies that are due and looked at now; how many."""
-    n_pairs = 0
-    for i in range(n_due):
-        body = due.bodies[i]
-        due.spare[body], due.rows[body], due.looks[body] = np.inf, row, look
-        for k in range(due.starts[body], due.starts[body + 1]):
-            due.asked[n_pairs] = due.pairs[k]
-            n_pairs += 1
-    return n_pairs
-
-
-@merged
-def spend(body, spare, due):
-    """Notes that a body may move no farther than `spare` [m] from where it is, for one of its pairs."""
-    due.spare[body] = min(due.spare[body], spare)
+def note_look(body, row, nearest, due):
+    """Notes that a body was looked at, and the least bound of its pairs [m]."""
+    due.rows[body], due.nearest[body] = row, nearest

@@ -9,19 +9,28 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import borrowing, inlined, kernel, merged, spliced
+from clearance.jit import borrowing, inlined, kernel, merged, shared, spliced
 from clearance.kernel_table import lend
 from clearance.kernels.answers import Answers, answer_of, no_answers, note_answer, still_holds
 from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
 from clearance.kernels.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
-from clearance.kernels.due import Due, all_due, fill_due, find_due, gather, room_for_due, spend
+from clearance.kernels.due import Due, all_due, find_due, note_look, room_for_due
 from clearance.kernels.face_pair import write_points
 from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
 from clearance.kernels.kinematics import Links
+from clearance.kernels.pair_order import (
+    PairOrder,
+    fill_order,
+    room_for_order,
+    sort_all,
+    sort_first,
+    sort_one,
+)
 from clearance.kernels.placed import Placed, bring, put_all, room_for_bodies
 from clearance.kernels.scratch import Scratch, new_scratch
+from clearance.kernels.stride import fill_reach
 from clearance.kernels.vec3 import rigid
 
 LOOK_AHEAD = 2.0
@@ -60,12 +69,22 @@ class Goal(NamedTuple):
             unless `each`.
         each: every pair has a best of its own; else all pairs of a step share one.
         lasting: a best holds for the later steps too: only what is nearer than all before is measured.
-        effort: of `Asked`; what is found by less than `TO_THE_END` is an upper bound.
     """
 
     within: np.ndarray
     each: bool
     lasting: bool
+
+
+class FirstLook(NamedTuple):
+    """A rough look at a few rows before all others: how near those come, no later one need be farther.
+
+    Attributes:
+        rows: (m,) in their order; none if there is to be no such look.
+        effort: of `Asked`; what is found with less than `TO_THE_END` is an upper bound.
+    """
+
+    rows: np.ndarray
     effort: int
 
 
@@ -118,12 +137,6 @@ def box_bound(surface, world, pair, placed, boxes, enough):
     return bound_of_bodies(boxes, body_a, body_b, enough)
 
 
-@merged
-def _moved(world, pair, travel):
-    """[m] what both bodies of a pair have moved in all."""
-    return travel[world.pairs[pair, 0]] + travel[world.pairs[pair, 1]]
-
-
 @inlined
 def _write(row, pair, hit, floor, rows):
     rows.pair[row] = pair
@@ -151,6 +164,7 @@ class Known(NamedTuple):
     Attributes:
         within: (p,) [m] as in `Goal`, less where that is found.
         floors: (p,) [m] a bound on each pair's distance plus the travel of both bodies when it was found.
+        order: of each body's pairs by `floors`, unless each has a best of its own.
         seeds: (p, 2) the faces that were nearest, or NO_FACE.
         placed: where the bodies are. due: which of them need a look.
         boxes: of the bodies where they were last asked for.
@@ -160,6 +174,7 @@ class Known(NamedTuple):
 
     within: np.ndarray
     floors: np.ndarray
+    order: PairOrder
     seeds: np.ndarray
     placed: Placed
     due: Due
@@ -170,26 +185,43 @@ class Known(NamedTuple):
 
 
 @merged
+def _carried(world, pair, known):
+    """[m] what is left of the bound of a pair: only its first body moves."""
+    return known.floors[pair] - known.placed.travel[world.pairs[pair, 0]]
+
+
+@merged
+def _spare(world, pair, known, goal):
+    """[m] the same, less how near the pair must come where that is another distance for each."""
+    return _carried(world, pair, known) - (known.within[pair] if goal.each else 0.0)
+
+
+@merged
 def _bounded_again(surface, world, pair, known, enough):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
-    moved = _moved(world, pair, known.placed.travel)
     by_boxes = box_bound(surface, world, pair, known.placed, known.boxes, enough)
-    floor = max(known.floors[pair] - moved, by_boxes)
-    known.floors[pair] = (floor + moved) * KEPT_DOWN
+    floor = max(_carried(world, pair, known), by_boxes)
+    known.floors[pair] = (floor + known.placed.travel[world.pairs[pair, 0]]) * KEPT_DOWN
     return floor
 
 
 @merged
-def _nearest_by_boxes(surface, world, pairs, known, winner):
+def _nearest_by_boxes(surface, world, bodies, known, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
+    order = known.order
     nearest = np.inf
-    for pair in pairs:
-        floor = known.floors[pair] - _moved(world, pair, known.placed.travel)
-        if floor < nearest:
+    for body in bodies:
+        place = order.starts[body]
+        while place < order.starts[body + 1]:
+            pair = order.pairs[place]
+            if _carried(world, pair, known) >= nearest:
+                break
             floor = _bounded_again(surface, world, pair, known, nearest)
             if floor < nearest:
                 nearest = floor
                 winner = pair
+            place += 1
+        sort_first(known.floors, order, body, place)
     return winner
 
 
@@ -202,7 +234,7 @@ def _pass_over(world, row, floor, rows, tally):
 
 
 @spliced
-def _next_look(world, positions, row, within, due, rows, tally):
+def _next_look(world, positions, row, look, within, due, rows, tally):
     """The next row, from `row` on, at which a body is due; writes those before, where nothing comes `within` [m].
 
     Returns (row, how many bodies are due, [m] how near those can be that are not).
@@ -210,16 +242,25 @@ def _next_look(world, positions, row, within, due, rows, tally):
     n_due = 0
     lowest = np.inf
     while n_due == 0 and row < len(positions):
-        n_due, left = find_due(world.frames, positions, row, due)
-        lowest = within + left
+        n_due, lowest = find_due(world.frames, positions, row, look, within, due)
         if n_due == 0:
             _pass_over(world, row, lowest, rows, tally)
             row += 1
     return row, n_due, lowest
 
 
+@shared
+def _nothing_known(world, n_columns, within):
+    n_pairs, n_bodies = len(world.pairs), len(world.frames)
+    return Known(
+        within, np.empty(n_pairs), room_for_order(n_bodies, n_pairs), np.full((n_pairs, 2), NO_FACE),
+        room_for_bodies(len(world.links.parents), n_bodies), room_for_due(n_bodies, n_columns),
+        room_for_boxes(n_bodies), no_answers(n_pairs), no_fronts(n_pairs, POOL), new_scratch(),
+    )  # fmt: skip
+
+
 @kernel
-def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table):
+def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally, table):
     """Fills `rows` for `steps` (k,) and `tally`: pairs skipped, queries, nodes, faces, steps passed over.
 
     Ties go to the least pair. What is exact in the rows does not depend on where a sweep starts. Without
@@ -227,101 +268,121 @@ def sweep(surface, world, positions, steps, goal, rows, pair_rows, tally, table)
 
     Args:
         positions: (k, columns) of the joints at the steps [rad or m].
+        first: a `FirstLook`, for a goal that is lasting, with one best for all pairs.
     """
-    n_pairs, n_bodies = len(world.pairs), len(world.frames)
-    known = Known(
-        goal.within.copy(), np.empty(n_pairs), np.full((n_pairs, 2), NO_FACE),
-        room_for_bodies(len(world.links.parents), n_bodies), room_for_due(n_bodies, n_pairs, positions.shape[1]),
-        room_for_boxes(n_bodies), no_answers(n_pairs), no_fronts(n_pairs, POOL), new_scratch(),
-    )  # fmt: skip
-    _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table)
+    for i in range(len(tally)):
+        tally[i] = 0
+    n_columns = positions.shape[1]
+    within = goal.within.copy()
+    if len(first.rows) > 0:
+        few = np.empty((len(first.rows), n_columns))
+        for i in range(len(few)):
+            for column in range(n_columns):
+                few[i, column] = positions[first.rows[i], column]
+        known = _nothing_known(world, n_columns, within)
+        _sweep(surface, world, few, first.rows, goal, first.effort, known, rows, pair_rows, tally, table)
+    known = _nothing_known(world, n_columns, within)
+    _sweep(surface, world, positions, steps, goal, TO_THE_END, known, rows, pair_rows, tally, table)
 
 
 @borrowing
-def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally, table):
-    """`sweep`, with room for what is known."""
-    within, floors, seeds, placed, due = known.within, known.floors, known.seeds, known.placed, known.due
-    answers, fronts, scratch = known.answers, known.fronts, known.scratch
-    for i in range(len(tally)):
-        tally[i] = 0
+def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_rows, tally, table):
+    """`sweep`, with room for what is known. The rows after a first look are overwritten."""
+    within, floors, order, seeds = known.within, known.floors, known.order, known.seeds
+    placed, due, answers, fronts = known.placed, known.due, known.answers, known.fronts
     put_all(world, positions[0], placed)
     for pair in range(len(world.pairs)):
         floors[pair] = box_bound(surface, world, pair, placed, known.boxes, np.inf)
     winner = np.argmin(floors)
+    fill_order(world.pairs, order)
+    if not goal.each:
+        sort_all(floors, order)
     near_only = within[0] < np.inf
     if near_only:
-        fill_due(surface, world, positions, due)
+        fill_reach(surface, world.frames, world.links, positions, due.reach, due.noise)
     n_due = all_due(world.frames, due)
-    n_asked = len(world.pairs)
     lent = lend(surface)
     lowest = np.inf
     row = 0
     look = 0
     while row < len(steps):
+        bodies = due.bodies[:n_due]
         if look > 0:
-            bring(surface, world, due.bodies[:n_due], positions[row], look, placed)
-        asked_pairs = due.asked[:n_asked]
+            bring(surface, world, bodies, positions[row], look, placed)
         best = nothing_yet(np.inf)
         best_pair = -1
-        asked_within = within[0]
-        gap = asked_within
+        gap = within[0]
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
-        if first >= 0 and floors[first] - _moved(world, first, placed.travel) <= 0.0:
-            first = _nearest_by_boxes(surface, world, asked_pairs, known, first)
+        if first >= 0:
+            if _carried(world, first, known) <= 0.0:
+                first = _nearest_by_boxes(surface, world, bodies, known, first)
+            order.pairs[len(world.pairs)] = first
         tally[0] += len(world.pairs)
-        for turn in range(-1 if first >= 0 else 0, n_asked):
-            pair = first if turn < 0 else asked_pairs[turn]
-            if turn >= 0 and pair == first:
-                continue
-            body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-            moved = _moved(world, pair, placed.travel)
-            floor = floors[pair] - moved
+        for turn in range(-1 if first >= 0 else 0, n_due):
+            body = len(world.frames) if turn < 0 else bodies[turn]  # the list of one that is asked first
+            nearest = np.inf
+            if first >= 0 and body == world.pairs[first, 0]:
+                nearest = _spare(world, first, known, goal)
+            place, end = order.starts[body], order.starts[body + 1]
+            while place < end:
+                pair = order.pairs[place]
+                place += 1
+                if turn >= 0 and pair == first:
+                    continue
+                floor = _carried(world, pair, known)
+                if goal.each:
+                    gap = within[pair]
+                elif floor > gap:  # and so are those after it
+                    lowest, nearest = min(lowest, floor), min(nearest, floor)
+                    break
+                if floor <= 0.0 or gap < np.inf:
+                    floor = _bounded_again(surface, world, pair, known, gap)
+                if floor > gap:
+                    lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
+                    continue
+                body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+                moves, moved = placed.moves[body_a], placed.travel[body_a]
+                if still_holds(answers, pair, moves, gap):
+                    hit, floor = answer_of(answers, pair)
+                else:
+                    ahead = moved / max(1, placed.looks[body_a])
+                    limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
+                    if floor <= 0.0:
+                        forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
+                    apart = floor > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
+                    asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, effort)
+                    measured = measure_pair(
+                        lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses), asked,
+                        fronts, pair, moved, known.scratch, table,
+                    )  # fmt: skip
+                    hit, floor = measured.hit, measured.lower_bound
+                    note_answer(answers, pair, moves, hit, floor)
+                    floors[pair] = (floor + moved) * KEPT_DOWN
+                    seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
+                    tally[0] -= 1
+                    tally[1] += 1
+                    tally[2] += measured.tally.nodes
+                    tally[3] += measured.tally.faces
+                lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
+                if hit.face_a == 2**62:
+                    continue
+                if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
+                    best = hit
+                    best_pair = pair
+                    if not goal.each:
+                        gap = min(gap, np.sqrt(hit.gap_sq))
+                if goal.each:
+                    _write_pair(row, steps[row], pair, hit, pair_rows)
+                    if goal.lasting:
+                        within[pair] = min(gap, np.sqrt(hit.gap_sq) * NOT_LESS)
+            if near_only and turn >= 0:
+                note_look(body, row, nearest, due)
             if goal.each:
-                asked_within = within[pair]
-                gap = asked_within
-            if floor <= 0.0 or floor <= gap < np.inf:
-                floor = _bounded_again(surface, world, pair, known, gap)
-            if floor > gap:
-                lowest = min(lowest, floor)
-                if near_only:
-                    spend(body_a, floor - asked_within, due)
                 continue
-            moves = placed.moves[body_a] + placed.moves[body_b]
-            if still_holds(answers, pair, moves, gap):
-                hit, floor = answer_of(answers, pair)
+            if turn < 0:
+                sort_one(floors, order, world.pairs[first, 0], first)
             else:
-                ahead = moved / max(1, placed.looks[body_a], placed.looks[body_b])
-                limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
-                if floor <= 0.0:
-                    forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
-                apart = floor > 0.0 or goal.effort < TO_THE_END  # an upper bound is one inside, too
-                asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, goal.effort)
-                measured = measure_pair(
-                    lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses), asked,
-                    fronts, pair, moved, scratch, table,
-                )  # fmt: skip
-                hit, floor = measured.hit, measured.lower_bound
-                note_answer(answers, pair, moves, hit, floor)
-                floors[pair] = (floor + moved) * KEPT_DOWN
-                seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
-                tally[0] -= 1
-                tally[1] += 1
-                tally[2] += measured.tally.nodes
-                tally[3] += measured.tally.faces
-            lowest = min(lowest, floor)
-            if near_only:
-                spend(body_a, floor - asked_within, due)
-            if hit.face_a == 2**62:
-                continue
-            if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
-                best = hit
-                best_pair = pair
-                if not goal.each:
-                    gap = min(gap, np.sqrt(hit.gap_sq))
-            if goal.each:
-                _write_pair(row, steps[row], pair, hit, pair_rows)
-                if goal.lasting:
-                    within[pair] = min(gap, np.sqrt(hit.gap_sq) * NOT_LESS)
+                sort_first(floors, order, body, place)
         if best_pair >= 0:
             winner = best_pair
             if goal.lasting and not goal.each:
@@ -335,5 +396,5 @@ def _sweep(surface, world, positions, steps, goal, known, rows, pair_rows, tally
             break
         lowest = np.inf
         if near_only:
-            row, n_due, lowest = _next_look(world, positions, row, asked_within, due, rows, tally)
-            n_asked = gather(row, look, n_due, due)
+            enough = 0.0 if goal.each else within[0]
+            row, n_due, lowest = _next_look(world, positions, row, look, enough, due, rows, tally)

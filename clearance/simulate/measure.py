@@ -16,8 +16,7 @@ import numpy as np
 
 from clearance.ahead import usable_cores
 from clearance.kernel_table import call
-from clearance.kernels.body_pair import TO_THE_END
-from clearance.kernels.sweep import NOT_LESS, Goal, PairRows, StepRows, sweep
+from clearance.kernels.sweep import NOT_LESS, FirstLook, Goal, PairRows, StepRows, sweep
 from clearance.simulate.layout import Layout, lay_out, positions_at
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.spool import Rows
@@ -119,19 +118,19 @@ class _Sweep:
     ) -> KeptRows:
         """The nearest pair of each step, where it is within [m]; if lasting, only what is nearer than before."""
         rows = self._rows(name, len(steps))
-        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting, TO_THE_END), rows=rows)
+        self._run(name, steps, Goal(np.full(self.n_pairs, within), False, lasting), rows=rows)
         return rows
 
     def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
         """The nearest pair of each step, every pair at every step, and the least of each."""
         rows = self._rows(name, len(steps))
         every = self.kept.array(f"{name}.every", (len(steps), self.n_pairs))
-        goal = Goal(np.full(self.n_pairs, np.inf), True, False, TO_THE_END)
+        goal = Goal(np.full(self.n_pairs, np.inf), True, False)
         return rows, every, self._run(name, steps, goal, rows=rows, every=every)
 
     def least_rows(self, name: str, steps: Steps, within: np.ndarray) -> Minima:
         """The least of every pair by itself, within (p,) [m]."""
-        return self._run(name, steps, Goal(within, True, True, TO_THE_END))
+        return self._run(name, steps, Goal(within, True, True))
 
     def _rows(self, name: str, n_rows: int) -> KeptRows:
         array = self.kept.array
@@ -146,8 +145,10 @@ class _Sweep:
         """Fills the rows of a few steps in one go; the counters, as in `SWEEP_COUNTERS`."""
         positions = positions_at(self.motions, steps)
         numbers = np.arange(steps.start, steps.stop) if isinstance(steps, range) else steps
-        counts = np.zeros(len(SWEEP_COUNTERS), dtype=np.int64)
-        call(sweep, self.layout.surface, self.layout.world, positions, numbers, goal, rows, found, counts)
+        counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
+        least_only = goal.lasting and not goal.each and goal.within[0] == np.inf
+        first = FirstLook(_first_steps(len(steps)) if least_only else _NO_STEPS, FIRST_EFFORT)
+        call(sweep, self.layout.surface, self.layout.world, positions, numbers, goal, first, rows, found, counts)
         return counts
 
     def _run(
@@ -160,7 +161,7 @@ class _Sweep:
         every: np.ndarray | None = None,
     ) -> Minima:
         """Fills what rows are given, from the part on that an interrupted run had not reached."""
-        spans = parts(len(steps), sparse=bool(goal.within[0] < np.inf))
+        spans = parts(len(steps), sparse=goal.lasting or bool(goal.within[0] < np.inf))
         log = self.kept.log(name, spans)
         n_minima = self.n_pairs if goal.each else 0
         least, tally = _gathered(log.gathered, n_minima)
@@ -246,7 +247,11 @@ def _every_pair(work: _Sweep) -> Measurement:
 
 
 def _minimum(work: _Sweep) -> Measurement:
-    rows = work.step_rows("minimum", range(work.n_steps), _first_least(work), lasting=True)
+    within = np.inf
+    if len(parts(work.n_steps, sparse=True)) > 1:  # else a first look is part of the sweep
+        few = work.aside.step_rows("first", _first_steps(work.n_steps), lasting=True)
+        within = few.clearance.min() * NOT_LESS
+    rows = work.step_rows("minimum", range(work.n_steps), within, lasting=True)
     least = int(np.argmin(rows.clearance))
     if np.isnan(rows.clearance[least]):  # rows of an interrupted run that had come further
         least = int(np.nanargmin(rows.clearance))
@@ -291,13 +296,7 @@ def _least_as_nearest(work: _Sweep, rows: KeptRows) -> np.ndarray:
     return least
 
 
-def _first_least(work: _Sweep) -> float:
-    """[m] a clearance that some step has, or a little more."""
-    steps = _first_steps(work.n_steps)
-    rows = _rows_of(None, slice(0, len(steps)))
-    goal = Goal(np.full(work.n_pairs, np.inf), False, True, FIRST_EFFORT)
-    work.tally[:] += work.sweep_steps(steps, goal, rows, _no_pair_rows(work.n_pairs, 0))
-    return float(rows.clearance.min()) * NOT_LESS
+_NO_STEPS = np.empty(0, dtype=np.int64)
 
 
 def _first_steps(n_steps: int) -> np.ndarray:
