@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import TypeVar
 
 Result = TypeVar("Result")
@@ -43,7 +45,7 @@ def in_order(
     if jobs == 1 or len(spans) <= 1:
         yield from map(work, spans)
         return
-    pool = ThreadPoolExecutor(min(jobs, len(spans)))
+    pool = _threads(jobs)
     running = deque()
     try:
         for span in spans:
@@ -52,5 +54,17 @@ def in_order(
                 yield running.popleft().result()
         while running:
             yield running.popleft().result()
-    finally:
-        pool.shutdown(cancel_futures=True)
+    finally:  # also where the caller wants no more: then no thread writes any more
+        for result in running:
+            result.cancel()
+        wait(running)
+
+
+@functools.lru_cache(maxsize=1)
+def _threads(jobs: int) -> ThreadPoolExecutor:
+    """So many threads, which stay for the next run: to start them takes as long as a hundred steps."""
+    return ThreadPoolExecutor(jobs, thread_name_prefix="clearance")
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_threads.cache_clear)  # a child process has none of them

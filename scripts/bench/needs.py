@@ -47,7 +47,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     names = sorted(path.parent.name for path in case_files())
     parser.add_argument("--scenes", nargs="*", choices=names, default=None, metavar="NAME")
-    parser.add_argument("--passes", type=int, default=5)
+    parser.add_argument("--passes", type=int, default=9)
     parser.add_argument("--csv", type=Path, help="write the rows here")
     asked = parser.parse_args()
     console = Console(width=None if sys.stdout.isatty() else 132)
