@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import borrowing, inlined, kernel, merged, shared, spliced
+from clearance.jit import borrowing, kernel, merged, shared, spliced
 from clearance.kernel_table import lend
 from clearance.kernels.answers import Answers, answer_of, no_answers, note_answer, still_holds
 from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
@@ -17,7 +17,6 @@ from clearance.kernels.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
 from clearance.kernels.descent import nothing_yet
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.due import Due, all_due, find_due, note_look, room_for_due
-from clearance.kernels.face_pair import write_points
 from clearance.kernels.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
 from clearance.kernels.kinematics import Links
 from clearance.kernels.pair_order import (
@@ -31,6 +30,7 @@ from clearance.kernels.pair_order import (
 from clearance.kernels.placed import Placed, bring, put_all, room_for_bodies
 from clearance.kernels.scratch import Scratch, new_scratch
 from clearance.kernels.stride import fill_reach
+from clearance.kernels.sweep_rows import pass_over, write_pair, write_step
 from clearance.kernels.vec3 import rigid
 
 LOOK_AHEAD = 2.0
@@ -51,7 +51,7 @@ class World(NamedTuple):
     Attributes:
         frames: (bodies,) link that carries the body, or -1 for one that stands.
         standing: (bodies, 4, 4) poses of the bodies that stand [m].
-        pairs: (p, 2) bodies to measure against each other: one that a link carries and one that stands.
+        pairs: (p, 2) bodies to measure against each other: first one that a link carries, then one that stands.
         links: what moves the links.
     """
 
@@ -88,38 +88,6 @@ class FirstLook(NamedTuple):
     effort: int
 
 
-class StepRows(NamedTuple):
-    """Results, one row a step.
-
-    Attributes:
-        clearance: (k,) [m] of the nearest pair, infinite where none is within what was asked.
-        floor: (k,) [m] a proven lower bound on the distance of all pairs.
-        pair: (k,) the nearest pair, or -1.
-        faces: (k, 2) joined face indices. points: (k, 2, 3) witness points in the world [m].
-    """
-
-    clearance: np.ndarray
-    floor: np.ndarray
-    pair: np.ndarray
-    faces: np.ndarray
-    points: np.ndarray
-
-
-class PairRows(NamedTuple):
-    """Results of every pair, where each has its own best.
-
-    Attributes:
-        every: (k, p) [m] clearance at each step, or (0, p) if only the least are wanted.
-        clearance, step, points: (p,), (p,), (p, 2, 3) the least of each pair, infinite and -1 if there is
-            none, and the first step that has it.
-    """
-
-    every: np.ndarray
-    clearance: np.ndarray
-    step: np.ndarray
-    points: np.ndarray
-
-
 @merged
 def pair_frames(world, pair, poses):
     """Where both bodies of a pair are, of `poses` (bodies, 4, 4)."""
@@ -135,27 +103,6 @@ def box_bound(surface, world, pair, placed, boxes, enough):
             place_box(surface, body, rigid(placed.poses[body]), boxes)
             boxes.moves[body] = placed.moves[body]
     return bound_of_bodies(boxes, body_a, body_b, enough)
-
-
-@inlined
-def _write(row, pair, hit, floor, rows):
-    rows.pair[row] = pair
-    rows.clearance[row] = np.sqrt(hit.gap_sq) if pair >= 0 else np.inf
-    rows.floor[row] = min(floor, rows.clearance[row])
-    rows.faces[row, 0] = hit.face_a
-    rows.faces[row, 1] = hit.face_b
-    write_points(hit, rows.points[row])
-
-
-@inlined
-def _write_pair(row, step, pair, hit, pair_rows):
-    gap = np.sqrt(hit.gap_sq)
-    if len(pair_rows.every) > 0:
-        pair_rows.every[row, pair] = gap
-    if gap < pair_rows.clearance[pair]:
-        pair_rows.clearance[pair] = gap
-        pair_rows.step[pair] = step
-        write_points(hit, pair_rows.points[pair])
 
 
 class Known(NamedTuple):
@@ -225,12 +172,32 @@ def _nearest_by_boxes(surface, world, bodies, known, winner):
     return winner
 
 
-@merged
-def _pass_over(world, row, floor, rows, tally):
-    """Writes a row at which nothing needs a look: no pair is nearer than `floor` [m]."""
-    _write(row, -1, nothing_yet(np.inf), floor, rows)
-    tally[0] += len(world.pairs)
-    tally[4] += 1
+@spliced
+def _asked(world, pair, floor, gap, effort, lent, known, tally, table):
+    """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on."""
+    placed, answers, seeds = known.placed, known.answers, known.seeds
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    moves, moved = placed.moves[body_a], placed.travel[body_a]
+    if still_holds(answers, pair, moves, gap):
+        return answer_of(answers, pair)
+    ahead = moved / max(1, placed.looks[body_a])
+    limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
+    if floor <= 0.0:
+        forget(known.fronts, pair)  # where bodies may meet, nearest first from the roots is best
+    apart = floor > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
+    measured = measure_pair(
+        lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses),
+        Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, effort),
+        known.fronts, pair, moved, known.scratch, table,
+    )  # fmt: skip
+    note_answer(answers, pair, moves, measured.hit, measured.lower_bound)
+    known.floors[pair] = (measured.lower_bound + moved) * KEPT_DOWN
+    seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
+    tally[0] -= 1
+    tally[1] += 1
+    tally[2] += measured.tally.nodes
+    tally[3] += measured.tally.faces
+    return measured.hit, measured.lower_bound
 
 
 @spliced
@@ -244,9 +211,68 @@ def _next_look(world, positions, row, look, within, due, rows, tally):
     while n_due == 0 and row < len(positions):
         n_due, lowest = find_due(world.frames, positions, row, look, within, due)
         if n_due == 0:
-            _pass_over(world, row, lowest, rows, tally)
+            pass_over(len(world.pairs), row, lowest, rows, tally)
             row += 1
     return row, n_due, lowest
+
+
+@spliced
+def _nearest_of(
+    surface, world, bodies, first, row, step, lowest, goal, effort, lent, known, pair_rows, tally, table
+):  # fmt: skip
+    """The nearest pair of some bodies at a row, one of which is asked before all others unless it is -1.
+
+    Returns (its nearest points, the pair or -1, [m] a bound on the distance of all pairs where `lowest` is one on
+    that of all other bodies').
+    """
+    within, floors, order = known.within, known.floors, known.order
+    best, best_pair = nothing_yet(np.inf), -1
+    gap = within[0]
+    order.pairs[len(world.pairs)] = first
+    tally[0] += len(world.pairs)
+    for turn in range(-1 if first >= 0 else 0, len(bodies)):
+        body = len(world.frames) if turn < 0 else bodies[turn]  # the list of one that is asked first
+        nearest = np.inf
+        if first >= 0 and body == world.pairs[first, 0]:
+            nearest = _spare(world, first, known, goal)
+        place, end = order.starts[body], order.starts[body + 1]
+        while place < end:
+            pair = order.pairs[place]
+            place += 1
+            if turn >= 0 and pair == first:
+                continue
+            floor = _carried(world, pair, known)
+            if goal.each:
+                gap = within[pair]
+            elif floor > gap:  # and so are those after it
+                lowest, nearest = min(lowest, floor), min(nearest, floor)
+                break
+            if floor <= 0.0 or gap < np.inf:
+                floor = _bounded_again(surface, world, pair, known, gap)
+            if floor > gap:
+                lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
+                continue
+            hit, floor = _asked(world, pair, floor, gap, effort, lent, known, tally, table)
+            lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
+            if hit.face_a == 2**62:
+                continue
+            if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
+                best, best_pair = hit, pair
+                if not goal.each:
+                    gap = min(gap, np.sqrt(hit.gap_sq))
+            if goal.each:
+                write_pair(row, step, pair, hit, pair_rows)
+                if goal.lasting:
+                    within[pair] = min(gap, np.sqrt(hit.gap_sq) * NOT_LESS)
+        if turn >= 0:
+            note_look(body, row, nearest, known.due)
+        if goal.each:
+            continue
+        if turn < 0:
+            sort_one(floors, order, world.pairs[first, 0], first)
+        else:
+            sort_first(floors, order, body, place)
+    return best, best_pair, lowest
 
 
 @shared
@@ -288,8 +314,7 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
 @borrowing
 def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_rows, tally, table):
     """`sweep`, with room for what is known. The rows after a first look are overwritten."""
-    within, floors, order, seeds = known.within, known.floors, known.order, known.seeds
-    placed, due, answers, fronts = known.placed, known.due, known.answers, known.fronts
+    within, floors, order, placed, due = known.within, known.floors, known.order, known.placed, known.due
     put_all(world, positions[0], placed)
     for pair in range(len(world.pairs)):
         floors[pair] = box_bound(surface, world, pair, placed, known.boxes, np.inf)
@@ -309,90 +334,23 @@ def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_row
         bodies = due.bodies[:n_due]
         if look > 0:
             bring(surface, world, bodies, positions[row], look, placed)
-        best = nothing_yet(np.inf)
-        best_pair = -1
-        gap = within[0]
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
-        if first >= 0:
-            if _carried(world, first, known) <= 0.0:
-                first = _nearest_by_boxes(surface, world, bodies, known, first)
-            order.pairs[len(world.pairs)] = first
-        tally[0] += len(world.pairs)
-        for turn in range(-1 if first >= 0 else 0, n_due):
-            body = len(world.frames) if turn < 0 else bodies[turn]  # the list of one that is asked first
-            nearest = np.inf
-            if first >= 0 and body == world.pairs[first, 0]:
-                nearest = _spare(world, first, known, goal)
-            place, end = order.starts[body], order.starts[body + 1]
-            while place < end:
-                pair = order.pairs[place]
-                place += 1
-                if turn >= 0 and pair == first:
-                    continue
-                floor = _carried(world, pair, known)
-                if goal.each:
-                    gap = within[pair]
-                elif floor > gap:  # and so are those after it
-                    lowest, nearest = min(lowest, floor), min(nearest, floor)
-                    break
-                if floor <= 0.0 or gap < np.inf:
-                    floor = _bounded_again(surface, world, pair, known, gap)
-                if floor > gap:
-                    lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
-                    continue
-                body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-                moves, moved = placed.moves[body_a], placed.travel[body_a]
-                if still_holds(answers, pair, moves, gap):
-                    hit, floor = answer_of(answers, pair)
-                else:
-                    ahead = moved / max(1, placed.looks[body_a])
-                    limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
-                    if floor <= 0.0:
-                        forget(fronts, pair)  # where bodies may meet, nearest first from the roots is best
-                    apart = floor > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
-                    asked = Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, effort)
-                    measured = measure_pair(
-                        lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses), asked,
-                        fronts, pair, moved, known.scratch, table,
-                    )  # fmt: skip
-                    hit, floor = measured.hit, measured.lower_bound
-                    note_answer(answers, pair, moves, hit, floor)
-                    floors[pair] = (floor + moved) * KEPT_DOWN
-                    seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
-                    tally[0] -= 1
-                    tally[1] += 1
-                    tally[2] += measured.tally.nodes
-                    tally[3] += measured.tally.faces
-                lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
-                if hit.face_a == 2**62:
-                    continue
-                if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
-                    best = hit
-                    best_pair = pair
-                    if not goal.each:
-                        gap = min(gap, np.sqrt(hit.gap_sq))
-                if goal.each:
-                    _write_pair(row, steps[row], pair, hit, pair_rows)
-                    if goal.lasting:
-                        within[pair] = min(gap, np.sqrt(hit.gap_sq) * NOT_LESS)
-            if near_only and turn >= 0:
-                note_look(body, row, nearest, due)
-            if goal.each:
-                continue
-            if turn < 0:
-                sort_one(floors, order, world.pairs[first, 0], first)
-            else:
-                sort_first(floors, order, body, place)
+        if first >= 0 and _carried(world, first, known) <= 0.0:
+            first = _nearest_by_boxes(surface, world, bodies, known, first)
+        best, best_pair, lowest = _nearest_of(
+            surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, known, pair_rows, tally,
+            table,
+        )  # fmt: skip
         if best_pair >= 0:
             winner = best_pair
             if goal.lasting and not goal.each:
                 within[0] = min(within[0], np.sqrt(best.gap_sq) * NOT_LESS)
-        _write(row, best_pair, best, lowest, rows)
+        write_step(row, best_pair, best, lowest, rows)
         row += 1
         look += 1
         if goal.lasting and not goal.each and best.gap_sq == 0.0:  # nothing is nearer than contact
             for after in range(row, len(steps)):
-                _pass_over(world, after, 0.0, rows, tally)
+                pass_over(len(world.pairs), after, 0.0, rows, tally)
             break
         lowest = np.inf
         if near_only:

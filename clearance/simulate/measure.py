@@ -16,7 +16,8 @@ import numpy as np
 
 from clearance.ahead import usable_cores
 from clearance.kernel_table import call
-from clearance.kernels.sweep import NOT_LESS, FirstLook, Goal, PairRows, StepRows, sweep
+from clearance.kernels.sweep import NOT_LESS, FirstLook, Goal, sweep
+from clearance.kernels.sweep_rows import PairRows, StepRows
 from clearance.simulate.layout import Layout, lay_out, positions_at
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.spool import Rows
