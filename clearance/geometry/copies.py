@@ -56,6 +56,27 @@ def copies_of(
     return Copies(first, way)
 
 
+def two_sided(
+    corners: np.ndarray, starts: np.ndarray, component: np.ndarray, asked: np.ndarray
+) -> np.ndarray:
+    """(k,) True for the components whose faces occur as often one way round as the other: they hold nothing.
+
+    Args:
+        corners: (c,) vertices of faces that begin at `starts` (f + 1,). component: (f,) of each face.
+        asked: (k,) components for which this may be so.
+    """
+    asked = asked.copy()
+    length = np.diff(starts)
+    for n in np.unique(length[asked[component]]):
+        faces = np.flatnonzero(asked[component] & (length == n))
+        rows, turned = _from_the_least(corners[starts[faces, None] + np.arange(n)])
+        _, same = np.unique(rows, axis=0, return_inverse=True)
+        same = same.reshape(-1)
+        left_over = np.bincount(same, np.where(turned, -1, 1)) != 0
+        asked[component[faces[left_over[same]]]] = False
+    return asked
+
+
 def _from_the_least(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The corners (m, n) of faces from the least on, towards the lesser of its neighbours; which were turned."""
     n = rows.shape[1]

@@ -221,6 +221,11 @@ class Polyhedron:
         """(k,) True for the components that are closed and consistently oriented: they have an inside."""
         return self._topology.component_closed
 
+    @property
+    def component_two_sided(self) -> np.ndarray:
+        """(k,) True for closed components that hold each face once for each side: nothing is inside them."""
+        return self._topology.component_two_sided
+
     @cached_property
     def volume(self) -> float | None:
         """[m^3] what the surface holds, cavities taken off; None unless it is closed and oriented."""

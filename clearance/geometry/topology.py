@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.copies import two_sided
 from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
 from clearance.kernels.topology import joined_labels
 
@@ -20,6 +21,8 @@ class Topology(NamedTuple):
         face_component: (m,) which component each face is in; components share no edge.
         component_closed: (k,) True where every edge of the component is used equally often in both
             directions: it has an inside, and winding numbers are whole.
+        component_two_sided: (k,) True where a closed component, more than two faces back to back, holds each face
+            as often one way round as the other: winding numbers are 0, so that nothing is inside it.
         closed: every edge is used by an even number of faces.
         oriented: no edge is used more than once in a direction without a partner in the other.
         manifold: no edge is used by more than two faces.
@@ -27,6 +30,7 @@ class Topology(NamedTuple):
 
     face_component: np.ndarray
     component_closed: np.ndarray
+    component_two_sided: np.ndarray
     closed: bool
     oriented: bool
     manifold: bool
@@ -48,9 +52,12 @@ def topology_of(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> T
     open_edges = balance != 0
     closed = np.ones(int(component.max()) + 1, dtype=bool)
     closed[component[faces[use.starts[:-1][open_edges]]]] = False
+    doubled = np.zeros(len(closed), dtype=bool)
+    doubled[component[faces[use.starts[:-1][use.n_uses >= 4]]]] = True
     return Topology(
         face_component=component,
         component_closed=closed,
+        component_two_sided=two_sided(corners, starts, component, closed & doubled),
         closed=not bool((use.n_uses % 2)[~loops[use.order[use.starts[:-1]]]].any()),
         oriented=bool((np.abs(balance) <= use.n_uses % 2).all()),
         manifold=bool((use.n_uses <= 2).all()),

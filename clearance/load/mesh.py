@@ -109,7 +109,15 @@ def _solid(triangles: Triangles) -> LoadedMesh:
     notes = [*triangles.notes, *_notes_on_flat(n_without_area(triangles), shape)]
     if shape is not given:
         notes.append("closed surfaces that were inside out are turned round")
-    return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+    return LoadedMesh(shape, len(triangles.corners), (*notes, *_notes_on_sides(shape.component_two_sided)))
+
+
+def _notes_on_sides(two_sided: np.ndarray) -> list[str]:
+    n_parts, n_two_sided = len(two_sided), int(np.count_nonzero(two_sided))
+    if not n_two_sided:
+        return []
+    which = "it holds" if n_two_sided == n_parts else f"{n_two_sided} of its {n_parts} parts hold"
+    return [f"{which} each face once for each side: what is wholly inside is not seen to be in contact"]
 
 
 def _notes_on_flat(n_flat: int, shape: Polyhedron) -> list[str]:

@@ -57,6 +57,18 @@ def test_a_face_that_another_one_shares_two_corners_with_is_no_copy() -> None:
 def test_copies_count_in_what_is_inside(faces: range, turned_round: bool, holds: bool) -> None:
     doubled = with_copies(BALL, list(faces), turned_round=turned_round)
     assert distance(doubled, TINY, pose_b=at(0.3, 0.2, 0.1)).contact == holds
+    assert doubled.component_two_sided.tolist() == [turned_round]
+
+
+def test_only_the_parts_that_hold_nothing_are_two_sided() -> None:
+    both = with_copies(TINY, list(range(TINY.n_faces)), turned_round=True)
+    sheet = Polyhedron(np.array([(3.0, 0, 0), (4, 0, 0), (3, 1, 0)]), [(0, 1, 2), (0, 2, 1)])
+    bowl = Polyhedron(BALL.vertices, faces_of(BALL)[:40])
+    bowl = with_copies(bowl, list(range(40)), turned_round=True)
+    open_too = with_copies(ball(9.0, 1), [0, 1], turned_round=True)
+    parts = Polyhedron.merged([BALL, both, sheet, open_too, bowl.transformed(at(20.0, 0.0, 0.0))])
+    assert parts.component_two_sided.tolist()[:4] == [False, True, False, False]
+    assert parts.component_two_sided[4:].all()
 
 
 def test_a_cavity_that_is_there_twice_is_still_wound_round() -> None:

@@ -83,6 +83,15 @@ def test_zero_area_triangles_go_only_where_their_neighbours_cover_them():
     assert "1 are kept as faces" in mesh.notes[0]
 
 
+def test_a_mesh_with_each_triangle_once_for_each_side_is_said_to_hold_nothing():
+    both = np.concatenate([CUBE_CORNERS, CUBE_CORNERS[:, ::-1]])
+    (note,) = mesh_from_bytes(binary_stl(both), "m.stl").notes
+    assert note.startswith("it holds each face once for each side: what is wholly inside")
+    (note,) = mesh_from_bytes(binary_stl(np.concatenate([both, CUBE_CORNERS + 3.0])), "m.stl").notes
+    assert note.startswith("1 of its 2 parts hold")
+    assert mesh_from_bytes(binary_stl(CUBE_CORNERS), "m.stl").notes == ()
+
+
 def test_obj_polygons_are_the_same_cube():
     mesh = mesh_from_bytes(CUBE_OBJ.encode(), "cube.obj")
     assert (mesh.n_triangles, mesh.shape.n_faces) == (12, 6)
