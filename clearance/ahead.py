@@ -20,12 +20,12 @@ import numba
 import clearance.kernels.body_pair  # noqa: F401 it enters both into the table
 from clearance import kernel_table
 from clearance.jit import cache_root
-from clearance.kernel_table import REFINE, SEARCH
+from clearance.kernel_table import PARTING, REFINE, SEARCH
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 """Set in the environment of the second process, so that no other one follows whatever it comes to run."""
 
-FIRST = (SEARCH, REFINE)
+FIRST = (SEARCH, PARTING, REFINE)
 """What every question about distances needs, in the order in which it is come to."""
 
 _starting = threading.Lock()

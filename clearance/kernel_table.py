@@ -28,10 +28,10 @@ from numba.extending import intrinsic
 
 from clearance.jit import borrowing
 
-REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS = range(7)
+REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS, PARTING = range(8)
 """The places of the table."""
 
-_table = np.zeros((7, 2), dtype=np.int64)  # address, stamp
+_table = np.zeros((8, 2), dtype=np.int64)  # address, stamp
 _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
 _elsewhere: list[subprocess.Popen] = []

@@ -18,12 +18,13 @@ from clearance.kernels.double_double import (
     wide,
 )
 from clearance.kernels.face_pair import Hit, nearest_of_faces
-from clearance.kernels.front import forget, no_fronts
+from clearance.kernels.front import forget, is_worth_parting, no_fronts, note_parting
 from clearance.kernels.hidden import PASSED_OVER
+from clearance.kernels.parting import NOTHING_PARTED, parting_of
 from clearance.kernels.refine import error_of
 from clearance.kernels.scratch import new_scratch
 from clearance.kernels.surface import box_of, surface_like
-from clearance.kernels.vec3 import Vec3, move
+from clearance.kernels.vec3 import Vec3, move, row
 
 NO_FACE = -1
 
@@ -101,7 +102,12 @@ def _like():
 def _begin(a, root_a, b, root_b, m, margin, asked):
     """What a search begins with: the nearest points of the faces that were nearest, or the bodies' centres."""
     if asked.face_a >= 0:
-        return nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf)).best
+        best = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf)).best
+        if best.face_a != 2**62:
+            return best
+        p = row(a.vertices, a.face_vertices[a.face_starts[asked.face_a]])
+        q = row(b.vertices, b.face_vertices[b.face_starts[asked.face_b]])
+        return Hit(np.inf, 2**62, 2**62, p, move(m, q))
     return Hit(np.inf, 2**62, 2**62, box_of(a, root_a).centre, move(m, box_of(b, root_b).centre))
 
 
@@ -122,11 +128,33 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     limit = asked.limit + margin
     wanted = asked.wanted
     resumed = asked.face_a >= 0 or asked.limit < np.inf
-    for _ in range(2):
+    parting, n_nodes = NOTHING_PARTED, 0
+    if is_worth_parting(fronts, pair, asked.limit == np.inf and asked.face_a < 0):
+        parting = parting_of(
+            table, lent_a, root_a, lent_b, root_b, frames.m, best, limit, margin, slack, scratch
+        )
+        n_nodes = parting.n_nodes
+        if parting.n_waiting == 0:
+            note_parting(fronts, pair, parting.floor > limit)
+        if parting.floor > limit:
+            nothing = nothing_yet(asked.wanted * asked.wanted)
+            floor = max(0.0, parting.floor - slack - 2.0 * margin)
+            return Measured(nothing, floor, 0.0, parting.face_a, parting.face_b, Tally(n_nodes, 0, 0))
+    n_faces = 0
+    for _ in range(3):
         found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, limit, wanted, slack, asked.effort, fronts, pair,
-            moved, scratch, table,
+            lent_a, root_a, lent_b, root_b, frames, best, limit, wanted, slack, asked.effort, parting, fronts,
+            pair, moved, scratch, table,
         )  # fmt: skip
+        n_nodes += found.tally.nodes
+        n_faces += found.tally.faces
+        if parting.n_waiting > 0:
+            is_all = parting.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
+            note_parting(fronts, pair, is_all)
+            if is_all:
+                break
+            best, parting = found.hit, NOTHING_PARTED  # the hulls are nearer than the bodies
+            continue
         if not (found.meeting.found and resumed):
             break
         # which of several contacts is found must not depend on where the search began
@@ -134,10 +162,10 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
         limit = np.inf
         wanted = np.inf
         resumed = False
-    tally = found.tally
+    tally = Tally(n_nodes, n_faces, found.tally.exact_decisions)
     if found.meeting.found:
         return _contact(a, b, frames, found, tally, table)
-    if not asked.apart:
+    if not (asked.apart or parting.n_waiting > 0):
         inside, x = contained(a, body_a, b, body_b, frames, scratch, table)
         if inside:
             forget(fronts, pair)  # a contact must not depend on where the search begins

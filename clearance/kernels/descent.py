@@ -161,8 +161,8 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
 
 @spliced
 def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, limit, wanted_gap, slack, effort, fronts, pair, moved, scratch,
-    table,
+    lent_a, root_a, lent_b, root_b, frames, best, limit, wanted_gap, slack, effort, parting, fronts, pair, moved,
+    scratch, table,
 ):  # fmt: skip
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
 
@@ -173,6 +173,7 @@ def descend(
         wanted_gap: [m] face pairs farther apart are not refined.
         slack: [m] of `rounding_slack`.
         effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
+        parting: if leaves wait already only these are looked at; nothing else is nearer than it says.
         fronts, pair: where the front of the pair is kept.
         moved: [m] what both bodies have moved in all.
         table: of `kernel_table`.
@@ -194,7 +195,9 @@ def descend(
     met = NO_MEETING
     n_left = 0
     untold_wait = False
-    if fronts.spans[pair, 1] > 0:
+    if parting.n_waiting > 0:
+        n_kept, n_waiting, n_nodes, floor = 0, parting.n_waiting, 0, parting.beyond
+    elif fronts.spans[pair, 1] > 0:
         n_kept, n_waiting, n_nodes, floor = _resume(
             a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch
         )
@@ -293,7 +296,7 @@ def descend(
         )
     if met.found or floor == -math.inf:
         forget(fronts, pair)
-    else:
+    elif parting.n_waiting == 0:
         keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
     if untold_wait:  # they are no nearer than what is wanted, or refined
         floor = min(floor, min(best_gap, wanted_gap))

@@ -27,6 +27,12 @@ OF_B = 1 << WIDTH
 GROWN, ANYHOW = 1.2, 16
 """A front that has grown to so many times its first length, and so many entries, is built anew from the roots."""
 
+LONG = 32
+"""Entries of a front that take as long as it takes to seek two planes (`parting`)."""
+
+MOST_LEFT_OUT = 255
+"""Searches at most in which planes are not sought after they were not found."""
+
 KEPT_DOWN = 1.0 - 2.0**-50
 """Covers the rounding of a bound to which the way so far was added."""
 
@@ -38,7 +44,8 @@ class Fronts(NamedTuple):
         entries: (POOL, 3) as above.
         floors: (POOL,) [m] a lower bound on the distance of all node pairs of the entry, plus what both bodies had
             moved by then.
-        spans: (p, 4) of each pair: its first place in the pool, its length, its room, its first length.
+        spans: (p, 6) of each pair: its first place in the pool, its length, its room, its first length; searches
+            until planes are sought again, and how many those were at the last time.
         used: (1,) places of the pool that are given away.
     """
 
@@ -54,15 +61,43 @@ def no_fronts(n_pairs, pool):
     return Fronts(
         np.empty((pool, 3), dtype=np.int32),
         np.empty(pool),
-        np.zeros((n_pairs, 4), dtype=np.int64),
+        np.zeros((n_pairs, 6), dtype=np.int64),
         np.zeros(1, dtype=np.int64),
     )
 
 
 @inlined
+def is_worth_parting(fronts, pair, is_first):
+    """True if it may take less to seek planes that part the bodies of a pair than to go on from its front.
+
+    Not if they were not found lately, which counts down.
+
+    Args:
+        is_first: nothing is known of the pair.
+    """
+    length = fronts.spans[pair, 1]
+    if length < LONG and (length > 0 or not is_first):
+        return False
+    fronts.spans[pair, 4] -= 1
+    return fronts.spans[pair, 4] < 0
+
+
+@inlined
+def note_parting(fronts, pair, found):
+    """Notes whether planes part the bodies; if not, they are not sought for a while, each time a longer one."""
+    spans = fronts.spans
+    if found:
+        spans[pair, 4], spans[pair, 5] = 0, 0
+    elif spans[pair, 4] < 0:
+        spans[pair, 5] = min(2 * spans[pair, 5] + 1, MOST_LEFT_OUT)
+        spans[pair, 4] = spans[pair, 5]
+
+
+@inlined
 def forget(fronts, pair):
-    """Lets the next search of a pair begin at the roots."""
+    """Lets the next search of a pair begin at the roots, as if it were the first."""
     fronts.spans[pair, 1] = 0
+    fronts.spans[pair, 4], fronts.spans[pair, 5] = 0, 0
 
 
 @merged

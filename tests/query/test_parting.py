@@ -1,0 +1,177 @@
+"""Two planes part bodies by no more than their distance; only faces that touch them are as near as they say."""
+
+import math
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import box, cylinder, pipe
+from clearance.geometry.tree import surface_of
+from clearance.jit import kernel
+from clearance.kernel_table import call, lend
+from clearance.kernels.bounds import rounding_slack
+from clearance.kernels.descent import margin_of
+from clearance.kernels.double_double import frames_of
+from clearance.kernels.face_pair import Hit
+from clearance.kernels.front import forget, is_worth_parting, no_fronts, note_parting
+from clearance.kernels.parting import parting_of
+from clearance.kernels.scratch import new_scratch
+from clearance.kernels.support import high_corner, top_of
+from clearance.kernels.vec3 import Vec3, rigid
+from tests import oracle
+from tests.made_cases import at, ball, dented, faces_of, torus
+from tests.strategies import rotations
+
+
+@kernel
+def tops(surface, directions, rooms, heights, high, leaves, n_leaves):
+    """Fills (n,) heights, those of `high_corner`, and (n, 25) faces of the leaves within a room of the top."""
+    scratch = new_scratch()
+    root = surface.roots[0]
+    for i in range(len(directions)):
+        u = Vec3(directions[i, 0], directions[i, 1], directions[i, 2])
+        top, n_found, _ = top_of(surface, root, u, -1, rooms[i], 24, 0, scratch)
+        heights[i], n_leaves[i] = top.height, n_found
+        for k in range(n_found):
+            leaves[i, k] = surface.children[scratch.left[k, 0], 0]
+        high[i] = high_corner(surface, root, u, -1)[0].height
+
+
+@kernel
+def partings(a, b, poses, points, limits, out, waiting, table):
+    """Fills `out` (n, 3): what the planes prove [m], of all and of what does not wait, and the margin.
+
+    b is at `poses` (n, 4, 4) in the frame of a; the search begins at `points` (n, 2, 3) in the frame of a.
+    `waiting` (n, 144, 2) becomes the faces of the leaves that wait, or -1.
+    """
+    scratch = new_scratch()
+    lent_a, lent_b = lend(a), lend(b)
+    root_a, root_b = a.roots[0], b.roots[0]
+    for i in range(len(poses)):
+        frames = frames_of(rigid(np.eye(4)), rigid(poses[i]))
+        slack = rounding_slack(a, root_a, b, root_b, frames)
+        margin = margin_of(slack)
+        p = Vec3(points[i, 0, 0], points[i, 0, 1], points[i, 0, 2])
+        q = Vec3(points[i, 1, 0], points[i, 1, 1], points[i, 1, 2])
+        begin = Hit(np.inf, 2**62, 2**62, p, q)
+        found = parting_of(
+            table, lent_a, root_a, lent_b, root_b, frames.m, begin, limits[i], margin, slack, scratch
+        )
+        out[i, 0], out[i, 1], out[i, 2] = found.floor, found.beyond, margin
+        for k in range(found.n_waiting):
+            waiting[i, k, 0] = a.children[~scratch.nodes[k, 0], 0]
+            waiting[i, k, 1] = b.children[scratch.nodes[k, 1], 0]
+
+
+SHAPES = {
+    "ball": lambda random: ball(1.0, 2),
+    "dented": lambda random: dented(random, 2),
+    "box": lambda random: box(random.uniform(0.2, 2.0, 3)),
+    "ring": lambda random: torus(0.8, 0.3, 12, 8),
+    "cylinder": lambda random: cylinder(0.5, 2.0),
+    "pipe": lambda random: pipe(inner_radius=0.4, outer_radius=0.5, length=1.5),
+    "sheet": lambda random: half_of(ball(1.0, 2)),
+}
+
+
+def half_of(shape: Polyhedron) -> Polyhedron:
+    """The faces of a shape above its middle: an open surface."""
+    above = [face for face in faces_of(shape) if shape.vertices[face][:, 2].mean() > 0.0]
+    return Polyhedron(shape.vertices, above)
+
+
+@pytest.mark.parametrize("kind", SHAPES)
+def test_what_is_farthest_along_a_direction_is_found(kind: str) -> None:
+    random = np.random.default_rng(3)
+    shape = SHAPES[kind](random)
+    surface = surface_of(shape)
+    corners = shape.vertices[np.unique(shape.face_vertices)]
+    directions = np.concatenate([random.normal(size=(200, 3)), np.eye(3), -np.eye(3), shape.normals[:40]])
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    n = len(directions)
+    rooms = random.choice([1e-12, 1e-9, 1e-6], n)
+    heights, high, n_leaves = np.empty(n), np.empty(n), np.empty(n, dtype=np.int64)
+    leaves = np.full((n, 25), -1)
+    tops(surface, directions, rooms, heights, high, leaves, n_leaves)
+    reach = corners @ directions.T
+    np.testing.assert_allclose(heights, reach.max(axis=0), rtol=0.0, atol=1e-14)
+    assert (high <= heights + 1e-14).all()
+    starts, owned = surface.vertex_starts, surface.owned_vertices
+    for i in range(n):
+        if n_leaves[i] > 24:
+            continue
+        tall = surface.vertices @ directions[i] >= heights[i] - 1e-14
+        owners = {f for f in range(len(starts) - 1) if tall[owned[starts[f] : starts[f + 1]]].any()}
+        assert owners <= {*leaves[i].tolist()}  # each farthest corner is there with the face that answers for it
+
+
+@pytest.mark.parametrize("kind_b", SHAPES)
+@pytest.mark.parametrize("kind_a", ["ball", "dented", "box", "pipe"])
+def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> None:
+    random = np.random.default_rng([*map(ord, kind_a + kind_b)])
+    a, b = SHAPES[kind_a](random), SHAPES[kind_b](random)
+    n = 40
+    places = random.normal(size=(n, 3))
+    places *= random.choice([1.2, 1.8, 2.2, 2.5, 4.0], (n, 1)) / np.linalg.norm(places, axis=1)[:, None]
+    poses = np.array([at(*place, turned=turn) for place, turn in zip(places, rotations(random, n), strict=True)])
+    truths = [cl.distance(a, b, pose_b=pose) for pose in poses]
+    points = np.array([[random.normal(size=3) * 0.1, pose[:3, 3]] for pose in poses])
+    limits = np.array([random.choice([math.inf, 0.5 * near.distance, 0.99 * near.distance]) for near in truths])
+    out, waiting = np.empty((n, 3)), np.full((n, 144, 2), -1)
+    call(partings, surface_of(a), surface_of(b), poses, points, limits, out, waiting)
+    for i, near in enumerate(truths):
+        floor, beyond, margin = out[i]
+        if i < 4:
+            exact = oracle.polyhedron_distance_sq(a.vertices, faces_of(a), b.vertices, faces_of(b), None, poses[i])
+            assert floor <= float(oracle.root(exact)) or near.contact
+        if near.contact:
+            assert floor <= 0.0
+            continue
+        assert floor <= near.distance
+        assert floor > limits[i] or waiting[i, 0, 0] >= 0 or floor == -math.inf
+        if waiting[i, 0, 0] >= 0 and beyond > near.distance + margin:
+            assert [near.face_a, near.face_b] in waiting[i].tolist()
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "pose", "is_parted"),
+    [
+        (ball(1.0, 2), ball(1.0, 2), at(2.5, 0.3, 0.1), True),
+        (box((1.0, 1.0, 1.0)), cylinder(0.5, 2.0), at(1.0, 0.9, 1.6), True),
+        (torus(0.8, 0.1, 24, 8), ball(0.2, 1), at(0.1), False),  # in the ring's hole
+    ],
+)
+def test_where_hulls_are_as_far_apart_as_bodies_they_are_parted(
+    a: Polyhedron, b: Polyhedron, pose: np.ndarray, is_parted: bool
+) -> None:
+    points = np.array([[[0.1, 0.0, 0.0], pose[:3, 3]]])
+    out, waiting = np.empty((1, 3)), np.full((1, 144, 2), -1)
+    call(partings, surface_of(a), surface_of(b), pose[None], points, np.array([math.inf]), out, waiting)
+    assert (waiting[0, 0, 0] >= 0) == is_parted
+    assert (out[0, 0] == pytest.approx(cl.distance(a, b, pose_b=pose).distance, rel=1e-9)) == is_parted
+
+
+@kernel
+def sought(founds, asked):
+    """Fills (n,) whether planes are sought, where each search that seeks them finds them as said."""
+    fronts = no_fronts(1, 0)
+    fronts.spans[0, 1] = 1000
+    for i in range(len(founds)):
+        asked[i] = is_worth_parting(fronts, 0, False)
+        if asked[i]:
+            note_parting(fronts, 0, founds[i])
+    forget(fronts, 0)
+    asked[-1] = is_worth_parting(fronts, 0, False)
+
+
+def test_what_was_not_found_is_sought_less_and_less_often() -> None:
+    founds, asked = np.zeros(40, dtype=np.bool_), np.zeros(40, dtype=np.bool_)
+    sought(founds, asked)
+    assert np.flatnonzero(asked).tolist() == [0, 2, 6, 14, 30]
+    founds[6:] = True
+    sought(founds, asked)
+    assert asked[6:-1].all()
+    assert not asked[-1]  # a short front is gone on from
+
