@@ -18,7 +18,14 @@ from clearance.kernels.double_double import (
     wide,
 )
 from clearance.kernels.face_pair import Hit, nearest_of_faces
-from clearance.kernels.front import forget, is_worth_parting, no_fronts, note_parting
+from clearance.kernels.front import (
+    HULLS_NEARER,
+    HULLS_TOUCH,
+    forget,
+    is_worth_parting,
+    no_fronts,
+    note_parting,
+)
 from clearance.kernels.hidden import PASSED_OVER
 from clearance.kernels.parting import NOTHING_PARTED, parting_of
 from clearance.kernels.refine import error_of
@@ -135,7 +142,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
         )
         n_nodes = parting.n_nodes
         if parting.n_waiting == 0:
-            note_parting(fronts, pair, parting.floor > limit)
+            note_parting(fronts, pair, parting.floor > limit, HULLS_TOUCH)
         if parting.floor > limit:
             nothing = nothing_yet(asked.wanted * asked.wanted)
             floor = max(0.0, parting.floor - slack - 2.0 * margin)
@@ -150,7 +157,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
         n_faces += found.tally.faces
         if parting.n_waiting > 0:
             is_all = parting.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
-            note_parting(fronts, pair, is_all)
+            note_parting(fronts, pair, is_all, HULLS_NEARER)
             if is_all:
                 break
             best, parting = found.hit, NOTHING_PARTED  # the hulls are nearer than the bodies

@@ -30,6 +30,9 @@ GROWN, ANYHOW = 1.2, 16
 LONG = 32
 """Entries of a front that take as long as it takes to seek two planes (`parting`)."""
 
+HULLS_TOUCH, HULLS_NEARER = 15, 1
+"""Searches in which planes are not sought, after none were found or after the bodies were farther apart."""
+
 MOST_LEFT_OUT = 255
 """Searches at most in which planes are not sought after they were not found."""
 
@@ -83,13 +86,17 @@ def is_worth_parting(fronts, pair, is_first):
 
 
 @inlined
-def note_parting(fronts, pair, found):
-    """Notes whether planes part the bodies; if not, they are not sought for a while, each time a longer one."""
+def note_parting(fronts, pair, found, pause):
+    """Notes whether planes part the bodies; if not, they are not sought for a while, each time a longer one.
+
+    Args:
+        pause: searches that it is longer by than twice the last one.
+    """
     spans = fronts.spans
     if found:
         spans[pair, 4], spans[pair, 5] = 0, 0
     elif spans[pair, 4] < 0:
-        spans[pair, 5] = min(2 * spans[pair, 5] + 1, MOST_LEFT_OUT)
+        spans[pair, 5] = min(2 * spans[pair, 5] + pause, MOST_LEFT_OUT)
         spans[pair, 4] = spans[pair, 5]
 
 

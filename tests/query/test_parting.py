@@ -161,7 +161,7 @@ def sought(founds, asked):
     for i in range(len(founds)):
         asked[i] = is_worth_parting(fronts, 0, False)
         if asked[i]:
-            note_parting(fronts, 0, founds[i])
+            note_parting(fronts, 0, founds[i], 1)
     forget(fronts, 0)
     asked[-1] = is_worth_parting(fronts, 0, False)
 
