@@ -25,8 +25,8 @@ from clearance.kernel_table import PARTING, REFINE, SEARCH
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 """Set in the environment of the second process, so that no other one follows whatever it comes to run."""
 
-FIRST = (SEARCH, PARTING, REFINE)
-"""What every question about distances needs, in the order in which it is come to."""
+FIRST = (SEARCH, REFINE, PARTING)
+"""What questions about distances need, in the order in which it is come to; the last one where bodies move."""
 
 _starting = threading.Lock()
 

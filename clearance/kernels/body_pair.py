@@ -136,7 +136,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     wanted = asked.wanted
     resumed = asked.face_a >= 0 or asked.limit < np.inf
     parting, n_nodes = NOTHING_PARTED, 0
-    if is_worth_parting(fronts, pair, asked.limit == np.inf and asked.face_a < 0):
+    if is_worth_parting(fronts, pair):
         parting = parting_of(
             table, lent_a, root_a, lent_b, root_b, frames.m, best, limit, margin, slack, scratch
         )

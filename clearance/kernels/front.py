@@ -70,16 +70,12 @@ def no_fronts(n_pairs, pool):
 
 
 @inlined
-def is_worth_parting(fronts, pair, is_first):
+def is_worth_parting(fronts, pair):
     """True if it may take less to seek planes that part the bodies of a pair than to go on from its front.
 
     Not if they were not found lately, which counts down.
-
-    Args:
-        is_first: nothing is known of the pair.
     """
-    length = fronts.spans[pair, 1]
-    if length < LONG and (length > 0 or not is_first):
+    if fronts.spans[pair, 1] < LONG:
         return False
     fronts.spans[pair, 4] -= 1
     return fronts.spans[pair, 4] < 0

@@ -22,8 +22,8 @@ from clearance.kernels import body_pair, parting, refine
 told = {"kept": [kernel_table.is_kept(place) for place in ahead.FIRST], "first": ahead.start()}
 for place in ahead.FIRST:
     kernel_table.compile_kernel(place)
-told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, parting.part, refine.refine)]
-told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, parting.part, refine.refine)]
+told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, refine.refine, parting.part)]
+told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, refine.refine, parting.part)]
 told["again"] = ahead._start_once.__wrapped__()
 print(json.dumps(told))
 """

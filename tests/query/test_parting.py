@@ -159,11 +159,11 @@ def sought(founds, asked):
     fronts = no_fronts(1, 0)
     fronts.spans[0, 1] = 1000
     for i in range(len(founds)):
-        asked[i] = is_worth_parting(fronts, 0, False)
+        asked[i] = is_worth_parting(fronts, 0)
         if asked[i]:
             note_parting(fronts, 0, founds[i], 1)
     forget(fronts, 0)
-    asked[-1] = is_worth_parting(fronts, 0, False)
+    asked[-1] = is_worth_parting(fronts, 0)
 
 
 def test_what_was_not_found_is_sought_less_and_less_often() -> None:
