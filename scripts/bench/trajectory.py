@@ -205,7 +205,8 @@ def summary(rows: list[dict]) -> str:
                 f"{what}: {mean:.1f} times our time (geometric mean of {len(ratios)} scenes; "
                 f"least {min(ratios):.1f}, greatest {max(ratios):.1f})"
             )
-    slower = [f"{r['scene']} ({r['method']})" for r in rows if 0 < r["ratio_to_ours"] < 1.0]
+    peers = [row for row in rows if row["library"] != "clearance"]
+    slower = [f"{r['scene']} ({r['method']})" for r in peers if 0 < r["ratio_to_ours"] < 1.0]
     lines.append(f"faster than ours: {', '.join(slower)}" if slower else "no peer is faster on any scene")
     return "\n".join(lines)
 
