@@ -17,7 +17,7 @@ from contextlib import suppress
 
 import numba
 
-import clearance.kernels.body_pair  # noqa: F401 it enters both into the table
+import clearance.kernels.body_pair  # noqa: F401 it enters all of `FIRST` into the table
 from clearance import kernel_table
 from clearance.jit import cache_root
 from clearance.kernel_table import PARTING, REFINE, SEARCH

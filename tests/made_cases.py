@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import box
 from clearance.kernels.facing import CONE_ROWS, NO_CONE
 from clearance.kernels.lanes import WIDTH
 from clearance.kernels.surface import Surface
@@ -95,6 +96,15 @@ def dented(
     shape = ball(radius, n_halvings)
     pushed = random.uniform(1.0 - depth, 1.0 + depth, (len(shape.vertices), 1))
     return corners_moved(shape, shape.vertices * pushed)
+
+
+SOLIDS: dict[str, Callable[[np.random.Generator], Polyhedron]] = {
+    "ball": lambda random: ball(1.0, 2),
+    "dented": lambda random: dented(random, 2),
+    "box": lambda random: box(random.uniform(0.2, 2.0, 3)),
+    "ring": lambda random: torus(0.8, 0.3, 12, 8),
+}
+"""Solids of about one size, smooth, rough, angular and with a hole."""
 
 
 def faces_of(shape: Polyhedron) -> list[list[int]]:

@@ -5,6 +5,7 @@ Not for: faces that overlap without having the same corners.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -45,14 +46,9 @@ def copies_of(
     asked = np.zeros(n_faces, dtype=bool)
     asked[ring.face[twin < 0]] = True
     asked &= ~bent
-    length = np.diff(starts)
-    for n in np.unique(length[asked]):
-        faces = np.flatnonzero(asked & (length == n))
-        rows, turned = _from_the_least(corners[starts[faces, None] + np.arange(n)])
-        _, least, same = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-        least = least[same.reshape(-1)]
-        first[faces] = faces[least]
-        way[faces] = np.where(turned == turned[least], 1, -1)
+    for faces, least, same, turned in _same_corners(corners, starts, asked):
+        first[faces] = faces[least[same]]
+        way[faces] = np.where(turned == turned[least[same]], 1, -1)
     return Copies(first, way)
 
 
@@ -66,15 +62,25 @@ def two_sided(
         asked: (k,) components for which this may be so.
     """
     asked = asked.copy()
-    length = np.diff(starts)
-    for n in np.unique(length[asked[component]]):
-        faces = np.flatnonzero(asked[component] & (length == n))
-        rows, turned = _from_the_least(corners[starts[faces, None] + np.arange(n)])
-        _, same = np.unique(rows, axis=0, return_inverse=True)
-        same = same.reshape(-1)
+    for faces, _, same, turned in _same_corners(corners, starts, asked[component]):
         left_over = np.bincount(same, np.where(turned, -1, 1)) != 0
         asked[component[faces[left_over[same]]]] = False
     return asked
+
+
+def _same_corners(
+    corners: np.ndarray, starts: np.ndarray, asked: np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+    """The faces that are `asked` (f,) for, those of one length at a time, told apart by their corners.
+
+    Yields: (the faces, the least of each kind among them, either way round, the kind of each, which are turned).
+    """
+    length = np.diff(starts)
+    for n in np.unique(length[asked]):
+        faces = np.flatnonzero(asked & (length == n))
+        rows, turned = _from_the_least(corners[starts[faces, None] + np.arange(n)])
+        _, least, same = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+        yield faces, least, same.reshape(-1), turned
 
 
 def _from_the_least(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

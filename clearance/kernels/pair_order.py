@@ -65,16 +65,20 @@ def sort_all(bounds, order):
 
 
 @merged
+def _move_on(bounds, pairs, place, end):
+    """Moves a pair on from its place to where it belongs before `end`, if those after it are in order."""
+    pair = pairs[place]
+    while place + 1 < end and bounds[pairs[place + 1]] < bounds[pair]:
+        pairs[place] = pairs[place + 1]
+        place += 1
+    pairs[place] = pair
+
+
+@merged
 def sort_first(bounds, order, body, stop):
     """The same for a body where only the bounds of pairs before the place `stop` have changed."""
-    pairs, end = order.pairs, order.starts[body + 1]
     for place in range(stop - 1, order.starts[body] - 1, -1):
-        pair = pairs[place]
-        k = place + 1
-        while k < end and bounds[pairs[k]] < bounds[pair]:
-            pairs[k - 1] = pairs[k]
-            k += 1
-        pairs[k - 1] = pair
+        _move_on(bounds, order.pairs, place, order.starts[body + 1])
 
 
 @merged
@@ -88,7 +92,4 @@ def sort_one(bounds, order, body, pair):
         pairs[place] = pairs[place - 1]
         place -= 1
     pairs[place] = pair
-    while place + 1 < order.starts[body + 1] and bounds[pairs[place + 1]] < bounds[pair]:
-        pairs[place] = pairs[place + 1]
-        place += 1
-    pairs[place] = pair
+    _move_on(bounds, pairs, place, order.starts[body + 1])

@@ -23,6 +23,7 @@ from clearance.kernels.bounds import sight_along
 from clearance.kernels.double_double import FRAMES_AT_REST
 from clearance.kernels.face_pair import Hit
 from clearance.kernels.scratch import new_scratch
+from clearance.kernels.segments import foot_inside
 from clearance.kernels.support import TILT, high_corner, top_of
 from clearance.kernels.surface import surface_like
 from clearance.kernels.vec3 import Vec3, cross, dot, move, row, sub
@@ -68,15 +69,12 @@ NOTHING_PARTED = Parting(-math.inf, -math.inf, 0, 0, -1, -1)
 @merged
 def _nearest_on_edge(p, q):
     """(the point of an edge nearest to the origin, True for each end that it is of)."""
-    d = sub(q, p)
-    t = -dot(p, d)
-    length_sq = dot(d, d)
-    if not t > 0.0:
-        return p, True, False
-    if t >= length_sq:
+    inside, x = foot_inside(Vec3(0.0, 0.0, 0.0), p, q)
+    if inside:
+        return x, True, True
+    if dot(q, q) < dot(p, p):
         return q, False, True
-    t /= length_sq
-    return Vec3(p.x + t * d.x, p.y + t * d.y, p.z + t * d.z), True, True
+    return p, True, False
 
 
 @merged

@@ -21,7 +21,7 @@ from clearance.kernels.scratch import new_scratch
 from clearance.kernels.support import high_corner, top_of
 from clearance.kernels.vec3 import Vec3, rigid
 from tests import oracle
-from tests.made_cases import at, ball, dented, faces_of, torus
+from tests.made_cases import SOLIDS, at, ball, faces_of, torus
 from tests.strategies import rotations
 
 
@@ -66,10 +66,7 @@ def partings(a, b, poses, points, limits, out, waiting, table):
 
 
 SHAPES = {
-    "ball": lambda random: ball(1.0, 2),
-    "dented": lambda random: dented(random, 2),
-    "box": lambda random: box(random.uniform(0.2, 2.0, 3)),
-    "ring": lambda random: torus(0.8, 0.3, 12, 8),
+    **SOLIDS,
     "cylinder": lambda random: cylinder(0.5, 2.0),
     "pipe": lambda random: pipe(inner_radius=0.4, outer_radius=0.5, length=1.5),
     "sheet": lambda random: half_of(ball(1.0, 2)),
@@ -174,4 +171,3 @@ def test_what_was_not_found_is_sought_less_and_less_often() -> None:
     sought(founds, asked)
     assert asked[6:-1].all()
     assert not asked[-1]  # a short front is gone on from
-

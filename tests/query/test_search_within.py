@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.geometry.shapes import box, cylinder
+from clearance.geometry.shapes import cylinder
 from clearance.geometry.tree import surface_of
 from clearance.jit import kernel
 from clearance.kernel_table import call, lend
@@ -13,7 +13,7 @@ from clearance.kernels.double_double import frames_of
 from clearance.kernels.front import POOL, no_fronts
 from clearance.kernels.scratch import new_scratch
 from clearance.kernels.vec3 import rigid
-from tests.made_cases import at, ball, dented, torus
+from tests.made_cases import SOLIDS, at
 from tests.strategies import rotations
 
 
@@ -41,10 +41,7 @@ def searches(a, b, poses, limits, wanted, seeds, moved, out, table):
 
 
 SHAPES = {
-    "ball": lambda random: ball(1.0, 2),
-    "dented": lambda random: dented(random, 2),
-    "box": lambda random: box(random.uniform(0.2, 2.0, 3)),
-    "ring": lambda random: torus(0.8, 0.3, 12, 8),
+    **SOLIDS,
     "pipe": lambda random: cylinder(0.5, 2.0),
 }
 
