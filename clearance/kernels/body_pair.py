@@ -17,7 +17,7 @@ from clearance.kernels.double_double import (
     rounded,
     wide,
 )
-from clearance.kernels.face_pair import Hit, nearest_of_faces
+from clearance.kernels.face_pair import NOTHING_SEEN, Hit, Near, nearest_of_faces
 from clearance.kernels.front import (
     HULLS_NEARER,
     HULLS_TOUCH,
@@ -109,13 +109,14 @@ def _like():
 def _begin(a, root_a, b, root_b, m, margin, asked):
     """What a search begins with: the nearest points of the faces that were nearest, or the bodies' centres."""
     if asked.face_a >= 0:
-        best = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf)).best
-        if best.face_a != 2**62:
-            return best
+        near = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf))
+        if near.best.face_a != 2**62:
+            return near
         p = row(a.vertices, a.face_vertices[a.face_starts[asked.face_a]])
         q = row(b.vertices, b.face_vertices[b.face_starts[asked.face_b]])
-        return Hit(np.inf, 2**62, 2**62, p, move(m, q))
-    return Hit(np.inf, 2**62, 2**62, box_of(a, root_a).centre, move(m, box_of(b, root_b).centre))
+        return Near(Hit(np.inf, 2**62, 2**62, p, move(m, q)), NOTHING_SEEN)
+    p, q = box_of(a, root_a).centre, move(m, box_of(b, root_b).centre)
+    return Near(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
 
 
 @apart(SEARCH, _like)
@@ -131,7 +132,8 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
-    best = _begin(a, root_a, b, root_b, frames.m, margin, asked)
+    first = _begin(a, root_a, b, root_b, frames.m, margin, asked)
+    best = first.best
     limit = asked.limit + margin
     wanted = asked.wanted
     resumed = asked.face_a >= 0 or asked.limit < np.inf
@@ -150,7 +152,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     n_faces = 0
     for _ in range(3):
         found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, limit, wanted, slack, asked.effort, parting, fronts,
+            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, parting, fronts,
             pair, moved, scratch, table,
         )  # fmt: skip
         n_nodes += found.tally.nodes
@@ -166,6 +168,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
             break
         # which of several contacts is found must not depend on where the search began
         best = nothing_yet(np.inf)
+        first = Near(best, NOTHING_SEEN)
         limit = np.inf
         wanted = np.inf
         resumed = False

@@ -11,7 +11,7 @@ import numpy as np
 from clearance.jit import inlined, merged, spliced
 from clearance.kernel_table import borrow
 from clearance.kernels.bounds import lower_bound_boxes, lower_bound_faces_in_sight
-from clearance.kernels.face_pair import Hit, limit_of, may_own_nearest, nearest_of_faces
+from clearance.kernels.face_pair import Hit, Near, limit_of, may_own_nearest, nearest_of_faces
 from clearance.kernels.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.guess import guess
 from clearance.kernels.hidden import sure_gap, told_apart
@@ -161,7 +161,7 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
 
 @spliced
 def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, limit, wanted_gap, slack, effort, parting, fronts, pair, moved,
+    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, parting, fronts, pair, moved,
     scratch, table,
 ):  # fmt: skip
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
@@ -235,7 +235,10 @@ def descend(
             ):
                 n_faces += 1
                 before_sq, before_gap = best.gap_sq, best_gap
-                near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
+                if face_a == first.best.face_a and face_b == first.best.face_b:
+                    near = Near(best, first.seen)
+                else:
+                    near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
                 best = near.best
                 if best.gap_sq < before_sq:
                     best_gap = min(limit, math.sqrt(best.gap_sq))
