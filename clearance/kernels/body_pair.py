@@ -149,14 +149,15 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
             nothing = nothing_yet(asked.wanted * asked.wanted)
             floor = max(0.0, parting.floor - slack - 2.0 * margin)
             return Measured(nothing, floor, 0.0, parting.face_a, parting.face_b, Tally(n_nodes, 0, 0))
-    n_faces = 0
+    n_faces, n_exact = 0, 0
     for _ in range(3):
         found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, parting, fronts,
-            pair, moved, scratch, table,
+            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, parting,
+            fronts, pair, moved, scratch, table,
         )  # fmt: skip
         n_nodes += found.tally.nodes
         n_faces += found.tally.faces
+        n_exact += found.tally.exact_decisions
         if parting.n_waiting > 0:
             is_all = parting.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
             note_parting(fronts, pair, is_all, HULLS_NEARER)
@@ -172,7 +173,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
         limit = np.inf
         wanted = np.inf
         resumed = False
-    tally = Tally(n_nodes, n_faces, found.tally.exact_decisions)
+    tally = Tally(n_nodes, n_faces, n_exact)
     if found.meeting.found:
         return _contact(a, b, frames, found, tally, table)
     if not (asked.apart or parting.n_waiting > 0):

@@ -161,14 +161,15 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
 
 @spliced
 def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, parting, fronts, pair, moved,
-    scratch, table,
+    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, parting, fronts, pair,
+    moved, scratch, table,
 ):  # fmt: skip
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
 
     Args:
         best: where to start: a hit, or none; its points say in which direction the bodies are seen apart, also
             where they are farther apart than the limit.
+        first: the hit of two faces that are measured already, and what was seen of them.
         limit: [m] node pairs farther than this, or than the best, are not opened.
         wanted_gap: [m] face pairs farther apart are not refined.
         slack: [m] of `rounding_slack`.

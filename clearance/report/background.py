@@ -145,19 +145,22 @@ def loaded(summary: dict[str, Any]) -> Html:
     return section("What was loaded", element("div", *parts, class_="scroll"))
 
 
+def _quality(body: dict[str, Any]) -> str:
+    """What kind of surface a body has; one that holds faces once for each side has no inside there."""
+    if not body["closed"]:
+        return "open"
+    if body["two_sided"]:
+        return "two-sided"
+    return "closed" if body["oriented"] else "closed, not oriented"
+
+
 def _body_row(body: dict[str, Any]) -> Html:
     low, high = body["bounding_box"]
     size = " \N{MULTIPLICATION SIGN} ".join(
         f"{(b - a) * 1000:.4g}" for a, b in zip(low, high, strict=True)
     )
     volume = "" if body["volume"] is None else _rounded(body["volume"] * 1e6)
-    quality = (
-        "closed"
-        if body["closed"] and body["oriented"]
-        else "closed, not oriented"
-        if body["closed"]
-        else "open"
-    )
+    quality = _quality(body)
     facets = "exact" if body["excess"] == 0.0 else f"{body['excess'] * 1000:.3g}"
     return element(
         "tr",

@@ -120,6 +120,7 @@ def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
         "excess": shape.excess,
         "closed": shape.closed,
         "oriented": shape.oriented,
+        "two_sided": bool(shape.component_two_sided.any()),
         "volume": shape.volume,
     }
 

@@ -9,9 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from clearance.geometry.polyhedron import Polyhedron
 from clearance.report import json_text, summary_of, write
+from clearance.report.background import loaded
 from clearance.report.provenance import public_path
 from clearance.world.robot import Joint, JointKind
+from tests.made_cases import faces_of
 from tests.report.records import disagreeing, record
 
 
@@ -110,3 +113,31 @@ def test_no_file_of_a_report_names_the_folder_it_was_made_in(tmp_path):
     for path in (tmp_path / "out").iterdir():
         assert b"/home/someone" not in path.read_bytes()
         assert str(tmp_path).encode() not in path.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("closed", "oriented", "two_sided", "told"),
+    [
+        (True, True, False, "closed"),
+        (True, True, True, "two-sided"),  # closed edge by edge, but nothing is inside
+        (True, False, False, "closed, not oriented"),
+        (False, False, True, "open"),
+    ],
+)
+def test_the_page_tells_what_kind_of_surface_was_loaded(closed, oriented, two_sided, told):
+    summary = summary_of(record())
+    kind = {"closed": closed, "oriented": oriented, "two_sided": two_sided}
+    bodies = [{**body, **kind} for body in summary["obstacles"]]
+    rows = str(loaded({**summary, "robots": [], "obstacles": bodies}))
+    assert rows.count(f"<td>{told}</td>") == len(bodies)
+
+
+def test_a_mesh_that_holds_each_face_once_for_each_side_is_told_as_two_sided():
+    made = record()
+    sheet = faces_of(made.case.obstacles[0].body.shape)
+    both = Polyhedron(made.case.obstacles[0].body.shape.vertices, [*sheet, *(face[::-1] for face in sheet)])
+    first = made.case.obstacles[0]
+    doubled = dataclasses.replace(first, body=dataclasses.replace(first.body, shape=both))
+    case = dataclasses.replace(made.case, obstacles=(doubled, *made.case.obstacles[1:]))
+    told = summary_of(dataclasses.replace(made, case=case))["obstacles"]
+    assert [body["two_sided"] for body in told] == [True] + [False] * (len(told) - 1)
