@@ -107,7 +107,7 @@ def _like():
 
 @merged
 def _begin(a, root_a, b, root_b, m, margin, asked):
-    """What a search begins with: the nearest points of the faces that were nearest, or the bodies' centres."""
+    """What a search begins with: the faces that were nearest and what is seen of them, or the bodies' centres."""
     if asked.face_a >= 0:
         near = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf))
         if near.best.face_a != 2**62:
