@@ -112,6 +112,12 @@ def faces_of(shape: Polyhedron) -> list[list[int]]:
     return [shape.face_vertices[i:j].tolist() for i, j in itertools.pairwise(shape.face_starts)]
 
 
+def with_copies(shape: Polyhedron, faces: Sequence[int], *, turned_round: bool) -> Polyhedron:
+    """The shape with some of its faces once more, each from another corner on."""
+    copies = [np.roll(faces_of(shape)[face], 1 + face % 2) for face in faces]
+    return Polyhedron(shape.vertices, faces_of(shape) + [tuple(f[::-1] if turned_round else f) for f in copies])
+
+
 def faces_below(surface: Surface) -> list[set[int]]:
     """For each node of the tree the faces below it."""
     below: list[set[int]] = [set() for _ in surface.children]

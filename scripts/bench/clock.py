@@ -64,6 +64,11 @@ def interleaved(works: Sequence[Callable[[], Any]], n_passes: int, budget: float
     return [_timing(done, answer) for done, answer in zip(passes, answers, strict=True)]
 
 
+def geometric_mean(ratios: Sequence[float]) -> float:
+    """The factor that, in place of each of some ratios of times, would give their product."""
+    return float(np.exp(np.log(ratios).mean()))
+
+
 def _pass(work: Callable[[], Any]) -> tuple[Pass, Any]:
     first, answer = timed(work)
     total, n_times = first, 1

@@ -21,6 +21,7 @@ from rows import write_csv
 
 import numpy as np  # isort: skip
 
+from clock import geometric_mean
 from loops import AllPairs
 from peers import Fcl, available
 
@@ -113,7 +114,7 @@ def line_of(what: str, target: str, rows: list[dict]) -> str:
     ratios = {row["scene"]: row["ratio_to_steps"] for row in rows if row["what"] == what}
     if not ratios:
         return f"{what}: not measured"
-    mean = np.exp(np.mean(np.log(list(ratios.values()))))
+    mean = geometric_mean(list(ratios.values()))
     told = f"{min(ratios.values()):.3g} to {max(ratios.values()):.3g}"
     unit = "" if "/" in what else " of steps"
     return f"{what}: {mean:.3g}{unit}, geometric mean of {len(ratios)} scenes ({told}); target {target}"

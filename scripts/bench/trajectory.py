@@ -18,7 +18,7 @@ from pathlib import Path
 
 import inputs  # first: it sets the number of threads before numpy is loaded
 import numpy as np
-from clock import Timing, interleaved, timed
+from clock import Timing, geometric_mean, interleaved, timed
 from inputs import Scene
 from loops import StepLoop, loops_of
 from peers import absent_peers, versions
@@ -213,11 +213,6 @@ def summary(rows: list[dict]) -> str:
     slower = [f"{r['scene']} ({r['method']})" for r in peers if 0 < r["ratio_to_ours"] < 1.0]
     lines.append(f"faster than ours: {', '.join(slower)}" if slower else "no peer is faster on any scene")
     return "\n".join(lines)
-
-
-def geometric_mean(numbers: list[float]) -> float:
-    """The same factor for all that would give their product."""
-    return float(np.exp(np.log(numbers).mean()))
 
 
 def fastest_ratios(rows: list[dict], kinds: tuple[str, ...], ratio: str = "ratio_to_ours") -> list[float]:

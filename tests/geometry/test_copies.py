@@ -10,17 +10,11 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.facing import CONE_ROWS, NO_CONE
 from clearance.kernels.lanes import WIDTH
-from tests.made_cases import at, ball, faces_below, faces_of
+from tests.made_cases import at, ball, faces_below, faces_of, with_copies
 from tests.strategies import rotations
 
 BALL = ball(1.0, 3)
 TINY = ball(0.05, 1)
-
-
-def with_copies(shape: Polyhedron, faces: list[int], *, turned_round: bool) -> Polyhedron:
-    """The shape with some of its faces once more, each from another corner on."""
-    copies = [np.roll(faces_of(shape)[face], 1 + face % 2) for face in faces]
-    return Polyhedron(shape.vertices, faces_of(shape) + [tuple(f[::-1] if turned_round else f) for f in copies])
 
 
 @pytest.mark.parametrize("turned_round", [False, True])

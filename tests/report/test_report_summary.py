@@ -9,12 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.geometry.polyhedron import Polyhedron
 from clearance.report import json_text, summary_of, write
 from clearance.report.background import loaded
 from clearance.report.provenance import public_path
 from clearance.world.robot import Joint, JointKind
-from tests.made_cases import faces_of
+from tests.made_cases import with_copies
 from tests.report.records import disagreeing, record
 
 
@@ -134,9 +133,8 @@ def test_the_page_tells_what_kind_of_surface_was_loaded(closed, oriented, two_si
 
 def test_a_mesh_that_holds_each_face_once_for_each_side_is_told_as_two_sided():
     made = record()
-    sheet = faces_of(made.case.obstacles[0].body.shape)
-    both = Polyhedron(made.case.obstacles[0].body.shape.vertices, [*sheet, *(face[::-1] for face in sheet)])
     first = made.case.obstacles[0]
+    both = with_copies(first.body.shape, range(first.body.shape.n_faces), turned_round=True)
     doubled = dataclasses.replace(first, body=dataclasses.replace(first.body, shape=both))
     case = dataclasses.replace(made.case, obstacles=(doubled, *made.case.obstacles[1:]))
     told = summary_of(dataclasses.replace(made, case=case))["obstacles"]

@@ -301,11 +301,11 @@ def resampled(case: Case, n_steps: int) -> Case:
     return replace(case, robots=(replace(placed, trajectory=moved),))
 
 
-def most_memory(case: Case, folder: Path) -> int:
+def most_memory(case: Case, folder: Path, jobs: int) -> int:
     """[bytes] numpy and Python take at most beside the case, from the sweep to the last file but the page."""
     tracemalloc.start()
     with open_spool(folder / "kept", print) as kept:
-        run = cl.check(case, need="pairs", certify=True, jobs=1, kept=kept)
+        run = cl.check(case, need="pairs", certify=True, jobs=jobs, kept=kept)
         write_parquet(step_batches(run.record), folder / "steps.parquet")
         write_csv(lambda: step_batches(run.record), folder / "steps.csv")
         write_parquet(pair_batches(run.record), folder / "pairs.parquet")
@@ -316,20 +316,22 @@ def most_memory(case: Case, folder: Path) -> int:
     return most
 
 
-def most_memory_of_both(folder: Path) -> tuple[int, int]:
-    """[bytes] of 4000 and of 40,000 steps."""
+def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
+    """[bytes] of 4000 and of 40,000 steps on one thread, and of 40,000 on two."""
     parts.LONGEST_PART, parts.BLOCK, spool.SAVE_AFTER = 128, 1000, 1.0
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
-    most_memory(resampled(case, 500), folder)  # what is loaded once
-    return most_memory(resampled(case, 4_000), folder), most_memory(resampled(case, 40_000), folder)
+    most_memory(resampled(case, 500), folder, 2)  # what is loaded once
+    few, many = resampled(case, 4_000), resampled(case, 40_000)
+    return most_memory(few, folder, 1), most_memory(many, folder, 1), most_memory(many, folder, 2)
 
 
 def test_memory_does_not_grow_with_the_steps(tmp_path: Path) -> None:
     """Ten times the steps: at most the clearances once (8 bytes a step) and a few codes, never rows or poses.
 
-    In a process of its own: threads that other tests have left take memory too. On one thread: of two, both may be
-    at work at once or not, each with room of its own; what waits between them is bounded (`in_order`).
+    Two threads take at most twice as much, and so much only where both are at work at once. In a process of its
+    own: threads that other tests have left take memory too.
     """
     with multiprocessing.get_context("spawn").Pool(1) as alone:
-        short, long = alone.apply(most_memory_of_both, (tmp_path,))
+        short, long, on_two = alone.apply(most_memory_of_all, (tmp_path,))
     assert (long - short) / 36_000 < 20.0, (short, long)
+    assert on_two < 2 * long, (long, on_two)
