@@ -129,7 +129,17 @@ def _root(data: bytes) -> Element:
         raise BadSyntax(
             "this is a xacro file", valid="turn it into URDF with the xacro command first"
         )
+    _take_out_of(etree.QName(root).namespace, root)
     return root
+
+
+def _take_out_of(namespace: str | None, root: Element) -> None:
+    """Gives the elements of a namespace the names that they have in URDF, which has none of its own."""
+    if namespace is None:
+        return
+    prefix = f"{{{namespace}}}"
+    for element in root.iter():
+        element.tag = element.tag.removeprefix(prefix)
 
 
 def _reduce(element: Element) -> None:

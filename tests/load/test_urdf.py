@@ -280,6 +280,25 @@ def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
     assert load(tmp_path, urdf).bodies[0].shape.n_faces == 6
 
 
+def test_a_default_namespace_changes_nothing(tmp_path):
+    elements = link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b")
+    plain = robot(*elements)
+    named = plain.replace("<robot ", '<robot xmlns="http://drake.mit.edu" ', 1)
+    prefixed = plain.replace("<", "<u:").replace("<u:/", "</u:").replace("<u:robot ", '<u:robot xmlns:u="urn:u" ')
+    expected = load(tmp_path, plain)
+    for text in (named, prefixed):
+        found = load(tmp_path, text)
+        assert found.link_names == expected.link_names
+        assert [body.shape.n_faces for body in found.bodies] == [6, 6]
+        assert [j.name for j in found.joints] == [j.name for j in expected.joints]
+
+
+def test_elements_of_another_namespace_are_passed_over(tmp_path):
+    other = '<x:joint xmlns:x="urn:x" name="k"/>'
+    found = load(tmp_path, robot(link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b"), other))
+    assert [j.name for j in found.joints] == ["j"]
+
+
 def test_a_robot_that_a_package_brings(tmp_path):
     pytest.importorskip("pybullet_data")
     files = InputFiles(tmp_path)
