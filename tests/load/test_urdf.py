@@ -1,24 +1,10 @@
-"""URDF to a robot: shapes in their link's frame, joints as written, and the element of every
-fault.
-"""
+"""URDF to a robot: shapes in their link's frame, and joints as written."""
 
 import importlib.util
 
 import numpy as np
 import pytest
 
-from clearance.errors import (
-    BadDimension,
-    BadInput,
-    BadShape,
-    BadSyntax,
-    DuplicateName,
-    MissingFile,
-    MissingKey,
-    NotFinite,
-    UnknownJoint,
-    UnknownLink,
-)
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.urdf import UrdfRequest, read_robot
@@ -27,32 +13,7 @@ from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
 from tests.load.making import ARM, cube_stl, signed_volume
-
-
-def load(folder, urdf, package_dirs=(), geometry="collision"):
-    path = folder / "arm.urdf"
-    path.write_bytes(urdf.encode() if isinstance(urdf, str) else urdf)
-    if not (folder / "upper.stl").exists():
-        (folder / "upper.stl").write_bytes(cube_stl())
-    request = UrdfRequest(path, tuple(package_dirs), geometry)
-    return read_robot(request, MeshStore(InputFiles(folder)))
-
-
-def link(shapes: str, name: str = "a") -> str:
-    return f'<link name="{name}">{shapes}</link>'
-
-
-def collision(shape: str, origin: str = "") -> str:
-    return f"<collision>{origin}<geometry>{shape}</geometry></collision>"
-
-
-def robot(*elements: str) -> str:
-    return f'<robot name="r">{"".join(elements)}</robot>'
-
-
-def joint(name, parent, child, kind="revolute", inner='<limit lower="-1" upper="1"/>') -> str:
-    ends = f'<parent link="{parent}"/><child link="{child}"/>'
-    return f'<joint name="{name}" type="{kind}">{ends}{inner}</joint>'
+from tests.load.making_urdf import BOX, collision, joint, link, load_urdf, robot
 
 
 def world_from_link(robot, **positions):
@@ -64,7 +25,7 @@ def world_from_link(robot, **positions):
 
 
 def test_an_arm_has_its_links_joints_and_bodies(tmp_path):
-    arm = load(tmp_path, ARM)
+    arm = load_urdf(tmp_path, ARM)
     assert arm.name == "arm"
     assert arm.link_names == ("base", "upper", "tip")
     assert [j.name for j in arm.joints] == ["shoulder", "flange"]
@@ -85,7 +46,7 @@ def test_several_elements_of_a_link_are_one_body_in_the_link_frame(tmp_path):
         collision('<mesh filename="upper.stl" scale="0.5"/>'),
         "<visual><geometry><sphere radius='100'/></geometry></visual>",
     ]
-    body = load(tmp_path, robot(link("".join(parts)))).bodies[0]
+    body = load_urdf(tmp_path, robot(link("".join(parts)))).bodies[0]
     assert signed_volume(body.shape) == pytest.approx(48 + 2 + 0.125)
     assert body.shape.bounds[1] == pytest.approx([12, 1, 6])
     assert body.shape.bounds[0] == pytest.approx([-0.5, -1, -3])
@@ -102,7 +63,7 @@ def test_several_elements_of_a_link_are_one_body_in_the_link_frame(tmp_path):
     ],
 )
 def test_primitive_shapes_hold_the_true_solid_and_little_more(tmp_path, shape, size, volume):
-    body = load(tmp_path, robot(link(collision(shape)))).bodies[0]
+    body = load_urdf(tmp_path, robot(link(collision(shape)))).bodies[0]
     extent = body.shape.bounds[1] - body.shape.bounds[0]
     assert (extent >= size).all()
     assert extent == pytest.approx(size, abs=2 * 1.01e-4)
@@ -114,14 +75,14 @@ def test_visual_geometry_when_asked(tmp_path):
         collision('<box size="1 1 1"/>')
         + "<visual><geometry><box size='2 2 2'/></geometry></visual>"
     )
-    assert signed_volume(load(tmp_path, robot(link(elements))).bodies[0].shape) == 1
-    shape = load(tmp_path, robot(link(elements)), geometry="visual").bodies[0].shape
+    assert signed_volume(load_urdf(tmp_path, robot(link(elements))).bodies[0].shape) == 1
+    shape = load_urdf(tmp_path, robot(link(elements)), geometry="visual").bodies[0].shape
     assert signed_volume(shape) == 8
 
 
 def test_origins_turn_by_roll_pitch_yaw_about_fixed_axes(tmp_path):
     origin = '<origin xyz="1 2 3" rpy="0.3 -0.4 0.5"/>'
-    arm = load(tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", origin)))
+    arm = load_urdf(tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", origin)))
 
     def turn(axis, angle):
         i, k = [(1, 2), (2, 0), (0, 1)][axis]
@@ -137,7 +98,7 @@ def test_origins_turn_by_roll_pitch_yaw_about_fixed_axes(tmp_path):
 
 
 def test_links_come_parents_first_whatever_the_file_says(tmp_path):
-    arm = load(
+    arm = load_urdf(
         tmp_path,
         robot(
             link("", "c"),
@@ -155,7 +116,7 @@ SLIDE = '<axis xyz="1 0 0"/><limit lower="0" upper="9"/>'
 
 
 def test_mimic_chains_follow_their_master(tmp_path):
-    arm = load(
+    arm = load_urdf(
         tmp_path,
         robot(
             *(link("", name) for name in "abcd"),
@@ -178,7 +139,7 @@ def test_mimic_chains_follow_their_master(tmp_path):
 
 
 def test_a_mimic_of_a_fixed_joint_stays_where_it_is(tmp_path):
-    arm = load(
+    arm = load_urdf(
         tmp_path,
         robot(
             *(link("", name) for name in "abcd"),
@@ -201,7 +162,7 @@ def test_a_mimic_of_a_fixed_joint_stays_where_it_is(tmp_path):
 
 
 def test_a_fixed_joint_that_mimics_is_fixed(tmp_path):
-    arm = load(
+    arm = load_urdf(
         tmp_path,
         robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", '<mimic joint="gone"/>')),
     )
@@ -221,14 +182,14 @@ def test_a_fixed_joint_that_mimics_is_fixed(tmp_path):
     ],
 )
 def test_limits(tmp_path, kind, inner, limits):
-    arm = load(tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", kind, inner)))
+    arm = load_urdf(tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", kind, inner)))
     assert (arm.joints[0].lower, arm.joints[0].upper) == limits
 
 
 @pytest.mark.parametrize("axis", ["0 0 1e-200", "0 0 1e200", "0 0 7"])
 def test_axes_get_length_one(tmp_path, axis):
     inner = f'<axis xyz="{axis}"/><limit lower="0" upper="1"/>'
-    arm = load(
+    arm = load_urdf(
         tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "revolute", inner))
     )
     assert arm.joints[0].axis.tolist() == [0, 0, 1]
@@ -254,7 +215,7 @@ def test_meshes_are_found(tmp_path, given, place):
     (tmp_path / place).mkdir(parents=True, exist_ok=True)
     (tmp_path / place / "part.stl").write_bytes(cube_stl())
     mesh = f'<mesh filename="{given.format(folder=tmp_path)}"/>'
-    arm = load(tmp_path, robot(link(collision(mesh))), [tmp_path / "dirs"])
+    arm = load_urdf(tmp_path, robot(link(collision(mesh))), [tmp_path / "dirs"])
     assert arm.bodies[0].origin == f"{place}/part.stl"
 
 
@@ -265,7 +226,7 @@ def test_the_longest_match_of_a_package_path_wins(tmp_path):
             f"v 0 0 0\nv {scale} 0 0\nv 0 {scale} 0\nf 1 2 3\n"
         )
     mesh = collision('<mesh filename="package://pkg/part.obj"/>')
-    arm = load(tmp_path, robot(link(mesh)), [tmp_path / "one", tmp_path / "two"])
+    arm = load_urdf(tmp_path, robot(link(mesh)), [tmp_path / "one", tmp_path / "two"])
     assert arm.bodies[0].origin == "two/pkg/part.obj"
 
 
@@ -277,7 +238,7 @@ def test_elements_that_say_nothing_about_shape_may_hold_anything(tmp_path):
     urdf = robot(
         link(extra), "<gazebo><x/></gazebo><transmission/><material name='m'/><!-- end -->"
     )
-    assert load(tmp_path, urdf).bodies[0].shape.n_faces == 6
+    assert load_urdf(tmp_path, urdf).bodies[0].shape.n_faces == 6
 
 
 def test_a_default_namespace_changes_nothing(tmp_path):
@@ -285,9 +246,9 @@ def test_a_default_namespace_changes_nothing(tmp_path):
     plain = robot(*elements)
     named = plain.replace("<robot ", '<robot xmlns="http://drake.mit.edu" ', 1)
     prefixed = plain.replace("<", "<u:").replace("<u:/", "</u:").replace("<u:robot ", '<u:robot xmlns:u="urn:u" ')
-    expected = load(tmp_path, plain)
+    expected = load_urdf(tmp_path, plain)
     for text in (named, prefixed):
-        found = load(tmp_path, text)
+        found = load_urdf(tmp_path, text)
         assert found.link_names == expected.link_names
         assert [body.shape.n_faces for body in found.bodies] == [6, 6]
         assert [j.name for j in found.joints] == [j.name for j in expected.joints]
@@ -295,7 +256,7 @@ def test_a_default_namespace_changes_nothing(tmp_path):
 
 def test_elements_of_another_namespace_are_passed_over(tmp_path):
     other = '<x:joint xmlns:x="urn:x" name="k"/>'
-    found = load(tmp_path, robot(link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b"), other))
+    found = load_urdf(tmp_path, robot(link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b"), other))
     assert [j.name for j in found.joints] == ["j"]
 
 
@@ -309,130 +270,3 @@ def test_a_robot_that_a_package_brings(tmp_path):
     assert {source.path.split(":")[0] for source in files.sources} == {"pybullet_data"}
     assert arm.bodies[0].origin == "pybullet_data:kuka_iiwa/meshes/link_0.stl"
     assert importlib.util.find_spec("pybullet_data").origin not in str(files.sources)
-
-
-A_B = link("", "a") + link("", "b")
-BOX = collision('<box size="1 1 1"/>')
-
-
-@pytest.mark.parametrize(
-    ("urdf", "fault", "says"),
-    [
-        ("", BadSyntax, "not XML"),
-        ("not xml at all", BadSyntax, "not XML"),
-        (robot(A_B)[:-5], BadSyntax, "not XML"),
-        ("<sdf/>", BadSyntax, "the root element is <sdf>"),
-        (robot(), BadInput, "no links"),
-        (
-            '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arm/></robot>',
-            BadSyntax,
-            "xacro",
-        ),
-        (robot("<link/>"), MissingKey, "link[0]: <link> has no name"),
-        (robot(link("", "a"), link("", "a")), DuplicateName, "two links have the name 'a'"),
-        (robot(A_B), BadInput, "links 'a', 'b' have no parent"),
-        (robot(A_B, joint("j", "a", "b"), joint("j", "a", "b")), DuplicateName, "two joints"),
-        (
-            robot(A_B, joint("j", "a", "b"), joint("k", "a", "b")),
-            BadInput,
-            "child of joints 'j' and 'k'",
-        ),
-        (robot(A_B, joint("j", "a", "b"), joint("k", "b", "a")), BadInput, "circle"),
-        (robot(A_B, link("", "c"), joint("j", "a", "b"), joint("k", "b", "a")), BadInput, "circle"),
-        (robot(A_B, joint("j", "a", "a")), BadInput, "circle"),
-        (robot(A_B, joint("j", "base", "b")), UnknownLink, "joint 'j': unknown parent link 'base'"),
-        (robot(A_B, joint("j", "a", "bb")), UnknownLink, "joint 'j': unknown child link 'bb'"),
-        (
-            robot(A_B, '<joint name="j" type="fixed"><parent link="a"/></joint>'),
-            MissingKey,
-            "0 <child>",
-        ),
-        (
-            robot(A_B, '<joint name="j"><parent link="a"/></joint>'),
-            MissingKey,
-            "<joint> has no type",
-        ),
-        (robot(A_B, joint("j", "a", "b", "floating")), BadInput, "joint 'j': type 'floating'"),
-        (robot(A_B, joint("j", "a", "b", "planar")), BadInput, "type 'planar' is not supported"),
-        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 0 0"/>')), BadInput, "axis is 0 0 0"),
-        (
-            robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1"/>')),
-            BadShape,
-            "joint 'j' axis: xyz='0 1'",
-        ),
-        (robot(A_B, joint("j", "a", "b", inner='<axis xyz="0 1 nan"/>')), NotFinite, "xyz="),
-        (
-            robot(A_B, joint("j", "a", "b", inner='<origin xyz="0 1 x"/>')),
-            BadShape,
-            "joint 'j' origin",
-        ),
-        (robot(A_B, joint("j", "a", "b", inner='<origin rpy="0 ${pi} 0"/>')), BadShape, "${pi}"),
-        (
-            robot(A_B, joint("j", "a", "b", inner='<limit lower="2" upper="1"/>')),
-            BadInput,
-            "lower limit 2",
-        ),
-        (
-            robot(A_B, joint("j", "a", "b", inner='<mimic joint="k"/>')),
-            UnknownJoint,
-            "unknown joint 'k'",
-        ),
-        (robot(A_B, joint("j", "a", "b", inner='<mimic joint="j"/>')), BadInput, "circle"),
-        (robot(link(collision(""))), BadInput, "link 'a' collision[0] geometry: nothing is given"),
-        (robot(link("<collision/>")), MissingKey, "<collision> has no <geometry>"),
-        (robot(link(BOX + collision("<cone/>"))), BadInput, "collision[1] geometry: <cone>"),
-        (
-            robot(link(collision("<box size='1 1 1'/><sphere radius='1'/>"))),
-            BadInput,
-            "<box>, <sphere>",
-        ),
-        (robot(link(collision('<box size="1 1"/>'))), BadShape, "size='1 1' is given; 3 numbers"),
-        (robot(link(collision("<box/>"))), MissingKey, "<box> has no size"),
-        (robot(link(collision('<box size="1 -1 1"/>'))), BadDimension, "-1"),
-        (robot(link(collision('<sphere radius="0"/>'))), BadDimension, "link 'a' collision[0]"),
-        (robot(link(collision('<cylinder radius="1" length="nan"/>'))), NotFinite, "length='nan'"),
-        (robot(link(collision("<mesh/>"))), MissingKey, "<mesh> has no filename"),
-        (
-            robot(link(collision('<mesh filename="no.stl"/>'))),
-            MissingFile,
-            "collision[0]: there is no mesh",
-        ),
-        (
-            robot(link(collision('<mesh filename="package://p/no.stl"/>'))),
-            MissingFile,
-            "package_dirs",
-        ),
-        (
-            robot(link(collision('<mesh filename="http://x/no.stl"/>'))),
-            BadSyntax,
-            "http://x/no.stl",
-        ),
-        (
-            robot(link(collision('<mesh filename="upper.stl" scale="0 1 1"/>'))),
-            BadDimension,
-            "upper.stl: scale",
-        ),
-        (
-            robot(link(collision('<mesh filename="upper.stl" scale="1 1"/>'))),
-            BadShape,
-            "1 or 3 numbers",
-        ),
-        (
-            robot(link(collision('<mesh filename="arm.urdf"/>'))),
-            BadSyntax,
-            "unknown mesh format '.urdf'",
-        ),
-    ],
-)
-def test_each_fault_is_one_line_with_file_and_element(tmp_path, urdf, fault, says):
-    with pytest.raises(fault) as caught:
-        load(tmp_path, urdf)
-    assert says in str(caught.value)
-    assert str(caught.value).startswith("arm.urdf: ")
-    assert "\n" not in str(caught.value)
-
-
-def test_entities_among_the_elements_are_refused(tmp_path):
-    text = "<!DOCTYPE robot [<!ENTITY b '<link name=\"a\"/>'>]>" + robot("&b;")
-    with pytest.raises(BadSyntax, match="&b; stands for something among the elements"):
-        load(tmp_path, text)

@@ -1,0 +1,277 @@
+"""Mechanisms, circles that touch and figures of projective geometry, drawn as users draw them."""
+
+import math
+
+import numpy as np
+
+from clearance.sketch import Sketch
+from tests.sketch.drawn_outlines import ring
+
+
+def four_bar():
+    s = Sketch()
+    p, _ = ring(s, [(0, 0), (1, 2), (4, 3), (5, 0)])
+    for k, span in enumerate((2.0, 3.5, 3.0)):
+        s.distance(p[k], p[k + 1], span)
+    s.fix(p[0]), s.fix(p[3])
+    return s
+
+
+def four_bar_over_fixed_ends():
+    """The two fixed ends have their distance already."""
+    s = four_bar()
+    p = [e for e in s.entities.values() if e.what == "point"]
+    s.distance(p[0], p[3], 5.0, name="base")
+    return s
+
+
+def slider_crank():
+    s = Sketch()
+    o, c, b = s.point(0, 0), s.point(1, 1), s.point(4, 0.1)
+    rail = s.line((0, 0), (1, 0))
+    s.fix(o), s.fix(rail), s.distance(o, c, 1.5), s.distance(c, b, 3.5), s.incident(b, rail)
+    return s
+
+
+def scissors():
+    """Two equal bars that cross in their middles."""
+    s = Sketch()
+    a, b, c, d = (s.point(*q) for q in ((0, 0), (3, 2), (0, 2), (3, 0.1)))
+    m = s.point(1.5, 1)
+    s.midpoint(m, a, b), s.midpoint(m, c, d), s.distance(a, b, 3.6), s.distance(c, d, 3.6)
+    return s
+
+
+def scissors_whose_feet_are_level_as_well_as_the_tops():
+    s = scissors()
+    p = [e for e in s.entities.values() if e.what == "point"]
+    s.horizontal(p[0], p[3]), s.horizontal(p[2], p[1], name="tops")
+    return s
+
+
+def peaucellier():
+    """The inversor: seven bars of three lengths; its point runs on a straight line."""
+    s = Sketch()
+    o, q = s.point(0, 0), s.point(1.0, 0)
+    c, d = s.point(3.5, 1.2), s.point(3.5, -1.2)
+    b, p = s.point(2.0, 0.1), s.point(5.0, 0.1)
+    s.fix(o), s.fix(q)
+    for x, y, span in (
+        (o, c, 3.7),
+        (o, d, 3.7),
+        (c, b, 1.9),
+        (d, b, 1.9),
+        (c, p, 1.9),
+        (d, p, 1.9),
+    ):
+        s.distance(x, y, span)
+    s.distance(q, b, 1.0)
+    return s
+
+
+def peaucellier_on_its_line():
+    """That it runs on that line is a theorem, which no count sees."""
+    s = peaucellier()
+    p = [e for e in s.entities.values() if e.what == "point"]
+    rail = s.line((0.5 * (3.7**2 - 1.9**2), 0.0), (0.5 * (3.7**2 - 1.9**2), 1.0))
+    s.fix(rail), s.incident(p[5], rail, name="on_the_line")
+    return s
+
+
+def belt(apart=5.0):
+    """Two pulleys and the two outer tangents with their tangent points."""
+    s = Sketch()
+    c, d = s.circle((0, 0), 1.0), s.circle((5, 0), 2.0)
+    for sign in (-1, 1):
+        a, b = s.point(-0.2, sign * 1.0), s.point(4.6, sign * 2.0)
+        s.incident(a, c), s.incident(b, d)
+        line = s.segment(a, b)
+        s.tangent(line, c), s.tangent(line, d)
+    s.radius(c, 1.0), s.radius(d, 2.0)
+    if apart:
+        s.distance(c.center, d.center, apart)
+    return s
+
+
+def belt_with_a_free_distance():
+    return belt(None)
+
+
+def chain_of_arcs():
+    """An S of two arcs that meet in a point with one tangent: their centres and the joint lie in line."""
+    s = Sketch()
+    a, j, b = s.point(-1, 0), s.point(0, 0.02), s.point(1, 0)
+    m, n = s.point(-0.5, 0), s.point(0.5, 0)
+    one, two = s.arc(m, j, a), s.arc(n, j, b)
+    s.tangent(one, two, inside=False)
+    s.radius(one, 0.5), s.radius(two, 0.6)
+    return s
+
+
+def planets():
+    """A sun, a ring and three planets that touch both, a third of a turn apart; sun and ring have one centre."""
+    s = Sketch()
+    m = s.point(0, 0)
+    sun, rim = s.circle(m, 1.0), s.circle(m, 3.0)
+    s.radius(sun, 1.0), s.radius(rim, 3.0)
+    for k in range(3):
+        t = 2.0 * math.pi * k / 3.0
+        c = s.circle((2.1 * math.cos(t), 2.1 * math.sin(t)), 0.9)
+        s.tangent(sun, c, inside=False), s.tangent(rim, c, inside=True)
+    return s
+
+
+def planets_of_equal_radius():
+    """Their radius follows from sun and ring."""
+    s = planets()
+    c = [e for e in s.entities.values() if e.what == "circle"][2:]
+    s.equal_radius(c[0], c[1], name="alike")
+    return s
+
+
+def incircle():
+    s = Sketch()
+    p, e = ring(s, [(0, 0), (4, 0.1), (1.2, 2.6)])
+    for k, span in enumerate((4.0, 4.1, 3.0)):
+        s.distance(p[k], p[(k + 1) % 3], span)
+    c = s.circle((1.6, 0.9), 0.6)
+    for line in e:
+        s.tangent(line, c)
+    return s
+
+
+def incircle_too_large():
+    s = incircle()
+    c = next(e for e in s.entities.values() if e.what == "circle")
+    s.radius(c, 1.5, name="too_large")
+    return s
+
+
+def hexagon():
+    """On a circle, all sides alike: six points have six turns; one places it, five equal sides."""
+    s = Sketch()
+    c = s.circle((0, 0), 2.0)
+    p = []
+    for k in range(6):
+        t = math.pi * k / 3.0 + 0.05 * (-1) ** k
+        p.append(s.point(2.0 * math.cos(t), 2.0 * math.sin(t)))
+        s.incident(p[-1], c)
+    e = [s.segment(p[k], p[(k + 1) % 6]) for k in range(6)]
+    for k in range(1, 6):
+        s.equal_length(e[0], e[k])
+    return s
+
+
+def hexagon_whose_sides_are_the_radius():
+    s = hexagon()
+    p = [e for e in s.entities.values() if e.what == "point"]
+    c = next(e for e in s.entities.values() if e.what == "circle")
+    s.radius(c, 2.0), s.distance(p[1], p[2], 2.0, name="side")
+    return s
+
+
+def coincident_chain():
+    """Segments with ends of their own, joined one by one, the last joint said twice."""
+    s = Sketch()
+    e = []
+    for k in range(3):
+        t, u = 2.1 * k, 2.1 * (k + 1)
+        ends = (s.point(math.cos(t), math.sin(t)), s.point(math.cos(u) + 0.05, math.sin(u)))
+        e.append(s.segment(*ends))
+        s.distance(*ends, 1.7)
+    for k in range(3):
+        s.coincident(e[k].ends[1], e[(k + 1) % 3].ends[0])
+    return s
+
+
+def coincident_twice():
+    s = coincident_chain()
+    e = [k for k in s.entities.values() if k.what == "segment"]
+    s.coincident(e[1].ends[0], e[0].ends[1], name="again")
+    return s
+
+
+def lone_point():
+    s = coincident_chain()
+    s.point(5, 5)
+    return s
+
+
+def two_pieces():
+    """Two rigid triangles: the second may lie anywhere."""
+    s = Sketch()
+    for x in (0.0, 6.0):
+        p, _ = ring(s, [(x, 0), (x + 4, 0), (x + 1.2, 2.6)])
+        for k, span in enumerate((4.0, 4.1, 3.0)):
+            s.distance(p[k], p[(k + 1) % 3], span)
+    return s
+
+
+def parallel_rails():
+    """Five parallel lines at equal given gaps, and the outer distance again."""
+    s = Sketch()
+    e = [s.line((0, k), (5, k + 0.05 * k)) for k in range(5)]
+    for k in range(4):
+        s.distance(e[k], e[k + 1], 1.0)
+    s.distance(e[0], e[4], 4.0, name="outer")
+    return s
+
+
+def parallel_rails_with_a_wrong_outer_distance():
+    s = parallel_rails()
+    s.set("outer", 4.5)
+    return s
+
+
+def truss():
+    """A triangulated girder of eight bays, top and bottom chord level."""
+    s = Sketch()
+    low = [s.point(k, 0.02 * k) for k in range(9)]
+    high = [s.point(k + 0.5, 0.9) for k in range(8)]
+    for a, b in zip(low, low[1:], strict=False):
+        s.distance(a, b, 1.0), s.horizontal(a, b)
+    for k, h in enumerate(high):
+        s.distance(h, low[k], 1.0), s.distance(h, low[k + 1], 1.0)
+    return s
+
+
+def truss_with_a_level_top():
+    s = truss()
+    p = [e for e in s.entities.values() if e.what == "point"]
+    for k in range(7):
+        s.horizontal(p[9 + k], p[10 + k])
+    return s
+
+
+def desargues():
+    """Two triangles in perspective from a point: the three meets of their sides lie on a line, by theorem."""
+    s = Sketch()
+    o = s.point(0, 0)
+    turns, near, far = (0.3, 1.2, 2.3), (2.0, 1.5, 2.2), (4.0, 4.2, 3.6)
+    a = [s.point(r * math.cos(t), r * math.sin(t)) for r, t in zip(near, turns, strict=True)]
+    b = [s.point(r * math.cos(t), r * math.sin(t)) for r, t in zip(far, turns, strict=True)]
+    for p, q in zip(a, b, strict=True):
+        s.incident(p, s.line(o, q))
+        s.distance(o, p), s.distance(o, q)
+    s.distance(b[0], b[1]), s.distance(b[1], b[2])
+    meets = []
+    for i in range(3):
+        j = (i + 1) % 3
+        e, f = s.line(a[i], a[j]), s.line(b[i], b[j])
+        m = np.linalg.solve(
+            [[-e.direction[1], e.direction[0]], [-f.direction[1], f.direction[0]]],
+            [e.offset, f.offset],
+        )
+        meets.append(s.point(*m))
+        s.incident(meets[-1], e), s.incident(meets[-1], f)
+    return s, meets
+
+
+def desargues_points():
+    return desargues()[0]
+
+
+def desargues_line():
+    s, meets = desargues()
+    s.incident(meets[2], s.line(meets[0], meets[1]), name="desargues")
+    return s
