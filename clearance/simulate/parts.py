@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import os
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from typing import TypeVar
 
 Result = TypeVar("Result")
@@ -41,23 +42,47 @@ def blocks(n_rows: int) -> Iterator[slice]:
 def in_order(
     work: Callable[[slice], Result], spans: Sequence[slice], jobs: int
 ) -> Iterator[Result]:
-    """The results of `work` for each span, in order, from as many threads as are asked for."""
+    """The results of `work` for each span, in order, from so many threads, of which this is one."""
     if jobs == 1 or len(spans) <= 1:
         yield from map(work, spans)
         return
-    pool = _threads(jobs)
-    running = deque()
+    pool = _threads(jobs - 1)
+    waiting = iter(spans)
+    ahead: deque[tuple[slice, Future[Result]]] = deque()
     try:
-        for span in spans:
-            running.append(pool.submit(work, span))
-            if len(running) >= WAITING * jobs:
-                yield running.popleft().result()
-        while running:
-            yield running.popleft().result()
+        while True:
+            for span in itertools.islice(waiting, WAITING * jobs - len(ahead)):
+                ahead.append((span, pool.submit(work, span)))
+            if not ahead:
+                return
+            _help(work, ahead)
+            yield ahead.popleft()[1].result()
     finally:  # also where the caller wants no more: then no thread writes any more
-        for result in running:
+        for _, result in ahead:
             result.cancel()
-        wait(running)
+        wait([result for _, result in ahead])
+
+
+def _help(work: Callable[[slice], Result], ahead: deque[tuple[slice, Future[Result]]]) -> None:
+    """Does what no thread has begun, in this one, until the first result is there or nothing is left to begin.
+
+    A thread that only waited for results would take the others' processor each time it woke.
+    """
+    for i, (span, result) in enumerate(ahead):
+        if ahead[0][1].done():
+            return
+        if result.cancel():
+            ahead[i] = span, _finished(work, span)
+
+
+def _finished(work: Callable[[slice], Result], span: slice) -> Future[Result]:
+    """The result or the error of a part, done here and now."""
+    result: Future[Result] = Future()
+    try:
+        result.set_result(work(span))
+    except Exception as error:
+        result.set_exception(error)
+    return result
 
 
 @functools.lru_cache(maxsize=1)

@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 import tracemalloc
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,7 +21,6 @@ from clearance.errors import Unwritable
 from clearance.report.summary import summary_of
 from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
 from clearance.simulate import parts, spool
-from clearance.simulate.parts import in_order
 from clearance.simulate.replay import replay_of
 from clearance.simulate.spool import open_spool
 from clearance.world.case import Case
@@ -250,45 +248,6 @@ def test_a_state_whose_rows_are_gone_is_not_believed(case: Case, tmp_path: Path)
     said: list[str] = []
     assert answer(case, tmp_path / "kept", said) == told(cl.check(case))
     assert said == []
-
-
-def test_few_results_wait_ahead() -> None:
-    started: list[int] = []
-
-    def work(span: slice) -> int:
-        started.append(span.start)
-        return span.start
-
-    results = in_order(work, [slice(i, i + 1) for i in range(1000)], 2)
-    assert [next(results) for _ in range(10)] == list(range(10))
-    assert len(started) <= 10 + 2 * parts.WAITING
-    assert list(results) == list(range(10, 1000))
-
-
-def test_nothing_is_worked_on_any_more_when_no_more_is_wanted() -> None:
-    started, done = [], []
-
-    def work(span: slice) -> None:
-        started.append(span.start)
-        time.sleep(0.01)
-        done.append(span.start)
-
-    results = in_order(work, [slice(i, i + 1) for i in range(20)], 2)
-    next(results)
-    results.close()
-    assert sorted(started) == sorted(done)
-    assert len(done) < 10
-
-
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="there are no forks here")
-def test_a_process_forked_after_a_run_on_threads_runs_on_threads_of_its_own() -> None:
-    spans = [slice(i, i + 1) for i in range(4)]
-    list(in_order(lambda span: span.start, spans, 2))
-    child = os.fork()
-    if child == 0:
-        signal.alarm(20)
-        os._exit(0 if list(in_order(lambda span: span.start, spans, 2)) == [0, 1, 2, 3] else 1)
-    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 
 def resampled(case: Case, n_steps: int) -> Case:
