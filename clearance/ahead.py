@@ -17,16 +17,19 @@ from contextlib import suppress
 
 import numba
 
-import clearance.kernels.body_pair  # noqa: F401 it enters all of `FIRST` into the table
+import clearance.kernels.body_pair  # noqa: F401 it enters `ALL` into the table
 from clearance import kernel_table
 from clearance.jit import cache_root
-from clearance.kernel_table import PARTING, REFINE, SEARCH
+from clearance.kernel_table import PARTING, REFINE, SEARCH, TOGETHER
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 """Set in the environment of the second process, so that no other one follows whatever it comes to run."""
 
 FIRST = (SEARCH, REFINE, PARTING)
 """What questions about distances need, in the order in which it is come to; the last one where bodies move."""
+
+ALL = (*FIRST, *TOGETHER)
+"""What the second process compiles; it is stopped where the first one ends before."""
 
 _starting = threading.Lock()
 
@@ -45,7 +48,7 @@ def _start_once() -> bool:
         with suppress(OSError):  # then all is compiled here
             process = _second_process()
             atexit.register(_stop, process)
-            kernel_table.await_from(process)
+            kernel_table.await_from(process, ALL)
     return True
 
 
@@ -79,5 +82,5 @@ def main() -> None:
     cache_root().mkdir(parents=True, exist_ok=True)
     with open(cache_root() / "ahead.lock", "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        for place in FIRST:
+        for place in ALL:
             kernel_table.compile_kernel(place)

@@ -17,7 +17,7 @@ import subprocess
 import threading
 import time
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numba
@@ -31,10 +31,13 @@ from clearance.jit import borrowing
 REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS, PARTING = range(8)
 """The places of the table."""
 
+TOGETHER = (MEETING, COMMON_POINT)
+"""Who needs one of these mostly needs the others."""
+
 _table = np.zeros((8, 2), dtype=np.int64)  # address, stamp
 _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
-_elsewhere: list[subprocess.Popen] = []
+_elsewhere: list[tuple[subprocess.Popen, Sequence[int]]] = []
 
 _PATIENCE, _AT_MOST = 0.02, 60.0
 """[s] How often to look whether another process has compiled a kernel, and how long to wait for each."""
@@ -93,18 +96,44 @@ def is_kept(place: int) -> bool:
     return any(Path(function.stats.cache_path).glob(f"*.{name}-*.nbc"))  # written last
 
 
-def await_from(process: subprocess.Popen) -> None:
-    """Lets kernels that are not kept come from another process as long as it runs."""
-    _elsewhere[:] = [process]
+def await_from(process: subprocess.Popen, places: Sequence[int]) -> None:
+    """Lets kernels that are not kept come from another process, which compiles these one after the other."""
+    _elsewhere[:] = [(process, places)]
 
 
 def compile_kernel(place: int) -> None:
-    """Compiles the kernel of a place, or takes it from the cache, and writes its address down."""
+    """Compiles the kernel of a place, or takes it from the cache, and writes its address down.
+
+    What another process is compiling is awaited; meanwhile what goes together with it is compiled here.
+    """
     give_up = time.monotonic() + _AT_MOST
-    while not is_kept(place) and any(process.poll() is None for process in _elsewhere):
+    while not is_kept(place) and _is_at_work_on(place):
+        others = _what_goes_with(place)
         if time.monotonic() > give_up:
             _elsewhere.clear()
-        time.sleep(_PATIENCE)
+        elif others:
+            _compile_here(others[-1])
+        else:
+            time.sleep(_PATIENCE)
+    _compile_here(place)
+
+
+def _what_goes_with(place: int) -> list[int]:
+    """The kernels that are not kept of those `TOGETHER` with one."""
+    if place not in TOGETHER:
+        return []
+    return [other for other in TOGETHER if other != place and not is_kept(other)]
+
+
+def _is_at_work_on(place: int) -> bool:
+    """True if another process runs, and a kernel is the first of those that it still has to compile."""
+    for process, places in _elsewhere:
+        if process.poll() is None and next((each for each in places if not is_kept(each)), None) == place:
+            return True
+    return False
+
+
+def _compile_here(place: int) -> None:
     function, like = _apart[place]
     argument_types = tuple(_type_of(argument) for argument in like())
     with _compiling:

@@ -32,10 +32,36 @@ FROM_ONE_THAT_ENDS = """
 import json, subprocess, sys
 from clearance import kernel_table
 from clearance.kernels import containment
-kernel_table.await_from(subprocess.Popen([sys.executable, "-c", ""]))
+process = subprocess.Popen([sys.executable, "-c", ""])
+kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
 kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
 print(json.dumps(sum(containment.winding_number.stats.cache_misses.values())))
 """
+
+FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER = """
+import json, subprocess, sys
+from clearance import kernel_table
+from clearance.kernels import body_pair, containment
+process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+kernel_table.await_from(process, [kernel_table.SEARCH, kernel_table.WINDING_NUMBER])
+kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
+runs = process.poll() is None
+process.kill()
+print(json.dumps([sum(containment.winding_number.stats.cache_misses.values()), runs]))
+"""
+
+WHAT_GOES_TOGETHER = '''
+import json, subprocess, sys
+from clearance import kernel_table
+from clearance.kernels import body_pair, common_point, meeting
+do = f"""import sys; sys.path[:] = {sys.path!r}
+from clearance.kernels import body_pair; from clearance import kernel_table as t; t.compile_kernel(t.MEETING)"""
+process = subprocess.Popen([sys.executable, "-c", do])
+kernel_table.await_from(process, kernel_table.TOGETHER)
+kernel_table.compile_kernel(kernel_table.MEETING)
+made = [sum(f.stats.cache_misses.values()) for f in (meeting.meeting, common_point.common_point)]
+print(json.dumps([made, sum(meeting.meeting.stats.cache_hits.values())]))
+'''
 
 
 WHERE_NO_PROCESS_STARTS = """
@@ -73,6 +99,14 @@ def test_what_the_second_process_compiles_is_taken_and_not_made_again(tmp_path):
 
 def test_a_process_that_ends_without_it_is_not_waited_for(tmp_path):
     assert told_by(FROM_ONE_THAT_ENDS, tmp_path) == 1
+
+
+def test_what_another_process_has_not_come_to_is_not_waited_for(tmp_path):
+    assert told_by(FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER, tmp_path) == [1, True]
+
+
+def test_while_one_of_two_kernels_is_awaited_the_other_is_compiled(tmp_path):
+    assert told_by(WHAT_GOES_TOGETHER, tmp_path) == [[0, 1], 1]
 
 
 @pytest.mark.skipif(ahead.usable_cores() < 2, reason="one core: nothing is compiled ahead")
