@@ -8,12 +8,12 @@ import math
 from typing import NamedTuple
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.double_double import Wide, less, lesser, minus, root, wide
+from clearance.kernels.double_double import Wide, less, lesser, minus, wide
 from clearance.kernels.face_pair import has_plane, height, may_be_over
 from clearance.kernels.feature import Feature, n_segments, segment, simplex
 from clearance.kernels.segments import may_be_inside, may_be_inside_both, nearest_on_segment
 from clearance.kernels.vec3 import Vec3, dot, gap_sq, move, move_back, row, sub
-from clearance.kernels.wide_features import Simplex, too_far, wide_feature
+from clearance.kernels.wide_features import Simplex, sized_of
 
 
 class Ask(NamedTuple):
@@ -35,28 +35,21 @@ class Chosen(NamedTuple):
     sure: Wide
 
 
-@kernel
-def _measured(frames, one, two):
-    """The squared distance of a feature pair [m^2] and a lower bound on its distance [m]."""
-    pair = wide_feature(frames, one, two)
-    if pair.gap_sq.hi == math.inf:
-        return pair.gap_sq, pair.gap_sq
-    length = root(pair.gap_sq)
-    return pair.gap_sq, minus(length, too_far(frames, one, two, pair, length))
-
-
 @inlined
-def _take(frames, one, two, feature, best):
+def _take(frames, one, two, feature, best, table):
     """`best`, or a feature pair that is nearer."""
-    found_sq, sure = _measured(frames, one, two)
-    sure = lesser(best.sure, sure)
+    sized = sized_of(table, frames, one, two)
+    found_sq = sized.pair.gap_sq
+    if found_sq.hi == math.inf:
+        return best
+    sure = lesser(best.sure, minus(sized.length, sized.off))
     if less(found_sq, best.gap_sq):
         return Chosen(found_sq, feature, sure)
     return Chosen(best.gap_sq, best.feature, sure)
 
 
 @inlined
-def _corner_to_face(one, at, two, face, frames, is_a, ask, best):
+def _corner_to_face(one, at, two, face, frames, is_a, ask, best, table):
     """`best` with a vertex of one body against the triangles of the fan of a face of the other."""
     v = row(one.vertices, at)
     y = move_back(frames.m, v) if is_a else move(frames.m, v)
@@ -68,14 +61,14 @@ def _corner_to_face(one, at, two, face, frames, is_a, ask, best):
     for k in range(two.face_starts[face] + 1, two.face_starts[face + 1] - 1):
         other = simplex(two, face, 3, k)
         if is_a:
-            best = _take(frames, corner, other, Feature(1, at, 3, k), best)
+            best = _take(frames, corner, other, Feature(1, at, 3, k), best, table)
         else:
-            best = _take(frames, other, corner, Feature(3, k, 1, at), best)
+            best = _take(frames, other, corner, Feature(3, k, 1, at), best, table)
     return best
 
 
 @inlined
-def _corner_to_segments(one, at, two, face, frames, is_a, ask, best):
+def _corner_to_segments(one, at, two, face, frames, is_a, ask, best, table):
     """`best` with a vertex of one body against the segments of a face of the other."""
     v = row(one.vertices, at)
     y = move_back(frames.m, v) if is_a else move(frames.m, v)
@@ -90,9 +83,9 @@ def _corner_to_segments(one, at, two, face, frames, is_a, ask, best):
             continue
         other = simplex(two, face, 2, s)
         if is_a:
-            best = _take(frames, corner, other, Feature(1, at, 2, s), best)
+            best = _take(frames, corner, other, Feature(1, at, 2, s), best, table)
         else:
-            best = _take(frames, other, corner, Feature(2, s, 1, at), best)
+            best = _take(frames, other, corner, Feature(2, s, 1, at), best, table)
     return best
 
 
@@ -111,7 +104,7 @@ def _far_apart(p0, p1, q0, q1, limit):
 
 
 @inlined
-def _between_corners(a, face_a, b, face_b, frames, ask, best):
+def _between_corners(a, face_a, b, face_b, frames, ask, best, table):
     """`best` with corners against corners."""
     for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
         j = b.owned_vertices[n]
@@ -120,12 +113,12 @@ def _between_corners(a, face_a, b, face_b, frames, ask, best):
             i = a.owned_vertices[o]
             if gap_sq(row(a.vertices, i), y) <= ask.limit * ask.limit:
                 one, two = simplex(a, face_a, 1, i), simplex(b, face_b, 1, j)
-                best = _take(frames, one, two, Feature(1, i, 1, j), best)
+                best = _take(frames, one, two, Feature(1, i, 1, j), best, table)
     return best
 
 
 @inlined
-def _between_segments(a, face_a, b, face_b, frames, ask, best):
+def _between_segments(a, face_a, b, face_b, frames, ask, best, table):
     """`best` with the insides of the segments of both faces."""
     for j in range(n_segments(b, face_b)):
         j0, j1 = segment(b, face_b, j)
@@ -137,12 +130,12 @@ def _between_segments(a, face_a, b, face_b, frames, ask, best):
                 continue
             if may_be_inside_both(p0, p1, q0, q1, ask.margin):
                 one, two = simplex(a, face_a, 2, i), simplex(b, face_b, 2, j)
-                best = _take(frames, one, two, Feature(2, i, 2, j), best)
+                best = _take(frames, one, two, Feature(2, i, 2, j), best, table)
     return best
 
 
 @kernel
-def nearest_of_every(a, face_a, b, face_b, frames, ask):
+def nearest_of_every(a, face_a, b, face_b, frames, ask, table):
     """The nearest feature pair of two faces among those within the limit; infinitely far if there is none."""
     best = Chosen(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))
     one, face_one, two, face_two = a, face_a, b, face_b
@@ -150,8 +143,8 @@ def nearest_of_every(a, face_a, b, face_b, frames, ask):
         is_a = side == 0
         for n in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
             at = one.owned_vertices[n]
-            best = _corner_to_face(one, at, two, face_two, frames, is_a, ask, best)
-            best = _corner_to_segments(one, at, two, face_two, frames, is_a, ask, best)
+            best = _corner_to_face(one, at, two, face_two, frames, is_a, ask, best, table)
+            best = _corner_to_segments(one, at, two, face_two, frames, is_a, ask, best, table)
         one, face_one, two, face_two = b, face_b, a, face_a
-    best = _between_corners(a, face_a, b, face_b, frames, ask, best)
-    return _between_segments(a, face_a, b, face_b, frames, ask, best)
+    best = _between_corners(a, face_a, b, face_b, frames, ask, best, table)
+    return _between_segments(a, face_a, b, face_b, frames, ask, best, table)

@@ -4,11 +4,13 @@ Where two faces bent by rounding lie parallel over each other, no one direction 
 apart. Each pair of triangles is convex and has one that does: that between its own nearest features.
 """
 
-from clearance.jit import kernel, merged
-from clearance.kernels.double_double import less, lesser
+from clearance.jit import inlined, kernel, merged
+from clearance.kernel_table import FANS, Lent, apart, at_address, borrow
+from clearance.kernels.double_double import FRAMES_AT_REST, less, lesser
 from clearance.kernels.face_floor import Part, corners_of, floor_along
 from clearance.kernels.feature import simplex
-from clearance.kernels.wide_features import Simplex, wide_feature
+from clearance.kernels.surface import surface_like
+from clearance.kernels.wide_features import NOTHING_SIZED, Simplex, wide_feature
 
 MOST = 64
 """Triangle pairs that are worth it; faces of more keep the bound of their convex hulls."""
@@ -45,13 +47,19 @@ def _nearest_of_triangles(frames, one, two):
     return best
 
 
-@kernel
-def floor_of_fans(a, face_a, b, face_b, frames, pair, least, floor):
+def _like():
+    far = NOTHING_SIZED.length
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, NOTHING_SIZED.pair, far, far
+
+
+@apart(FANS, _like)
+def floor_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
     """[m] `floor`, or a greater lower bound on the distance of two faces.
 
     Args:
         least: (`Wide`) the floor that is enough: triangles that have it along `pair` are not looked at.
     """
+    a, b = borrow(lent_a), borrow(lent_b)
     start_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
     start_b, end_b = b.face_starts[face_b], b.face_starts[face_b + 1]
     if (end_a - start_a - 2) * (end_b - start_b - 2) > MOST:
@@ -70,3 +78,9 @@ def floor_of_fans(a, face_a, b, face_b, frames, pair, least, floor):
                 direction = _nearest_of_triangles(frames, one, two)
             least_floor = lesser(own, least_floor)
     return floor if less(least_floor, floor) else least_floor
+
+
+@inlined
+def fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
+    """The same by address."""
+    return at_address(table, FANS, floor, (lent_a, face_a, lent_b, face_b, frames, pair, least, floor))

@@ -28,11 +28,11 @@ from clearance.kernels.double_double import (
 from clearance.kernels.every_feature import Ask, nearest_of_every
 from clearance.kernels.face_floor import SURE, UNSURE, floor_of
 from clearance.kernels.face_pair import NOTHING_SEEN, UNSEEN, Seen, limit_of
-from clearance.kernels.fan_floor import floor_of_fans
+from clearance.kernels.fan_floor import fans_floor_of
 from clearance.kernels.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.hidden import may_hide
 from clearance.kernels.surface import surface_like
-from clearance.kernels.wide_features import too_far, wide_feature, wide_feature_here
+from clearance.kernels.wide_features import sized_of, too_far, wide_feature_here
 
 N_WAITING = 64
 """Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
@@ -94,24 +94,23 @@ def _two_faces_like():
     return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST
 
 
-@apart(REFINE_EVERY, lambda: (*_two_faces_like(), Ask(0.0, 0.0), NOTHING_REFINED))
-def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best):
+@apart(REFINE_EVERY, lambda: (*_two_faces_like(), Ask(0.0, 0.0), NOTHING_REFINED, table_like()))
+def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best, table):
     """`best`, or better: all features of two faces within the limit."""
     a, b = borrow(lent_a), borrow(lent_b)
-    chosen = nearest_of_every(a, face_a, b, face_b, frames, ask)
+    chosen = nearest_of_every(a, face_a, b, face_b, frames, ask, table)
     if chosen.gap_sq.hi == math.inf:
         return best
     feature = chosen.feature
     one = simplex(a, face_a, feature.n_a, feature.i)
     two = simplex(b, face_b, feature.n_b, feature.j)
-    pair = wide_feature(frames, one, two)
+    sized = sized_of(table, frames, one, two)
+    pair, length = sized.pair, sized.length
     floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
-    length = root(pair.gap_sq)
     enough = _enough(length, ask.margin)
     if less(floor, enough) and (a.bent[face_a] or b.bent[face_b]):
-        floor = floor_of_fans(a, face_a, b, face_b, frames, pair, enough, floor)
-    floor = minus(floor, too_far(frames, one, two, pair, length))
-    return _better(best, pair, length, face_a, face_b, floor, chosen.sure)
+        floor = fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, enough, floor)
+    return _better(best, pair, length, face_a, face_b, minus(floor, sized.off), chosen.sure)
 
 
 @apart(
@@ -133,7 +132,7 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
                 off = too_far(frames, one, two, pair, length)
                 return _better(best, pair, length, face_a, face_b, minus(floor, off), minus(length, off))
     return at_address(
-        table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best)
+        table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best, table)
     )
 
 

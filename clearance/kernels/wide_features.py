@@ -8,7 +8,9 @@ import math
 from typing import NamedTuple
 
 from clearance.jit import inlined, kernel, spliced
+from clearance.kernel_table import FEATURES, apart, at_address
 from clearance.kernels.double_double import (
+    FRAMES_AT_REST,
     Wide,
     Wide3,
     along3,
@@ -211,3 +213,39 @@ def too_far(frames, one, two, pair, length):
         short = minus(root(dot3(between, between)), length)
         return short if short.hi > 0.0 else wide(0.0)
     return wide(_unevenness(frames, one, True, pair) + _unevenness(frames, two, False, pair))
+
+
+class Sized(NamedTuple):
+    """A pair of points of two features, their distance [m], and how much of it may be too much (`too_far`) [m]."""
+
+    pair: Pair
+    length: Wide
+    off: Wide
+
+
+_NOWHERE = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
+
+_NO_PAIR = Pair(Wide(math.inf, 0.0), _NOWHERE, _NOWHERE, _NOWHERE, Wide(0.0, 0.0), _NOWHERE)
+
+NOTHING_SIZED = Sized(_NO_PAIR, Wide(math.inf, 0.0), Wide(0.0, 0.0))
+
+
+def _features_like():
+    corner = Vec3(0.0, 0.0, 0.0)
+    return FRAMES_AT_REST, Simplex(1, corner, corner, corner), Simplex(1, corner, corner, corner)
+
+
+@apart(FEATURES, _features_like)
+def size_features(frames, one, two):
+    """A feature pair in wide numbers; infinitely far where a corner's foot is not in the triangle."""
+    pair = wide_feature(frames, one, two)
+    if pair.gap_sq.hi == math.inf:
+        return Sized(pair, pair.gap_sq, wide(0.0))
+    length = root(pair.gap_sq)
+    return Sized(pair, length, too_far(frames, one, two, pair, length))
+
+
+@inlined
+def sized_of(table, frames, one, two):
+    """The same by address."""
+    return at_address(table, FEATURES, NOTHING_SIZED, (frames, one, two))
