@@ -2,7 +2,7 @@
 
 The compiler takes one function at a time in a process, which leaves all cores but one idle for half a minute. The
 second process fills the cache; who comes to a kernel that it is busy with waits for it (`kernel_table`). Two that
-start at once, as tests do, take turns. Not for: what is compiled later, or only where a scene needs it.
+start at once, as tests do, take turns. Not for: what belongs to one command alone.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from clearance.jit import kernel, spliced
 from clearance.kernel_table import COMMON_POINT, apart, at_address
 from clearance.kernels.double_double import (
     FRAMES_AT_REST,
-    Wide,
+    ZERO3,
     Wide3,
     along3,
     cross3,
@@ -73,8 +73,7 @@ def common_point(a, face_a, b, face_b, frames, found):
     return Common(common.q, common.p)
 
 
-_ZERO = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
-_NOWHERE = Common(_ZERO, _ZERO)
+_NOWHERE = Common(ZERO3, ZERO3)
 
 
 @spliced

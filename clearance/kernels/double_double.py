@@ -54,10 +54,12 @@ class Frames(NamedTuple):
     still_b: bool
 
 
+ZERO3 = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
+
+
 def _frames_at_rest():
     still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
-    zero = Wide(0.0, 0.0)
-    return Frames(still, still, still, Wide3(zero, zero, zero), 0.0, True, True)
+    return Frames(still, still, still, ZERO3, 0.0, True, True)
 
 
 FRAMES_AT_REST = _frames_at_rest()

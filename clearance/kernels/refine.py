@@ -17,6 +17,7 @@ from clearance.kernels.bounds import lower_bound_faces_in_sight
 from clearance.kernels.double_double import (
     FRAMES_AT_REST,
     NOISE,
+    ZERO3,
     Wide,
     Wide3,
     less,
@@ -57,11 +58,9 @@ class Refined(NamedTuple):
     sure: Wide
 
 
-_ZERO = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
-
 _FAR = Wide(math.inf, 0.0)
 
-NOTHING_REFINED = Refined(_FAR, _FAR, 2**62, 2**62, _ZERO, _ZERO, _FAR, _FAR)
+NOTHING_REFINED = Refined(_FAR, _FAR, 2**62, 2**62, ZERO3, ZERO3, _FAR, _FAR)
 """What any pair of points beats."""
 
 

@@ -11,6 +11,7 @@ from clearance.jit import inlined, kernel, spliced
 from clearance.kernel_table import FEATURES, apart, at_address
 from clearance.kernels.double_double import (
     FRAMES_AT_REST,
+    ZERO3,
     Wide,
     Wide3,
     along3,
@@ -223,11 +224,9 @@ class Sized(NamedTuple):
     off: Wide
 
 
-_NOWHERE = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
+_FAR = Wide(math.inf, 0.0)
 
-_NO_PAIR = Pair(Wide(math.inf, 0.0), _NOWHERE, _NOWHERE, _NOWHERE, Wide(0.0, 0.0), _NOWHERE)
-
-NOTHING_SIZED = Sized(_NO_PAIR, Wide(math.inf, 0.0), Wide(0.0, 0.0))
+NOTHING_SIZED = Sized(Pair(_FAR, ZERO3, ZERO3, ZERO3, Wide(0.0, 0.0), ZERO3), _FAR, Wide(0.0, 0.0))
 
 
 def _features_like():
