@@ -102,7 +102,7 @@ def await_from(process: subprocess.Popen, places: Sequence[int]) -> None:
 
 
 def compile_kernel(place: int) -> None:
-    """Compiles the kernel of a place, or takes it from the cache, and writes its address down.
+    """Makes the kernel of a place ready to be called.
 
     What another process is compiling is awaited; meanwhile what goes together with it is compiled here.
     """
@@ -134,6 +134,7 @@ def _is_at_work_on(place: int) -> bool:
 
 
 def _compile_here(place: int) -> None:
+    """Compiles a kernel in this process, or takes it from the cache, and writes its address down."""
     function, like = _apart[place]
     argument_types = tuple(_type_of(argument) for argument in like())
     with _compiling:

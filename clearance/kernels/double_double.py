@@ -55,6 +55,8 @@ class Frames(NamedTuple):
 
 
 ZERO3 = Wide3(Wide(0.0, 0.0), Wide(0.0, 0.0), Wide(0.0, 0.0))
+FAR = Wide(math.inf, 0.0)
+"""The origin and a distance above all others, for what kernels begin with."""
 
 
 def _frames_at_rest():

@@ -15,6 +15,7 @@ from clearance.jit import inlined, merged, shared, spliced
 from clearance.kernel_table import REFINE, REFINE_EVERY, Lent, apart, at_address, borrow, table_like
 from clearance.kernels.bounds import lower_bound_faces_in_sight
 from clearance.kernels.double_double import (
+    FAR,
     FRAMES_AT_REST,
     NOISE,
     ZERO3,
@@ -58,9 +59,7 @@ class Refined(NamedTuple):
     sure: Wide
 
 
-_FAR = Wide(math.inf, 0.0)
-
-NOTHING_REFINED = Refined(_FAR, _FAR, 2**62, 2**62, ZERO3, ZERO3, _FAR, _FAR)
+NOTHING_REFINED = Refined(FAR, FAR, 2**62, 2**62, ZERO3, ZERO3, FAR, FAR)
 """What any pair of points beats."""
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from clearance.jit import inlined, kernel, spliced
 from clearance.kernel_table import FEATURES, apart, at_address
 from clearance.kernels.double_double import (
+    FAR,
     FRAMES_AT_REST,
     ZERO3,
     Wide,
@@ -224,9 +225,7 @@ class Sized(NamedTuple):
     off: Wide
 
 
-_FAR = Wide(math.inf, 0.0)
-
-NOTHING_SIZED = Sized(Pair(_FAR, ZERO3, ZERO3, ZERO3, Wide(0.0, 0.0), ZERO3), _FAR, Wide(0.0, 0.0))
+NOTHING_SIZED = Sized(Pair(FAR, ZERO3, ZERO3, ZERO3, Wide(0.0, 0.0), ZERO3), FAR, Wide(0.0, 0.0))
 
 
 def _features_like():
