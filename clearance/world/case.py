@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.world.body import Obstacle
+from clearance.world.notice import Notice
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
@@ -94,6 +95,8 @@ class Case:
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
+        notices: suspect input and warnings, which stand in the headline.
+        accept: kinds of suspect input that do not make the verdict suspect.
         profiles: outlines that the sweep must keep to.
     """
 
@@ -106,3 +109,5 @@ class Case:
     sources: tuple[Source, ...] = ()
     notes: tuple[str, ...] = ()
     profiles: tuple[ReservedSpace, ...] = ()
+    notices: tuple[Notice, ...] = ()
+    accept: tuple[str, ...] = ()

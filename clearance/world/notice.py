@@ -1,0 +1,37 @@
+"""What a reader of the verdict must know beside the clearance: input that is suspect, and warnings.
+
+Not for: errors (`clearance.errors`), and notes on what loading mended, which are plain text.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Severity(StrEnum):
+    """What a notice does to the verdict, worst first."""
+
+    SUSPECT = "suspect"
+    WARNING = "warning"
+
+
+KINDS = ("units", "limits", "axis", "inside")
+"""Kinds of suspect input that a case can accept by name: lengths or angles in another unit, joints beyond their
+limits, meshes turned by their file's axis tag, and solids of which inside and outside cannot be told."""
+
+
+@dataclass(frozen=True)
+class Notice:
+    """One thing that was found in the input, or while measuring, that bears on the verdict.
+
+    Attributes:
+        severity: a suspect input makes the verdict suspect unless its kind is accepted; a warning stands in
+            the headline.
+        kind: one of `KINDS`, or a word of its own for a warning ("geometry", "package", …).
+        text: one line: what was found, where, and what to do.
+    """
+
+    severity: Severity
+    kind: str
+    text: str
