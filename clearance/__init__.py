@@ -12,7 +12,9 @@ __version__ = "0.1.0"
 
 _ROOM_OF = {
     "BadInput": "errors",
+    "Body": "world.body",
     "Case": "world.case",
+    "Checker": "simulate.checker",
     "ClearanceError": "errors",
     "Contact": "query.contact",
     "CrossCheck": "simulate.record",
@@ -21,6 +23,8 @@ _ROOM_OF = {
     "Intersection": "query.intersection",
     "Limits": "world.case",
     "Nearest": "query.result",
+    "Obstacle": "world.body",
+    "PlacedRobot": "world.case",
     "Polyhedron": "geometry.polyhedron",
     "Polytope": "geometry.polytope",
     "Profile": "profiles.profile",
@@ -46,6 +50,7 @@ _ROOM_OF = {
     "hausdorff": "planar.hausdorff",
     "intersect": "query.intersection",
     "load_case": "load.case_file",
+    "load_urdf": "load.urdf",
     "minimum_distance": "planar.minimum",
     "penetration": "query.penetration",
     "pipe": "geometry.shapes",

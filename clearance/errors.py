@@ -66,6 +66,14 @@ class UnknownJoint(BadInput):
     """A joint name that the robot does not have."""
 
 
+class UnknownRobot(BadInput):
+    """A robot name that the case does not have."""
+
+
+class NoTrajectory(BadInput):
+    """A robot that nothing is asked of, where a motion is needed."""
+
+
 class DuplicateName(BadInput):
     """Two things of one kind with one name."""
 

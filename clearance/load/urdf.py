@@ -6,6 +6,7 @@ loader. Not for: where the robot stands, or how it moves.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -15,6 +16,7 @@ import numpy as np
 from clearance.errors import at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, capsule, cylinder, sphere
+from clearance.load.input_files import InputFiles
 from clearance.load.joints import joints_of
 from clearance.load.mesh import LoadedMesh
 from clearance.load.mesh_paths import mesh_path
@@ -43,6 +45,23 @@ class UrdfRequest:
     path: Path
     package_dirs: tuple[Path, ...] = ()
     geometry: Geometry = "collision"
+
+
+def load_urdf(
+    path: str | Path, *, package_dirs: Sequence[str | Path] = (), geometry: Geometry = "collision"
+) -> Robot:
+    """The robot in a URDF file, for cases that are made in memory.
+
+    Args:
+        package_dirs: where `package://` is looked up.
+        geometry: which elements are the robot's shape.
+
+    Raises:
+        BadInput: with the file and the element.
+    """
+    path = Path(path)
+    request = UrdfRequest(path, tuple(Path(folder) for folder in package_dirs), geometry)
+    return read_robot(request, MeshStore(InputFiles(path.parent)))
 
 
 def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:

@@ -92,7 +92,7 @@ def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
 
 def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(n,) times [s], (n, k) positions and (n, k) rates asked for at each simulation step."""
-    trajectory = placed.trajectory
+    trajectory = placed.asked
     start, end = trajectory.times[0], trajectory.times[-1]
     n_steps = int(np.ceil((end - start + settle_time) * STEPS_PER_SECOND - 1e-9)) + 1
     times = start + np.arange(n_steps) / STEPS_PER_SECOND

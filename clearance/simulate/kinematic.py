@@ -11,7 +11,7 @@ from clearance.world.motion import Motion
 
 def kinematic_motion(placed: PlacedRobot) -> Motion:
     """The motion that goes through the samples of the trajectory, with no tracking error."""
-    asked = placed.trajectory
+    asked = placed.asked
     velocities = None
     if asked.velocities is not None:
         velocities = moving_velocities(placed, asked.joint_names, asked.velocities)

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from clearance.errors import at
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.pose import validated_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,13 +17,18 @@ class Body:
 
     Attributes:
         name: unique among the bodies of its kind (links of one robot, obstacles of a scene).
-        shape: in the body frame [m].
+        shape: in the body frame [m]; anything with `vertices` and `faces` (a `trimesh.Trimesh`) becomes one.
         origin: where the shape came from, for the report: file names or `box`, `pipe`, …
     """
 
     name: str
     shape: Polyhedron
     origin: str = ""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.shape, Polyhedron):
+            with at(f"body {self.name!r}"):
+                object.__setattr__(self, "shape", Polyhedron.from_trimesh(self.shape).outward())
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +41,10 @@ class Obstacle:
 
     body: Body
     world_from_body: np.ndarray = field(default_factory=lambda: np.eye(4))
+
+    def __post_init__(self) -> None:
+        with at(f"obstacle {self.name!r}"):
+            object.__setattr__(self, "world_from_body", validated_pose(self.world_from_body))
 
     @property
     def name(self) -> str:

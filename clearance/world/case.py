@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clearance.errors import BadDimension, NoTrajectory, UnknownJoint, UnknownRobot, at, nearest_name
+from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
 from clearance.world.notice import Notice
 from clearance.world.robot import Robot
@@ -18,10 +21,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Limits:
-    """Two levels of clearance [m]: below `fail` the case is violated, below `warn` it is a near miss."""
+    """Two levels of clearance [m]: below `fail` the case is violated, below `warn` it is a near miss.
+
+    Args:
+        warn: as `fail` if not given.
+
+    Raises:
+        BadDimension: a level that is below 0 or not finite, or `warn` below `fail`.
+    """
 
     fail: float = 0.0
-    warn: float = 0.0
+    warn: float = None  # type: ignore[assignment]  # always a number once it is made
+
+    def __post_init__(self) -> None:
+        if self.warn is None:
+            object.__setattr__(self, "warn", self.fail)
+        for name in ("fail", "warn"):
+            if not 0.0 <= getattr(self, name) < np.inf:
+                raise BadDimension(f"limit {name} is {getattr(self, name)} m", valid="0 or more")
+        if self.warn < self.fail:
+            raise BadDimension(
+                f"the warn limit {self.warn:g} m is below the fail limit {self.fail:g} m",
+                valid="warn at or above fail",
+            )
 
 
 @dataclass(frozen=True)
@@ -47,19 +69,44 @@ class PlacedRobot:
     """A robot in the world.
 
     Attributes:
+        trajectory: what it is asked to do; None for a robot that is asked about by a `Checker` only.
         world_from_base: (4, 4) pose of the root link [m].
-        trajectory: what it is asked to do.
         fixed_positions: values [rad] or [m] of moving joints that the trajectory does not name.
         exclude_links: links that are not measured.
     """
 
     robot: Robot
-    trajectory: Trajectory
+    trajectory: Trajectory | None = None
     world_from_base: np.ndarray = field(default_factory=lambda: np.eye(4))
     fixed_positions: dict[str, float] = field(default_factory=dict)
     exclude_links: tuple[str, ...] = ()
     urdf_path: str = ""
     package_dirs: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        with at("world_from_base"):
+            object.__setattr__(self, "world_from_base", validated_pose(self.world_from_base))
+
+    @property
+    def joints_given(self) -> tuple[str, ...]:
+        """The joints of the trajectory in its order; without one, all moving joints that are not fixed."""
+        if self.trajectory is not None:
+            return self.trajectory.joint_names
+        names = (joint.name for joint in self.robot.moving_joints)
+        return tuple(name for name in names if name not in self.fixed_positions)
+
+    @property
+    def asked(self) -> Trajectory:
+        """The trajectory.
+
+        Raises:
+            NoTrajectory: there is none.
+        """
+        if self.trajectory is None:
+            raise NoTrajectory(
+                f"robot {self.robot.name!r} has no trajectory", valid="case.with_trajectory(times, positions)"
+            )
+        return self.trajectory
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,3 +158,45 @@ class Case:
     profiles: tuple[ReservedSpace, ...] = ()
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
+
+    def with_trajectory(
+        self,
+        times: np.ndarray,
+        positions: np.ndarray,
+        *,
+        velocities: np.ndarray | None = None,
+        joint_names: Sequence[str] | None = None,
+        robot: str | None = None,
+    ) -> Case:
+        """The same case with another trajectory for one robot.
+
+        Args:
+            times: (n,) [s]. positions, velocities: (n, k) of `joint_names` [rad] or [m], and per second.
+            joint_names: those of the trajectory that it has, else all its moving joints that are not fixed.
+            robot: its name; needed only where there are several.
+
+        Raises:
+            BadInput: no such robot or joint, or numbers that are no trajectory.
+        """
+        i_robot = _index_of(self.robots, robot)
+        placed = self.robots[i_robot]
+        names = placed.joints_given if joint_names is None else tuple(joint_names)
+        _require_joints(placed.robot, names)
+        moved = replace(placed, trajectory=Trajectory(times, names, positions, velocities))
+        return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
+
+
+def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
+    names = [placed.robot.name for placed in robots]
+    if name is None and len(names) == 1:
+        return 0
+    if names.count(name) != 1:
+        raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
+    return names.index(name)
+
+
+def _require_joints(robot: Robot, names: Sequence[str]) -> None:
+    moving = [joint.name for joint in robot.moving_joints]
+    for name in names:
+        if name not in moving:
+            raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, moving))

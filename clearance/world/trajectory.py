@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadShape, NotFinite
+from clearance.errors import BadDimension, BadShape, BadTime, NotFinite
 from clearance.tolerance import LARGEST
 
 
@@ -23,8 +23,8 @@ class Trajectory:
         velocities: (n, k) [rad/s] or [m/s], or None.
 
     Raises:
-        BadShape, NotFinite: velocities that are not one finite number for each position. BadDimension: one
-            that carries its joint out of all bounds before the next sample.
+        BadShape, NotFinite: not one finite number for each time and joint. BadTime: times that do not increase.
+            BadDimension: a velocity that carries its joint out of all bounds before the next sample.
     """
 
     times: np.ndarray
@@ -33,13 +33,33 @@ class Trajectory:
     velocities: np.ndarray | None = None
 
     def __post_init__(self) -> None:
+        for name in ("times", "positions", "velocities"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, _numbers(getattr(self, name), name))
+        self._refuse_bad_samples()
         if self.velocities is not None:
-            self._refuse_bad_velocities(np.asarray(self.velocities))
+            self._refuse_bad_velocities(self.velocities)
 
     @property
     def n_steps(self) -> int:
         """Number of samples."""
         return len(self.times)
+
+    def _refuse_bad_samples(self) -> None:
+        wanted = (len(np.atleast_1d(self.times)), len(self.joint_names))
+        if self.times.ndim != 1 or not len(self.times):
+            raise BadShape(f"times have shape {self.times.shape}", valid="(n,) with n >= 1")
+        if self.positions.shape != wanted:
+            raise BadShape(
+                f"positions have shape {self.positions.shape}",
+                valid=f"{wanted}: a row for each time, a column for each of {', '.join(self.joint_names)}",
+            )
+        if not (np.isfinite(self.times).all() and np.isfinite(self.positions).all()):
+            raise NotFinite("a time or a position is NaN or infinite", valid="finite numbers")
+        late = np.flatnonzero(np.diff(self.times) <= 0.0)
+        if len(late):
+            before, after = self.times[late[0] : late[0] + 2].tolist()
+            raise BadTime(f"time {after} follows {before}", valid="times must increase from sample to sample")
 
     def _refuse_bad_velocities(self, velocities: np.ndarray) -> None:
         if velocities.shape != np.shape(self.positions):
@@ -58,3 +78,10 @@ class Trajectory:
                 f"{farthest.max():g} rad or m before the next sample",
                 valid=f"{LARGEST:g} or less",
             )
+
+
+def _numbers(given: object, name: str) -> np.ndarray:
+    try:
+        return np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise BadShape(f"{given!r:.60} is given", where=name, valid="an array of numbers") from None

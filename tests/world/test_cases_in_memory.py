@@ -1,0 +1,109 @@
+"""Cases that are made in Python: the same answers as from files, and the same care about bad input."""
+
+import numpy as np
+import pytest
+import trimesh
+
+import clearance as cl
+from clearance.errors import (
+    BadDimension,
+    BadPose,
+    BadShape,
+    BadTime,
+    NoTrajectory,
+    NotFinite,
+    UnknownJoint,
+    UnknownRobot,
+)
+
+KUKA = "pybullet_data:kuka_iiwa/model.urdf"
+
+
+def kuka():
+    from clearance.load.input_files import resolved
+
+    return cl.load_urdf(resolved(KUKA, "."))
+
+
+@pytest.fixture(scope="module")
+def given():
+    return cl.load_case("scenes/iiwa_pipe_rack/case.yaml")
+
+
+def made_again(case):
+    (placed,) = case.robots
+    robot = cl.PlacedRobot(
+        kuka(),
+        world_from_base=placed.world_from_base,
+        fixed_positions=placed.fixed_positions,
+        exclude_links=placed.exclude_links,
+    )
+    standing = tuple(cl.Obstacle(cl.Body(o.name, o.body.shape), o.world_from_body) for o in case.obstacles)
+    return cl.Case("again", (robot,), standing, limits=case.limits, allow=case.allow)
+
+
+def test_a_case_from_memory_has_the_answers_of_the_file(given):
+    asked = given.robots[0].trajectory
+    case = made_again(given).with_trajectory(asked.times, asked.positions, joint_names=asked.joint_names)
+    mine, theirs = cl.check(case, certify=False), cl.check(given, certify=False)
+    assert mine.steps.equals(theirs.steps)
+
+
+def test_without_a_trajectory_there_is_nothing_to_check(given):
+    with pytest.raises(NoTrajectory, match="with_trajectory"):
+        cl.check(made_again(given))
+
+
+def test_a_trajectory_is_replaced_in_the_order_of_the_one_before(given):
+    asked = given.robots[0].trajectory
+    later = given.with_trajectory(asked.times + 1.0, asked.positions)
+    assert later.robots[0].trajectory.joint_names == asked.joint_names
+    assert later.robots[0].trajectory.times[0] == asked.times[0] + 1.0
+    assert given.robots[0].trajectory is asked
+
+
+@pytest.mark.parametrize(
+    ("times", "positions", "options", "fault"),
+    [
+        ([0.0, 0.0], np.zeros((2, 7)), {}, BadTime),
+        ([0.0, 1.0], np.zeros((2, 6)), {}, BadShape),
+        ([0.0], np.zeros((2, 7)), {}, BadShape),
+        ([], np.zeros((0, 7)), {}, BadShape),
+        ([0.0, np.inf], np.zeros((2, 7)), {}, NotFinite),
+        ([0.0, 1.0], np.full((2, 7), np.nan), {}, NotFinite),
+        (["now"], np.zeros((1, 7)), {}, BadShape),
+        ([0.0, 1.0], np.zeros((2, 1)), {"joint_names": ["nobody"]}, UnknownJoint),
+        ([0.0, 1.0], np.zeros((2, 7)), {"robot": "nobody"}, UnknownRobot),
+        ([0.0, 1.0], np.zeros((2, 7)), {"velocities": np.zeros((2, 6))}, BadShape),
+    ],
+)
+def test_what_is_no_trajectory_is_refused(given, times, positions, options, fault):
+    with pytest.raises(fault):
+        given.with_trajectory(times, positions, **options)
+
+
+def test_meshes_of_trimesh_are_bodies():
+    mesh = trimesh.creation.icosphere(subdivisions=2, radius=0.2)
+    body = cl.Body("ball", mesh)
+    assert isinstance(body.shape, cl.Polyhedron)
+    mesh.invert()
+    assert cl.Body("ball", mesh).shape.volume == pytest.approx(body.shape.volume)
+    with pytest.raises(cl.BadInput, match="body 'word'"):
+        cl.Body("word", "a word")
+
+
+def test_places_are_rigid_motions():
+    with pytest.raises(BadPose, match="'post'"):
+        cl.Obstacle(cl.Body("post", cl.box((1, 1, 1))), 2.0 * np.eye(4))
+    with pytest.raises(BadPose, match="world_from_base"):
+        cl.PlacedRobot(kuka(), world_from_base=2.0 * np.eye(4))
+
+
+def test_limits_are_in_order():
+    assert cl.Limits(fail=0.01) == cl.Limits(0.01, 0.01)
+    assert cl.Limits() == cl.Limits(0.0, 0.0)
+    with pytest.raises(BadDimension, match="warn limit 0.01 m is below the fail limit 0.02 m"):
+        cl.Limits(fail=0.02, warn=0.01)
+    for bad in (-0.001, float("nan"), float("inf")):
+        with pytest.raises(BadDimension):
+            cl.Limits(fail=bad, warn=1.0)
