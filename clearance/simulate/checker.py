@@ -34,7 +34,8 @@ class Clearance:
     """How close a robot comes to its scene at one configuration, and where.
 
     Attributes:
-        distance: [m] the least over all measured pairs; 0 where a pair touches, overlaps, or one is inside the other.
+        distance: [m] the least over all measured pairs; 0 where a pair touches or overlaps, or one is inside the
+            other.
         link, obstacle: names of the pair that attains it; links carry their robot's name where there are several.
         point_link, point_obstacle: (3,) witness points [m] in the world frame.
     """
@@ -75,7 +76,8 @@ class Checker:
 
     Attributes:
         joint_names: the joints that a configuration gives, robot by robot: those of the trajectory in its order;
-            without one, all moving joints that the case does not fix. The others are where the case has them, or 0.
+            without one, all moving joints that the case does not fix. The others are where the case has them,
+            or at 0.
         pairs: (link, obstacle) names of what is measured.
 
     Raises:

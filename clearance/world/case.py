@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadDimension, NoTrajectory, UnknownJoint, UnknownRobot, at, nearest_name
+from clearance.errors import (
+    BadDimension,
+    NoTrajectory,
+    UnknownJoint,
+    UnknownRobot,
+    at,
+    nearest_name,
+)
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
 from clearance.world.notice import Notice

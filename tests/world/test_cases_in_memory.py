@@ -10,8 +10,8 @@ from clearance.errors import (
     BadPose,
     BadShape,
     BadTime,
-    NoTrajectory,
     NotFinite,
+    NoTrajectory,
     UnknownJoint,
     UnknownRobot,
 )
@@ -102,7 +102,7 @@ def test_places_are_rigid_motions():
 def test_limits_are_in_order():
     assert cl.Limits(fail=0.01) == cl.Limits(0.01, 0.01)
     assert cl.Limits() == cl.Limits(0.0, 0.0)
-    with pytest.raises(BadDimension, match="warn limit 0.01 m is below the fail limit 0.02 m"):
+    with pytest.raises(BadDimension, match="is below the fail limit"):
         cl.Limits(fail=0.02, warn=0.01)
     for bad in (-0.001, float("nan"), float("inf")):
         with pytest.raises(BadDimension):
