@@ -12,13 +12,13 @@ from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import NEEDS, Measurement, Progress, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.question import fingerprint
-from clearance.simulate.record import CrossCheck, Record, StepContact
+from clearance.simulate.record import Certificate, CrossCheck, Record, StepContact
 from clearance.simulate.spool import Rows
 from clearance.simulate.steps import (
-    STATUSES,
     PairMinima,
     cut_throughout,
     every_pair,
+    status_of,
     step_table,
 )
 from clearance.tolerance import CERTIFY_GAP
@@ -29,6 +29,8 @@ from clearance.world.reach import require_within_reach
 
 if TYPE_CHECKING:
     import pyarrow as pa
+
+    from clearance.report.verdict import Verdict
 
 MOTIONS = ("kinematic", "simulated")
 METHODS = ("exact", "paper")
@@ -53,22 +55,52 @@ class Run:
 
     @property
     def worst(self) -> dict:
-        """The row of the first step of least clearance."""
-        return self.steps.slice(self.record.worst_step, 1).to_pylist()[0]
+        """The moment of least clearance, as a row of `steps`; between two steps if the certificate has found a
+        lesser one there: then `between` is true, and `step` the one before it."""
+        moment = self.record.worst
+        row = self._row(moment.step)
+        if moment is self.record.worst_sample:
+            return row
+        ends = {"link": moment.point_link, "obstacle": moment.point_obstacle}
+        told = {f"{body}_{axis}": x for body in ends for axis, x in zip("xyz", ends[body], strict=True)}
+        told |= {name: getattr(moment, name) for name in ("time", "clearance", "link", "obstacle")}
+        status = status_of(moment.clearance, self.record.case.limits)
+        return row | told | {"between": True, "status": status}
+
+    @property
+    def worst_sample(self) -> dict:
+        """The row of the first step of least clearance, with the status of that step by itself."""
+        return self._row(self.record.worst_step)
+
+    def _row(self, step: int) -> dict:
+        row = self.steps.slice(step, 1).to_pylist()[0]
+        if row.get("between"):
+            row |= {"between": False, "status": status_of(row["clearance"], self.record.case.limits)}
+        return row
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the run comes to, why, and what that rests on."""
+        from clearance.report.verdict import verdict_of
+
+        return verdict_of(self.record)
 
     @property
     def passed(self) -> bool:
-        """True if no step is in contact or below the fail limit; when certified, nothing in between either."""
-        return self.status not in ("violated", "contact")
+        """True if nothing is in contact or below the fail limit, at the steps or as far as proven between them,
+        every profile is kept, no input is suspect and no peer disagrees."""
+        return self.verdict.passed
 
     @property
     def status(self) -> str:
-        """The worst status of any step: "clear", "near", "violated" or "contact"; "violated" where a sweep
-        does not keep to a profile of the case."""
-        occurring = set(self.steps["status"].unique().to_pylist())
-        if not all(answer.passed for answer in self.record.profiles):
-            occurring.add("violated")
-        return str([status for status in STATUSES if status in occurring][-1])
+        """"clear", "near", "violated" or "contact", whichever is the worst; "violated" where a sweep does not keep
+        to a profile of the case; "suspect" where input is in doubt and the case does not accept it."""
+        return self.verdict.status
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """What is proven of the motion between the steps; None where only the samples were looked at."""
+        return self.record.certificate
 
     @property
     def cross_check(self) -> CrossCheck | None:
@@ -83,7 +115,8 @@ class Run:
         """
         from clearance.report import write
 
-        return write(self.record, Path(folder))
+        write(self.record, folder)
+        return Path(folder)
 
 
 def check(
@@ -93,7 +126,7 @@ def check(
     method: str = "exact",
     motion: str = "kinematic",
     limits: Limits | None = None,
-    certify: bool = False,
+    certify: bool = True,
     certify_gap: float = CERTIFY_GAP,
     cross_check: bool = False,
     jobs: int | None = None,
@@ -111,8 +144,10 @@ def check(
             controlled robot makes of it.
         limits: instead of the case's.
         certify: also prove a lower bound for the motion between the steps, joints moving linearly or, where
-            the trajectory has velocities, on cubics; the verdict then rests on it.
-        certify_gap: [m] how far that bound may be below a distance that occurs.
+            the trajectory has velocities, on cubics; the verdict then rests on it. Without it, and with method
+            "paper", which proves nothing, the verdict is of the samples only, and says so.
+        certify_gap: [m] how far that bound may be below a distance that occurs; no finer than rounding allows
+            (`tolerance.FINEST_CERTIFY_GAP`), with a warning.
         cross_check: also ask FCL at every step.
         jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.
         progress: called with steps done and all steps.
@@ -126,13 +161,11 @@ def check(
     _require(method, METHODS, "method")
     _require(motion, MOTIONS, "motion")
     _require(need, NEEDS, "need")
-    if certify and method != "exact":
-        raise BadInput(f"method {method!r} proves nothing to certify with", valid="method 'exact'")
+    certify = certify and method == "exact"
     if need != "steps" and method != "exact":
         raise BadInput(f"method {method!r} measures every step", valid="need 'steps', or method 'exact'")
-    if need in ("limit", "minimum") and (certify or cross_check):
-        other = "certify" if certify else "cross-check"
-        raise BadInput(f"{other} needs every step, not {need!r}", valid="need 'steps' or 'pairs'")
+    if need in ("limit", "minimum") and cross_check:
+        raise BadInput(f"cross-check needs every step, not {need!r}", valid="need 'steps' or 'pairs'")
     if jobs is not None and jobs < 1:
         raise BadInput(f"{jobs} jobs", valid="1 or more")
     if limits is not None:
@@ -155,8 +188,9 @@ def check(
         from clearance.simulate.certify import certify_motion
 
         certificate = certify_motion(
-            case, motions, pairs, found, certify_gap, jobs=jobs, progress=progress, kept=kept
-        )
+            case, motions, pairs, found, certify_gap,
+            need=need, jobs=jobs, progress=progress, kept=kept,
+        )  # fmt: skip
     contacts, contact_notes = _contacts(case, motions, pairs, found)
     steps, let_go = _table(
         step_table(
@@ -184,6 +218,7 @@ def check(
         certificate=certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
         contacts=contacts,
+        notices=() if certificate is None else certificate.notices,
         let_go=let_go,
         room=lambda: kept.folder,
     )

@@ -27,6 +27,11 @@ six-digit file, whose polygons are cut into triangles instead."""
 CERTIFY_GAP = 1e-4
 """[m] How far a certified bound may stay below a distance that occurs, by default: as fine as the facets."""
 
+FINEST_CERTIFY_GAP = 2.0**-32
+"""[-] The least such gap, relative to how far the bodies of a case reach from the origin: 2^21 roundings. Near a
+limit a thousandth of it is asked for, twice what rounding of poses and bounds takes; below that nothing is proven
+however finely the motion is parted."""
+
 LARGEST = 1e150
 """[m] No coordinate may be larger in magnitude: its square must not overflow."""
 

@@ -1,8 +1,8 @@
 """The command line: one file a command, and here what they share: exit codes and one-line errors.
 
-Exit codes: 0 clear; 1 a limit is violated; 2 bad input; 3 the cross-check disagrees (the verdict
-itself is in doubt, so this goes before 1); 70 a fault of this program, with its traceback; 130
-interrupted.
+Exit codes: 0 clear; 1 a limit is violated; 2 bad input, or input that is suspect; 3 the
+cross-check disagrees (each puts those before it in doubt, so the greatest that holds goes); 70 a
+fault of this program, with its traceback; 130 interrupted.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.options import Millimetres, motion_option
+from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
     from clearance.run import Run
@@ -23,8 +25,17 @@ if TYPE_CHECKING:
 )
 @click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the case's.")
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the case's.")
-@click.option("--certify", is_flag=True, help="Prove a bound for the motion between the steps too.")
-@click.option("--certify-mm", type=Millimetres(), help="How tight that bound is.  [default: 0.1]")
+@click.option(
+    "--samples-only",
+    is_flag=True,
+    help="Look at the samples only: no proof for the motion between them.",
+)
+@click.option("--certify", is_flag=True, hidden=True, help="The default.")
+@click.option(
+    "--certify-mm",
+    type=Millimetres(),
+    help="How tight the bound proven for the motion between the samples is.  [default: 0.1]",
+)
 @click.option(
     "--need",
     type=click.Choice(["steps", "pairs", "limit", "minimum"]),
@@ -32,6 +43,13 @@ if TYPE_CHECKING:
     show_default=True,
     help="steps: every step. pairs: every pair at every step too (pairs.parquet). limit: steps below "
     "the warn limit, a proven bound for the rest. minimum: the worst moment only.",
+)
+@click.option(
+    "--accept",
+    metavar="KIND",
+    multiple=True,
+    type=click.Choice(KINDS),
+    help=f"Let no suspect input of this kind decide the verdict ({', '.join(KINDS)}).",
 )
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Threads.  [default: all cores; same bytes]"
@@ -53,9 +71,11 @@ def check(
     out: Path | None,
     fail_mm: float | None,
     warn_mm: float | None,
+    samples_only: bool,
     certify: bool,
     certify_mm: float | None,
     need: str,
+    accept: tuple[str, ...],
     jobs: int | None,
     cross_check: bool,
     method: str,
@@ -66,24 +86,28 @@ def check(
 ) -> int:
     """Measures the least clearance of every step of CASE.yaml.
 
-    Without --out nothing is written. With it, the same command goes on where an interrupted one
-    was. Exit code: 0 clear (or near), 1 a limit is violated, 2 bad input, 3 the cross-check
-    disagrees.
+    The verdict is proven for the motion between the samples too. Without --out nothing is
+    written. With it, the same command goes on where an interrupted one was. Exit code: 0 clear
+    (or near), 1 a limit is violated, 2 bad or suspect input, 3 the cross-check disagrees; the
+    greatest that holds.
     """
     from clearance.cli.places import require_file_place, require_folder_place
     from clearance.cli.progress import shown_progress
     from clearance.load.case_file import load_case
 
+    if samples_only and (certify or certify_mm is not None):
+        raise click.UsageError("--samples-only proves nothing; leave out --certify and --certify-mm")
     require_folder_place(out)
     require_file_place(junit)
     _compile_ahead(quiet)
     case = load_case(case_file)
     limits = _limits(case.limits, fail_mm, warn_mm)
+    case = replace(case, accept=tuple(dict.fromkeys([*case.accept, *accept])))
     from clearance.cli.kept import kept_rows
     from clearance.run import check as answer
     from clearance.tolerance import CERTIFY_GAP
 
-    certify = certify or certify_mm is not None
+    certify = not samples_only and method == "exact"
     passes = ["measuring"] + ["certifying"] * certify + ["cross-checking"] * cross_check
     with kept_rows(out, quiet) as kept:
         with shown_progress(quiet or as_json, passes) as progress:
@@ -102,7 +126,7 @@ def check(
             )
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
-    return _exit_code(run)
+    return ExitCode(run.verdict.exit_code)
 
 
 def _compile_ahead(quiet: bool) -> None:
@@ -115,8 +139,6 @@ def _compile_ahead(quiet: bool) -> None:
 
 def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits | None:
     """The limits with what the command line changes; raising `fail` alone takes `warn` along."""
-    from clearance.world.case import Limits
-
     if fail is None and warn is None:
         return None
     if fail is None:
@@ -127,7 +149,7 @@ def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits | N
         raise click.UsageError(
             f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
         )
-    return Limits(fail=fail, warn=warn)
+    return replace(given, fail=fail, warn=warn)
 
 
 def _write(run: Run, out: Path | None, junit: Path | None) -> None:
@@ -148,9 +170,3 @@ def _print(run: Run, out: Path | None, as_json: bool, quiet: bool) -> None:
         from clearance.cli.verdict import print_verdict
 
         print_verdict(run, out)
-
-
-def _exit_code(run: Run) -> ExitCode:
-    if run.cross_check is not None and not run.cross_check.agrees:
-        return ExitCode.DISAGREES
-    return ExitCode.CLEAR if run.passed else ExitCode.VIOLATED

@@ -1,5 +1,5 @@
 """The answer for a person at a terminal: verdict first, then the worst moment, then what else
-matters.
+matters. What puts the clearance in doubt, and what was not checked, stands right below the headline.
 
 Lengths are in millimetres and rounded down; coordinates in metres, world frame. Colour only in a
 terminal.
@@ -8,19 +8,26 @@ terminal.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from clearance.report import certified_of, contact_of, notes_of
+from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
 from clearance.report.intervals import Interval, extent, intervals
-from clearance.report.profiles import gap_text, plane_text
-from clearance.report.wording import certified_text, contact_text, count, limit_mm, mm, seconds
+from clearance.report.verdict import Verdict, profile_text
+from clearance.report.wording import (
+    certified_text,
+    contact_text,
+    count,
+    limit_mm,
+    mm,
+    seconds,
+    span_text,
+)
 from clearance.run import Run
-from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, ProfileAnswer, Record
+from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
 _LEVELS = {"contact": "contact", "below_fail": "below fail", "below_warn": "below warn"}
@@ -44,17 +51,17 @@ def _stdout() -> Console:
 
 
 def _lines(run: Run, out: Path | None) -> list[Text | Table]:
-    record = run.record
-    lines: list[Text | Table] = [_headline(run), *_worst(run)]
+    record, verdict = run.record, run.verdict
+    lines: list[Text | Table] = [_headline(record, verdict), *_beside(verdict), *_worst(record)]
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines += _deepest(record)
     nearest = record.pair_minima[:_MOST_PAIRS]
     if nearest:
         lines.append(_pair_table(nearest))
-    lines += [_row("profile", _profile_text(answer)) for answer in record.profiles]
-    if record.certificate is not None:
-        lines.append(_row("certified", certified_text(certified_of(record))))
+    lines += [_row("profile", profile_text(answer)) for answer in record.profiles]
+    lines += _certified(record)
+    lines += _facets(record)
     if run.cross_check is not None:
         lines += _cross_check(run.cross_check)
     lines += _notes(record)
@@ -63,23 +70,50 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
     return lines
 
 
-def _headline(run: Run) -> Text:
-    worst, limits = run.worst, run.record.case.limits
-    text = Text(run.status.upper(), style=_STYLES.get(run.status, "bold red"))
-    told = f"  {run.record.case.name}: least clearance {mm(worst['clearance'])} mm"
+def _headline(record: Record, verdict: Verdict) -> Text:
+    limits = record.case.limits
+    text = Text(verdict.text(str.upper), style=_STYLES.get(verdict.status, "bold red"))
+    told = f"  {record.case.name}: least clearance {mm(record.worst.clearance)} mm"
     told += f" (fail below {limit_mm(limits.fail)} mm, warn below {limit_mm(limits.warn)} mm)"
     return text.append(told, style="default not bold")
 
 
-def _worst(run: Run) -> list[Text]:
-    row = run.worst
-    points = [f"{side} {_point(row, side)}" for side in ("link", "obstacle")]
-    n_steps = run.record.steps.num_rows
-    where = f"step {row['step']} of {count(n_steps, 'step')}, {seconds(row['time'])}"
-    return [
-        _row("worst", f"{where}: {row['link']} - {row['obstacle']}"),
-        _row("points", f"{', '.join(points)} m"),
-    ]
+def _beside(verdict: Verdict) -> list[Text]:
+    """What a reader must know beside the clearance: right below the headline."""
+    not_checked = ", ".join(f"{name} not checked" for name in verdict.not_checked)
+    lines = [_row("", not_checked)] if not_checked else []
+    lines += [_row("suspect", f"{one.text} (--accept {one.kind})") for one in verdict.suspects]
+    return lines + [_row("warning", text) for text in verdict.warnings]
+
+
+def _worst(record: Record) -> list[Text]:
+    worst = record.worst
+    points = f"link {_point(worst.point_link)}, obstacle {_point(worst.point_obstacle)} m"
+    n_steps = count(record.steps.num_rows, "step")
+    between = f"between the steps {worst.step} and {worst.step + 1}"
+    where = between if worst.between else f"step {worst.step}"
+    told = f"{where} of {n_steps}, {seconds(worst.time)}: {worst.link} - {worst.obstacle}"
+    return [_row("worst", told), _row("points", points)]
+
+
+def _certified(record: Record) -> list[Text]:
+    if record.certificate is None:
+        return [_row("certified", "no: nothing is said about the motion between the samples")]
+    lines = [_row("certified", certified_text(certified_of(record)))]
+    sample = record.worst_sample
+    if record.worst is not sample:
+        told = f"{mm(sample.clearance)} mm at step {sample.step}, {seconds(sample.time)}"
+        lines.append(_row("samples", f"{told}: {sample.link} - {sample.obstacle}"))
+    return lines
+
+
+def _facets(record: Record) -> list[Text]:
+    """By how much facets can make the clearance too small, wherever that is more than a hundredth of it."""
+    bound = tessellation_bound(record)
+    if bound <= 0.01 * record.worst.clearance or bound == 0.0:
+        return []
+    told = f"round shapes stand up to {bound * 1000:.3g} mm outside the true surfaces: a clearance can be "
+    return [_row("facets", f"{told}too small by that much, never too large")]
 
 
 def _deepest(record: Record) -> list[Text]:
@@ -92,9 +126,8 @@ def _deepest(record: Record) -> list[Text]:
     return [_row("deepest", f"{text}; way out of the link ({way})")]
 
 
-def _point(row: dict, side: str) -> str:
-    coordinates = (row[f"{side}_{axis}"] for axis in "xyz")
-    return f"({', '.join(f'{value:.6f}' for value in coordinates)})"
+def _point(point: Sequence[float]) -> str:
+    return f"({', '.join(f'{value:.6f}' for value in point)})"
 
 
 def _interval_text(record: Record, level: str) -> str:
@@ -102,10 +135,17 @@ def _interval_text(record: Record, level: str) -> str:
     if not found:
         return "never"
     n_intervals, n_steps = extent(record, level)
-    times = [f"{part.start:.3f}-{seconds(part.end)}" for part in found[:_MOST_INTERVALS]]
+    times = [_span(part) for part in found[:_MOST_INTERVALS]]
     more = n_intervals - len(times)
     tail = f" and {more} more" if more else ""
-    return f"{count(n_steps, 'step')}: {', '.join(times)}{tail}"
+    what = count(n_steps, "step") if n_steps else "between the steps"
+    return f"{what}: {', '.join(times)}{tail}"
+
+
+def _span(part: Interval) -> str:
+    if part.between and part.first_step == part.last_step:
+        return span_text(part.worst_time, part.worst_time)
+    return span_text(part.start, part.end)
 
 
 def _pair_table(nearest: Sequence[PairMinimum]) -> Table:
@@ -124,16 +164,6 @@ def _pair_table(nearest: Sequence[PairMinimum]) -> Table:
         )
         table.add_row(*(Text(cell) for cell in cells))
     return table
-
-
-def _profile_text(answer: ProfileAnswer) -> str:
-    known = asdict(answer)
-    verdict = "kept" if answer.passed else "NOT KEPT"
-    what = "distance" if answer.mode == "nearest" else "gap"
-    return (
-        f"{answer.name} ({answer.mode}, {plane_text(known)}): {verdict}, {what} {gap_text(known)} mm, "
-        f"limit {answer.limit * 1000:g} mm, {answer.link}, step {answer.step}"
-    )
 
 
 def _cross_check(check: CrossCheck) -> list[Text]:

@@ -4,8 +4,9 @@ In the middle of an interval the trees are descended as for a distance, but each
 the link can move in the interval: along the direction of the nearest points where two faces or boxes are
 seen apart, so that sliding past costs nothing in the first order. Nodes that are turned away in all of the
 interval are passed over (`facing`): at its first instant the distance is above 0, or nothing is asked. What does
-not stay above the target is halved, the earlier half first. A bound on a pair holds for later intervals less what
-its link moves in them: pairs that it keeps above the target are not asked.
+not stay above the target is halved, the earlier half first; after `most_parts` of them the target of a pair is
+lowered until it can be proven, so that all ends. A bound on a pair holds for later intervals less what its link
+moves in them: pairs that it keeps above the target are not asked.
 
 Not for: one pair over one interval (`hold`), the steps themselves (`sweep`).
 """
@@ -19,7 +20,7 @@ from clearance.jit import borrowing, inlined, kernel
 from clearance.kernels.double_double import frames_of
 from clearance.kernels.drift import Drift, drift_of, drift_of_box
 from clearance.kernels.front import KEPT_DOWN
-from clearance.kernels.hold import Held, allowed_gap, hold
+from clearance.kernels.hold import allowed_gap, hold
 from clearance.kernels.joint_path import part_of
 from clearance.kernels.kinematics import forward
 from clearance.kernels.placed import GROWTH
@@ -29,6 +30,9 @@ from clearance.kernels.vec3 import Vec3, rigid
 
 DEPTH = 64
 """Parts of an interval that can wait, one a halving; after 52 the ends cannot be told apart."""
+
+WIDER = 4.0
+"""Times as wide is the gap of a pair in an interval that has come to its most parts."""
 
 ROUNDED_DOWN = 1.0 - 2.0**-50
 """Covers the rounding of the steps' clearances, which are right to the last place."""
@@ -46,6 +50,43 @@ class Asked(NamedTuple):
     bodies: np.ndarray
     links: np.ndarray
     standing: np.ndarray
+
+
+class Aim(NamedTuple):
+    """What is to be proven.
+
+    Attributes:
+        gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
+        fail: [m] the limit that is to be decided, if need be with a smaller gap.
+        most_parts: of one interval and pair, after which the gap is widened fourfold, and so on.
+    """
+
+    gap: float
+    fail: float
+    most_parts: int
+
+
+class Bounds(NamedTuple):
+    """What is found of each interval.
+
+    Attributes:
+        lower, upper: (n,) [m] proven, and the least distance asked about or seen.
+        share: (n,) where in the interval `upper` was seen, 0 to 1; -1 where nothing less than was asked about was.
+        pair: (n,) which pair was seen there, or -1.
+    """
+
+    lower: np.ndarray
+    upper: np.ndarray
+    share: np.ndarray
+    pair: np.ndarray
+
+
+class Over(NamedTuple):
+    """What is known of a pair over an interval: bound and least distance [m], and where that was seen, or -1."""
+
+    floor: float
+    least: float
+    share: float
 
 
 class Middle(NamedTuple):
@@ -131,14 +172,14 @@ def _go_on(surface, chain, path, step, known):
 
 
 @inlined
-def _hold_pair(surface, asked, pair, middle, drift, least, gap, fail, known, tally, table):
+def _hold_pair(surface, asked, pair, middle, drift, least, gap, aim, known, tally, table):
     """`hold` of a pair at the state in `middle`."""
     body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
     frames = frames_of(rigid(middle.poses[0, asked.links[pair]]), rigid(asked.standing[body_b]))
     tally[1] += 1
     seeds = known.seeds
     held = hold(
-        surface, body_a, surface, body_b, frames, drift, least, gap, fail,
+        surface, body_a, surface, body_b, frames, drift, least, gap, aim.fail,
         seeds[pair, 0], seeds[pair, 1], known.scratch, tally, table,
     )  # fmt: skip
     seeds[pair, 0], seeds[pair, 1] = held.face_a, held.face_b
@@ -146,18 +187,15 @@ def _hold_pair(surface, asked, pair, middle, drift, least, gap, fail, known, tal
 
 
 @kernel
-def certify(
-    surface, chain, asked, path, order, first, last, clearance, gap, fail, lower, upper, tally, table
-):
-    """Fills `lower` [m] for the motion between the steps `first` to `last`, and lowers `upper`.
+def certify(surface, chain, asked, path, order, first, last, clearance, aim, bounds, tally, table):
+    """Fills `bounds` for the motion between the steps `first` to `last`.
 
     Args:
         surface: every face owns all its features.
         path: how the joint of each link moves from step to step, a `JointPath`.
         order: (n,) the pair to look at first in each interval.
-        clearance: (n,) [m] of the steps over these pairs, proven to within rounding.
-        gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
-        fail: [m] the limit that is to be decided, if need be with a smaller gap.
+        clearance: (n,) [m] of the steps over these pairs, proven to within rounding; or any distance, where it is
+            enough to know whether the motion stays that far, less the gap.
     """
     n_links, n_pairs, n_bodies = path.positions.shape[1], len(asked.bodies), len(surface.roots)
     known = Known(
@@ -167,15 +205,11 @@ def certify(
     )  # fmt: skip
     for pair in range(n_pairs):
         known.links[asked.bodies[pair, 0]] = asked.links[pair]
-    _certify(
-        surface, chain, asked, path, order, first, last, clearance, gap, fail, lower, upper, tally, known, table
-    )
+    _certify(surface, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table)
 
 
 @borrowing
-def _certify(
-    surface, chain, asked, path, order, first, last, clearance, gap, fail, lower, upper, tally, known, table
-):
+def _certify(surface, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table):
     """`certify`, with room for what is known."""
     n_pairs = len(asked.bodies)
     travel, floors = known.travel, known.floors
@@ -184,6 +218,7 @@ def _certify(
     for step in range(first, last):
         least = min(clearance[step], clearance[step + 1])
         floor = least  # 0 for a contact: then nothing is left to prove
+        share, seen = -1.0, np.int64(-1)
         _go_on(surface, chain, path, step, known)
         for turn in range(-1, n_pairs):
             pair = order[step] if turn < 0 else turn
@@ -191,41 +226,51 @@ def _certify(
                 continue
             moved = travel[asked.bodies[pair, 0]]
             carried = floors[pair] - moved
-            if carried >= least - allowed_gap(least, gap, fail):
+            if carried >= least - allowed_gap(least, aim.gap, aim.fail):
                 floor = min(floor, carried)
                 tally[0] += 1
                 continue
-            held = _hold_interval(surface, chain, asked, path, step, pair, least, gap, fail, known, tally, table)
-            floors[pair] = (held.floor + moved) * KEPT_DOWN
-            least = held.least
-            floor = min(floor, held.floor)
-        lower[step] = max(0.0, min(floor, least) * ROUNDED_DOWN)
-        upper[step] = least
+            over = _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, tally, table)
+            floors[pair] = (over.floor + moved) * KEPT_DOWN
+            if over.share >= 0.0:
+                least, share, seen = over.least, over.share, pair
+            floor = min(floor, over.floor)
+        bounds.lower[step] = max(0.0, min(floor, least) * ROUNDED_DOWN)
+        bounds.upper[step] = least
+        bounds.share[step] = share
+        bounds.pair[step] = seen
 
 
 @inlined
-def _hold_interval(surface, chain, asked, path, step, pair, least, gap, fail, known, tally, table):
+def _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, tally, table):
     """`hold` of a pair over the whole interval after `step`, halved until that is done."""
     body = asked.bodies[pair, 0]
     drift = _drift_at(known.drifts, body)
-    held = _hold_pair(surface, asked, pair, known.whole, drift, least, gap, fail, known, tally, table)
+    gap = aim.gap
+    held = _hold_pair(surface, asked, pair, known.whole, drift, least, gap, aim, known, tally, table)
+    share = 0.5 if held.least < least else -1.0
     if held.completed or held.least <= 0.0:
-        return held
+        return Over(held.floor, held.least, share)
     least = held.least
     floor = math.inf
     waiting = known.waiting
     waiting[0, 0], waiting[0, 1] = 0.5, 1.0
     waiting[1, 0], waiting[1, 1] = 0.0, 0.5
     n_waiting = 2
+    n_parts = 0
     while n_waiting > 0:
         n_waiting -= 1
+        n_parts += 1
         low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
+        if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
+            gap *= WIDER
         _go_to(chain, path, step, low, high, known.part)
         drift = _drift_in(surface, chain, body, asked.links[pair], known.part)
-        held = _hold_pair(surface, asked, pair, known.part, drift, least, gap, fail, known, tally, table)
-        least = held.least
+        held = _hold_pair(surface, asked, pair, known.part, drift, least, gap, aim, known, tally, table)
+        if held.least < least:
+            least, share = held.least, 0.5 * (low + high)
         if least <= 0.0:
-            return held
+            return Over(0.0, least, share)
         if held.completed:
             floor = min(floor, held.floor)
         elif n_waiting + 2 > DEPTH:
@@ -235,4 +280,4 @@ def _hold_interval(surface, chain, asked, path, step, pair, least, gap, fail, kn
             waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
             waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
             n_waiting += 2
-    return Held(floor, least, True, held.face_a, held.face_b)
+    return Over(floor, least, share)

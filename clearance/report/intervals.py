@@ -4,12 +4,13 @@ step."""
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from clearance.simulate.record import Record
-from clearance.simulate.replay import codes_of
-from clearance.simulate.steps import STATUSES
+from clearance.simulate.replay_frames import codes_of
+from clearance.simulate.steps import STATUSES, between_of, status_codes
 
 MOST_LISTED = 10_000
 """Most intervals of a level, and most events, that are listed; the steps tables have the status of every step."""
@@ -27,16 +28,21 @@ _LEFT = {
     "below_fail": "fail limit left",
     "contact": "contact ends",
 }
-_VERDICTS = ("clear", "near miss", "violated", "violated")
+
+
+_TOLD = ("time", "clearance", "link", "obstacle")
 
 
 @dataclass(frozen=True)
 class Interval:
-    """A longest run of steps at one level.
+    """A longest run of steps at one level, or of motion between steps that is.
 
     Attributes:
-        first_step, last_step: both inside. start, end: their times [s]. worst_step: the first step
-            of least clearance; clearance [m], link and obstacle are of that step.
+        first_step, last_step: both inside; the motion from the last one on is too where it ends between steps.
+        start, end: [s] from the first step to the last one, or the next if it ends between them.
+        worst_step: the first step of least clearance, or the one before that moment; worst_time [s], clearance
+            [m], link and obstacle are of that moment.
+        between: the least clearance is between two steps.
     """
 
     first_step: int
@@ -44,6 +50,8 @@ class Interval:
     start: float
     end: float
     worst_step: int
+    worst_time: float
+    between: bool
     clearance: float
     link: str
     obstacle: str
@@ -51,29 +59,31 @@ class Interval:
 
 @dataclass(frozen=True)
 class Event:
-    """A step at which a level was entered, or the first step after it was left."""
+    """A step or a moment between two at which a level was entered, or the first step after it was left.
+
+    Attributes:
+        step: the step, or the one before the moment. between: whether it is between steps; then that is the moment
+            of least clearance there.
+        clearance: [m] unknown, and so are the names, where a bound decides.
+        least: [m] until the level is left again; None where it is left.
+    """
 
     step: int
     time: float  # [s]
+    between: bool
     what: str
-    clearance: float | None  # [m]; unknown, and so are the names, where a bound decides
+    clearance: float | None
     link: str | None
     obstacle: str | None
-
-
-def verdict(record: Record) -> str:
-    """The worst that any step or profile says: "clear", "near miss" or "violated"."""
-    if not all(answer.passed for answer in record.profiles):
-        return _VERDICTS[max(codes_of(record.steps).max(), _VERDICTS.index("violated"))]
-    return _VERDICTS[int(codes_of(record.steps).max())]
+    least: float | None = None
 
 
 def intervals(record: Record) -> dict[str, list[Interval]]:
     """For each of `LEVELS` its first `MOST_LISTED` intervals in order of time; none where only the least step is
     known."""
-    clearances = record.clearances
+    seen = _Seen.of(record)
     return {
-        level: [_interval(record, clearances, int(a), int(b)) for a, b in runs[:MOST_LISTED]]
+        level: [seen.interval(int(a), int(b)) for a, b in runs[:MOST_LISTED]]
         for level, runs in _level_runs(record).items()
     }
 
@@ -81,15 +91,18 @@ def intervals(record: Record) -> dict[str, list[Interval]]:
 def events(record: Record) -> list[Event]:
     """The first `MOST_LISTED` enterings and leavings of a level in order of time; on one step, entering the wider
     level first. None where only the least step is known."""
-    steps, order, what = [], [], []
+    steps, order, what, stops = [], [], [], []
     for level, runs in _level_runs(record).items():
         left = runs[runs[:, 1] < record.steps.num_rows, 1]
         steps += [runs[:, 0], left]
+        stops += [runs[:, 1], left]
         order += [np.full(len(runs), LEVELS[level]), np.full(len(left), -LEVELS[level])]
         what += [_ENTERED[level]] * len(runs) + [_LEFT[level]] * len(left)
-    step = np.concatenate(steps)
+    step, stop = np.concatenate(steps), np.concatenate(stops)
     first = np.lexsort([np.concatenate(order), step])[:MOST_LISTED]
-    return [_event(record, int(step[i]), what[i]) for i in first]
+    seen = _Seen.of(record)
+    codes = np.concatenate(order)
+    return [seen.event(int(step[i]), int(stop[i]), int(codes[i]), what[i]) for i in first]
 
 
 def not_listed(record: Record) -> dict[str, int]:
@@ -102,9 +115,19 @@ def not_listed(record: Record) -> dict[str, int]:
 
 
 def extent(record: Record, level: str) -> tuple[int, int]:
-    """How many intervals of a level there are, and of how many steps."""
+    """How many intervals of a level there are, and of how many steps, not counting those of which only the motion
+    to the next is at that level."""
     runs = _level_runs(record)[level]
-    return len(runs), int((runs[:, 1] - runs[:, 0]).sum())
+    seen = _Seen.of(record)
+    n_between = int((seen.between & (seen.own < LEVELS[level]) & _inside(runs, record)).sum())
+    return len(runs), int((runs[:, 1] - runs[:, 0]).sum()) - n_between
+
+
+def _inside(runs: np.ndarray, record: Record) -> np.ndarray:
+    """(n,) True for the steps in any of the runs."""
+    change = np.zeros(record.steps.num_rows + 1, dtype=np.int64)
+    change[runs[:, 0]], change[runs[:, 1]] = 1, -1
+    return np.cumsum(change[:-1]) > 0
 
 
 def _level_runs(record: Record) -> dict[str, np.ndarray]:
@@ -128,22 +151,60 @@ def _runs(inside: np.ndarray) -> np.ndarray:
     return change.reshape(-1, 2)
 
 
-def _interval(record: Record, clearances: np.ndarray, start: int, stop: int) -> Interval:
-    worst = start + int(np.argmin(clearances[start:stop]))
-    row = record.steps.slice(worst, 1).to_pylist()[0]
-    times = record.steps["time"]
-    return Interval(
-        first_step=start,
-        last_step=stop - 1,
-        start=times[start].as_py(),
-        end=times[stop - 1].as_py(),
-        worst_step=worst,
-        clearance=row["clearance"],
-        link=row["link"],
-        obstacle=row["obstacle"],
-    )
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What was seen from each step to the next.
 
+    Attributes:
+        least: (n,) [m] at the step, or between where the status is of that; NaN where only a bound is known.
+        own: (n,) the status code of each step by itself. between: (n,) whether the status is another.
+    """
 
-def _event(record: Record, step: int, what: str) -> Event:
-    row = record.steps.slice(step, 1).to_pylist()[0]
-    return Event(step, row["time"], what, row["clearance"], row["link"], row["obstacle"])
+    record: Record
+    least: np.ndarray
+    own: np.ndarray
+    between: np.ndarray
+
+    @staticmethod
+    def of(record: Record) -> _Seen:
+        between, least, own = between_of(record.steps), record.clearances, codes_of(record.steps)
+        if record.certificate is not None:
+            own = np.where(between, status_codes(least, record.case.limits), own)
+            least = np.where(between, record.certificate.upper_bound, least)
+        return _Seen(record, least, own, between)
+
+    def moment(self, step: int) -> dict[str, Any]:
+        """What is known of a step, or of the moment after it that gives it its status."""
+        if not self.between[step]:
+            return self.sample(step)
+        moment = self.record.certificate.moment_of(step)
+        return {name: getattr(moment, name) for name in _TOLD}
+
+    def sample(self, step: int) -> dict[str, Any]:
+        """What is known of a step."""
+        row = self.record.steps.slice(step, 1).to_pylist()[0]
+        return {name: row[name] for name in _TOLD}
+
+    def interval(self, start: int, stop: int) -> Interval:
+        worst = start + int(np.nanargmin(self.least[start:stop]))
+        told = self.moment(worst)
+        times = self.record.motions[0].times
+        last = min(stop, len(times) - 1) if self.between[stop - 1] else stop - 1
+        return Interval(
+            first_step=start,
+            last_step=stop - 1,
+            start=float(times[start]),
+            end=float(times[last]),
+            worst_step=worst,
+            worst_time=told.pop("time"),
+            between=bool(self.between[worst]),
+            **told,
+        )
+
+    def event(self, step: int, stop: int, code: int, what: str) -> Event:
+        """Entering the level of a status code at a step, until `stop`; leaving it if these are the same."""
+        known = self.least[step:stop]
+        least = None if stop == step or np.isnan(known).all() else float(np.nanmin(known))
+        between = stop > step and bool(self.own[step] < code)
+        told = self.moment(step) if between else self.sample(step)
+        return Event(step=step, between=between, what=what, least=least, **told)

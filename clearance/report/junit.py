@@ -2,68 +2,165 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
+
 from clearance.report.folder import write_file
-from clearance.report.wording import mm
+from clearance.report.summary import certified_of
+from clearance.report.verdict import Verdict, profile_text, verdict_of
+from clearance.report.wording import certified_text, limit_mm, mm, moment_text, seconds
 from clearance.simulate.record import PairMinimum, Record
+from clearance.simulate.steps import STATUSES, Status, motion_codes
+from clearance.world.case import Limits
+from clearance.world.notice import Severity
+
+_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What XML 1.0 has no room for, escaped or not."""
 
 
 def write_junit(record: Record, path: str | Path) -> None:
-    """Writes one test case a measured pair, one a pair left out (skipped), and one for the
-    cross-check.
+    """Writes one test case for the verdict, and one for each that can fail by itself: measured pairs, the
+    certificate, profiles, the cross-check, suspect input and warnings. Pairs that are left out are skipped.
 
-    A pair fails where its least clearance is below the fail limit or it touches.
+    A pair fails where its least clearance is below the fail limit or it touches, at a step or between. The case of
+    the verdict fails exactly where the run is not passed.
 
     Raises:
         Unwritable: the file cannot be written; an older one is left as it was.
     """
+    verdict = verdict_of(record)
     suite = ElementTree.Element("testsuite", name=record.case.name)
+    _verdict(suite, record, verdict)
+    between = _violated_between(record)
     for minimum in record.pair_minima:
-        _pair(suite, record, minimum)
+        _pair(suite, record.case.limits, minimum, between.get((minimum.link, minimum.obstacle)))
     for pair in record.unmeasured:
-        case = ElementTree.SubElement(
-            suite, "testcase", classname=pair.link, name=f"{pair.link} - {pair.obstacle}"
-        )
+        case = _case(suite, pair.link, f"{pair.link} - {pair.obstacle}")
         ElementTree.SubElement(case, "skipped", message=pair.reason)
+    _certificate(suite, record)
+    for answer in record.profiles:
+        case = _case(suite, "profile", answer.name)
+        _tell(case, profile_text(answer), None if answer.passed else "ProfileNotKept")
     _cross_check(suite, record)
-    for attribute, tag in (("failures", "failure"), ("skipped", "skipped")):
-        suite.set(attribute, str(len(suite.findall(f"testcase/{tag}"))))
-    suite.set("tests", str(len(suite)))
-    suite.set("errors", "0")
+    _notices(suite, record)
+    _count(suite)
     root = ElementTree.Element("testsuites")
     root.append(suite)
+    _make_valid(root)
     ElementTree.indent(root)
     write_file(
         Path(path), ElementTree.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
     )
 
 
-def _pair(suite: ElementTree.Element, record: Record, minimum: PairMinimum) -> None:
-    name = f"{minimum.link} - {minimum.obstacle}"
-    case = ElementTree.SubElement(suite, "testcase", classname=minimum.link, name=name)
-    limits = record.case.limits
-    text = f"{mm(minimum.clearance)} mm at step {minimum.step}, {minimum.time:.3f} s"
-    if minimum.clearance < limits.fail or minimum.clearance <= 0.0:
-        message = f"clearance {text}; the fail limit is {mm(limits.fail)} mm"
-        ElementTree.SubElement(case, "failure", type="LimitViolated", message=message)
+def _case(suite: ElementTree.Element, group: str, name: str) -> ElementTree.Element:
+    return ElementTree.SubElement(suite, "testcase", classname=group, name=name)
+
+
+def _tell(case: ElementTree.Element, text: str, fault: str | None) -> None:
+    """Fails the case with a kind of fault, or lets it pass with a text."""
+    if fault is None:
+        ElementTree.SubElement(case, "system-out").text = text
+    else:
+        ElementTree.SubElement(case, "failure", type=fault, message=text)
+
+
+def _count(suite: ElementTree.Element) -> None:
+    for attribute, tag in (("failures", "failure"), ("skipped", "skipped")):
+        suite.set(attribute, str(len(suite.findall(f"testcase/{tag}"))))
+    suite.set("tests", str(len(suite.findall("testcase"))))
+    suite.set("errors", "0")
+
+
+def _verdict(suite: ElementTree.Element, record: Record, verdict: Verdict) -> None:
+    properties = ElementTree.SubElement(suite, "properties")
+    told = {"verdict": verdict.status, "basis": verdict.basis, "exit_code": str(verdict.exit_code)}
+    told["not_checked"] = ", ".join(verdict.not_checked)
+    for name, value in told.items():
+        ElementTree.SubElement(properties, "property", name=name, value=value)
+    worst = record.worst
+    text = f"{verdict.text()}: least clearance {mm(worst.clearance)} mm at {moment_text(worst)}"
+    not_checked = [f"{name} not checked" for name in verdict.not_checked]
+    text = "; ".join([text, *verdict.reasons, *not_checked])
+    _tell(_case(suite, "verdict", "verdict"), text, None if verdict.passed else "NotPassed")
+
+
+def _violated_between(record: Record) -> dict[tuple[str, str], str]:
+    """The pairs that the certificate has seen below the fail limit between steps, and where they are nearest."""
+    certificate = record.certificate
+    if certificate is None:
+        return {}
+    codes = motion_codes(certificate, record.case.limits, slice(None))
+    steps = (codes >= STATUSES.index(Status.VIOLATED)) & (certificate.pair >= 0)
+    found: dict[tuple[str, str], str] = {}
+    for pair in np.unique(certificate.pair[steps]):
+        own = np.flatnonzero(steps & (certificate.pair == pair))
+        step = int(own[np.argmin(certificate.upper_bound[own])])
+        moment = certificate.moment_of(step)
+        if moment.clearance < record.case.limits.fail or moment.clearance <= 0.0:
+            found[moment.link, moment.obstacle] = f"{mm(moment.clearance)} mm at {moment_text(moment)}"
+    return found
+
+
+def _pair(
+    suite: ElementTree.Element, limits: Limits, minimum: PairMinimum, between: str | None
+) -> None:
+    case = _case(suite, minimum.link, f"{minimum.link} - {minimum.obstacle}")
+    text = f"{mm(minimum.clearance)} mm at step {minimum.step}, {seconds(minimum.time)}"
+    below = minimum.clearance < limits.fail or minimum.clearance <= 0.0
+    if below or between is not None:
+        told = text if between is None else f"{between}; {text}"
+        _tell(case, f"clearance {told}; the fail limit is {limit_mm(limits.fail)} mm", "LimitViolated")
     else:
         near = "near miss: " if minimum.clearance < limits.warn else ""
-        ElementTree.SubElement(case, "system-out").text = f"{near}least clearance {text}"
+        _tell(case, f"{near}least clearance {text}", None)
+
+
+def _certificate(suite: ElementTree.Element, record: Record) -> None:
+    case = _case(suite, "certificate", "motion between the samples")
+    if record.certificate is None:
+        message = "looked at the samples only: nothing is said about the motion between them"
+        ElementTree.SubElement(case, "skipped", message=message)
+        return
+    codes = motion_codes(record.certificate, record.case.limits, slice(None))
+    violated = int(codes.max()) >= STATUSES.index(Status.VIOLATED)
+    text = certified_text(certified_of(record))
+    _tell(case, text, "LimitViolated" if violated else None)
 
 
 def _cross_check(suite: ElementTree.Element, record: Record) -> None:
     check = record.cross_check
     if check is None:
         return
-    case = ElementTree.SubElement(
-        suite, "testcase", classname="cross_check", name=f"agrees with {check.peer}"
-    )
+    case = _case(suite, "cross_check", f"agrees with {check.peer}")
     if not check.agrees:
         message = (
             f"{len(check.disagreements)} of {check.n_steps} steps differ by more than "
             f"{check.tolerance:g} m; "
             f"greatest difference {check.greatest_difference:g} m at step {check.worst_step}"
         )
-        ElementTree.SubElement(case, "failure", type="CrossCheckDisagrees", message=message)
+        _tell(case, message, "CrossCheckDisagrees")
+
+
+def _notices(suite: ElementTree.Element, record: Record) -> None:
+    """Suspect input fails unless its kind is accepted; a warning passes, and says what it says."""
+    for notice in (*record.case.notices, *record.notices):
+        fails = notice.severity is Severity.SUSPECT and notice.kind not in record.case.accept
+        case = _case(suite, str(notice.severity), f"{notice.kind}: {notice.text}")
+        _tell(case, notice.text, "SuspectInput" if fails else None)
+
+
+def _make_valid(root: ElementTree.Element) -> None:
+    """Writes characters that XML cannot hold as their escapes, such as \\uffff."""
+    for element in root.iter():
+        for name, value in element.attrib.items():
+            element.set(name, _without_foreign(value))
+        if element.text:
+            element.text = _without_foreign(element.text)
+
+
+def _without_foreign(text: str) -> str:
+    return _NO_XML.sub(lambda found: found[0].encode("unicode_escape").decode(), text)

@@ -42,3 +42,13 @@ def table(heads: Iterable[str], rows: list[Html], class_: str | None = None) -> 
 def step_link(step: int) -> Html:
     """A link that moves the replay to a step."""
     return element("a", f"step {step:,}", href="#stage", data_step=step)
+
+
+def time_link(time: float, text: str) -> Html:
+    """A link that moves the replay to a moment [s]."""
+    return element("a", text, href="#stage", data_time=time)
+
+
+def scrolling(content: Html) -> Html:
+    """What is too wide for its place scrolls in a box of its own."""
+    return element("div", content, class_="scroll")

@@ -32,6 +32,17 @@
     return low > 0 && step - data.steps[low - 1] < data.steps[low] - step ? low - 1 : low;
   }
 
+  function frameOfTime(time) {
+    let best = 0;
+    for (let i = 1; i < n; i++) if (Math.abs(times[i] - time) < Math.abs(times[best] - time)) best = i;
+    return best;
+  }
+
+  const stepText = (i) => {
+    const step = data.steps[i], shown = (k) => k.toLocaleString("en");
+    return data.between[i] ? `between the steps ${shown(step)} and ${shown(step + 1)}` : `step ${shown(step)}`;
+  };
+
   function showFrame(i) {
     frame = Math.max(0, Math.min(n - 1, i));
     byId("scrub").value = frame;
@@ -41,7 +52,7 @@
     strong.textContent = measured(frame);
     strong.style.color = colours[data.status[frame]];
     byId("readout").append(strong, ` ${word(frame)}`, document.createElement("br"), between(frame),
-      document.createElement("br"), `${times[frame].toFixed(3)} s, step ${data.steps[frame].toLocaleString("en")}`);
+      document.createElement("br"), `${times[frame].toFixed(3)} s, ${stepText(frame)}`);
     for (const contact of data.contacts) if (contact.frame === frame) {
       byId("readout").append(document.createElement("br"), contact.text);
     }
@@ -68,7 +79,7 @@
     return {
       x: Array.from(times), y: Array.from(clearances, toPlot), mode: "lines", line: {width: 0}, opacity: 0, cliponaxis: false,
       text: Array.from(times, (t, i) =>
-        `<b>${measured(i)}</b> ${word(i)}<br>${between(i).replace(/</g, "&lt;")}<br>${t.toFixed(3)} s, step ${data.steps[i].toLocaleString("en")}`),
+        `<b>${measured(i)}</b> ${word(i)}<br>${between(i).replace(/</g, "&lt;")}<br>${t.toFixed(3)} s, ${stepText(i)}`),
       hovertemplate: "%{text}<extra></extra>", hoverlabel: {bgcolor: "#ffffff", bordercolor: css("--rule"), font: {color: css("--ink")}, align: "left"},
     };
   }
@@ -178,11 +189,12 @@
 
   function follow(event) {
     if (event.type === "keydown" && event.key !== "Enter" && event.key !== " ") return;
-    const target = event.target.closest("[data-step]");
+    const target = event.target.closest("[data-step], [data-time]");
     if (!target) return;
     event.preventDefault();
     pause();
-    showFrame(frameOfStep(Number(target.dataset.step)));
+    const {step, time} = target.dataset;
+    showFrame(time === undefined ? frameOfStep(Number(step)) : frameOfTime(Number(time)));
     byId("stage").scrollIntoView({behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth"});
   }
 

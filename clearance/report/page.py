@@ -21,7 +21,7 @@ import numpy as np
 
 from clearance.errors import Unavailable
 from clearance.report.markup import element
-from clearance.report.sections import header, sections
+from clearance.report.sections import badge_text, header, sections
 from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
 from clearance.simulate.steps import STATUSES
@@ -45,7 +45,7 @@ def page_of(
     """
     template = Template(_own("page.html"))
     return template.substitute(
-        title=escape(f"{summary['name']}: {summary['verdict']}"),
+        title=escape(f"{summary['name']}: {badge_text(summary)}"),
         style=_own("page.css"),
         header=header(summary),
         stage_note=_stage_note(replay),
@@ -83,6 +83,7 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
         ],
         "worst": replay.i_worst,
         "steps": replay.steps.tolist(),
+        "between": replay.between.tolist(),
         "times": _floats(replay.times, "<f8"),
         "clearances": _floats(replay.clearances, "<f8"),
         "known": replay.known.tolist(),

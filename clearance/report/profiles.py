@@ -6,7 +6,7 @@ import base64
 from typing import Any
 
 from clearance.report.markup import Html, element, section, step_link, table
-from clearance.report.wording import mm
+from clearance.report.wording import gap_text
 
 
 def profiles(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
@@ -26,12 +26,6 @@ def profiles(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
     return section("Profiles", table(heads, rows, class_="clickable"), note, *figures)
 
 
-def gap_text(answer: dict[str, Any]) -> str:
-    """The gap [mm], rounded down; of a negative one its size is rounded to 3 digits."""
-    gap = answer["gap"]
-    return mm(gap) if gap >= 0.0 else f"-{-gap * 1000:.3f}"
-
-
 def plane_text(answer: dict[str, Any]) -> str:
     """The plane, and the height of the cut if it is one."""
     cut = answer["section"]
@@ -49,7 +43,7 @@ def _row(answer: dict[str, Any]) -> Html:
         element("td", f"{answer['name']} ({answer['mode']})"),
         element("td", plane_text(answer)),
         element("td", kept),
-        element("td", gap_text(answer), class_="number"),
+        element("td", gap_text(answer["gap"]), class_="number"),
         element("td", f"{answer['limit'] * 1000:g}", class_="number"),
         element("td", answer["link"]),
         element("td", step_link(answer["step"])),

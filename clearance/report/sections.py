@@ -10,44 +10,89 @@ from typing import Any
 
 from clearance.report.background import certainty, loaded, provenance, unmeasured
 from clearance.report.contact import contacts
-from clearance.report.markup import Html, element, section, step_link, table
+from clearance.report.markup import (
+    Html,
+    element,
+    scrolling,
+    section,
+    step_link,
+    table,
+    time_link,
+)
 from clearance.report.profiles import profiles
+from clearance.report.verdict import verdict_text
 from clearance.report.wording import count, joint_value, limit_mm, mm, seconds
 
 MAX_EVENT_ROWS = 200
 """Most events printed on the page; all are in `summary.json`."""
 
-_TITLES = {"clear": "Clear", "near miss": "Near miss", "violated": "Limit violated"}
-_CLASSES = {"clear": "clear", "near miss": "near", "violated": "violated"}
+_TITLES = {
+    "clear": "clear",
+    "near": "near miss",
+    "violated": "limit violated",
+    "contact": "contact",
+    "suspect": "suspect input",
+}
 
 
 def header(summary: dict[str, Any]) -> Html:
-    """Name, verdict, least clearance, limits."""
-    worst, limits = summary["worst"], summary["limits"]
+    """Name, verdict, what puts it in doubt, least clearance, limits."""
+    limits = summary["limits"]
     facts = [
-        ("Least clearance", Html(f"<strong>{mm(worst['clearance'])}</strong> mm")),
-        ("Between", f"{worst['link']} and {worst['obstacle']}"),
-        ("At", f"{seconds(worst['time'])}, step {worst['step']:,}"),
+        ("Least clearance", Html(f"<strong>{mm(summary['worst']['clearance'])}</strong> mm")),
+        ("Certified", _certified_word(summary["certified"])),
+        ("Between", f"{summary['worst']['link']} and {summary['worst']['obstacle']}"),
+        ("At", moment_of(summary["worst"])),
         (
             "Limits",
             f"fail below {limit_mm(limits['fail'])} mm, warn below {limit_mm(limits['warn'])} mm",
         ),
-        (
-            "Measured",
-            f"{_extent(summary)}, {summary['motion']} motion",
-        ),
+        ("Measured", f"{_extent(summary)}, {summary['motion']} motion"),
         ("Cross-check", _cross_check_word(summary["cross_check"])),
     ]
     items = [element("div", element("dt", name), element("dd", value)) for name, value in facts]
-    kind = _CLASSES[summary["verdict"]]
-    return element(
-        "div",
-        element(
-            "div", element("p", "Clearance report", class_="kicker"), element("h1", summary["name"])
-        ),
-        element("p", _TITLES[summary["verdict"]], class_=f"verdict {kind}"),
-        class_="title",
-    ) + element("dl", *items, class_="facts")
+    title = element(
+        "div", element("p", "Clearance report", class_="kicker"), element("h1", summary["name"])
+    )
+    badge = element("p", badge_text(summary), class_=f"verdict {_badge_class(summary)}")
+    return (
+        element("div", title, badge, class_="title")
+        + _beside(summary)
+        + element("dl", *items, class_="facts")
+    )
+
+
+def badge_text(summary: dict[str, Any]) -> str:
+    """The verdict in a few words."""
+    parts = (summary[name] for name in ("verdict", "measured", "basis", "disputed_by"))
+    text = verdict_text(*parts, shown=_TITLES.__getitem__)
+    return text[0].upper() + text[1:]
+
+
+def _badge_class(summary: dict[str, Any]) -> str:
+    return "violated" if summary["disputed_by"] else summary["verdict"]
+
+
+def _beside(summary: dict[str, Any]) -> Html:
+    """What a reader must know beside the clearance, right below the verdict."""
+    rows = [element("li", f"Suspect {one['kind']}: {one['text']}") for one in summary["suspects"]]
+    rows += [element("li", f"Warning: {text}") for text in summary["warnings"]]
+    rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]
+    return element("ul", *rows, class_="beside") if rows else Html("")
+
+
+def _certified_word(certified: dict[str, Any] | None) -> str:
+    if certified is None:
+        return "no, looked at the samples only"
+    return f"at least {mm(certified['lower_bound'])} mm at every moment"
+
+
+def moment_of(worst: dict[str, Any]) -> str:
+    """When a moment of the summary is."""
+    step = f"step {worst['step']:,}"
+    if worst["between"]:
+        step = f"between the steps {worst['step']:,} and {worst['step'] + 1:,}"
+    return f"{seconds(worst['time'])}, {step}"
 
 
 _EXTENTS = {
@@ -119,14 +164,23 @@ def worst_moment(summary: dict[str, Any]) -> Html:
         "Worst moment",
         element(
             "p",
-            f"{mm(worst['clearance'])} mm between {worst['link']} and {worst['obstacle']} at "
-            f"{seconds(worst['time'])}, ",
-            step_link(worst["step"]),
+            f"{mm(worst['clearance'])} mm between {worst['link']} and {worst['obstacle']} at ",
+            time_link(worst["time"], moment_of(worst)),
             ".",
         ),
+        *_worst_sample(summary),
         table(("Joint", ">Position", "In its range"), rows),
         table(("Witness point", ">x, mm", ">y, mm", ">z, mm"), points),
     )
+
+
+def _worst_sample(summary: dict[str, Any]) -> list[Html]:
+    """The least clearance at the steps, where that between them is less."""
+    sample = summary["worst_sample"]
+    if not summary["worst"]["between"]:
+        return []
+    text = f"At the steps the least is {mm(sample['clearance'])} mm between {sample['link']} and "
+    return [element("p", text, f"{sample['obstacle']}, ", step_link(sample["step"]), ".")]
 
 
 def _range_bar(joint: dict[str, Any]) -> Html:
@@ -146,35 +200,40 @@ def events(summary: dict[str, Any]) -> Html:
     """When limits were entered and left."""
     found = summary["events"]
     if not found:
-        return section("Events", element("p", "No limit was entered at any step."))
+        where = "at any moment" if summary["certified"] else "at any step"
+        return section("Events", element("p", f"No limit was entered {where}."))
     rows = [
         element(
             "tr",
             element("td", seconds(event["time"]), class_="number"),
-            element("td", f"{event['step']:,}", class_="number"),
+            element("td", f"{event['step']:,}{'+' if event['between'] else ''}", class_="number"),
             element("td", event["what"]),
             *_event_cells(event),
             data_step=event["step"],
+            data_time=event["time"] if event["between"] else None,
             tabindex=0,
         )
         for event in found[:MAX_EVENT_ROWS]
     ]
     more = len(found) - len(rows)
-    note = element("p", f"{count(more, 'more event')} in summary.json.") if more else Html("")
     unlisted = summary["not_listed"]["events"]
-    if unlisted:
-        note += element("p", f"{count(unlisted, 'more event')} follow from the status in steps.csv.")
-    heads = (">Time", ">Step", "What", ">mm", "Between")
-    return section("Events", table(heads, rows, class_="clickable"), note)
+    told = [f"{count(more, 'more event')} in summary.json."] if more else []
+    told += [f"{count(unlisted, 'more event')} follow from the status in steps.csv."] if unlisted else []
+    if any(event["between"] for event in found):
+        told.append("A step with + is the one before a moment between two steps.")
+    notes = [element("p", text, class_="faint") for text in told]
+    heads = (">Time", ">Step", "What", ">mm", ">Least, mm", "Between")
+    return section("Events", scrolling(table(heads, rows, class_="clickable")), *notes)
 
 
-def _event_cells(event: dict[str, Any]) -> tuple[Html, Html]:
+def _event_cells(event: dict[str, Any]) -> tuple[Html, Html, Html]:
+    least = "" if event["least"] is None else mm(event["least"])
     if event["clearance"] is None:
-        return element("td", "", class_="number"), element("td", "not measured further")
-    return (
-        element("td", mm(event["clearance"]), class_="number"),
-        element("td", f"{event['link']} - {event['obstacle']}"),
-    )
+        figures, who = ("", least), "not measured further"
+    else:
+        figures, who = (mm(event["clearance"]), least), f"{event['link']} - {event['obstacle']}"
+    now, until = (element("td", figure, class_="number") for figure in figures)
+    return now, until, element("td", who)
 
 
 def matrix(summary: dict[str, Any]) -> Html:

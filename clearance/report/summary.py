@@ -12,25 +12,27 @@ from typing import Any
 import numpy as np
 
 from clearance.report.contact import contact_of
-from clearance.report.intervals import events, intervals, not_listed, status_counts, verdict
+from clearance.report.intervals import events, intervals, not_listed, status_counts
 from clearance.report.provenance import inputs, public_origin, versions
-from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
+from clearance.report.verdict import Verdict, verdict_of
+from clearance.simulate.record import CrossCheck, Moment, ProfileAnswer, Record
 from clearance.simulate.replay import link_label
+from clearance.simulate.steps import status_of
 from clearance.world.body import Body
 from clearance.world.motion import Motion
 
-FORMAT = 1
+FORMAT = 2
 
 
 def summary_of(record: Record) -> dict[str, Any]:
     """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
     exist is None."""
-    case = record.case
+    case, verdict = record.case, verdict_of(record)
     times = record.steps["time"].to_numpy()
     return {
         "format": FORMAT,
         "name": case.name,
-        "verdict": verdict(record),
+        **_verdict(verdict),
         "limits": asdict(case.limits),
         "method": record.method,
         "motion": record.motion_kind,
@@ -38,7 +40,8 @@ def summary_of(record: Record) -> dict[str, Any]:
         "n_steps": record.steps.num_rows,
         "start": float(times[0]),
         "end": float(times[-1]),
-        "worst": _worst(record),
+        "worst": _worst(record, record.worst),
+        "worst_sample": _worst(record, record.worst_sample),
         "status_counts": status_counts(record),
         "intervals": {
             level: [asdict(i) for i in found] for level, found in intervals(record).items()
@@ -53,7 +56,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "tracking_error": _tracking_error(record),
         "robots": [_robot(record, motion) for motion in record.motions],
         "obstacles": [_body(record, obstacle.body, obstacle.name) for obstacle in case.obstacles],
-        "tessellation_bound": _tessellation_bound(record),
+        "tessellation_bound": tessellation_bound(record),
         "profiles": [_profile(answer) for answer in record.profiles],
         "tally": dict(record.tally),
         "notes": notes_of(record),
@@ -62,35 +65,54 @@ def summary_of(record: Record) -> dict[str, Any]:
     }
 
 
-def _worst(record: Record) -> dict[str, Any]:
-    row = record.steps.slice(record.worst_step, 1).to_pylist()[0]
+def _verdict(verdict: Verdict) -> dict[str, Any]:
+    """The verdict: its status, whether it is passed, what it rests on, and why."""
     return {
-        "step": record.worst_step,
-        "time": row["time"],
-        "clearance": row["clearance"],
-        "status": row["status"],
-        "link": row["link"],
-        "obstacle": row["obstacle"],
-        "point_link": [row["link_x"], row["link_y"], row["link_z"]],
-        "point_obstacle": [row["obstacle_x"], row["obstacle_y"], row["obstacle_z"]],
+        "verdict": verdict.status,
+        "verdict_text": verdict.text(),
+        "measured": verdict.measured,
+        "passed": verdict.passed,
+        "exit_code": verdict.exit_code,
+        "basis": verdict.basis,
+        "reasons": list(verdict.reasons),
+        "warnings": list(verdict.warnings),
+        "suspects": [{"kind": one.kind, "text": one.text} for one in verdict.suspects],
+        "disputed_by": verdict.disputed_by,
+        "not_checked": list(verdict.not_checked),
+    }
+
+
+def _worst(record: Record, worst: Moment) -> dict[str, Any]:
+    return {
+        "step": worst.step,
+        "time": worst.time,
+        "between": worst.between,
+        "clearance": worst.clearance,
+        "status": status_of(worst.clearance, record.case.limits),
+        "link": worst.link,
+        "obstacle": worst.obstacle,
+        "point_link": list(worst.point_link),
+        "point_obstacle": list(worst.point_obstacle),
         "joints": [
-            joint for motion in record.motions for joint in _joints(motion, record.worst_step)
+            joint
+            for motion, positions in zip(record.motions, worst.positions, strict=True)
+            for joint in _joints(motion, positions)
         ],
     }
 
 
-def _joints(motion: Motion, step: int) -> list[dict[str, Any]]:
-    """Name, kind, position and limits [rad] or [m] of every moving joint at one step."""
+def _joints(motion: Motion, positions: np.ndarray) -> list[dict[str, Any]]:
+    """Name, kind, position and limits [rad] or [m] of every moving joint at one moment."""
     return [
         {
             "robot": motion.placed.robot.name,
             "name": joint.name,
             "kind": str(joint.kind),
-            "position": float(motion.positions[step, i]),
+            "position": float(position),
             "lower": _finite(joint.lower),
             "upper": _finite(joint.upper),
         }
-        for i, joint in enumerate(motion.placed.robot.moving_joints)
+        for joint, position in zip(motion.placed.robot.moving_joints, positions, strict=True)
     ]
 
 
@@ -126,7 +148,7 @@ def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
 
 
 def certified_of(record: Record) -> dict[str, Any] | None:
-    """The least proven bound [m], the interval it holds for, and the least distance seen there."""
+    """The least proven bound [m], the interval it holds for, and the least distance seen there, if one was."""
     certificate = record.certificate
     if certificate is None:
         return None
@@ -136,7 +158,7 @@ def certified_of(record: Record) -> dict[str, Any] | None:
     return {
         "joints": "cubic" if cubic else "linear",
         "lower_bound": float(certificate.lower_bound[step]),
-        "upper_bound": float(certificate.upper_bound[step]),
+        "upper_bound": record.steps["upper_bound"][step].as_py(),
         "step": step,
         "start": float(times[step]),
         "end": float(times[min(step + 1, len(times) - 1)]),
@@ -164,7 +186,7 @@ def _tracking_error(record: Record) -> dict[str, Any] | None:
     return {"greatest": float(error[step]), "step": step}
 
 
-def _tessellation_bound(record: Record) -> float:
+def tessellation_bound(record: Record) -> float:
     """[m] by how much the facets of round shapes can make a clearance too small: both excesses of a
     pair."""
     links = [body.shape.excess for motion in record.motions for body in motion.placed.robot.bodies]

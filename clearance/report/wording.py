@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
+from clearance.simulate.moment import Moment
+
 
 def mm(metres: float) -> str:
     """A length in millimetres, rounded down so that a shown clearance is never more than the
@@ -100,11 +102,32 @@ def count(number: int, noun: str) -> str:
     return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
+def gap_text(gap: float) -> str:
+    """A gap to a profile [mm], rounded down; of a negative one its size is rounded to 3 digits."""
+    return mm(gap) if gap >= 0.0 else f"-{-gap * 1000:.3f}"
+
+
+def moment_text(moment: Moment) -> str:
+    """When a moment is: `1.220 s, step 61`, or which steps it is between."""
+    if moment.between:
+        return f"{seconds(moment.time)}, between the steps {moment.step} and {moment.step + 1}"
+    return f"{seconds(moment.time)}, step {moment.step}"
+
+
+def span_text(start: float, end: float) -> str:
+    """A stretch of time: `0.500-1.220 s`, or `at 1.220 s` where it is no longer than shown."""
+    if f"{start:.3f}" == f"{end:.3f}":
+        return f"at {seconds(start)}"
+    return f"{start:.3f}-{seconds(end)}"
+
+
 def certified_text(certified: dict) -> str:
     """What is proven of the continuous motion, as one sentence."""
     way = {"linear": "linearly", "cubic": "on cubics through the given velocities"}[certified["joints"]]
+    moment = f"from {seconds(certified['start'])} to {seconds(certified['end'])}"
+    if certified["upper_bound"] is not None:
+        moment += f", where {mm(certified['upper_bound'])} mm occurs"
     return (
         f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving {way} between steps; "
-        f"least from {seconds(certified['start'])} to {seconds(certified['end'])}, "
-        f"where {mm(certified['upper_bound'])} mm occurs"
+        f"least {moment}"
     )

@@ -14,19 +14,30 @@ from clearance.ahead import usable_cores
 from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
 from clearance.kernel_table import call
-from clearance.kernels.certify import Asked, certify
+from clearance.kernels.certify import Aim, Asked, Bounds, certify
 from clearance.kernels.drift import Chain
 from clearance.kernels.joint_path import JointPath
 from clearance.kernels.surface import ANYTHING, Surface
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
-from clearance.simulate.parts import in_order, parts
+from clearance.simulate.moment import Moment, Moments
+from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.record import Certificate
 from clearance.simulate.spool import Rows
-from clearance.world.case import Case
+from clearance.tolerance import FINEST_CERTIFY_GAP
+from clearance.world.case import Case, Limits
 from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link
 from clearance.world.motion import Motion
+from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import Pair
+from clearance.world.reach import farthest_reach
+
+BEYOND = 1.001
+"""Gaps beyond the warn limit that are asked about where more is not known: a proof within the gap decides it."""
+
+MOST_PARTS = 2**24
+"""Parts of one interval that a pair is looked at in before its gap is widened: half a minute to two. A whole turn
+takes 3,000 to a tenth of a millimetre."""
 
 
 def certify_motion(
@@ -36,6 +47,7 @@ def certify_motion(
     found: Measurement,
     gap: float,
     *,
+    need: str = "steps",
     jobs: int | None = None,
     progress: Progress | None = None,
     kept: Rows | None = None,
@@ -43,6 +55,8 @@ def certify_motion(
     """Lower bounds that are within `gap` [m] of a distance that really occurs.
 
     Args:
+        need: what was measured. Where it leaves clearances unknown, it is only asked whether the motion stays
+            above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
         jobs: threads; as many as the machine has to offer by default.
         kept: where the bounds are kept; in memory by default.
 
@@ -51,32 +65,116 @@ def certify_motion(
     """
     if not 0.0 < gap < np.inf:
         raise BadDimension(f"a gap of {gap} m", where="certify", valid="a length above 0")
+    gap, notices = _no_finer_than_rounding(case, motions, gap)
     kept, tally, bounds = kept or Rows(), _no_counts(), []
+    question = _Question.of(found, case.limits, need, gap)
     for i_robot, motion in enumerate(motions):
-        work = _Work.of(case, motion, pairs, i_robot, found, gap)
-        log = _Log(kept, f"certify{i_robot}", motion.n_steps, found)
-        results = in_order(work.certify(log), log.spans[log.done :], jobs or usable_cores())
+        work = _Work.of(case, motion, pairs, i_robot, question)
+        log = _Log(kept, f"certify{i_robot}", motion.n_steps, question)
+        results = in_order(work.certify(log.bounds), log.spans[log.done :], jobs or usable_cores())
         for i_part, (done, counts) in enumerate(results, start=log.done + 1):
             log.note(i_part, counts, last=i_part == len(log.spans))
             if progress:
                 progress(done + 1, motion.n_steps)
         tally += log.tally
-        bounds.append((log.lower, log.upper))
-    for other in bounds[1:]:
-        for mine, theirs in zip(bounds[0], other, strict=True):
-            np.minimum(mine, theirs, out=mine)
+        bounds.append(log.bounds)
+    joined = _joined(bounds)
     kept.let_go()
-    return Certificate(*bounds[0], gap, dict(zip(COUNTERS, tally.tolist(), strict=True)))
+    return Certificate(
+        *joined,
+        gap,
+        dict(zip(COUNTERS, tally.tolist(), strict=True)),
+        _moment_of(Moments(case, motions, pairs), joined, found),
+        notices,
+    )
+
+
+def _no_finer_than_rounding(
+    case: Case, motions: Sequence[Motion], gap: float
+) -> tuple[float, tuple[Notice, ...]]:
+    """The gap that can be had, and a warning where that is not what was asked for."""
+    size = farthest_reach(case, motions)
+    finest = FINEST_CERTIFY_GAP * size
+    if gap >= finest:
+        return gap, ()
+    text = (
+        f"certified to {finest * 1000:.2g} mm, not to the {gap * 1000:.2g} mm asked for: no bound is finer than "
+        f"2^-32 of the scene's size ({size:.3g} m from the origin), which is above rounding"
+    )
+    return finest, (Notice(Severity.WARNING, "certificate", text),)
+
+
+def _joined(bounds: Sequence[Bounds]) -> Bounds:
+    """The bounds of all robots together, in the arrays of the first."""
+    first = bounds[0]
+    for other in bounds[1:]:
+        np.minimum(first.lower, other.lower, out=first.lower)
+        nearer = other.upper < first.upper
+        for mine, theirs in zip(first[1:], other[1:], strict=True):
+            mine[nearer] = theirs[nearer]
+    return first
+
+
+def _moment_of(moments: Moments, bounds: Bounds, found: Measurement) -> Callable[[int], Moment]:
+    """Measures the pair of an interval where it was seen nearest; at the nearer end where that is a step."""
+
+    def moment_of(step: int) -> Moment:
+        share, i_pair = float(bounds.share[step]), int(bounds.pair[step])
+        if i_pair < 0:
+            ends = found.clearance[step : step + 2]
+            share = float(np.nanargmin(ends))
+            i_pair = int(found.pair[step + int(share)])
+        return moments.between(step, share, i_pair, touches=bool(bounds.upper[step] <= 0.0))
+
+    return moment_of
+
+
+@dataclass(frozen=True, eq=False)
+class _Question:
+    """Which distances are asked about: those of the steps, or where these are unknown what `need` wants to know.
+
+    Attributes:
+        unknown: [m] proven of every step that is not known.
+        far: [m] what is asked about there: whether the motion stays so far, less the gap.
+    """
+
+    found: Measurement
+    aim: Aim
+    unknown: float
+    far: float
+
+    @staticmethod
+    def of(found: Measurement, limits: Limits, need: str, gap: float) -> _Question:
+        n_steps = len(found.clearance)
+        least = min(_or_far(found.clearance[block], np.inf).min() for block in blocks(n_steps))
+        unknown = far = least
+        if need == "limit":
+            unknown, far = max(least, limits.warn), max(least, limits.warn + BEYOND * gap)
+        return _Question(found, Aim(gap, limits.fail, MOST_PARTS), unknown, far)
+
+    def distances(self, steps: slice) -> np.ndarray:
+        """(k,) [m]."""
+        return _or_far(self.found.clearance[steps], self.far)
+
+
+def _or_far(clearance: np.ndarray, far: float) -> np.ndarray:
+    return np.where(np.isnan(clearance), far, clearance)
 
 
 class _Log:
-    """The bounds of one robot, (n,) [m] each, and how many parts of them are proven."""
+    """The bounds of one robot, (n,) each, and how many parts of them are proven."""
 
-    def __init__(self, kept: Rows, name: str, n_steps: int, found: Measurement) -> None:
+    def __init__(self, kept: Rows, name: str, n_steps: int, question: _Question) -> None:
         self._kept = kept
-        self.lower = kept.array(f"{name}.lower", (n_steps,))
-        self.upper = kept.array(f"{name}.upper", (n_steps,))
-        self.lower[-1] = self.upper[-1] = found.clearance[-1]
+        self.bounds = Bounds(
+            kept.array(f"{name}.lower", (n_steps,)),
+            kept.array(f"{name}.upper", (n_steps,)),
+            kept.array(f"{name}.share", (n_steps,)),
+            kept.array(f"{name}.pair", (n_steps,), np.int64),
+        )
+        last = _or_far(question.found.clearance[-1:], question.unknown)[0]
+        for column, value in zip(self.bounds, (last, last, -1.0, -1), strict=True):
+            column[-1] = value
         self.spans = parts(n_steps - 1)
         self._log = kept.log(name, self.spans)
         self.done, self.tally = self._log.done, self._log.gathered.get("tally", _no_counts())
@@ -96,36 +194,32 @@ class _Work:
     chain: Chain
     asked: Asked
     motion: Motion
-    chosen: list[int]
-    found: Measurement
-    gap: float
-    fail: float
+    chosen: np.ndarray
+    question: _Question
 
     @staticmethod
     def of(
-        case: Case,
-        motion: Motion,
-        pairs: Sequence[Pair],
-        i_robot: int,
-        found: Measurement,
-        gap: float,
+        case: Case, motion: Motion, pairs: Sequence[Pair], i_robot: int, question: _Question
     ) -> _Work:
         chosen = [i for i, pair in enumerate(pairs) if pair.i_robot == i_robot]
         laid = _lay_out(case, [pairs[i] for i in chosen])
-        return _Work(*laid, motion, chosen, found, gap, case.limits.fail)
+        return _Work(*laid, motion, np.array(chosen), question)
 
-    def certify(self, log: _Log) -> Callable[[slice], tuple[int, np.ndarray]]:
-        """Proves a part, into the bounds of `log`; returns where it ends, and counters."""
+    def certify(self, bounds: Bounds) -> Callable[[slice], tuple[int, np.ndarray]]:
+        """Proves a part, into `bounds`; returns where it ends, and counters."""
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
-            nearest = np.searchsorted(self.chosen, self.found.pair[span])
+            nearest = np.searchsorted(self.chosen, self.question.found.pair[span])
+            own = Bounds(*(column[span] for column in bounds))
             call(
                 certify, self.surface, self.chain, self.asked, _joint_path(self.motion, ends),
                 np.maximum(nearest, 0) % len(self.chosen), 0, span.stop - span.start,
-                self.found.clearance[ends], self.gap, self.fail, log.lower[span], log.upper[span], counts,
+                self.question.distances(ends), self.question.aim, own, counts,
             )  # fmt: skip
+            seen = own.pair >= 0
+            own.pair[seen] = self.chosen[own.pair[seen]]
             return span.stop, counts
 
         return run_part

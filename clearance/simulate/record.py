@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pyarrow as pa
 
+from clearance.simulate.moment import Moment
 from clearance.simulate.parts import BLOCK
 from clearance.world.case import Case, Unmeasured
 from clearance.world.motion import Motion
+from clearance.world.notice import Notice
 
 if TYPE_CHECKING:
     from clearance.query.contact import Contact
@@ -99,20 +101,40 @@ class Certificate:
 
     Attributes:
         lower_bound: (n,) [m] row i holds from step i to step i + 1; the last row for its step alone.
-        upper_bound: (n,) [m] the least distance seen there, at the steps or between them.
+        upper_bound: (n,) [m] the least distance seen there, at the steps or between them; where `need` leaves
+            clearances unknown, the distance that was asked about, if nothing nearer was seen.
+        share, pair: (n,) where between the steps that was seen (0 to 1), and of which pair; -1 where nothing
+            nearer than at the steps was.
         gap: [m] how far apart the two were allowed to stay.
         tally: counters by name.
+        moment_of: measures the pair of an interval at that moment.
+        notices: what a reader must know of it.
     """
 
     lower_bound: np.ndarray
     upper_bound: np.ndarray
+    share: np.ndarray
+    pair: np.ndarray
     gap: float
     tally: dict[str, int]
+    moment_of: Callable[[int], Moment]
+    notices: tuple[Notice, ...] = ()
 
     @property
     def worst_interval(self) -> int:
         """The first interval of the least lower bound."""
         return int(np.argmin(self.lower_bound))
+
+    @cached_property
+    def nearest_between(self) -> int | None:
+        """The first interval of the least distance seen between steps; None if all were nearest at a step."""
+        seen = np.flatnonzero(self.pair >= 0)
+        return int(seen[np.argmin(self.upper_bound[seen])]) if len(seen) else None
+
+    @cached_property
+    def worst(self) -> Moment | None:
+        """The moment of that distance."""
+        return None if self.nearest_between is None else self.moment_of(self.nearest_between)
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,15 +210,17 @@ class Record:
         motions: one for each of `case.robots`.
         steps: one row a step: step, time, clearance, link, obstacle, link_x … obstacle_z, status
             ("clear" | "near" | "violated" | "contact", null where a bound does not decide),
-            tracking_error when simulated, lower_bound when certified (then the status is that of the motion
-            from the step to the next) or where `need` leaves clearances unknown (null; then it is proven for
-            the step); penetration [m] of the deepest pair in contact and volume [m3] of all, or upper bounds
+            tracking_error when simulated; when certified, lower_bound and upper_bound of the motion from the step
+            to the next, and `between`: the motion is worse there than at both of its ends, and the status is that
+            of the motion, not of the step; else lower_bound of the step where `need` leaves clearances unknown
+            (null); penetration [m] of the deepest pair in contact and volume [m3] of all, or upper bounds
             of them, null without contact.
         pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
         contacts: every pair in contact at every step, steps first.
+        notices: what was found while measuring that bears on the verdict; loading's are the case's.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
         let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
         room: tells a folder on the disk of the report for files on the way there, if there still is one.
@@ -217,6 +241,7 @@ class Record:
     notes: tuple[str, ...] = field(default_factory=tuple)
     contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
+    notices: tuple[Notice, ...] = ()
     let_go: Callable[[], None] = lambda: None
     room: Callable[[], Path | None] = lambda: None
 
@@ -234,3 +259,30 @@ class Record:
     def worst_step(self) -> int:
         """The first step of least clearance."""
         return int(np.nanargmin(self.clearances))
+
+    @cached_property
+    def worst_sample(self) -> Moment:
+        """The first step of least clearance."""
+        step = self.worst_step
+        row = self.steps.slice(step, 1).to_pylist()[0]
+        point_link, point_obstacle = (
+            tuple(row[f"{body}_{axis}"] for axis in "xyz") for body in ("link", "obstacle")
+        )
+        return Moment(
+            step=step,
+            time=row["time"],
+            between=False,
+            clearance=row["clearance"],
+            link=row["link"],
+            obstacle=row["obstacle"],
+            point_link=point_link,
+            point_obstacle=point_obstacle,
+            positions=tuple(motion.positions[step] for motion in self.motions),
+        )
+
+    @cached_property
+    def worst(self) -> Moment:
+        """The moment of least clearance, between two steps if a certificate has found a lesser one there."""
+        known = self.worst_sample
+        between = None if self.certificate is None else self.certificate.worst
+        return between if between is not None and between.clearance < known.clearance else known

@@ -9,18 +9,17 @@ Not for: measuring.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.errors import BadSyntax, MissingFile
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
 from clearance.simulate.replay_contact import DrawnContact, drawn_contacts
-from clearance.simulate.steps import STATUSES
+from clearance.simulate.replay_frames import Frames, kept_moments, least_of
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion
 
@@ -28,7 +27,7 @@ MAX_FRAMES = 3000
 """Most frames kept: at 20 links these are 1.7 MB of poses, and no screen is wider in pixels."""
 
 FILE_NAME = "replay.npz"
-_FORMAT = 2
+_FORMAT = 3
 
 
 @dataclass(frozen=True)
@@ -47,11 +46,13 @@ class Replay:
 
     Attributes:
         limits: (fail, warn) [m].
-        n_steps: number of steps of the record; `len(steps)` of them are frames.
+        n_steps: number of steps of the record; those of `steps` that are not `between` are frames.
         shapes: vertices (n, 3) float32 [m] and triangles (m, 3) int32 of each different shape.
         poses: for each body (frames, 7) or, where it stands still, (1, 7) float32: xyz [m] and
             quat_xyzw, in the world frame.
         steps, times, clearances: (frames,) step index, [s], [m].
+        between: (frames,) uint8, 1 for a moment between that step and the next, where the motion is worse than at
+            both.
         known: (frames,) uint8, 0 where the clearance is only a proven lower bound; then the line has no
             length and nothing is nearest.
         status: (frames,) uint8 indices into `STATUSES`.
@@ -71,6 +72,7 @@ class Replay:
     steps: np.ndarray
     times: np.ndarray
     clearances: np.ndarray
+    between: np.ndarray
     known: np.ndarray
     status: np.ndarray
     lines: np.ndarray
@@ -105,7 +107,7 @@ class Replay:
         np.savez_compressed(path, head=np.frombuffer(text, dtype=np.uint8), **arrays)
 
 
-_FRAME_ARRAYS = ("steps", "times", "clearances", "known", "status", "lines", "nearest")
+_FRAME_ARRAYS = ("steps", "times", "clearances", "between", "known", "status", "lines", "nearest")
 
 
 def load_replay(path: Path) -> Replay:
@@ -158,15 +160,15 @@ def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
 def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
     """The replay of a record: every step, or where there are more than `max_frames` a choice that
     keeps the least clearance of every stretch, the worst step, the step of every pair's minimum,
-    and the deepest contact."""
+    and the deepest contact; and moments between them where the motion is worse."""
     kept = kept_steps(record, max_frames)
+    moments = kept_moments(record)
     contacts, regions = drawn_contacts(record, kept)
-    table = _rows_at(record, kept)
-    link_names, obstacle_names = table["link"].to_pylist(), table["obstacle"].to_pylist()
-    bodies, shapes, poses = _drawn_bodies(record, kept)
+    frames = Frames.of(record, kept, moments)
+    bodies, shapes, poses = _drawn_bodies(record, frames.positions)
     index = {(body.kind, body.name): i for i, body in enumerate(bodies)}
-    pairs = zip(link_names, obstacle_names, strict=True)
-    nearest = [(index.get(("link", a), -1), index.get(("obstacle", b), -1)) for a, b in pairs]
+    nearest = [(index.get(("link", a), -1), index.get(("obstacle", b), -1)) for a, b in frames.pairs]
+    place_of = {int(step): i for i, step in enumerate(frames.arrays["steps"]) if not frames.arrays["between"][i]}
     return Replay(
         name=record.case.name,
         limits=(record.case.limits.fail, record.case.limits.warn),
@@ -174,66 +176,16 @@ def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
         bodies=bodies,
         shapes=shapes,
         poses=poses,
-        steps=kept,
-        times=table["time"].to_numpy().astype(np.float64),
-        clearances=_least(table),
-        known=table["clearance"].is_valid().to_numpy().astype(np.uint8),
-        status=codes_of(table),
-        lines=_lines(record, table),
         nearest=np.array(nearest, dtype=np.int32).reshape(-1, 2),
-        contacts=contacts,
+        contacts=tuple(replace(one, frame=place_of[int(kept[one.frame])]) for one in contacts),
         regions=regions,
+        **frames.arrays,
     )
-
-
-def _rows_at(record: Record, kept: np.ndarray) -> pa.Table:
-    """The rows of some steps, block by block: taken at once, all rows would be put together first."""
-    taken = []
-    for block in blocks(record.steps.num_rows):
-        here = kept[np.searchsorted(kept, block.start) : np.searchsorted(kept, block.stop)]
-        rows = record.steps.slice(block.start, block.stop - block.start)
-        taken.append(rows.take(here - block.start))
-        record.let_go()
-    return pa.concat_tables(taken).combine_chunks()
-
-
-_LINE = ("link_x", "link_y", "link_z", "obstacle_x", "obstacle_y", "obstacle_z")
-
-
-def _least(steps: pa.Table) -> np.ndarray:
-    """(n,) [m] the clearance of each step, or what it is at least."""
-    clearances = steps["clearance"].to_numpy().astype(np.float64)
-    if steps["clearance"].null_count == 0:
-        return clearances
-    return np.where(np.isnan(clearances), steps["lower_bound"].to_numpy(), clearances)
-
-
-def _lines(record: Record, steps: pa.Table) -> np.ndarray:
-    """(n, 6) [m] the witness points; where they are unknown, twice that of the worst step's link."""
-    lines = np.column_stack([steps[name].to_numpy() for name in _LINE]).astype(np.float64)
-    worst = [record.steps[name][record.worst_step].as_py() for name in _LINE[:3]]
-    return np.where(np.isnan(lines), np.tile(worst, 2), lines)
-
-
-def codes_of(steps: pa.Table) -> np.ndarray:
-    """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
-    names = pa.array([str(status) for status in STATUSES])
-    return np.concatenate([_codes(part, names) for part in steps["status"].iterchunks()] or [_NO_CODES])
-
-
-_NO_CODES = np.empty(0, dtype=np.uint8)
-
-
-def _codes(statuses: pa.Array, names: pa.Array) -> np.ndarray:
-    import pyarrow.compute
-
-    found = pyarrow.compute.index_in(statuses, names).fill_null(0)
-    return found.to_numpy(zero_copy_only=False).astype(np.uint8)
 
 
 def kept_steps(record: Record, max_frames: int) -> np.ndarray:
     """(frames,) int64 increasing step indices: all, or the choice that `replay_of` describes."""
-    clearances = _least(record.steps)
+    clearances = least_of(record.steps)
     n_steps = len(clearances)
     if n_steps <= max_frames:
         return np.arange(n_steps)
@@ -249,14 +201,14 @@ def kept_steps(record: Record, max_frames: int) -> np.ndarray:
     return np.array(sorted(kept.union(starts.tolist(), least)), dtype=np.int64)
 
 
-def _drawn_bodies(record: Record, kept: np.ndarray) -> tuple[tuple, tuple, tuple]:
+def _drawn_bodies(record: Record, positions: Sequence[np.ndarray]) -> tuple[tuple, tuple, tuple]:
     shapes: list[tuple[np.ndarray, np.ndarray]] = []
     seen: dict[bytes, int] = {}
     bodies: list[Drawn] = []
     poses: list[np.ndarray] = []
-    for motion in record.motions:
+    for motion, reached in zip(record.motions, positions, strict=True):
         placed = motion.placed
-        world_from_link = link_poses(motion.placed, motion.positions[kept])
+        world_from_link = link_poses(placed, reached)
         for body in placed.robot.bodies:
             i_link = placed.robot.link_names.index(body.name)
             name, measured = (

@@ -11,6 +11,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.measure import Measurement
+from clearance.simulate.names import pair_names
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Certificate, EveryPair, PairMinimum, StepContact
 from clearance.world.case import Case, Limits, Unmeasured
@@ -30,21 +31,34 @@ class Status(StrEnum):
 STATUSES = tuple(Status)
 
 
-def status_codes(
-    clearance: np.ndarray,
-    limits: Limits,
-    certificate: Certificate | None = None,
-    steps: slice = slice(None),
-) -> np.ndarray:
-    """(n,) indices into `STATUSES` of `steps`: contact at 0, violated below `fail`, near below `warn`.
-
-    With a certificate, row i judges the motion from step i to i + 1 by its lower bound; contact is what was
-    really seen.
-    """
-    seen = (clearance if certificate is None else certificate.upper_bound)[steps]
-    proven = (clearance if certificate is None else certificate.lower_bound)[steps]
-    below = [seen <= 0.0, proven < limits.fail, proven < limits.warn]
+def status_codes(clearance: np.ndarray, limits: Limits) -> np.ndarray:
+    """(n,) indices into `STATUSES`: contact at 0, violated below `fail`, near below `warn`; 0 where unknown."""
+    below = [clearance <= 0.0, clearance < limits.fail, clearance < limits.warn]
     return np.select(below, [3, 2, 1], default=0)
+
+
+def status_of(clearance: float, limits: Limits) -> str:
+    """How one clearance [m] stands against the limits."""
+    return str(STATUSES[int(status_codes(np.array(clearance), limits))])
+
+
+def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.ndarray:
+    """(k,) what is proven of the motion from each of `steps` to the next, as indices into `STATUSES`.
+
+    Below a limit is what is not proven to stay above it; where only distances below the limit were asked about,
+    what is really seen below it. Contact is what is seen.
+    """
+    lower, upper = certificate.lower_bound[steps], certificate.upper_bound[steps]
+    seen = certificate.pair[steps] >= 0
+    below = [(lower < limit) & (seen | (upper >= limit)) for limit in (limits.fail, limits.warn)]
+    return np.select([upper <= 0.0, *below], [3, 2, 1], default=0)
+
+
+def between_of(steps: pa.Table) -> np.ndarray:
+    """(n,) True where the status in a table of steps is that of the motion to the next step."""
+    if "between" not in steps.column_names:
+        return np.zeros(steps.num_rows, dtype=bool)
+    return steps["between"].to_numpy()
 
 
 def step_table(
@@ -64,13 +78,13 @@ def step_table(
     first = [row.step for row in contacts]
     for block in blocks(n_steps):
         columns = _measured_columns(names, found, motions[0].times, block)
-        codes = status_codes(found.clearance, case.limits, certificate, block)
-        undecided = (found.pair[block] < 0) & (found.lower_bound[block] < case.limits.warn)
-        codes = np.where(undecided, -1, codes)
-        columns["status"] = _names([str(status) for status in STATUSES], codes)
+        codes = _sample_codes(found, case.limits, block)
         if certificate is not None:
-            columns["lower_bound"] = pa.array(certificate.lower_bound[block])
-        elif bounded:
+            columns |= _proven_columns(found, certificate, block)
+            codes, between = _with_motion(found, case.limits, certificate, block, codes)
+            columns["between"] = pa.array(between)
+        columns["status"] = _names([str(status) for status in STATUSES], codes)
+        if certificate is None and bounded:
             columns["lower_bound"] = pa.array(found.lower_bound[block])
         if with_error:
             errors = [motion.tracking_error[block] for motion in motions]
@@ -78,6 +92,36 @@ def step_table(
         touching = contacts[bisect_left(first, block.start) : bisect_left(first, block.stop)]
         columns |= _contact_columns(block, touching)
         yield pa.table(columns)
+
+
+def _sample_codes(found: Measurement, limits: Limits, steps: slice) -> np.ndarray:
+    """(k,) the status of each of `steps` by itself; -1 where its bound does not decide."""
+    undecided = (found.pair[steps] < 0) & (found.lower_bound[steps] < limits.warn)
+    return np.where(undecided, -1, status_codes(found.clearance[steps], limits))
+
+
+def _with_motion(
+    found: Measurement, limits: Limits, certificate: Certificate, steps: slice, own: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The status of each of `steps`, or of the motion to the next where that is worse than at both of its ends;
+    and whether it is."""
+    after = _sample_codes(found, limits, slice(steps.start + 1, steps.stop + 1))
+    after = np.append(after, [-1] * (len(own) - len(after)))
+    motion = motion_codes(certificate, limits, steps)
+    between = (motion > 0) & (motion > np.maximum(own, after))
+    return np.where(between, motion, own), between
+
+
+def _proven_columns(found: Measurement, certificate: Certificate, steps: slice) -> dict[str, pa.Array]:
+    """What is proven of the motion from each of `steps` to the next, and the least distance seen there."""
+    seen = certificate.pair[steps] >= 0
+    known = found.pair[steps.start : steps.stop + 1] >= 0
+    after = np.append(known[1:], known[-1:])[: len(seen)]
+    unseen = ~(seen | (known[: len(seen)] & after))
+    return {
+        "lower_bound": pa.array(certificate.lower_bound[steps]),
+        "upper_bound": pa.array(certificate.upper_bound[steps], mask=unseen),
+    }
 
 
 def _measured_columns(
@@ -169,17 +213,6 @@ def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> lis
     cut = np.flatnonzero(np.isinf(found.find_minima(None).clearance))
     reason = "the paper's rules cut every polygon pair at every step"
     return [Unmeasured(links[i], obstacles[i], reason) for i in cut]
-
-
-def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]:
-    """The link and the obstacle of each pair; links carry their robot's name where there are several."""
-    several = len(case.robots) > 1
-    links = []
-    for pair in pairs:
-        robot = case.robots[pair.i_robot].robot
-        name = robot.bodies[pair.i_body].name
-        links.append(f"{robot.name}/{name}" if several else name)
-    return links, [case.obstacles[pair.i_obstacle].name for pair in pairs]
 
 
 def _names(names: Sequence[str], codes: np.ndarray) -> pa.Array:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.world.case import PlacedRobot
+from clearance.world.cubic import cubics_of, position_on
 from clearance.world.kinematics import link_poses
 
 
@@ -43,3 +44,12 @@ class Motion:
     def poses(self, start: int = 0, stop: int | None = None) -> np.ndarray:
         """(steps, n_links, 4, 4) `world_from_link` [m] of the steps `start` to `stop`."""
         return link_poses(self.placed, self.positions[start:stop])
+
+    def positions_after(self, step: int, share: float) -> np.ndarray:
+        """(k,) [rad] or [m] where the joints are when a share (0 to 1) of the interval after a step has passed."""
+        ends = slice(step, step + 2)
+        if self.velocities is None:
+            before, after = self.positions[ends]
+            return before + share * (after - before)
+        cubics = cubics_of(self.times[ends], self.positions[ends], self.velocities[ends])
+        return position_on(cubics, np.array(share))[0]

@@ -5,7 +5,7 @@ Both are unit mistakes or typing errors, and would end in overflow or in work wi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -19,19 +19,37 @@ from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 
 
+def farthest_reach(case: Case, motions: Sequence[Motion]) -> float:
+    """[m] no coordinate of any body is larger in magnitude at any moment."""
+    return max(reach for _, reach in _reaches(case, motions))
+
+
 def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
     """Nothing, if every body stays within `tolerance.REACH` of the origin and no joint spins between two steps.
 
     Raises:
         BadDimension: the first body or joint that does not.
     """
-    for obstacle in case.obstacles:
-        _require(f"obstacle {obstacle.name!r}", obstacle.body, obstacle.world_from_body[:3, 3])
     for motion in motions:
         require_few_turns(motion.placed.robot, motion.joint_names, motion)
-        farthest = np.abs(motion.placed.world_from_base[:3, 3]).max() + _slide(motion)
+    for what, reach in _reaches(case, motions):
+        if not reach <= REACH:
+            raise BadDimension(
+                f"it reaches {reach:g} m from the origin",
+                where=what,
+                valid=f"{REACH:g} m or less; lengths are in metres",
+            )
+
+
+def _reaches(case: Case, motions: Sequence[Motion]) -> Iterator[tuple[str, float]]:
+    """Each body by name, and how far it gets from the origin along an axis at most [m]."""
+    for obstacle in case.obstacles:
+        name, origin = f"obstacle {obstacle.name!r}", obstacle.world_from_body[:3, 3]
+        yield name, _reach(obstacle.body, float(np.abs(origin).max()))
+    for motion in motions:
+        farthest = float(np.abs(motion.placed.world_from_base[:3, 3]).max() + _slide(motion))
         for body in motion.placed.robot.bodies:
-            _require(f"link {body.name!r}", body, np.array([farthest]))
+            yield f"link {body.name!r}", _reach(body, farthest)
 
 
 def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajectory) -> None:
@@ -92,11 +110,5 @@ def _farthest(motion: Motion, i_joint: int) -> float:
     return max(float(max(part.max(), -part.min())) for part in reached if part.size)
 
 
-def _require(what: str, body: Body, origin: np.ndarray) -> None:
-    reach = float(np.abs(body.shape.bounds).max() + np.abs(origin).max())
-    if not reach <= REACH:
-        raise BadDimension(
-            f"it reaches {reach:g} m from the origin",
-            where=what,
-            valid=f"{REACH:g} m or less; lengths are in metres",
-        )
+def _reach(body: Body, origin: float) -> float:
+    return float(np.abs(body.shape.bounds).max()) + origin

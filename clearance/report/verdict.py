@@ -1,0 +1,175 @@
+"""The one verdict of a run: exit code, page, terminal, JUnit, JSON and `Run.passed` are all taken from it.
+
+Not for: measuring, and the words around it (`wording`, `cli.verdict`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from clearance.report.wording import count, gap_text, limit_mm, mm, moment_text, span_text
+from clearance.simulate.record import Certificate, Moment, ProfileAnswer, Record
+from clearance.simulate.replay_frames import codes_of
+from clearance.simulate.steps import STATUSES, Status
+from clearance.world.case import Limits
+from clearance.world.notice import Notice, Severity
+
+SUSPECT = "suspect"
+"""The status where the input is in doubt, whatever was measured."""
+
+MOTION, SAMPLES = "motion", "samples"
+"""What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
+
+NOT_CHECKED = ("self-collision",)
+"""What no run measures yet."""
+
+_PASSING = (Status.CLEAR, Status.NEAR)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a run comes to.
+
+    Attributes:
+        status: "clear", "near", "violated", "contact", or "suspect" where input is in doubt and not accepted.
+        measured: the status by what was measured alone.
+        basis: "motion" or "samples".
+        reasons: why it is not clear, one line each.
+        suspects: the notices that make it suspect.
+        warnings: what a reader must know beside the clearance; suspect input that is accepted is among it.
+        disputed_by: the peer that disagrees, if one does.
+        not_checked: what was not looked at.
+    """
+
+    status: str
+    measured: str
+    basis: str
+    reasons: tuple[str, ...] = ()
+    suspects: tuple[Notice, ...] = ()
+    warnings: tuple[str, ...] = ()
+    disputed_by: str | None = None
+    not_checked: tuple[str, ...] = NOT_CHECKED
+
+    @property
+    def exit_code(self) -> int:
+        """0 clear or near, 1 violated or contact, 2 suspect, 3 a peer disagrees; the greatest that holds."""
+        if self.disputed_by is not None:
+            return 3
+        if self.status == SUSPECT:
+            return 2
+        return 0 if self.measured in _PASSING else 1
+
+    @property
+    def passed(self) -> bool:
+        """True if nothing speaks against it: the exit code is 0."""
+        return self.exit_code == 0
+
+    def text(self, shown: Callable[[str], str] = str) -> str:
+        """The verdict in a few words, the status written as `shown` says."""
+        return verdict_text(self.status, self.measured, self.basis, self.disputed_by, shown)
+
+
+def verdict_text(
+    status: str,
+    measured: str,
+    basis: str,
+    disputed_by: str | None,
+    shown: Callable[[str], str] = str,
+) -> str:
+    """A verdict in a few words; the arguments are as in `Verdict`."""
+    text = shown(measured)
+    if basis == SAMPLES:
+        text += " at the samples only" if measured in _PASSING else ", looked at the samples only"
+    if status == SUSPECT:
+        text = f"{shown(SUSPECT)} (would be {text})"
+    return text if disputed_by is None else f"{text}, but {disputed_by} disagrees"
+
+
+def verdict_of(record: Record) -> Verdict:
+    """The verdict of a record."""
+    notices = (*record.case.notices, *record.notices)
+    suspects = [notice for notice in notices if notice.severity is Severity.SUSPECT]
+    open_suspects = tuple(one for one in suspects if one.kind not in record.case.accept)
+    measured = _measured(record)
+    check = record.cross_check
+    disputed = check is not None and not check.agrees
+    reasons = [*_clearance_reasons(record)]
+    reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
+    reasons += [f"suspect {one.kind}: {one.text}" for one in open_suspects]
+    if disputed:
+        reasons.append(f"{check.peer} disagrees at {count(len(check.disagreements), 'step')}")
+    return Verdict(
+        status=SUSPECT if open_suspects else measured,
+        measured=measured,
+        basis=SAMPLES if record.certificate is None else MOTION,
+        reasons=tuple(reasons),
+        suspects=open_suspects,
+        warnings=tuple(_warnings(record, notices)),
+        disputed_by=check.peer if disputed else None,
+    )
+
+
+def _measured(record: Record) -> str:
+    """The worst that any step, the motion between, or a profile says."""
+    worst = int(codes_of(record.steps).max())
+    if not all(answer.passed for answer in record.profiles):
+        worst = max(worst, STATUSES.index(Status.VIOLATED))
+    return str(STATUSES[worst])
+
+
+def _clearance_reasons(record: Record) -> list[str]:
+    """Why the clearance is not clear: what occurs, and what could not be proven."""
+    worst, limits = record.worst, record.case.limits
+    reason = _occurring(worst, limits)
+    reasons = [] if reason is None else [reason]
+    certificate = record.certificate
+    if certificate is not None:
+        least = float(certificate.lower_bound.min())
+        for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
+            if least < limit <= worst.clearance:
+                reasons.append(_unproven(record, certificate, name, limit))
+                break
+    return reasons
+
+
+def _occurring(worst: Moment, limits: Limits) -> str | None:
+    where = f"{worst.link} - {worst.obstacle} at {moment_text(worst)}"
+    if worst.clearance <= 0.0:
+        return f"contact: {where}"
+    for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
+        if worst.clearance < limit:
+            return f"{mm(worst.clearance)} mm, below the {name} limit of {limit_mm(limit)} mm: {where}"
+    return None
+
+
+def _unproven(record: Record, certificate: Certificate, name: str, limit: float) -> str:
+    step = certificate.worst_interval
+    least = float(certificate.lower_bound[step])
+    times = record.motions[0].times[step : step + 2]
+    return (
+        f"not proven to stay above the {name} limit of {limit_mm(limit)} mm: at least {mm(least)} mm, "
+        f"{span_text(float(times[0]), float(times[-1]))}"
+    )
+
+
+def profile_text(answer: ProfileAnswer) -> str:
+    """Whether a profile is kept, how close it comes, who and when."""
+    verdict = "kept" if answer.passed else "NOT KEPT"
+    what = "distance" if answer.mode == "nearest" else "gap"
+    at = "" if answer.section is None else f" at {answer.section:g} m"
+    return (
+        f"{answer.name} ({answer.mode}, {answer.plane}{at}): {verdict}, {what} {gap_text(answer.gap)} mm, "
+        f"limit {answer.limit * 1000:g} mm, {answer.link}, step {answer.step}"
+    )
+
+
+def _warnings(record: Record, notices: tuple[Notice, ...]) -> list[str]:
+    """Warnings, and suspect input that is accepted; each once."""
+    told = [one.text for one in notices if one.severity is Severity.WARNING]
+    told += [
+        f"{one.text} (accepted: {one.kind})"
+        for one in notices
+        if one.severity is Severity.SUSPECT and one.kind in record.case.accept
+    ]
+    return list(dict.fromkeys(told))

@@ -1,0 +1,82 @@
+"""Where and when a distance occurs, at a step or between two: the pair, the witness points, the joints.
+
+Not for: finding which moment is the worst (`measure`, `certify`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.query.distance import distance
+from clearance.simulate.names import pair_names
+from clearance.world.case import Case
+from clearance.world.kinematics import link_poses
+from clearance.world.motion import Motion
+from clearance.world.pairs import Pair
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """One moment of the motion and the clearance that occurs there.
+
+    Attributes:
+        step: the step at the moment or the last one before it.
+        time: [s]. between: whether the moment is after that step and before the next.
+        clearance: [m] of this pair, the nearest there.
+        point_link, point_obstacle: witness points in the world frame [m].
+        positions: of each robot's moving joints [rad] or [m], columns as `Motion.positions`.
+    """
+
+    step: int
+    time: float
+    between: bool
+    clearance: float
+    link: str
+    obstacle: str
+    point_link: tuple[float, float, float]
+    point_obstacle: tuple[float, float, float]
+    positions: tuple[np.ndarray, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Moments:
+    """Measures a pair at any moment between two steps of a case's motion."""
+
+    case: Case
+    motions: Sequence[Motion]
+    pairs: Sequence[Pair]
+
+    def between(self, step: int, share: float, i_pair: int, *, touches: bool = False) -> Moment:
+        """The moment that a share (0 to 1) of the interval after `step` lies behind it.
+
+        Args:
+            touches: the pair is known to be in contact there, which rounding of the pose could hide.
+        """
+        pair = self.pairs[i_pair]
+        positions = tuple(motion.positions_after(step, share) for motion in self.motions)
+        placed = self.case.robots[pair.i_robot]
+        body, obstacle = placed.robot.bodies[pair.i_body], self.case.obstacles[pair.i_obstacle]
+        poses = link_poses(placed, positions[pair.i_robot][None])[0]
+        found = distance(
+            body.shape,
+            obstacle.body.shape,
+            pose_a=poses[placed.robot.link_names.index(body.name)],
+            pose_b=obstacle.world_from_body,
+        )
+        links, obstacles = pair_names(self.case, [pair])
+        times = self.motions[0].times
+        point = tuple(found.point_b.tolist())
+        return Moment(
+            step=step + int(share == 1.0),
+            time=float(times[step] + share * (times[step + 1] - times[step])),
+            between=0.0 < share < 1.0,
+            clearance=0.0 if touches else found.distance,
+            link=links[0],
+            obstacle=obstacles[0],
+            point_link=point if touches else tuple(found.point_a.tolist()),
+            point_obstacle=point,
+            positions=positions,
+        )
