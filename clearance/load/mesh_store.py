@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 
 from clearance.load.collada_file import UpAxis
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh import LoadedMesh, mesh_from_bytes
-from clearance.load.plausibility import scale_notes
 
 Scale = tuple[float, float, float]
 
@@ -34,6 +32,5 @@ class MeshStore:
         key = (os.path.abspath(path), scale, up_axis)
         if key not in self._loaded:
             data = self.files.read(path)
-            made = mesh_from_bytes(data, self.files.shown(path), scale, up_axis)
-            self._loaded[key] = replace(made, notes=(*made.notes, *scale_notes(scale)))
+            self._loaded[key] = mesh_from_bytes(data, self.files.shown(path), scale, up_axis)
         return self._loaded[key]

@@ -18,10 +18,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Limits:
-    """Two levels of clearance [m]: below `fail` the case is violated, below `warn` it is a near miss."""
+    """Two levels of clearance [m]: below `fail` the case is violated, below `warn` it is a near miss.
+
+    Attributes:
+        joints: what a joint beyond its limits is: "warn" for a warning, "fail" for a violation.
+    """
 
     fail: float = 0.0
     warn: float = 0.0
+    joints: str = "warn"
 
 
 @dataclass(frozen=True)
@@ -95,7 +100,7 @@ class Case:
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
-        notices: suspect input and warnings, which stand in the headline.
+        notices: suspect input and warnings that only loading can tell; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
         profiles: outlines that the sweep must keep to.
     """
