@@ -47,7 +47,7 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
         notices = [
             *angle_notices(odd_origins(root)),
             *reader.notices(),
-            *axis_notices(links, bodies, reader),
+            *axis_notices(links, bodies, ordered, reader),
             *_unseen(links, request.geometry),
         ]
     notes = [f"{request.path.name}: {note}" for note in (*notes, *_bare(links))]
