@@ -40,7 +40,7 @@ def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]
     Raises:
         UnknownLink: with the nearest name.
     """
-    known = tuple(links)
+    known = frozenset(links)
     for i, name in enumerate(given):
         if name not in known:
             raise UnknownLink(

@@ -6,6 +6,7 @@ something, numbers are finite, shapes are solids, times increase.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +20,8 @@ from clearance.load.motion_names import (
     check_not_given_twice,
     note_on_joints_at_zero,
 )
-from clearance.load.plausibility import limit_notes, motion_notes, obstacle_notes, pose_notes
+from clearance.load.names import checked_name
+from clearance.load.plausibility import angle_notices, obstacle_notices, odd_angles, scale_notices
 from clearance.load.reserved import reserved_spaces
 from clearance.load.scene_file import make_obstacles
 from clearance.load.schema_errors import validated
@@ -27,6 +29,7 @@ from clearance.load.trajectory_file import read_trajectory
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
 from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.notice import Notice
 from clearance.world.pairs import measured_pairs
 from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
@@ -54,29 +57,39 @@ def load_case(path: str | Path) -> Case:
         robot = placed.robot
         allow = checked_pairs(given.allow, robot.link_names, [o.name for o in obstacles])
         profiles = reserved_spaces(given.profiles, path.parent, files, robot.link_names)
-    limits = _limits(given.limits)
-    notes = [
-        *limit_notes(limits),
-        *obstacle_notes(given.scene.obstacles),
-        *pose_notes("the robot's base", given.robot.base.xyz, given.robot.base.rpy),
-        *motion_notes(placed),
-        *note_on_joints_at_zero(robot, [*placed.trajectory.joint_names, *placed.fixed_positions]),
-        *scene_notes,
-    ]
+    given_joints = [*placed.trajectory.joint_names, *placed.fixed_positions]
     case = Case(
-        name=given.name,
+        name=given.name or _name_of(path),
         robots=(placed,),
         obstacles=obstacles,
-        limits=limits,
+        limits=_limits(given.limits),
         allow=allow,
         contact_response=given.contact_response,
         sources=files.sources,
-        notes=tuple(notes),
+        notes=(*note_on_joints_at_zero(robot, given_joints), *scene_notes),
         profiles=profiles,
+        notices=tuple(_notices(given)),
+        accept=tuple(given.accept),
     )
     with at(path.name):
         measured_pairs(case)  # refuses a case that leaves nothing to measure
     return case
+
+
+def _name_of(path: Path) -> str:
+    """The name of a case that gives none: its folder's where the file is called case, else the file's."""
+    folder = Path(os.path.abspath(path)).parent.name
+    return checked_name(folder if path.stem == "case" and folder else path.stem)
+
+
+def _notices(given: schema.Case) -> list[Notice]:
+    obstacles = given.scene.obstacles
+    scales = [(item.name, item.mesh.factors) for item in obstacles if item.mesh is not None]
+    return [
+        *angle_notices(odd_angles("the robot's base", given.robot.base.rpy)),
+        *obstacle_notices(obstacles),
+        *scale_notices(scales),
+    ]
 
 
 @dataclass(frozen=True)
@@ -107,7 +120,10 @@ def _placed_robot(given: schema.Case, folder: Path, meshes: MeshStore) -> Placed
     with at("robot.package_dirs"):
         _refuse_missing_folders(given.robot.package_dirs, package_dirs)
     with at("robot.urdf"):
-        robot = read_robot(UrdfRequest(urdf_path, package_dirs, given.robot.geometry), meshes)
+        request = UrdfRequest(
+            urdf_path, package_dirs, given.robot.geometry, given.robot.collada_up_axis
+        )
+        robot = read_robot(request, meshes)
     trajectory = _trajectory(resolved(given.trajectory.file, folder), robot, meshes)
     with at("robot.joints"):
         check_joint_names(given.robot.joints, robot)
@@ -142,4 +158,4 @@ def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
 
 
 def _limits(given: schema.Limits) -> Limits:
-    return Limits(given.fail, given.fail if given.warn is None else given.warn)
+    return Limits(given.fail, given.fail if given.warn is None else given.warn, given.joints)

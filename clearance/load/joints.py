@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownJoint, at, nearest_name
+from clearance.errors import BadDimension, BadInput, UnknownJoint, at, nearest_name
 from clearance.load.urdf_elements import number, numbers, pose_of
+from clearance.tolerance import REACH
+from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Mimic
 
 if TYPE_CHECKING:
@@ -28,13 +30,13 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
     for element in root.iterfind("joint"):
         with at(f"joint {element.get('name')!r}"):
             joints.append(_joint(element))
-    by_name = {joint.name: joint for joint in joints}
+    masters = _masters(joints)
     notes: list[str] = []
     for i, joint in enumerate(joints):
-        if joint.mimic is not None:
-            with at(f"joint {joint.name!r} mimic"):
-                joints[i], note = _with_checked_mimic(joint, by_name)
-            notes += note
+        master, position = masters[joint.name]
+        if joint.mimic is not None and master.kind is JointKind.FIXED:
+            joints[i] = _at_rest(joint, position)
+            notes.append(f"joint {joint.name!r} follows fixed joint {master.name!r} and stays at {position:g}")
     return joints, notes
 
 
@@ -86,42 +88,46 @@ def _limits(element: Element | None, kind: JointKind) -> tuple[float, float]:
 def _mimic(element: Element | None, kind: JointKind) -> Mimic | None:
     if element is None or kind is JointKind.FIXED:
         return None
-    return Mimic(
+    mimic = Mimic(
         element.get("joint"), number(element, "multiplier", 1.0), number(element, "offset", 0.0)
     )
+    for what, value in (("multiplier", mimic.multiplier), ("offset", mimic.offset)):
+        if abs(value) > REACH:
+            raise BadDimension(f"{what} {value:g} is given", where="mimic", valid=f"{REACH:g} or less")
+    return mimic
 
 
-def _with_checked_mimic(joint: Joint, by_name: dict[str, Joint]) -> tuple[Joint, list[str]]:
-    """The joint; one that follows a fixed joint cannot move and becomes fixed at its offset."""
-    master, seen = joint, [joint.name]
-    while master.mimic is not None:
-        if master.mimic.joint not in by_name:
-            raise UnknownJoint(
-                f"unknown joint {master.mimic.joint!r}",
-                valid=nearest_name(master.mimic.joint, by_name),
-            )
-        master = by_name[master.mimic.joint]
-        if master.name in seen:
-            raise BadInput(f"joints follow each other in a circle: {', '.join(seen)}")
-        seen.append(master.name)
-    if master.kind is not JointKind.FIXED:
-        return joint, []
-    position = _position_at_rest(joint, by_name)
+def _masters(joints: list[Joint]) -> dict[str, tuple[Joint, float]]:
+    """The joint that moves each, and where each is when that one is at 0; in time linear in the joints."""
+    by_name = {joint.name: joint for joint in joints}
+    known: dict[str, tuple[Joint, float]] = {}
+    for joint in joints:
+        chain: dict[str, Joint] = {}
+        while joint.name not in known and joint.mimic is not None:
+            chain[joint.name] = joint
+            joint = _next_in(chain, joint, by_name)
+        master, position = known.setdefault(joint.name, (joint, 0.0))
+        for follower in reversed(chain.values()):
+            position = follower.mimic.multiplier * position + follower.mimic.offset
+            known[follower.name] = master, position
+    return known
+
+
+def _next_in(chain: dict[str, Joint], joint: Joint, by_name: dict[str, Joint]) -> Joint:
+    """The joint that the last of a chain follows."""
+    name = joint.mimic.joint
+    with at(f"joint {joint.name!r} mimic"):
+        if name not in by_name:
+            raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, by_name))
+        if name in chain:
+            raise BadInput(f"joints follow each other in a circle: {listed([*chain], 6)}")
+    return by_name[name]
+
+
+def _at_rest(joint: Joint, position: float) -> Joint:
+    """A joint that follows a fixed one cannot move: it becomes fixed at its offset."""
     pose = joint.parent_from_joint @ _motion(joint, position)
-    still = replace(joint, kind=JointKind.FIXED, mimic=None, parent_from_joint=pose)
-    return still, [
-        f"joint {joint.name!r} follows fixed joint {master.name!r} and stays at {position:g}"
-    ]
-
-
-def _position_at_rest(joint: Joint, by_name: dict[str, Joint]) -> float:
-    """The position that a chain of mimics gives when its master is at 0."""
-    if joint.mimic is None:
-        return 0.0
-    return (
-        joint.mimic.multiplier * _position_at_rest(by_name[joint.mimic.joint], by_name)
-        + joint.mimic.offset
-    )
+    return replace(joint, kind=JointKind.FIXED, mimic=None, parent_from_joint=pose)
 
 
 def _motion(joint: Joint, position: float) -> np.ndarray:

@@ -34,7 +34,8 @@ def links_from_root(
         below[joint.parent].append(joint)
     ordered = _reached(roots, below)
     if len(ordered) < len(names):
-        lost = [name for name in names if name not in set(ordered)]
+        found = frozenset(ordered)
+        lost = [name for name in names if name not in found]
         raise BadInput(
             f"links {', '.join(repr(name) for name in lost[:5])} hang in a circle of joints",
             valid="a tree is needed",
@@ -44,9 +45,10 @@ def links_from_root(
 
 def _joint_above(names: Sequence[str], joints: Sequence[Joint]) -> dict[str, Joint]:
     above: dict[str, Joint] = {}
+    known = frozenset(names)
     for joint in joints:
         for end, link in (("parent", joint.parent), ("child", joint.child)):
-            if link not in names:
+            if link not in known:
                 raise UnknownLink(
                     f"unknown {end} link {link!r}",
                     where=f"joint {joint.name!r}",

@@ -10,6 +10,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.load import schema
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
+from clearance.load.notes import grouped
 from clearance.world.body import Body, Obstacle
 
 
@@ -26,7 +27,7 @@ def make_obstacles(
         mesh.
     """
     obstacles: dict[str, Obstacle] = {}
-    notes: list[str] = []
+    notes: list[tuple[str, str]] = []
     for i, item in enumerate(given):
         with at(f"obstacles[{i}]"):
             if item.name in obstacles:
@@ -35,8 +36,8 @@ def make_obstacles(
                 )
             body, body_notes = _body(item, folder, meshes)
         obstacles[item.name] = Obstacle(body, item.pose.matrix())
-        notes += [f"obstacle {item.name!r}: {note}" for note in body_notes]
-    return tuple(obstacles.values()), notes
+        notes += [(body.origin, note) for note in body_notes]
+    return tuple(obstacles.values()), grouped(notes)
 
 
 def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body, list[str]]:
@@ -45,7 +46,7 @@ def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body,
             path = resolved(item.mesh.file, folder)
             mesh = meshes.load(path, item.mesh.factors)
         shown = meshes.files.shown(path)
-        return Body(item.name, mesh.shape, shown), [f"{shown}: {note}" for note in mesh.notes]
+        return Body(item.name, mesh.shape, shown), list(mesh.notes)
     key = next(key for key in schema.SHAPES if getattr(item, key) is not None)
     with at(key):
         return Body(item.name, _primitive(item), key), []

@@ -8,7 +8,6 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 
 from __future__ import annotations
 
-import unicodedata
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -16,20 +15,15 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validat
 
 from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.load.names import checked_name
+from clearance.world.notice import KINDS
 
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
 Positive = Annotated[float, Field(gt=0)]
 
 
-def _printable(name: str) -> str:
-    """The name, if reports in XML and lines on a terminal can show it."""
-    if any(unicodedata.category(letter) == "Cc" for letter in name):
-        raise BadInput(f"{name!r:.60} holds a control character", valid="text on one line is needed")
-    return name
-
-
-Name = Annotated[str, Field(min_length=1), AfterValidator(_printable)]
+Name = Annotated[str, Field(min_length=1), AfterValidator(checked_name)]
 
 
 class Strict(BaseModel):
@@ -183,20 +177,29 @@ class Robot(Strict):
     base: Pose = Pose()
     exclude_links: list[Name] = []
     joints: dict[str, float] = {}
-    geometry: Literal["collision", "visual"] = "collision"
+    geometry: Literal["collision", "visual", "collision_or_visual"] = "collision"
+    collada_up_axis: Literal["ros", "file"] = "ros"
 
 
 class TrajectoryFile(Strict):
-    """Where the trajectory is."""
+    """Where the trajectory is: `{file: t.csv}`, or the path alone."""
 
     file: Name
 
+    @model_validator(mode="before")
+    @classmethod
+    def _path_alone(cls, data: Any) -> Any:
+        return {"file": data} if isinstance(data, str) else data
+
 
 class Limits(Strict):
-    """Least clearances [m]: below `fail` the case is violated, below `warn` it is a near miss."""
+    """Least clearances [m]: below `fail` the case is violated, below `warn` it is a near miss; and what a
+    joint beyond its limits is.
+    """
 
     fail: Annotated[float, Field(ge=0)] = 0.0
     warn: Annotated[float, Field(ge=0)] | None = None
+    joints: Literal["warn", "fail"] = "warn"
 
     @model_validator(mode="after")
     def _ordered(self) -> Limits:
@@ -219,10 +222,19 @@ class Profile(Strict):
     links: list[Name] = []
 
 
+def _known_kind(kind: str) -> str:
+    if kind not in KINDS:
+        raise BadInput(f"{kind!r:.60} is given", valid=f"kinds of suspect input: {', '.join(KINDS)}")
+    return kind
+
+
+Kind = Annotated[str, AfterValidator(_known_kind)]
+
+
 class Case(Strict):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
-    name: Name
+    name: Name | None = None
     robot: Robot
     scene: Scene
     trajectory: TrajectoryFile
@@ -230,3 +242,4 @@ class Case(Strict):
     allow: list[Annotated[list[Name], Field(min_length=2, max_length=2)]] = []
     contact_response: bool = False
     profiles: list[Profile] = []
+    accept: list[Kind] = []

@@ -28,6 +28,7 @@ from clearance.errors import (
     at,
     nearest_name,
 )
+from clearance.load.names import checked_name
 from clearance.world.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -101,6 +102,7 @@ def _header(opened: Opener) -> list[str]:
             raise BadSyntax(f"column {i + 1} of the header has no name")
         if name in names[:i]:
             raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
+        checked_name(name)
     if _TIME not in names:
         raise MissingKey(
             f"there is no column {_TIME!r} in the header {','.join(names)!r:.80}",

@@ -1,50 +1,33 @@
 """URDF to a robot: one body for each link that has a shape.
 
 The document is checked first (`urdf_elements`), so that what is read here is there; meshes go through our own
-loader. Not for: where the robot stands, or how it moves.
+loader (`urdf_shapes`). Not for: where the robot stands, or how it moves.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from clearance.errors import at
+from clearance.errors import NothingToMeasure, at
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.shapes import box, capsule, cylinder, sphere
+from clearance.load.axis_check import axis_notices
 from clearance.load.input_files import InputFiles
 from clearance.load.joints import joints_of
-from clearance.load.mesh import LoadedMesh
-from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore
+from clearance.load.plausibility import angle_notices
 from clearance.load.robot_tree import links_from_root
-from clearance.load.urdf_elements import number, numbers, origin_notes, parse_document, pose_of
+from clearance.load.urdf_elements import odd_origins, parse_document
+from clearance.load.urdf_shapes import Geometry, ShapeReader, UrdfRequest
 from clearance.world.body import Body
+from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
-Geometry = Literal["collision", "visual"]
-
-
-@dataclass(frozen=True)
-class UrdfRequest:
-    """Which URDF, and how it is to be read.
-
-    Attributes:
-        path: the URDF file.
-        package_dirs: where `package://` is looked up.
-        geometry: which elements are the robot's shape.
-    """
-
-    path: Path
-    package_dirs: tuple[Path, ...] = ()
-    geometry: Geometry = "collision"
+__all__ = ["Geometry", "UrdfRequest", "load_urdf", "read_robot"]
 
 
 def load_urdf(
@@ -68,67 +51,90 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
     """The robot in a URDF file: one body for each link that has a shape, in the link's frame.
 
     Raises:
-        BadInput: with the file and the element.
+        BadInput: with the file and the element. NothingToMeasure: no link has a shape of the kind that is
+        asked for, though there are others.
     """
-    shown = meshes.files.shown(request.path)
     data = meshes.files.read(request.path)
-    with at(shown):
+    with at(meshes.files.shown(request.path)):
         root = parse_document(data)
-        unit_notes = origin_notes(root)
         joints, notes = joints_of(root)
-        notes += [f"{shown}: {note}" for note in unit_notes]
         by_name = {link.get("name"): link for link in root.iterfind("link")}
         link_names, ordered = links_from_root(tuple(by_name), joints)
-        bodies = []
-        for name in link_names:
-            body, link_notes = _body(by_name[name], request, meshes)
-            notes += [f"{shown}: {note}" for note in link_notes]
-            bodies += [body] if body is not None else []
-        bare = [name for name in link_names if by_name[name].find(request.geometry) is None]
-        if bare:
-            what = f"no {request.geometry} geometry and not measured: {', '.join(bare)}"
-            links = "1 link" if len(bare) == 1 else f"{len(bare)} links"
-            notes.append(f"{shown}: {links} with {what}")
-    return Robot(root.get("name") or "robot", link_names, ordered, tuple(bodies), tuple(notes))
+        links = [by_name[name] for name in link_names]
+        _refuse_other_geometry(links, request.geometry)
+        reader = ShapeReader(request, meshes)
+        bodies = [body for link in links if (body := _body(link, reader)) is not None]
+        notices = [
+            *angle_notices(odd_origins(root)),
+            *reader.notices(),
+            *axis_notices(links, bodies, ordered, reader),
+            *_unseen(links, request.geometry),
+        ]
+    notes = [f"{request.path.name}: {note}" for note in (*notes, *_bare(links))]
+    return Robot(
+        root.get("name") or "robot",
+        link_names,
+        ordered,
+        tuple(bodies),
+        (*reader.notes(), *notes),
+        tuple(notices),
+    )
 
 
-def _body(
-    link: Element, request: UrdfRequest, meshes: MeshStore
-) -> tuple[Body | None, list[str]]:
-    """The shapes of a link as one body in its frame, if it has any, and notes."""
-    elements = link.findall(request.geometry)
+def _body(link: Element, reader: ShapeReader) -> Body | None:
+    """The shapes of a link as one body in its frame, if it has any."""
+    kind = reader.kind(link)
+    elements = link.findall(kind)
     if not elements:
-        return None, []
+        return None
     name = link.get("name")
-    shapes, origins, notes = [], [], []
+    shapes, origins = [], []
     for i, element in enumerate(elements):
-        with at(f"link {name!r} {request.geometry}[{i}]"):
-            shape, origin, shape_notes = _shape(element.find("geometry")[0], request, meshes)
-        moved = element.find("origin") is not None
-        shapes.append(shape.transformed(pose_of(element)) if moved else shape)
+        with at(f"link {name!r} {kind}[{i}]"):
+            shape, origin = reader.shape(element)
+        shapes.append(shape)
         origins.append(origin)
-        notes += shape_notes
-    return Body(name, Polyhedron.merged(shapes), ", ".join(origins)), notes
+    return Body(name, Polyhedron.merged(shapes), ", ".join(origins))
 
 
-def _shape(
-    element: Element, request: UrdfRequest, meshes: MeshStore
-) -> tuple[Polyhedron, str, list[str]]:
-    """The shape of one element in its own frame, what it was made from, and notes."""
-    kind = element.tag
-    if kind == "mesh":
-        mesh, shown = _mesh(element, request, meshes)
-        return mesh.shape, shown, [f"{shown}: {note}" for note in mesh.notes]
-    if kind == "box":
-        return box(numbers(element, "size")), kind, []
-    radius = number(element, "radius")
-    if kind == "sphere":
-        return sphere(radius=radius), kind, []
-    made = capsule if kind == "capsule" else cylinder
-    return made(radius=radius, length=number(element, "length")), kind, []
+def _refuse_other_geometry(links: list[Element], geometry: Geometry) -> None:
+    """Raises `NothingToMeasure` if all shapes are of the kind that is not asked for."""
+    if geometry == "collision_or_visual":
+        return
+    other = "visual" if geometry == "collision" else "collision"
+    if any(link.find(geometry) is not None for link in links):
+        return
+    n_other = sum(link.find(other) is not None for link in links)
+    if n_other:
+        have = "1 link has" if n_other == 1 else f"{n_other} links have"
+        raise NothingToMeasure(
+            f"no link has a {geometry} shape, {have} a {other} shape",
+            valid=f"give robot: {{geometry: {other}}}",
+        )
 
 
-def _mesh(element: Element, request: UrdfRequest, meshes: MeshStore) -> tuple[LoadedMesh, str]:
-    path = mesh_path(element.get("filename"), request.path.parent, request.package_dirs)
-    scale = np.broadcast_to(numbers(element, "scale", (1.0,)), 3)
-    return meshes.load(path, tuple(scale.tolist())), meshes.files.shown(path)
+def _unseen(links: list[Element], geometry: Geometry) -> list[Notice]:
+    """A warning on links that have a shape but are not measured, since it is of the other kind."""
+    if geometry == "collision_or_visual":
+        return []
+    other = "visual" if geometry == "collision" else "collision"
+    unseen = [
+        repr(link.get("name"))
+        for link in links
+        if link.find(geometry) is None and link.find(other) is not None
+    ]
+    if not unseen:
+        return []
+    have, are = ("1 link has", "is") if len(unseen) == 1 else (f"{len(unseen)} links have", "are")
+    remedy = "; robot: {geometry: collision_or_visual} measures them" if other == "visual" else ""
+    text = f"{have} a {other} but no {geometry} shape and {are} not measured: {listed(unseen, 6)}{remedy}"
+    return [Notice(Severity.WARNING, "geometry", text)]
+
+
+def _bare(links: list[Element]) -> list[str]:
+    """A note on links without any shape, which are frames."""
+    bare = [link.get("name") for link in links if link.find("collision") is None and link.find("visual") is None]
+    if not bare:
+        return []
+    count = "1 link" if len(bare) == 1 else f"{len(bare)} links"
+    return [f"{count} without any shape: {listed(bare, 6)}"]

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite
+from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite, at
 from clearance.geometry.pose import pose_from_rpy
-from clearance.load.plausibility import pose_notes
+from clearance.load.names import checked_name
+from clearance.load.plausibility import odd_angles
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -63,6 +64,7 @@ def parse_document(data: bytes) -> Element:
             DuplicateName, BadInput: an element that cannot be used, with its place in the document.
     """
     root = _root(data)
+    checked_name(root.get("name") or "")
     _reduce(root)
     for kind in ("link", "joint"):
         _check_names(root, kind)
@@ -71,15 +73,16 @@ def parse_document(data: bytes) -> Element:
     return root
 
 
-def origin_notes(root: Element) -> list[str]:
-    """Notes on places and angles in a checked document that look like a wrong unit."""
-    notes = []
+def odd_origins(root: Element) -> list[str]:
+    """The elements of a checked document whose origins have angles that look like degrees."""
+    odd = []
     for origin in root.iter("origin"):
         owner = origin.getparent()
         if owner.tag != "joint":
             owner = owner.getparent()
-        notes += pose_notes(f"an origin of {owner.tag} {owner.get('name')!r}", *_origin(origin))
-    return notes
+        what = f"an origin of {owner.tag} {owner.get('name')!r}"
+        odd += odd_angles(what, numbers(origin, "rpy", (0.0,)))
+    return odd
 
 
 def pose_of(element: Element) -> np.ndarray:
@@ -157,6 +160,8 @@ def _check_names(root: Element, kind: str) -> None:
         name = element.get("name")
         if not name:
             raise MissingKey(f"<{kind}> has no name", where=f"{kind}[{i}]")
+        with at(f"{kind}[{i}]"):
+            checked_name(name)
         if name in seen:
             raise DuplicateName(f"two {kind}s have the name {name!r}", valid="each name once")
         seen.add(name)
@@ -166,6 +171,9 @@ def _check(element: Element, where: str) -> None:
     for attribute in _REQUIRED.get(element.tag, ()):
         if not element.get(attribute):
             raise MissingKey(f"<{element.tag}> has no {attribute}", where=where)
+    if element.tag == "mesh":
+        with at(where):
+            checked_name(element.get("filename"))
     for attribute, counts in _NUMBERS.get(element.tag, {}).items():
         _check_numbers(element, attribute, counts, where)
     if element.tag == "geometry":

@@ -32,6 +32,7 @@ class Limits:
 
     Args:
         warn: as `fail` if not given.
+        joints: what a joint beyond its limits is: "warn" for a warning, "fail" for a violation.
 
     Raises:
         BadDimension: a level that is below 0 or not finite, or `warn` below `fail`.
@@ -39,6 +40,7 @@ class Limits:
 
     fail: float = 0.0
     warn: float = None  # type: ignore[assignment]  # always a number once it is made
+    joints: str = "warn"
 
     def __post_init__(self) -> None:
         if self.warn is None:
@@ -149,7 +151,7 @@ class Case:
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
-        notices: suspect input and warnings, which stand in the headline.
+        notices: suspect input and warnings that only loading can tell; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
         profiles: outlines that the sweep must keep to.
     """

@@ -19,6 +19,7 @@ from clearance.kernels.kinematics import (
     forward,
 )
 from clearance.world.case import PlacedRobot
+from clearance.world.mimics import followers
 from clearance.world.robot import JointKind, Robot
 
 _KERNEL_KIND = {
@@ -154,18 +155,11 @@ def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, i
     """
     index = {name: i for i, name in enumerate(robot.link_names)}
     column_of = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
-    by_name = {joint.name: joint for joint in robot.joints}
     links, columns, mimics = [], [], []
-    for joint in robot.joints:
-        if joint.kind is JointKind.FIXED:
-            continue
-        link, follows = index[joint.child], joint.mimic is not None
-        factor, offset = 1.0, 0.0
-        while joint.mimic is not None:
-            factor, offset = factor * joint.mimic.multiplier, factor * joint.mimic.offset + offset
-            joint = by_name[joint.mimic.joint]
-        if follows:
-            mimics.append((link, column_of[joint.name], factor, offset))
+    for joint, master, factor, offset in followers(robot):
+        link = index[joint.child]
+        if joint.mimic is not None:
+            mimics.append((link, column_of[master], factor, offset))
         else:
             links.append(link)
             columns.append(column_of[joint.name])
@@ -174,8 +168,9 @@ def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, i
 
 def velocities_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
     """(n, n_links) the velocity of the joint above each link from those of the moving joints."""
-    without_offsets = tuple(
-        joint if joint.mimic is None else replace(joint, mimic=replace(joint.mimic, offset=0.0))
-        for joint in robot.joints
-    )
-    return positions_by_link(replace(robot, joints=without_offsets), moving)
+    links, columns, mimics = _moving_links(robot)
+    velocities = np.zeros((len(moving), len(robot.link_names)))
+    velocities[:, links] = moving[:, columns]
+    for link, column, factor, _ in mimics:
+        velocities[:, link] = factor * moving[:, column]
+    return velocities

@@ -5,6 +5,7 @@ Not for: errors (`clearance.errors`), and notes on what loading mended, which ar
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -13,6 +14,7 @@ class Severity(StrEnum):
     """What a notice does to the verdict, worst first."""
 
     SUSPECT = "suspect"
+    VIOLATED = "violated"
     WARNING = "warning"
 
 
@@ -26,12 +28,24 @@ class Notice:
     """One thing that was found in the input, or while measuring, that bears on the verdict.
 
     Attributes:
-        severity: a suspect input makes the verdict suspect unless its kind is accepted; a warning stands in
-            the headline.
-        kind: one of `KINDS`, or a word of its own for a warning ("geometry", "package", …).
+        severity: a suspect input makes the verdict suspect unless its kind is accepted; a rule of the case that
+            is broken makes it violated; a warning stands in the headline.
+        kind: one of `KINDS`, or a word of its own for the others ("joint limits", "geometry", "package", …).
         text: one line: what was found, where, and what to do.
     """
 
     severity: Severity
     kind: str
     text: str
+
+
+def worst_first(notices: Iterable[Notice]) -> tuple[Notice, ...]:
+    """The notices by severity, each once; those of one severity stay in their order."""
+    order = list(Severity)
+    return tuple(sorted(dict.fromkeys(notices), key=lambda notice: order.index(notice.severity)))
+
+
+def listed(items: Sequence[str], most: int = 3) -> str:
+    """The first few items, and how many more there are: `'a', 'b', 'c' and 9 more`."""
+    text = ", ".join(items[:most])
+    return text if len(items) <= most else f"{text} and {len(items) - most} more"

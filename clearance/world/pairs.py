@@ -29,8 +29,9 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Unmeasured]]:
     unmeasured: list[Unmeasured] = []
     for i_robot, placed in enumerate(case.robots):
         unmeasured += _links_left_out(placed)
+        excluded = frozenset(placed.exclude_links)
         for i_body, body in enumerate(placed.robot.bodies):
-            if body.name in placed.exclude_links:
+            if body.name in excluded:
                 continue
             for i_obstacle, obstacle in enumerate(case.obstacles):
                 rule = _allowing_rule(case, body, obstacle.name)
@@ -49,11 +50,12 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Unmeasured]]:
 
 def _links_left_out(placed: PlacedRobot) -> list[Unmeasured]:
     with_shape = {body.name for body in placed.robot.bodies}
+    excluded = frozenset(placed.exclude_links)
     left_out = [Unmeasured(name, "*", "excluded in the case file") for name in placed.exclude_links]
     left_out += [
         Unmeasured(name, "*", "no geometry")
         for name in placed.robot.link_names
-        if name not in with_shape and name not in placed.exclude_links
+        if name not in with_shape and name not in excluded
     ]
     return left_out
 

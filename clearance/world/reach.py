@@ -14,6 +14,7 @@ from clearance.tolerance import REACH, TURNS
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.cubic import extremes_between
+from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
@@ -61,11 +62,14 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
     Raises:
         BadDimension: the first joint that does, with the times between which it does.
     """
-    for joint in robot.joints:
-        factor, name = _followed(robot, joint)
-        if joint.kind not in (JointKind.REVOLUTE, JointKind.CONTINUOUS) or name not in names:
+    columns = {name: i for i, name in enumerate(names)}
+    for joint, name, factor, offset in followers(robot):
+        if joint.kind not in (JointKind.REVOLUTE, JointKind.CONTINUOUS):
             continue
-        way = abs(factor) * _ways(moves, list(names).index(name))
+        _require_offset(joint, offset)
+        if name not in columns:
+            continue
+        way = abs(factor) * _ways(moves, columns[name])
         if way.size and not way.max() <= TURNS * 2.0 * np.pi:
             i = int(np.argmax(way))
             raise BadDimension(
@@ -84,21 +88,23 @@ def _ways(moves: Motion | Trajectory, i_joint: int) -> np.ndarray:
     return ways
 
 
-def _followed(robot: Robot, joint: Joint) -> tuple[float, str]:
-    """How many times as far as which moving joint a joint goes."""
-    by_name = {other.name: other for other in robot.joints}
-    factor = 1.0
-    while joint.mimic is not None:
-        factor, joint = factor * joint.mimic.multiplier, by_name[joint.mimic.joint]
-    return factor, joint.name
+def _require_offset(joint: Joint, offset: float) -> None:
+    if not abs(offset) <= TURNS * 2.0 * np.pi:
+        raise BadDimension(
+            f"joint {joint.name!r} stands {offset:g} rad beyond the joint that it follows",
+            valid=f"{TURNS:g} turns or less; angles are in radians",
+        )
 
 
 def _slide(motion: Motion) -> float:
     """[m] how far the sliding joints go, and the frames of the joints are apart, in sum."""
     robot = motion.placed.robot
     apart = sum(float(np.abs(joint.parent_from_joint[:3, 3]).sum()) for joint in robot.joints)
-    slides = [i for i, joint in enumerate(robot.moving_joints) if joint.kind == "prismatic"]
-    return apart + sum(_farthest(motion, i) for i in slides)
+    columns = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
+    slides = [one for one in followers(robot) if one.joint.kind is JointKind.PRISMATIC]
+    return apart + sum(
+        abs(one.factor) * _farthest(motion, columns[one.master]) + abs(one.offset) for one in slides
+    )
 
 
 def _farthest(motion: Motion, i_joint: int) -> float:

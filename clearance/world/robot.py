@@ -8,6 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from clearance.world.body import Body
+from clearance.world.notice import Notice
 
 
 class JointKind(StrEnum):
@@ -59,6 +60,7 @@ class Robot:
         joints: `len(link_names) - 1` joints, in the order of their child links.
         bodies: the links that have a shape (in the link frame), in the order of `link_names`.
         notes: what loading had to mend or leave out, one line each, for the report.
+        notices: suspect input and warnings that only loading can tell.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Robot:
     joints: tuple[Joint, ...]
     bodies: tuple[Body, ...]
     notes: tuple[str, ...] = ()
+    notices: tuple[Notice, ...] = ()
 
     @property
     def moving_joints(self) -> tuple[Joint, ...]:

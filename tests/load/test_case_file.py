@@ -165,62 +165,6 @@ def test_joints_that_nobody_names_are_zero_with_a_note(tmp_path):
     assert case.notes == ()
 
 
-def test_leaving_joint_limits_is_noted_with_how_much_and_how_often(tmp_path):
-    case = load_small(tmp_path, trajectory="time,shoulder\n0,0\n1,1.25\n2,-1.5\n")
-    assert case.notes == (
-        "joint 'shoulder' leaves its limits -1 to 1 rad by up to 0.5 rad in 2 of 3 steps",
-    )
-    case = load_small(tmp_path, changed("arm.urdf", "arm.urdf, joints: {lift: 0.3}"), urdf=TWO_JOINTS)
-    assert "joint 'lift' leaves its limits 0 to 0.1 m by up to 0.2 m" in case.notes[0]
-
-
-def test_what_looks_like_a_wrong_unit_is_noted_loudly(tmp_path):
-    text = changed("fail: 0.005, warn: 0.02", "fail: 5, warn: 20", "box: {size: [0.1, 0.1, 1]}",
-                   "cylinder: {radius: 40, length: 1}")  # fmt: skip
-    notes = "\n".join(load_small(tmp_path, text, trajectory="time,shoulder\n0,0\n1,45\n").notes)
-    for says in (
-        "limits.fail is 5 m",
-        "limits.warn is 20 m",
-        "'post' has a radius of 40 m",
-        "45 rad",
-    ):
-        assert f"CHECK UNITS: {says}" in notes or says in notes
-    assert notes.count("CHECK UNITS") == 4
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "says"),
-    [
-        ("urdf: arm.urdf", "urdf: arm.urdf, base: {rpy: [0, 0, 90]}", "base has an angle of 90 rad"),
-        ("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [-1200, 0, 0]}", "base stands 1200 m away"),
-        ("xyz: [2, 0, 0]", "rpy: [0, -45, 0]", "obstacle 'post' has an angle of 45 rad"),
-        ("xyz: [2, 0, 0]", "xyz: [0, 0, 650]", "obstacle 'post' stands 650 m away"),
-    ],
-)
-def test_poses_in_degrees_and_millimetres_are_noted(tmp_path, old, new, says):
-    (note,) = load_small(tmp_path, changed(old, new)).notes
-    assert note.startswith("CHECK UNITS: ") and says in note
-
-
-def test_poses_at_the_edge_of_what_is_usual_are_not_noted(tmp_path):
-    text = changed("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [100, 0, 0], rpy: [6.28, 0, -6.28]}")
-    assert load_small(tmp_path, text).notes == ()
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "says"),
-    [
-        ('xyz="0 0 0.1" rpy="0 0 0"', 'rpy="0 0 90"', "joint 'shoulder' has an angle of 90 rad"),
-        ('xyz="0 0 0.5"', 'xyz="0 0 500"', "link 'upper' stands 500 m away"),
-        ('"upper.stl"', '"upper.stl" scale="1000 1000 1000"', "the mesh is scaled by 1000"),
-    ],
-)
-def test_origins_and_scales_in_other_units_are_noted(tmp_path, old, new, says):
-    assert old in ARM
-    (note, *_) = load_small(tmp_path, urdf=ARM.replace(old, new)).robots[0].robot.notes
-    assert "CHECK UNITS: " in note and says in note
-
-
 @pytest.mark.parametrize("turns", [1001.0, -1e7])
 def test_a_joint_that_spins_between_two_samples_is_refused(tmp_path, turns):
     load_small(tmp_path, trajectory="time,shoulder\n0,0\n1,6283.18\n")

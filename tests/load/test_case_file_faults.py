@@ -29,7 +29,7 @@ FAULTS = [
         UnknownKey,
         "case.yaml: unknown key 'nmae'; did you mean 'name'?",
     ),
-    (changed("name: small\n", ""), MissingKey, "case.yaml: 'name' is missing"),
+    (changed("robot: {urdf: arm.urdf}\n", ""), MissingKey, "case.yaml: 'robot' is missing"),
     (
         changed("urdf: arm.urdf", "urfd: arm.urdf"),
         UnknownKey,
@@ -168,7 +168,7 @@ FAULTS = [
     (
         changed("arm.urdf", "arm.urdf, geometry: hull"),
         BadInput,
-        "robot.geometry: 'hull' is given; 'collision' or",
+        "robot.geometry: 'hull' is given; 'collision', 'visual' or",
     ),
     (
         changed("arm.urdf", "arm.urdf, exclude_links: [bass]"),

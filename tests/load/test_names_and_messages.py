@@ -4,8 +4,11 @@ import pytest
 
 from clearance.errors import BadInput, BadPose
 from clearance.geometry.pose import pose_from_quaternion
+from clearance.load.names import checked_name
 from clearance.load.schema import Obstacle
 from clearance.load.schema_errors import validated
+from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.urdf_elements import parse_document
 from clearance.world.pairs import matches
 
 
@@ -13,6 +16,55 @@ from clearance.world.pairs import matches
 def test_control_characters_in_a_name_are_refused(name):
     with pytest.raises(BadInput, match="control character"):
         validated(Obstacle, {"name": name, "box": {"size": [1.0, 1.0, 1.0]}}, "case.yaml")
+
+
+BAD = {
+    "a\nb": "control character",
+    "CLEAR\x85forged line": "control character",
+    "a\u2028b": "line separator",
+    "a\u202eb": "direction of text",
+    "a\u2066b": "direction of text",
+    "a\uffffb": "no character",
+    "a\ufdd0b": "no character",
+    "a\U0001fffeb": "no character",
+}
+
+
+def escaped(name: str) -> str:
+    """The name in the form in which XML can carry it, where it can."""
+    return "".join(f"&#{ord(letter)};" for letter in name)
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_a_name_from_any_file_shows_what_it_holds_or_is_refused(name):
+    places = {
+        "case": lambda: validated(Obstacle, {"name": name, "box": {"size": [1.0, 1.0, 1.0]}}, "case.yaml"),
+        "csv": lambda: parse_trajectory(f'time,"{name}"\n0,0\n'.encode(), "path.csv"),
+    }
+    if "no character" not in BAD[name] or ord(name[1]) == 0xFDD0:  # XML refuses U+FFFE and U+FFFF itself
+        written = escaped(name)
+        places |= {
+            "link": lambda: parse_document(f'<robot name="r"><link name="{written}"/></robot>'.encode()),
+            "joint": lambda: parse_document(
+                f'<robot name="r"><link name="a"/><joint name="{written}" type="fixed"/></robot>'.encode()
+            ),
+            "robot": lambda: parse_document(f'<robot name="{written}"><link name="a"/></robot>'.encode()),
+            "mesh": lambda: parse_document(
+                f'<robot name="r"><link name="a"><collision><geometry><mesh filename="{written}"/>'
+                "</geometry></collision></link></robot>".encode()
+            ),
+        }
+    for place, read in places.items():
+        with pytest.raises(BadInput) as caught:
+            read()
+        told = str(caught.value)
+        assert BAD[name] in told, place
+        assert told.isprintable() and "\n" not in told, place
+
+
+def test_names_in_any_script_are_names():
+    for name in ("Gehäuse", "机器人_1", "mâchoire (gauche)", "ذراع"):
+        assert checked_name(name) == name
 
 
 def test_a_name_that_holds_wildcards_matches_itself():

@@ -7,9 +7,10 @@ import pytest
 
 from clearance import check, load_case
 from clearance.errors import MissingKey, UnknownJoint
-from clearance.load.plausibility import motion_notes
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import asked_at
+from clearance.world.joint_limits import notices_on_joints
+from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.load.making import write_case
@@ -20,12 +21,13 @@ def notes(positions, velocities, kind=JointKind.REVOLUTE):
     robot = Robot("robot", ("a", "b"), (joint,), ())
     columns = [np.array(values, dtype=float)[:, None] for values in (positions, velocities)]
     asked = Trajectory(np.arange(len(positions), dtype=float), ("elbow",), *columns)
-    return motion_notes(PlacedRobot(robot, asked))
+    placed = PlacedRobot(robot, asked)
+    return [notice.text for notice in (*notices_on_motion(placed), *notices_on_joints(placed, "warn"))]
 
 
 def test_a_cubic_that_leaves_the_limits_between_samples_is_told():
     assert notes([0.9, 0.9, 0.0], [0.8, -0.8, -1.0]) == [
-        "CHECK: joint 'elbow' leaves its limits -1 to 1 rad by up to 0.1 rad between two samples, "
+        "joint 'elbow' leaves its limits -1 to 1 rad by up to 0.1 rad between two samples, "
         "on the cubic that its velocities make, in 1 of 2 intervals"
     ]
 

@@ -1,0 +1,39 @@
+"""Names from any file: what a line of text, a table and a report in XML can show. Not for: which names exist."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from clearance.errors import BadInput
+
+_BIDIRECTIONAL = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+"""Characters that turn the direction in which text is drawn, and so what it seems to say."""
+
+_FAULTS = {
+    "Cc": "a control character",
+    "Cs": "half of a surrogate pair",
+    "Zl": "a line separator",
+    "Zp": "a paragraph separator",
+}
+
+
+def checked_name(name: str) -> str:
+    """The name, if it is text on one line that shows what it holds.
+
+    Raises:
+        BadInput: with what it holds, the name escaped.
+    """
+    for letter in name:
+        fault = _fault(letter)
+        if fault:
+            raise BadInput(f"{name!a:.60} holds {fault}", valid="text on one line is needed")
+    return name
+
+
+def _fault(letter: str) -> str:
+    if letter in _BIDIRECTIONAL:
+        return "a character that turns the direction of text"
+    code = ord(letter)
+    if code & 0xFFFE == 0xFFFE or 0xFDD0 <= code <= 0xFDEF:
+        return "a code that is no character"
+    return _FAULTS.get(unicodedata.category(letter), "")

@@ -1,0 +1,36 @@
+"""Notes on many files as one line each: what was found, in how many, and the first few by name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import PurePosixPath
+
+from clearance.world.notice import listed
+
+
+def grouped(notes: Iterable[tuple[str, str]]) -> list[str]:
+    """One line for each kind of note on a file: `meshes/a.stl: 2 triangles …; likewise b.stl, c.stl and 9 more`.
+
+    Args:
+        notes: (file as it is shown, note) in the order in which they were made; notes that differ only in
+            their numbers are of one kind.
+    """
+    kinds: dict[str, dict[str, str]] = {}
+    for file, note in notes:
+        kinds.setdefault(re.sub(r"\d+", "#", note), {}).setdefault(file, note)
+    lines = []
+    for files in kinds.values():
+        (first, note), *others = files.items()
+        line = f"{short(first)}: {note}"
+        if others:
+            names = listed([PurePosixPath(file).name for file, _ in others])
+            line = f"{len(files)} meshes: {line}; likewise {names}"
+        lines.append(line)
+    return lines
+
+
+def short(file: str) -> str:
+    """The end of a path: folder and name."""
+    parts = PurePosixPath(file).parts
+    return file if len(parts) <= 2 or ":" in file else "/".join(parts[-2:])

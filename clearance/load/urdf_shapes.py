@@ -1,0 +1,113 @@
+"""The shapes of a URDF's links: boxes, cylinders, capsules, balls and mesh files, in the link's frame.
+
+Not for: which links and joints there are (`urdf`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import box, capsule, cylinder, sphere
+from clearance.load.collada_file import UpAxis
+from clearance.load.mesh_paths import mesh_path
+from clearance.load.mesh_store import MeshStore, Scale
+from clearance.load.notes import grouped, short
+from clearance.load.plausibility import scale_notices
+from clearance.load.urdf_elements import number, numbers, pose_of
+from clearance.world.notice import Notice, Severity
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+
+Geometry = Literal["collision", "visual", "collision_or_visual"]
+
+
+@dataclass(frozen=True)
+class UrdfRequest:
+    """Which URDF, and how it is to be read.
+
+    Attributes:
+        path: the URDF file.
+        package_dirs: where `package://` is looked up first.
+        geometry: which elements are the robot's shape; "collision_or_visual" takes the visual ones of links
+            that have no others.
+        collada_up_axis: "ros" leaves COLLADA files as they lie, "file" turns them as their `<up_axis>` says.
+    """
+
+    path: Path
+    package_dirs: tuple[Path, ...] = ()
+    geometry: Geometry = "collision"
+    collada_up_axis: UpAxis = "ros"
+
+
+class ShapeReader:
+    """Makes shapes from elements, and keeps what is to be told of their files."""
+
+    def __init__(self, request: UrdfRequest, meshes: MeshStore) -> None:
+        self.request = request
+        self.meshes = meshes
+        self._notes: list[tuple[str, str]] = []
+        self._scales: dict[str, Scale] = {}
+        self._stand_ins: dict[str, dict[str, str]] = {}
+
+    def kind(self, link: Element) -> str:
+        """Which elements of a link are its shape."""
+        if self.request.geometry != "collision_or_visual":
+            return self.request.geometry
+        return "visual" if link.find("collision") is None else "collision"
+
+    def shape(self, element: Element) -> tuple[Polyhedron, str]:
+        """The shape of a collision or visual element in its link's frame, and what it was made from."""
+        shape, origin = self._unmoved(element.find("geometry")[0])
+        moved = element.find("origin") is not None
+        return (shape.transformed(pose_of(element)) if moved else shape), origin
+
+    def mesh_file(self, mesh: Element) -> tuple[Path, Scale]:
+        """Where a mesh element's file lies, and its scale."""
+        given = mesh.get("filename")
+        found = mesh_path(given, self.request.path.parent, self.request.package_dirs)
+        shown = self.meshes.files.shown(found.path)
+        if found.package:
+            self._stand_ins.setdefault(found.package, {}).setdefault(given, shown)
+        scale = tuple(np.broadcast_to(numbers(mesh, "scale", (1.0,)), 3).tolist())
+        self._scales[short(shown)] = scale
+        return found.path, scale
+
+    def notes(self) -> list[str]:
+        """What was mended in the files, a line for each kind of fault."""
+        return grouped(self._notes)
+
+    def notices(self) -> list[Notice]:
+        """Files that stand in for others, and scales that look like another unit."""
+        told = [self._on_stand_ins(package, files) for package, files in self._stand_ins.items()]
+        return [*told, *scale_notices(list(self._scales.items()))]
+
+    def _unmoved(self, element: Element) -> tuple[Polyhedron, str]:
+        kind = element.tag
+        if kind == "mesh":
+            return self._mesh(element)
+        if kind == "box":
+            return box(numbers(element, "size")), kind
+        radius = number(element, "radius")
+        if kind == "sphere":
+            return sphere(radius=radius), kind
+        made = capsule if kind == "capsule" else cylinder
+        return made(radius=radius, length=number(element, "length")), kind
+
+    def _mesh(self, element: Element) -> tuple[Polyhedron, str]:
+        path, scale = self.mesh_file(element)
+        mesh = self.meshes.load(path, scale, self.request.collada_up_axis)
+        shown = self.meshes.files.shown(path)
+        self._notes += [(shown, note) for note in mesh.notes]
+        return mesh.shape, shown
+
+    def _on_stand_ins(self, package: str, files: dict[str, str]) -> Notice:
+        (given, shown), *others = files.items()
+        rest = "" if not others else f", and {len(others)} more likewise"
+        text = f"package {package!r} is not there: {given} is taken from {shown}{rest}; is it the same file?"
+        return Notice(Severity.WARNING, "package", text)

@@ -1,0 +1,104 @@
+"""Joints beyond their limits: a warning or, where the case says so, a violation; far beyond is suspect.
+
+Not for: limits of velocity or effort, which the robot does not carry.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.world.case import PlacedRobot
+from clearance.world.joint_positions import JointCourse, joint_courses, turns
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import Joint
+
+ROUNDING = 1e-9
+"""[rad or m] A joint that is beyond its limit by less than this is at it."""
+
+FAR_TURN = np.pi / 2
+"""[rad] A quarter turn beyond a limit is no overshoot: of 69 robots none is as far beyond at its zero pose."""
+
+FAR_SLIDE = 0.05
+"""[m] A slide this far beyond, and farther than its whole range, is in another unit."""
+
+
+class _Excess(NamedTuple):
+    joint: Joint
+    beyond: float  # [rad or m]
+    text: str
+
+
+def notices_on_joints(placed: PlacedRobot, rule: str) -> list[Notice]:
+    """What is beyond its limits, at the samples or between them.
+
+    Args:
+        rule: "warn" or "fail", as `Limits.joints`.
+    """
+    found = [excess for course in joint_courses(placed) for excess in _excesses(course)]
+    far = [excess for excess in found if _is_far(excess)]
+    near = [excess for excess in found if not _is_far(excess)]
+    notices = []
+    if far:
+        text = f"CHECK LIMITS: {_told(far)}; is this another unit, or another robot?"
+        notices.append(Notice(Severity.SUSPECT, "limits", text))
+    if rule == "fail" and found:
+        notices.append(Notice(Severity.VIOLATED, "joint limits", _told(found)))
+    elif near:
+        notices.append(Notice(Severity.WARNING, "limits", _told(near)))
+    return notices
+
+
+def _excesses(course: JointCourse) -> list[_Excess]:
+    joint = course.joint
+    at_samples = _beyond(joint, course.at_samples, course.at_samples)
+    n_beyond = int((at_samples > ROUNDING).sum())
+    told = []
+    if n_beyond:
+        where = f"in {n_beyond} of {len(at_samples)} steps"
+        told.append(_excess(joint, at_samples, where))
+    if course.least is None:
+        return told
+    ends = np.maximum(0.0, np.maximum(at_samples[:-1], at_samples[1:]))
+    between = _beyond(joint, course.least, course.greatest)
+    farther = between > ends + ROUNDING
+    if farther.any():
+        where = (
+            "between two samples, on the cubic that its velocities make, "
+            f"in {int(farther.sum())} of {len(between)} intervals"
+        )
+        told.append(_excess(joint, between[farther], where))
+    return told
+
+
+def _beyond(joint: Joint, least: np.ndarray, greatest: np.ndarray) -> np.ndarray:
+    return np.maximum(greatest - joint.upper, joint.lower - least)
+
+
+def _excess(joint: Joint, beyond: np.ndarray, where: str) -> _Excess:
+    unit = "rad" if turns(joint) else "m"
+    most = float(beyond.max())
+    return _Excess(
+        joint,
+        most,
+        f"joint {joint.name!r} leaves its limits {joint.lower:g} to {joint.upper:g} {unit} "
+        f"by up to {most:.3g} {unit} {where}",
+    )
+
+
+def _is_far(excess: _Excess) -> bool:
+    if turns(excess.joint):
+        return excess.beyond > FAR_TURN
+    return excess.beyond > max(FAR_SLIDE, excess.joint.upper - excess.joint.lower)
+
+
+def _told(found: list[_Excess]) -> str:
+    """One line; the joint that is farthest beyond comes first where there are several."""
+    ordered = sorted(found, key=lambda excess: -excess.beyond)
+    names = {excess.joint.name for excess in found}
+    if len(names) == 1:
+        return "; ".join(excess.text for excess in found)
+    others = [repr(excess.joint.name) for excess in ordered]
+    rest = listed(list(dict.fromkeys(others))[1:], 6)
+    return f"{len(names)} joints leave their limits: {ordered[0].text}; also {rest}"

@@ -1,0 +1,112 @@
+"""Motions that look like degrees, millimetres or milliseconds. Not for: joint limits (`joint_limits`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.world.case import PlacedRobot
+from clearance.world.joint_positions import joint_courses, turns
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import Joint
+from clearance.world.trajectory import Trajectory
+
+LARGE_TURN = 4 * np.pi
+"""[rad] Two full turns: more than industrial wrists have, and passed at once by angles given in
+degrees.
+"""
+
+LARGE_SLIDE = 100.0
+"""[m] No slide is so long; in millimetres it is usual."""
+
+TOO_FAST = 10.0
+"""Velocities that mean ten times the way of the positions: degrees are 57 times radians, millimetres 1000."""
+
+LEAST_WAY = 1e-3
+"""[rad or m] A way below this is rest, and says nothing about units."""
+
+CREEP_TURN, CREEP_SLIDE = 4e-3, 4e-4
+"""[rad/s], [m/s] Where no joint is ever faster, time is in milliseconds: arms move at 0.1 to 4 rad/s and slides at
+1 mm/s and more, a thousandth of which is below this."""
+
+LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
+"""[rad], [m] A joint must go this far in sum before its speed says anything about the unit of time."""
+
+
+def notices_on_motion(placed: PlacedRobot) -> list[Notice]:
+    """What of a robot's motion looks like another unit."""
+    told = [*_large_positions(placed), *_odd_velocities(placed), *_creeping(placed)]
+    return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
+
+
+def _large_positions(placed: PlacedRobot) -> list[str]:
+    angles, lengths = [], []
+    for course in joint_courses(placed):
+        greatest = float(np.abs(course.at_samples).max(initial=0.0))
+        large, most = (angles, LARGE_TURN) if turns(course.joint) else (lengths, LARGE_SLIDE)
+        if greatest > most:
+            large.append((greatest, course.joint.name))
+    told = []
+    for large, unit, hint in (
+        (angles, "rad", "angles are in radians, is this degrees?"),
+        (lengths, "m", "lengths are in metres, is this millimetres?"),
+    ):
+        large.sort(key=lambda item: -item[0])
+        goes = listed([f"joint {name!r} goes to {greatest:g} {unit}" for greatest, name in large])
+        told += [f"{goes}; {hint}"] if goes else []
+    return told
+
+
+def _odd_velocities(placed: PlacedRobot) -> list[str]:
+    """Velocities that mean a way that is many times what the positions go."""
+    asked = placed.trajectory
+    if asked.velocities is None:
+        return []
+    joints = _moving(placed)
+    told = []
+    for i, name in enumerate(asked.joint_names):
+        speed = np.abs(asked.velocities[:, i])
+        gone = float(np.abs(np.diff(asked.positions[:, i])).sum())
+        meant = float((0.5 * (speed[1:] + speed[:-1]) * np.diff(asked.times)).sum())
+        if meant > TOO_FAST * max(gone, LEAST_WAY):
+            told.append((joints[name], meant, gone))
+    if not told:
+        return []
+    joint, meant, gone = told[0]
+    unit, other = ("rad/s", "degrees/s") if turns(joint) else ("m/s", "mm/s")
+    others = listed([repr(other_joint.name) for other_joint, *_ in told[1:]])
+    return [
+        f"the velocities of joint {joint.name!r} mean a way of {meant:.3g} where its positions go {gone:.3g}"
+        f"{f' (likewise {others})' if others else ''}; velocities are in {unit}, is this {other}?"
+    ]
+
+
+def _creeping(placed: PlacedRobot) -> list[str]:
+    """A motion that gets somewhere, but never faster than creeping."""
+    asked, joints = placed.trajectory, _moving(placed)
+    if asked.n_steps < 2:
+        return []
+    moves = False
+    for i, name in enumerate(asked.joint_names):
+        turning = turns(joints[name])
+        least_way, creep = (LEAST_TURN, CREEP_TURN) if turning else (LEAST_SLIDE, CREEP_SLIDE)
+        way, speed = _way_and_speed(asked, i)
+        if speed > creep:
+            return []
+        moves = moves or way > least_way
+    if not moves:
+        return []
+    length = float(asked.times[-1] - asked.times[0])
+    return [
+        f"no joint moves faster than {CREEP_TURN:g} rad/s or {CREEP_SLIDE * 1000:g} mm/s in {length:g} s; "
+        "times are in seconds, is this milliseconds?"
+    ]
+
+
+def _way_and_speed(asked: Trajectory, i_column: int) -> tuple[float, float]:
+    """How far a joint goes in sum [rad or m], and the greatest mean speed between two samples."""
+    ways = np.abs(np.diff(asked.positions[:, i_column]))
+    return float(ways.sum()), float((ways / np.diff(asked.times)).max(initial=0.0))
+
+
+def _moving(placed: PlacedRobot) -> dict[str, Joint]:
+    return {joint.name: joint for joint in placed.robot.moving_joints}
