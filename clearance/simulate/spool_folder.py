@@ -26,7 +26,7 @@ _BY_DESCRIPTOR = os.scandir in os.supports_fd and os.unlink in os.supports_dir_f
 
 @contextmanager
 def own_folder(place: Path) -> Iterator[None]:
-    """Makes the folder `place`, or takes the one that an interrupted run has left, for as long as this process lives.
+    """Makes the folder `place`, or takes what an interrupted run has left, for this process as long as it lives.
 
     Raises:
         Unwritable: something else is there, another run is writing there, or there is no way or room to write.
@@ -56,7 +56,7 @@ def clear(place: Path) -> None:
 
 
 def take_away(place: Path) -> None:
-    """Takes the folder away: under another name first, so that a process killed meanwhile leaves none in its place."""
+    """Takes the folder away; it is renamed first, so that a process killed meanwhile leaves none in its place."""
     if place.is_symlink() or not _is_marked(place):
         return
     aside = place.with_name(f"{place.name}-{os.getpid()}.done")

@@ -1,4 +1,4 @@
-"""The folder of a spool: only one that we made and marked is ever emptied or taken away, and never through a link."""
+"""The folder of a spool: only one that we made and marked is emptied or taken away, and never through a link."""
 
 from __future__ import annotations
 
