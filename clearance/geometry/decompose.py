@@ -55,7 +55,7 @@ def cut_into_hulls(
     np.savez(sent, vertices=vertices, triangles=triangles, threshold=threshold, seconds=MOST_WORK)
     try:
         done = subprocess.run(
-            [sys.executable, str(_PROCESS)],
+            [sys.executable, "-P", str(_PROCESS)],
             input=sent.getvalue(),
             capture_output=True,
             timeout=LONGEST,

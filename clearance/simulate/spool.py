@@ -11,22 +11,22 @@ import io
 import math
 import mmap
 import os
-import shutil
 import time
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import Unwritable, unwritable
+from clearance.errors import unwritable
+from clearance.simulate.spool_folder import clear, own_folder, take_away
 
 SAVE_AFTER = 1.0
 """[s] between two states of a pass: so much work is lost at most. Writing one takes milliseconds."""
 
-_QUESTION, _LOCK = "question.json", "lock"
+_QUESTION = "question.json"
 
 
 @dataclass(eq=False)
@@ -85,8 +85,9 @@ class Spool(Rows):
 
     def close(self) -> None:
         """Takes the folder away; arrays that are in use stay, and later ones are in memory."""
-        self._closed = True
-        shutil.rmtree(self.place, ignore_errors=True)
+        if not self._closed:
+            self._closed = True
+            take_away(self.place)
 
     def ask(self, fingerprint: str) -> None:
         question = self.place / _QUESTION
@@ -95,14 +96,8 @@ class Spool(Rows):
             if known != fingerprint:
                 self.say("starting anew: what an interrupted run has left is of other inputs")
             if known != fingerprint or not question.exists():
-                self._clear()
+                clear(self.place)
                 _replace(question, fingerprint.encode())
-
-    def _clear(self) -> None:
-        for path in self.place.iterdir():
-            if path.name == _LOCK:
-                continue
-            shutil.rmtree(path) if path.is_dir() else path.unlink()
 
     def array(self, name: str, shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
         n_bytes = math.prod(shape) * np.dtype(kind).itemsize
@@ -157,59 +152,24 @@ def open_spool(place: Path, say: Callable[[str], None]) -> Iterator[Spool]:
     """The spool in the folder `place`, for this process alone; taken away if the block is left without an error.
 
     Raises:
-        Unwritable: another run is writing there, or there is no way or no room to write.
+        Unwritable: another run is writing there, something is there that we have not made, or there is no way or
+            no room to write.
     """
-    with _locked(place):
+    with own_folder(place):
+        spool = Spool(place, say)
         try:
-            spool = Spool(place, say)
             yield spool
-            spool.close()
-        finally:
-            if not any(place.glob("*.state")):  # refused before anything was worth keeping
-                shutil.rmtree(place, ignore_errors=True)
+        except BaseException:
+            if not any(place.glob("*.state")):  # nothing was worth keeping yet
+                spool.close()
+            raise
+        spool.close()
 
 
 def let_go(mapped: mmap.mmap) -> None:
     """Frees the memory of a mapped file; what was written to it stays in the file."""
     if hasattr(mmap, "MADV_DONTNEED"):
         mapped.madvise(mmap.MADV_DONTNEED)
-
-
-@contextmanager
-def _locked(place: Path) -> Iterator[None]:
-    """Keeps other processes out of `place`, as long as this one lives."""
-    with ExitStack() as held:
-        while not _is_ours(place, held):
-            held.close()  # the run before has just finished, and taken its folder away
-        yield
-
-
-def _is_ours(place: Path, held: ExitStack) -> bool:
-    """Whether the lock in `place` is taken now; `held` keeps it.
-
-    Raises:
-        Unwritable: another process has it, or no file can be written there.
-    """
-    with unwritable(place):
-        place.mkdir(parents=True, exist_ok=True)
-        file = held.enter_context((place / _LOCK).open("w"))
-    try:
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return os.path.samestat(os.fstat(file.fileno()), os.stat(place / _LOCK))
-    except ImportError:  # a system without such locks
-        return True
-    except FileNotFoundError:
-        return False
-    except BlockingIOError:
-        raise Unwritable(
-            "another run is writing its report there",
-            where=str(place),
-            valid="wait for it, or choose another folder",
-        ) from None
-    except OSError:  # a file system without such locks
-        return True
 
 
 def _claim(file: io.BufferedRandom, n_bytes: int) -> None:

@@ -12,6 +12,8 @@ import math
 import signal
 import threading
 import webbrowser
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -47,13 +49,10 @@ class Playback:
         return self._stage.url
 
     def wait(self) -> None:
-        """Returns when the user interrupts, or when this process is asked to end: meshcat's server
-        is a process of its own and would outlive it. To be called in the main thread."""
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
-        try:
+        """Returns when the user interrupts, or when this process is asked to end. To be called in the main
+        thread."""
+        with _until_interrupted():
             threading.Event().wait()
-        except KeyboardInterrupt:
-            return
 
     def close(self) -> None:
         """Ends the server."""
@@ -72,11 +71,23 @@ def show(what: Record | str | Path, open_browser: bool = True) -> None:
     Raises:
         MissingFile: the folder is not there or holds no report. BadSyntax: its replay is damaged.
     """
-    with play(what) as playback:
+    with play(what) as playback, _until_interrupted():
         print(f"{playback.replay.name} is playing at {playback.url} (Ctrl-C ends it)", flush=True)
         if open_browser:
             webbrowser.open(playback.url, new=2)
         playback.wait()
+
+
+@contextmanager
+def _until_interrupted() -> Iterator[None]:
+    """Ends the block, without an error, at Ctrl-C or where this process is asked to end."""
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    except KeyboardInterrupt:
+        return
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def play(what: Record | str | Path) -> Playback:
@@ -163,7 +174,7 @@ def _contacts(stage: Stage, replay: Replay, times: list[float], size: float) -> 
         stage.arrow(f"{path}/arrow", foot, foot + reach, size / 450, WAY_OUT)
         at, keys = contact.frame, [(times[contact.frame], True)]
         keys = [(times[0], False)] * (at > 0) + keys
-        keys += [(times[at + 1], False)] * (at + 1 < len(times))
+        keys += [(time, False) for time in times[at + 1 : at + 2]]
         stage.animate(path, "visible", "bool", *zip(*keys, strict=True))
 
 

@@ -1,16 +1,14 @@
-"""The one door to meshcat: its server, and a scene that plays in any browser that opens its
-address.
+"""The one door to meshcat: a scene in its language, and its viewer, served to any browser that opens the address.
 
-Everything is sent once, before a browser is there; meshcat's server keeps it and gives it to each
-browser that comes. Playing and scrubbing are meshcat's own animation; what jumps to a step is a
-control of meshcat's viewer. Not for: which shapes, poses and colours (`playback`).
+Everything is told once, before a browser is there; each browser that comes is given all of it, in the same order.
+Playing and scrubbing are meshcat's own animation; what jumps to a step is a control of meshcat's viewer. meshcat's
+own server is left out: it listens on every address (`server`). Not for: shapes, poses and colours (`playback`).
 """
 
 from __future__ import annotations
 
-import contextlib
-import io
 from collections.abc import Sequence
+from pathlib import Path
 
 import meshcat
 import meshcat.animation
@@ -18,12 +16,24 @@ import meshcat.geometry
 import numpy as np
 import umsgpack
 
+from clearance.view.server import PageServer
+
 Z_FROM_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 """Turns meshcat's cylinder, which stands along y, to stand along z."""
 
 _HOLD = 2300
 """three.js `InterpolateDiscrete`: between two frames the first one is shown, never an invented
 pose."""
+
+
+_PAGE = """<!DOCTYPE html>
+<html><head><meta charset="utf-8"><title>clearance</title>
+<style>body {margin: 0} #meshcat-pane {width: 100vw; height: 100vh; overflow: hidden}</style></head>
+<body><div id="meshcat-pane"></div><script src="script.js"></script><script>
+var viewer = new MeshCat.Viewer(document.getElementById("meshcat-pane"));
+viewer.connect(`ws://${location.host}${location.pathname}scene`);
+</script></body></html>
+"""
 
 
 class _HeldTrack(meshcat.animation.AnimationTrack):
@@ -35,24 +45,37 @@ class _HeldTrack(meshcat.animation.AnimationTrack):
         return {**super().lower(), "interpolation": _HOLD}
 
 
-class Stage:
-    """A meshcat server with one scene."""
+class _Commands:
+    """Stands in for meshcat's window: keeps every command as its viewer reads them."""
 
     def __init__(self) -> None:
-        with contextlib.redirect_stdout(
-            io.StringIO()
-        ):  # meshcat greets on stdout, which belongs to the caller
-            self._root = meshcat.Visualizer()
+        self.packed: list[bytes] = []
+
+    def send(self, command: object) -> None:
+        self.tell(command.lower())
+
+    def tell(self, command: dict) -> None:
+        self.packed.append(umsgpack.packb(command))
+
+
+class Stage:
+    """A scene, and a server that gives it to browsers."""
+
+    def __init__(self) -> None:
+        self._commands = _Commands()
+        self._root = meshcat.Visualizer(window=self._commands)
         self._opening = "this.gui.open()"
         self._clips: dict[meshcat.path.Path, meshcat.animation.AnimationClip] = {}
         self._root["/Background"].set_property("top_color", [0.93, 0.945, 0.96])
         self._root["/Background"].set_property("bottom_color", [0.99, 0.99, 0.985])
         self._root["/Axes"].set_property("visible", False)
+        self._server: PageServer | None = None
 
     @property
     def url(self) -> str:
-        """The address to open in a browser."""
-        return self._root.url()
+        """The address to open in a browser, once the scene is finished."""
+        assert self._server is not None
+        return self._server.url
 
     def mesh(
         self, path: str, vertices: np.ndarray, triangles: np.ndarray, colour: int, opacity: float
@@ -125,8 +148,10 @@ class Stage:
         clip.tracks[kind] = _HeldTrack(kind, type_, list(times), list(values))
 
     def finish(self) -> None:
-        """Sends all tracks as one animation, which starts at once and repeats."""
+        """Makes all tracks one animation, which starts at once and repeats, and lets browsers come."""
         self._root.set_animation(meshcat.animation.Animation(self._clips), repetitions=1000)
+        script = Path(meshcat.viewer_assets_path(), "dist", "main.min.js").read_bytes()
+        self._server = PageServer(_PAGE, script, tuple(self._commands.packed))
 
     def look(self, target: np.ndarray, eye: np.ndarray) -> None:
         """Puts the camera at `eye` and lets it orbit around `target`, both (3,) [m] in the world.
@@ -149,17 +174,13 @@ class Stage:
         self._control({"name": name, "callback": f"({self._opening}, {script})", **bounds})
 
     def _control(self, control: dict) -> None:
-        """meshcat's viewer knows controls, its server passes on only commands that it knows itself;
-        what comes under the name of a property is kept and given to every browser unread."""
-        command = {"type": "set_control", "path": "/clearance", **control}
-        socket = self._root.window.zmq_socket
-        socket.send_multipart([b"set_property", b"/clearance", umsgpack.packb(command)])
-        socket.recv()
+        """meshcat's viewer knows controls, its Python side does not."""
+        self._commands.tell({"type": "set_control", "path": "/clearance", **control})
 
     def close(self) -> None:
         """Ends the server."""
-        self._root.window.server_proc.terminate()
-        self._root.window.server_proc.wait()
+        if self._server is not None:
+            self._server.close()
 
 
 def _frame_along(direction: np.ndarray) -> np.ndarray:

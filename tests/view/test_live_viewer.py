@@ -7,7 +7,7 @@ import re
 import signal
 import subprocess
 import sys
-import time
+from dataclasses import replace
 from urllib.error import URLError
 from urllib.request import ProxyHandler, build_opener
 
@@ -155,7 +155,11 @@ def test_the_rod_reaches_from_point_to_point_in_every_direction():
     assert np.abs(np.column_stack([middles - half, middles + half]) - lines).max() < 3e-9
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM])
+ENDS = {signal.SIGINT: 0, signal.SIGTERM: 0, signal.SIGHUP: -signal.SIGHUP, signal.SIGKILL: -signal.SIGKILL}
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="other signals")
+@pytest.mark.parametrize("how", ENDS)
 def test_the_server_ends_with_the_program(tmp_path, how):
     replay_of(RUN).save(tmp_path / "replay.npz")
     script = "import sys; from clearance.view import show; show(sys.argv[1], open_browser=False)"
@@ -165,8 +169,17 @@ def test_the_server_ends_with_the_program(tmp_path, how):
     url = re.search(r"http://\S+", program.stdout.readline())[0]
     ask = build_opener(ProxyHandler({})).open
     assert ask(url, timeout=20).status == 200
-    time.sleep(0.3)  # from the printed address to the wait
     program.send_signal(how)
-    assert program.wait(timeout=20) == 0
+    assert program.wait(timeout=20) == ENDS[how]
     with pytest.raises(URLError):
         ask(url, timeout=20)
+
+
+def test_a_run_that_ends_in_contact_plays(tmp_path):
+    """Each overlap is hidden in the frame after its own, where there is one."""
+    replay = replay_of(RUN)
+    last = len(replay.times) - 1
+    at_the_end = replace(replay, contacts=[replace(one, frame=last) for one in replay.contacts])
+    at_the_end.save(tmp_path / "replay.npz")
+    with play(tmp_path) as playback:
+        assert {contact.frame for contact in playback.replay.contacts} == {last}
