@@ -3,7 +3,8 @@
 pycollada reads the document. It, and every reader on top of it, keeps single precision, turns NaN
 into 0, leaves unit and up axis to the caller and cuts polygons as fans: positions and transforms
 are therefore read again from the document in double precision, and the rest is done here, once.
-RViz and MoveIt obey `<unit>` but not `<up_axis>`; a file that is turned is noted. Source: Khronos,
+RViz and MoveIt obey `<unit>` but not `<up_axis>`: the caller says which way is taken, and a file
+that the two take differently is noted. Source: Khronos,
 COLLADA 1.4.1 specification, chapters 5 (`up_axis`, `unit`, `instance_geometry`) and 4
 (post-multiplied transforms).
 """
@@ -12,7 +13,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -33,6 +34,9 @@ _IRRELEVANT = (
 Z_FROM_Y_UP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 """(3, 3) turns y up, z towards the viewer into z up, -y towards the viewer; x stays."""
 
+UpAxis = Literal["file", "ros"]
+"""What becomes of `<up_axis>`: "file" turns as it says, "ros" ignores it as RViz and MoveIt do."""
+
 _Z_FROM = {
     "X_UP": np.array([[0.0, -1, 0], [0, 0, -1], [1, 0, 0]]),
     "Y_UP": Z_FROM_Y_UP,
@@ -40,8 +44,11 @@ _Z_FROM = {
 }
 
 
-def read_collada(data: bytes) -> Triangles:
+def read_collada(data: bytes, up_axis: UpAxis = "file") -> Triangles:
     """All geometry that the document's scene places, in metres, z up.
+
+    Args:
+        up_axis: "file" turns what `<up_axis>` calls up into z up; "ros" leaves the axes as they are.
 
     Raises:
         BadSyntax: not COLLADA, or something in it that is not supported. EmptyMesh, BadPolygon,
@@ -58,7 +65,7 @@ def read_collada(data: bytes) -> Triangles:
         raise BadSyntax(f"not a COLLADA file that can be read: {_reason(error)}") from None
     if not pieces:
         raise EmptyMesh("the mesh has no faces", valid="a scene that places at least one polygon")
-    return _in_metres_z_up(_joined(pieces), document)
+    return _in_metres_z_up(_joined(pieces), document, up_axis)
 
 
 def _reason(error: Exception) -> str:
@@ -183,17 +190,22 @@ def _joined(pieces: list[Triangles]) -> Triangles:
     )
 
 
-def _in_metres_z_up(triangles: Triangles, document: collada.Collada) -> Triangles:
+def _in_metres_z_up(
+    triangles: Triangles, document: collada.Collada, up_axis: UpAxis
+) -> Triangles:
     unit = document.assetInfo.unitmeter
     metres = 1.0 if unit is None else float(unit)
     if not (np.isfinite(metres) and metres > 0):
         raise BadDimension(f"<unit meter={metres:g}> is given", valid="a positive number of metres")
     up = document.assetInfo.upaxis
-    notes = []
-    if metres != 1.0:
-        notes.append(f"scaled by {metres:g}, as its <unit> says")
+    notes = [f"scaled by {metres:g}, as its <unit> says"] if metres != 1.0 else []
     if up != "Z_UP":
-        notes.append(
-            f"turned from {up} to z up, as its <up_axis> says (RViz and MoveIt do not turn it)"
-        )
-    return Triangles((triangles.vertices @ _Z_FROM[up].T) * metres, triangles.corners, tuple(notes))
+        notes.append(_axis_note(up, up_axis))
+    turn = _Z_FROM[up] if up_axis == "file" else np.eye(3)
+    return Triangles((triangles.vertices @ turn.T) * metres, triangles.corners, tuple(notes))
+
+
+def _axis_note(up: str, up_axis: UpAxis) -> str:
+    if up_axis == "ros":
+        return f"not turned from {up} to z up: its <up_axis> is ignored, as RViz and MoveIt do"
+    return f"turned from {up} to z up, as its <up_axis> says (RViz and MoveIt do not turn it)"

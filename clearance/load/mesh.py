@@ -18,13 +18,13 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh, at
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.load.collada_file import Z_FROM_Y_UP, read_collada
+from clearance.load.collada_file import Z_FROM_Y_UP, UpAxis, read_collada
 from clearance.load.input_files import read_bytes
 from clearance.load.obj_file import read_obj
 from clearance.load.stl_file import read_stl
 from clearance.load.triangles import Triangles, checked, n_without_area, scaled
 
-_OWN = {".stl": read_stl, ".obj": read_obj, ".dae": read_collada}
+_OWN = {".stl": read_stl, ".obj": read_obj}
 _TRIMESH = (".ply", ".off", ".glb")
 
 
@@ -43,35 +43,42 @@ class LoadedMesh:
     notes: tuple[str, ...]
 
 
-def read_mesh(path: str | PathLike[str], scale: float | Sequence[float] = 1.0) -> Polyhedron:
+def read_mesh(
+    path: str | PathLike[str], scale: float | Sequence[float] = 1.0, up_axis: UpAxis = "file"
+) -> Polyhedron:
     """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`).
 
     Args:
         scale: factor of all axes or of each; negative mirrors, and the faces stay counter-clockwise
             from outside.
+        up_axis: what becomes of a COLLADA file's `<up_axis>`: "file" obeys it, "ros" ignores it.
 
     Raises:
         MissingFile, BadSyntax, EmptyMesh, NotFinite, BadPolygon, BadDimension: with the file's
         name.
     """
     path = Path(path)
-    return mesh_from_bytes(read_bytes(path, path.name), path.name, scale).shape
+    return mesh_from_bytes(read_bytes(path, path.name), path.name, scale, up_axis).shape
 
 
-def mesh_from_bytes(data: bytes, name: str, scale: float | Sequence[float] = 1.0) -> LoadedMesh:
+def mesh_from_bytes(
+    data: bytes, name: str, scale: float | Sequence[float] = 1.0, up_axis: UpAxis = "file"
+) -> LoadedMesh:
     """The solid in the content of a mesh file; `name` gives the format and stands in errors."""
     with at(name):
-        return _solid(scaled(triangles_from_bytes(data, name), scale))
+        return _solid(scaled(triangles_from_bytes(data, name, up_axis), scale))
 
 
-def triangles_from_bytes(data: bytes, name: str) -> Triangles:
+def triangles_from_bytes(data: bytes, name: str, up_axis: UpAxis = "file") -> Triangles:
     """The triangles of a mesh file as they are in it, before anything is mended."""
     suffix = Path(name).suffix.lower()
+    if suffix == ".dae":
+        return checked(read_collada(data, up_axis))
     if suffix in _OWN:
         return checked(_OWN[suffix](data))
     if suffix in _TRIMESH:
         return checked(_by_trimesh(data, suffix))
-    raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join([*_OWN, *_TRIMESH]))
+    raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join([*_OWN, ".dae", *_TRIMESH]))
 
 
 def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadDimension, BadPolygon, BadSyntax, EmptyMesh, NotFinite
-from clearance.load.mesh import mesh_from_bytes
+from clearance.load.input_files import InputFiles
+from clearance.load.mesh import mesh_from_bytes, read_mesh
+from clearance.load.mesh_store import MeshStore
 from tests.load.making import signed_volume
 
 WEDGE = "0 0 0 1 0 0 0 2 0 0 0 3"
@@ -62,6 +64,26 @@ def test_unit_and_up_axis_are_obeyed_once(asset, upper, lower):
     assert mesh.shape.bounds.tolist() == [lower, upper]
     assert signed_volume(mesh.shape) > 0
     assert bool(mesh.notes) == (asset != Z_UP)
+
+
+@pytest.mark.parametrize("axis", ["X_UP", "Y_UP", "Z_UP", None])
+def test_the_ros_way_obeys_the_unit_and_leaves_every_axis_where_it_is(axis):
+    tag = "" if axis is None else f"<up_axis>{axis}</up_axis>"
+    data = document('<unit meter="0.5"/>' + tag)
+    mesh = mesh_from_bytes(data, "m.dae", up_axis="ros")
+    assert mesh.shape.bounds.tolist() == [[0, 0, 0], [0.5, 1, 1.5]]
+    assert any("is ignored, as RViz and MoveIt do" in note for note in mesh.notes) == (axis != "Z_UP")
+    assert not any("turned from" in note and "not turned" not in note for note in mesh.notes)
+
+
+def test_a_store_keeps_both_ways_apart(tmp_path):
+    (tmp_path / "m.dae").write_bytes(document("<up_axis>Y_UP</up_axis>"))
+    store = MeshStore(InputFiles(tmp_path))
+    turned, left = (store.load(tmp_path / "m.dae", (1.0, 1.0, 1.0), way) for way in ("file", "ros"))
+    assert turned.shape.bounds[1].tolist() == [1, 0, 2]
+    assert left.shape.bounds[1].tolist() == [1, 2, 3]
+    assert store.load(tmp_path / "m.dae", (1.0, 1.0, 1.0)) is turned
+    assert read_mesh(tmp_path / "m.dae", up_axis="ros").bounds[1].tolist() == [1, 2, 3]
 
 
 def test_scale_comes_on_top_of_the_unit():
