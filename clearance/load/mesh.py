@@ -18,9 +18,10 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh, at
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.load.collada_file import Z_FROM_Y_UP, UpAxis, read_collada
+from clearance.load.collada_file import UpAxis, read_collada
 from clearance.load.input_files import read_bytes
 from clearance.load.obj_file import read_obj
+from clearance.load.placing import Z_FROM_Y_UP
 from clearance.load.stl_file import read_stl
 from clearance.load.triangles import Triangles, checked, n_without_area, scaled
 

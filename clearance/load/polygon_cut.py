@@ -2,8 +2,8 @@
 
 Loaders usually cut every polygon as a fan from its first corner, which covers wrong ground when it
 is concave. Here a fan is used only where all its triangles turn the polygon's way; any other
-polygon loses its ears one by one (Meisters, Polygons have ears, 1975). Not for: polygons with
-holes.
+polygon loses its ears one by one (Meisters, Polygons have ears, 1975), in about n log n steps
+(`kernels.ears`). Not for: polygons with holes.
 """
 
 from __future__ import annotations
@@ -13,41 +13,63 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import BadPolygon
+from clearance.kernels.ears import TOO_MUCH, cut_ears
+
+MOST_WORK = 300_000_000
+"""Corners that cutting the polygons of a piece may look at: some 2 s. A star of 100,000 corners takes 600,000."""
 
 
-def cut_polygons(vertices: np.ndarray, polygons: Sequence[Sequence[int]]) -> np.ndarray:
+def cut_rings(vertices: np.ndarray, corners: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """(m, 3) triangles of all polygons, in the polygons' order and orientation.
 
     Args:
-        vertices: (n, 3) [m].
-        polygons: vertex indices of each, three or more, all in range.
+        vertices: (n, 3) [m], finite where they are used.
+        corners: vertex indices of all polygons one after the other, all in range.
+        counts: how many corners each polygon has, three or more.
 
     Raises:
-        BadPolygon: fewer than three corners, or a polygon that crosses itself.
+        BadPolygon: fewer than three corners, a polygon that crosses itself, or one that is too intricate.
     """
-    sizes = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
-    if len(sizes) and sizes.min() < 3:
-        i_bad = int(np.argmin(sizes))
-        raise BadPolygon(f"face {i_bad} has {sizes[i_bad]} vertices", valid="three or more")
-    starts = np.concatenate([[0], np.cumsum(sizes - 2)])
+    if len(counts) and counts.min() < 3:
+        i_bad = int(np.argmin(counts))
+        raise BadPolygon(f"face {i_bad} has {counts[i_bad]} vertices", valid="three or more")
+    firsts = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    starts = np.concatenate([[0], np.cumsum(counts - 2)]).astype(np.int64)
     triangles = np.empty((starts[-1], 3), dtype=np.int64)
-    for size in np.unique(sizes):
-        chosen = np.flatnonzero(sizes == size)
-        rows = np.array([polygons[i] for i in chosen], dtype=np.int64)
-        cut = _cut_equal(vertices, rows, chosen)
+    work = np.array([MOST_WORK])
+    for size in np.unique(counts):
+        chosen = np.flatnonzero(counts == size)
+        rows = corners[firsts[chosen][:, None] + np.arange(size)]
+        cut = _cut_equal(vertices, rows, chosen, work)
         triangles[(starts[chosen][:, None] + np.arange(size - 2)).ravel()] = cut.reshape(-1, 3)
     return triangles
 
 
-def _cut_equal(vertices: np.ndarray, rows: np.ndarray, numbers: np.ndarray) -> np.ndarray:
+def cut_polygons(vertices: np.ndarray, polygons: Sequence[Sequence[int]]) -> np.ndarray:
+    """`cut_rings` of polygons that are given one by one."""
+    counts = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+    corners = np.fromiter((i for polygon in polygons for i in polygon), np.int64, int(counts.sum()))
+    return cut_rings(vertices, corners, counts)
+
+
+def _cut_equal(
+    vertices: np.ndarray, rows: np.ndarray, numbers: np.ndarray, work: np.ndarray
+) -> np.ndarray:
     """(m, k - 2, 3) triangles of m polygons with k corners each."""
     size = rows.shape[1]
     fan = np.stack([np.repeat(rows[:, :1], size - 2, axis=1), rows[:, 1:-1], rows[:, 2:]], axis=2)
     if size == 3:
         return fan
-    for i in np.flatnonzero(~_fans_cover(vertices[rows])):
-        fan[i] = rows[i][_ears(vertices[rows[i]], int(numbers[i]))]
+    corners = _within_one(vertices[rows])
+    for i in np.flatnonzero(~_fans_cover(corners)):
+        fan[i] = rows[i][_ears(corners[i], int(numbers[i]), work)]
     return fan
+
+
+def _within_one(corners: np.ndarray) -> np.ndarray:
+    """(m, k, 3) polygons, each divided by a power of two: the same polygons without overflow."""
+    greatest = np.abs(corners).max(axis=(1, 2), keepdims=True)
+    return np.ldexp(corners, -np.frexp(greatest)[1])
 
 
 def _fans_cover(corners: np.ndarray) -> np.ndarray:
@@ -67,49 +89,18 @@ def _newell(corners: np.ndarray) -> np.ndarray:
     return np.cross(local, np.roll(local, -1, axis=1)).sum(axis=1)
 
 
-def _ears(corners: np.ndarray, number: int) -> np.ndarray:
+def _ears(corners: np.ndarray, number: int, work: np.ndarray) -> np.ndarray:
     """(k - 2, 3) positions of the triangles of one (k, 3) polygon."""
     normal = _newell(corners[None])[0]
     drop = int(np.argmax(np.abs(normal)))
-    flat = np.delete(corners, drop, axis=1) * (
-        1.0 if (normal[drop] > 0) != (drop == 1) else [1.0, -1.0]
-    )
-    left = list(range(len(corners)))
-    triangles = []
-    while len(left) > 3:
-        i = _ear(flat, left)
-        if i is None:
-            break
-        triangles.append((left[i - 1], left[i], left[(i + 1) % len(left)]))
-        del left[i]
-    if len(left) > 3 or _turn(*flat[left]) < 0 or not normal.any():
+    sign = 1.0 if (normal[drop] > 0) != (drop == 1) else -1.0
+    flat = np.ascontiguousarray(np.delete(corners, drop, axis=1) * [1.0, sign])
+    triangles = np.empty((len(flat) - 2, 3), dtype=np.int64)
+    outcome = cut_ears(flat, triangles, work)
+    if outcome == TOO_MUCH:
+        raise BadPolygon(
+            f"face {number} of {len(flat)} corners is too intricate", valid="export triangles"
+        )
+    if outcome or not normal.any():
         raise BadPolygon(f"face {number} crosses itself", valid="a simple polygon is needed")
-    return np.array([*triangles, tuple(left)])
-
-
-def _ear(flat: np.ndarray, left: list[int]) -> int | None:
-    """Position in `left` of a corner that can be cut off, a true ear if there is one."""
-    straight = None
-    for i in range(len(left)):
-        a, b, c = left[i - 1], left[i], left[(i + 1) % len(left)]
-        turn = _turn(flat[a], flat[b], flat[c])
-        if turn == 0 and straight is None:
-            straight = i
-        if turn > 0 and not _holds_corner(flat, (a, b, c), left):
-            return i
-    return straight
-
-
-def _holds_corner(flat: np.ndarray, ear: tuple[int, int, int], left: list[int]) -> bool:
-    a, b, c = (flat[i] for i in ear)
-    others = [flat[i] for i in left if i not in ear]
-    return any(
-        _turn(a, b, p) >= 0 and _turn(b, c, p) >= 0 and _turn(c, a, p) >= 0
-        for p in others
-        if not any(np.array_equal(p, corner) for corner in (a, b, c))
-    )
-
-
-def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
-    """Twice the signed area of a triangle in the plane, positive counter-clockwise."""
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    return triangles

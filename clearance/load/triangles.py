@@ -40,17 +40,26 @@ def checked(triangles: Triangles) -> Triangles:
     corners = np.asarray(triangles.corners, dtype=np.int64).reshape(-1, 3)
     if not len(corners):
         raise EmptyMesh("the mesh has no faces", valid="at least one triangle is needed")
-    outside = (corners < 0) | (corners >= len(vertices))
-    if outside.any():
-        raise BadPolygon(
-            f"a face refers to vertex {int(corners[outside][0])}", valid=f"0 to {len(vertices) - 1}"
-        )
+    refuse_missing_corners(corners, len(vertices))
     broken = ~np.isfinite(vertices[corners]).all(axis=(1, 2))
     if broken.any():
         i_bad = int(np.flatnonzero(broken)[0])
         raise NotFinite(f"face {i_bad} has a coordinate that is not a finite number")
     used, new_index = np.unique(corners, return_inverse=True)
     return Triangles(vertices[used], new_index.reshape(-1, 3), triangles.notes)
+
+
+def refuse_missing_corners(corners: np.ndarray, n_vertices: int) -> None:
+    """Refuses corners, of any shape, that are not among the vertices.
+
+    Raises:
+        BadPolygon: with the first of them.
+    """
+    outside = (corners < 0) | (corners >= n_vertices)
+    if outside.any():
+        raise BadPolygon(
+            f"a face refers to vertex {int(corners[outside][0])}", valid=f"0 to {n_vertices - 1}"
+        )
 
 
 def scaled(triangles: Triangles, scale: float | Sequence[float]) -> Triangles:

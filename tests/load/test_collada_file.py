@@ -2,10 +2,12 @@
 kept.
 """
 
+import re
+
 import numpy as np
 import pytest
 
-from clearance.errors import BadDimension, BadPolygon, BadSyntax, EmptyMesh, NotFinite
+from clearance.errors import BadDimension, BadInput, BadPolygon, BadSyntax, EmptyMesh, NotFinite
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh import mesh_from_bytes, read_mesh
 from clearance.load.mesh_store import MeshStore
@@ -45,6 +47,7 @@ def load(*args, scale=1.0, **kwargs):
 
 
 Z_UP = "<up_axis>Z_UP</up_axis>"
+SHARED = '<input semantic="VERTEX" source="#v" offset="0"/>'
 
 
 @pytest.mark.parametrize(
@@ -204,3 +207,122 @@ def test_each_fault_is_one_line_with_the_file(data, fault):
         mesh_from_bytes(data, "m.dae")
     assert str(caught.value).startswith("m.dae: ")
     assert "\n" not in str(caught.value)
+
+
+def with_accessor(accessor: str, numbers: str, **kwargs) -> bytes:
+    """The wedge's document with another accessor over other numbers."""
+    text = document(Z_UP, vertices=numbers, **kwargs).decode()
+    return re.sub(r"<accessor.*</accessor>", accessor, text, flags=re.DOTALL).encode()
+
+
+XYZ = "".join(f'<param name="{name}" type="float"/>' for name in "XYZ")
+
+
+@pytest.mark.parametrize(
+    ("accessor", "numbers"),
+    [
+        (f'<accessor source="#pa" count="4" offset="2" stride="3">{XYZ}</accessor>', f"9 9 {WEDGE}"),
+        (
+            f'<accessor source="#pa" count="4" stride="4">{XYZ}</accessor>',
+            "0 0 0 7 1 0 0 7 0 2 0 7 0 0 3",
+        ),
+        (
+            f'<accessor source="#pa" count="4" stride="4"><param type="float"/>{XYZ}</accessor>',
+            "7 0 0 0 7 1 0 0 7 0 2 0 7 0 0 3",
+        ),
+        (
+            '<accessor source="#pa" count="4" stride="3"><param name="Z"/><param name="X"/><param name="Y"/>'
+            "</accessor>",
+            "0 0 0 0 1 0 0 0 2 3 0 0",
+        ),
+        ('<accessor source="#pa" count="4" stride="3"/>', WEDGE),
+    ],
+)
+def test_positions_are_taken_as_the_accessor_says(accessor, numbers):
+    mesh = mesh_from_bytes(with_accessor(accessor, numbers), "m.dae")
+    assert mesh.shape.bounds.tolist() == [[0, 0, 0], [1, 2, 3]]
+    assert signed_volume(mesh.shape) == pytest.approx(1)
+
+
+def primitive(kind: str, count: int, inside: str, inputs: str = SHARED) -> str:
+    return f'<{kind} count="{count}">{inputs}{inside}</{kind}>'
+
+
+NODE = '<instance_geometry url="#g"/>'
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (with_accessor(f'<accessor source="#pa" count="5" stride="3">{XYZ}</accessor>', WEDGE), "number 14"),
+        (with_accessor(f'<accessor source="#pa" count="4" stride="2">{XYZ}</accessor>', WEDGE), "stride 2"),
+        (with_accessor(f'<accessor source="#pa" count="-4" stride="3">{XYZ}</accessor>', WEDGE), "count -4"),
+        (with_accessor('<accessor source="#pa" count="4" stride="3"><param name="S"/></accessor>', WEDGE), "S"),
+        (document(Z_UP).replace(b'count="12"', b'count="13"'), "its count is 13"),
+        (document(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'), "its count is 5"),
+        (document(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")), "count is 2"),
+        (document(Z_UP, primitives=primitive("polygons", 2, "<p>0 1 2</p>")), "its count is 2"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "")), "no <p>"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 -1</p>")), "vertex -1"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 4294967298</p>")), "vertex 4294967298"),
+        (document(Z_UP, primitives=primitive("triangles", 1, f"<p>0 1 {2**64}</p>")), "whole number"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")), "'1_0' is not a whole number"),
+        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")), "<p> holds <b>"),
+        (
+            document(Z_UP, primitives=primitive("polygons", 1, "<ph><p>0 1 2</p><h>0 1 3</h></ph>")),
+            "holes (<ph>)",
+        ),
+        (document(Z_UP, vertices=WEDGE.replace("3", "3_0")), "'3_0' is not a number"),
+        (document('<unit meter="0,01"/>' + Z_UP), "<unit meter='0,01'> is given"),
+        (document('<unit meter="inch"/>' + Z_UP), "<unit meter='inch'> is given"),
+        (document('<unit name="inch"/>' + Z_UP), "<unit name='inch'> is given"),
+        (document("<up_axis>W_UP</up_axis>"), "<up_axis> is 'W_UP'; X_UP, Y_UP, Z_UP"),
+        (
+            document(Z_UP).replace(b"<mesh>", b'<asset><unit meter="0.5"/></asset><mesh>'),
+            "units of 1 and 0.5 m",
+        ),
+        (
+            document(Z_UP, nodes=f"<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix>{NODE}</node>"),
+            "<matrix>: the last row is [0.0, 0.0, 0.0, 2.0]; 0 0 0 1",
+        ),
+        (document(Z_UP, nodes=f"<node><translate>1 0</translate>{NODE}</node>"), "<translate>: 2 numbers; 3"),
+        (document(Z_UP, nodes=f"<node><scale>1 nan 1</scale>{NODE}</node>"), "not finite"),
+        (document(Z_UP, nodes=f"<node><rotate>0 0 0 9</rotate>{NODE}</node>"), "a direction"),
+        (document(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1), "entities"),
+        (document(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"), "nested more than 100 deep"),
+    ],
+)
+def test_what_would_be_another_surface_is_refused(data, says):
+    with pytest.raises(BadInput) as caught:
+        mesh_from_bytes(data, "m.dae")
+    assert says in str(caught.value)
+    assert str(caught.value).startswith("m.dae: ")
+
+
+def tenfold(n_levels: int) -> bytes:
+    """Nodes of which each places the one below it ten times."""
+    library = f'<node id="n0">{NODE}</node>' + "".join(
+        f'<node id="n{k + 1}">{f"""<instance_node url="#n{k}"/>""" * 10}</node>' for k in range(n_levels)
+    )
+    nodes = f'<node><instance_node url="#n{n_levels}"/></node>'
+    text = document(Z_UP, nodes=nodes).decode()
+    return text.replace("<library_visual", f"<library_nodes>{library}</library_nodes><library_visual", 1).encode()
+
+
+def test_nodes_that_place_each_other_tenfold_are_counted():
+    assert mesh_from_bytes(tenfold(2), "m.dae").n_triangles == 400
+    for n_levels in (6, 40):
+        with pytest.raises(BadSyntax, match=r"more than 20,000 copies of nodes"):
+            mesh_from_bytes(tenfold(n_levels), "m.dae")
+
+
+def test_a_node_that_places_itself_is_refused():
+    nodes = '<node id="a"><instance_node url="#a"/></node>'
+    with pytest.raises(BadSyntax, match="place themselves"):
+        load(Z_UP, nodes=nodes)
+
+
+def test_an_id_that_two_geometries_have_is_refused():
+    twice = '<library_geometries><geometry id="g"/></library_geometries>'
+    with pytest.raises(BadSyntax, match="2 <geometry> elements have the id 'g'"):
+        load(Z_UP, more=twice)

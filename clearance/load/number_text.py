@@ -1,0 +1,64 @@
+"""Numbers in text as mesh files write them: ASCII digits, a sign, a point, an exponent, and nothing else.
+
+Python and numpy also take `1_0` for 10 and digits of other scripts; in a file either is damage. Not for:
+tables (`trajectory_file`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.errors import BadSyntax
+
+Words = Sequence[str] | Sequence[bytes]
+
+
+def floats(words: Words) -> np.ndarray:
+    """(n,) the words as float64, each to the nearest double.
+
+    Raises:
+        BadSyntax: a word that is no number, with the word.
+    """
+    return _numbers(words, np.float64, "a number")
+
+
+def integers(words: Words) -> np.ndarray:
+    """(n,) the words as int64.
+
+    Raises:
+        BadSyntax: a word that is no whole number of 64 bits, with the word.
+    """
+    return _numbers(words, np.int64, "a whole number")
+
+
+def _numbers(words: Words, kind: type, wanted: str) -> np.ndarray:
+    if not len(words):
+        return np.empty(0, dtype=kind)
+    try:
+        values = np.array(words, dtype=kind)
+        fits = _is_plain(words)
+    except (ValueError, OverflowError):
+        fits = False
+    if fits:
+        return values
+    raise BadSyntax(f"{_shown(next(w for w in words if not _fits(w, kind)))} is not {wanted}")
+
+
+def _is_plain(words: Words) -> bool:
+    joined = words[0][:0].join(words)
+    return joined.isascii() and (b"_" if isinstance(joined, bytes) else "_") not in joined
+
+
+def _fits(word: str | bytes, kind: type) -> bool:
+    try:
+        np.array([word], dtype=kind)
+    except (ValueError, OverflowError):
+        return False
+    return _is_plain([word])
+
+
+def _shown(word: str | bytes) -> str:
+    text = word.decode("utf-8", errors="replace") if isinstance(word, bytes) else word
+    return f"{text!r:.40}"
