@@ -75,7 +75,9 @@ class Run:
     def _row(self, step: int) -> dict:
         row = self.steps.slice(step, 1).to_pylist()[0]
         if row.get("between"):
-            row |= {"between": False, "status": status_of(row["clearance"], self.record.case.limits)}
+            known = row["clearance"]
+            status = None if known is None else status_of(known, self.record.case.limits)
+            row |= {"between": False, "status": status}
         return row
 
     @property

@@ -14,8 +14,8 @@ from clearance.report.intervals import (
     intervals,
     not_listed,
     status_counts,
-    verdict,
 )
+from clearance.report.verdict import verdict_of
 from tests.report.records import record
 
 GAPS = [0.03, 0.018, 0.004, 0.0, 0.0, 0.003, 0.012, 0.05, 0.015]
@@ -78,10 +78,17 @@ def test_a_jump_through_all_levels_enters_the_widest_first_and_leaves_the_deepes
 
 @pytest.mark.parametrize(
     ("letters", "expected"),
-    [("c c", "clear"), ("c n", "near miss"), ("n v", "violated"), ("x c", "violated")],
+    [("c c", "clear"), ("c n", "near"), ("n v", "violated"), ("x c", "contact")],
 )
 def test_the_verdict_is_the_worst_status(letters, expected):
-    assert verdict(run_of(letters, [0.1, 0.1])) == expected
+    assert verdict_of(run_of(letters, [0.1, 0.1])).status == expected
+
+
+def test_events_tell_the_least_until_the_level_is_left():
+    told = {(event.step, event.what): event.least for event in events(run_of(LETTERS, GAPS))}
+    assert told[1, "warn limit entered"] == told[2, "fail limit entered"] == 0.0
+    assert told[8, "warn limit entered"] == 0.015
+    assert told[7, "warn limit left"] is None
 
 
 def test_counts():

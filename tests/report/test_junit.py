@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from xml.etree import ElementTree
 
 from clearance.report import write_junit
+from clearance.simulate.record import ProfileAnswer
 from clearance.world.case import Limits
+from clearance.world.notice import Notice, Severity
 from tests.report.records import disagreeing, record
 
 
@@ -24,19 +27,20 @@ def failed(suite: ElementTree.Element) -> set[str]:
 
 def test_a_violated_pair_fails_and_the_others_pass(tmp_path):
     suite = suite_of(tmp_path)
-    assert failed(suite) == {"gripper - post"}
+    assert failed(suite) == {"verdict", "gripper - post"}
     assert suite.get("name") == "swing & <dip>"
-    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("10", "1", "1")
-    assert suite.find("testcase/skipped").get("message") == "excluded: bolted"
+    assert (suite.get("tests"), suite.get("failures"), suite.get("skipped")) == ("12", "2", "2")
+    skipped = [case.get("message") for case in suite.findall("testcase/skipped")]
+    assert skipped[0] == "excluded: bolted" and "samples only" in skipped[1]
 
 
 def test_the_fail_limit_decides(tmp_path):
     wide = suite_of(tmp_path, limits=Limits(fail=0.1, warn=0.2))
-    assert failed(wide) == {"gripper - post", "fore - post"}
+    assert failed(wide) == {"verdict", "gripper - post", "fore - post"}
 
 
 def test_contact_fails_without_a_limit(tmp_path):
-    assert failed(suite_of(tmp_path, limits=Limits())) == {"gripper - post"}
+    assert failed(suite_of(tmp_path, limits=Limits())) == {"verdict", "gripper - post"}
 
 
 def test_a_near_miss_passes_and_says_so(tmp_path):
@@ -48,3 +52,24 @@ def test_a_near_miss_passes_and_says_so(tmp_path):
 
 def test_a_cross_check_that_disagrees_fails(tmp_path):
     assert "agrees with python-fcl" in failed(suite_of(tmp_path, cross_check=disagreeing()))
+
+
+def test_profiles_and_notices_are_cases_of_their_own(tmp_path):
+    """The one that is not kept fails, the one that is passes; suspect input fails, a warning does not."""
+    floor = ProfileAnswer(
+        "floor", "xy", None, "outside", 0.02, False, False, -0.003, 1e-4, (0, 0), (0, 0), "fore", 7, ""
+    )
+    door = dataclasses.replace(floor, name="door", passed=True, gap=0.03)
+    notices = (Notice(Severity.SUSPECT, "units", "post.stl"), Notice(Severity.WARNING, "geometry", "antenna"))
+    suite = suite_of(tmp_path, profiles=(floor, door), notices=notices)
+    assert failed(suite) == {"verdict", "gripper - post", "floor", "units: post.stl"}
+    assert {"door", "geometry: antenna"} <= {case.get("name") for case in suite.findall("testcase")}
+
+
+def test_names_that_xml_has_no_room_for_are_escaped(tmp_path):
+    made = record()
+    minimum = dataclasses.replace(made.pair_minima[0], link="arm\uffff\x1b[31m", obstacle="post\ud800")
+    write_junit(dataclasses.replace(made, pair_minima=(minimum,)), tmp_path / "junit.xml")
+    suite = ElementTree.parse(tmp_path / "junit.xml").getroot().find("testsuite")
+    names = {case.get("name") for case in suite.findall("testcase")}
+    assert "arm\\uffff\\x1b[31m - post\\ud800" in names

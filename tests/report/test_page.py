@@ -45,7 +45,8 @@ def test_nothing_is_fetched(page):
 def test_every_part_of_the_page_is_there(page):
     text = own_text(page)
     for title in (
-        "Limit violated", "Clearance over time", "Replay", "Worst moment", "Events", "How sure",
+        "Contact, looked at the samples only", "Self-collision not checked",
+        "Clearance over time", "Replay", "Worst moment", "Events", "How sure",
         "Least clearance of every pair, mm", "Not measured", "What was loaded",
         "Where this comes from",
     ):  # fmt: skip
@@ -70,9 +71,12 @@ def test_the_matrix_leads_to_the_step_of_each_pair(page):
 def test_a_long_list_of_events_is_cut_and_says_so():
     summary = summary_of(record())
     summary["events"] = summary["events"][:1] * (MAX_EVENT_ROWS + 7)
+    summary["not_listed"]["events"] = 3
     html = events(summary)
     assert html.count("data-step") == MAX_EVENT_ROWS
     assert "7 more events in summary.json" in html
+    assert "3 more events follow from the status in steps.csv" in html
+    assert "&lt;" not in html, "markup shown as text"
 
 
 def test_a_long_run_is_thinned_and_says_so():

@@ -63,7 +63,7 @@ def test_a_bar_that_swings_past_both_samples_comes_as_near_as_the_closed_form_sa
 
 def test_a_bar_that_swings_into_the_post_is_contact_though_both_samples_are_clear():
     case = bar_and_post(-0.001)
-    assert cl.check(case).passed
+    assert cl.check(case, certify=False).passed
     assert cl.check(linear(case), certify=True).passed
     run = cl.check(case, certify=True)
     assert run.status == "contact"
@@ -86,7 +86,7 @@ def test_a_slide_that_overshoots_comes_as_near_as_the_closed_form_says():
 def test_a_plate_crossed_twice_between_two_samples_is_contact():
     box, plate = cl.box((0.05, 0.05, 0.05)), cl.box((1.0, 1.0, 1e-4))
     case = one_joint_case(JointKind.PRISMATIC, box, plate, placed_at(z=0.37), [2.0, -2.0])
-    assert cl.check(case).passed
+    assert cl.check(case, certify=False).passed
     assert cl.check(case, certify=True).status == "contact"
 
 

@@ -39,7 +39,7 @@ def swaying_arm(random: np.random.Generator) -> Case:
 @pytest.mark.parametrize("seed", range(40))
 def test_bodies_with_clocks_of_their_own_miss_nothing(seed):
     case = swaying_arm(np.random.default_rng(seed))
-    runs = {need: cl.check(case, need=need, jobs=1) for need in ("steps", "limit", "minimum")}
+    runs = {need: cl.check(case, need=need, jobs=1, certify=False) for need in ("steps", "limit", "minimum")}
     truth = runs["steps"].steps["clearance"].to_numpy()
     told = runs["limit"].steps["clearance"].to_numpy()
     known = ~np.isnan(told)

@@ -19,7 +19,7 @@ SCENES = Path(__file__).parents[2] / "scenes"
 @pytest.fixture(scope="module", params=["box_pipe", "panda_shelf", "hot_cell"])
 def runs(request: pytest.FixtureRequest) -> dict[str, cl.Run]:
     case = cl.load_case(SCENES / request.param / "case.yaml")
-    return {need: cl.check(case, need=need) for need in ("steps", "pairs", "limit", "minimum")}
+    return {need: cl.check(case, need=need, certify=False) for need in ("steps", "pairs", "limit", "minimum")}
 
 
 def test_pairs_have_the_same_steps_and_their_least_is_the_step(runs: dict[str, cl.Run]) -> None:
@@ -79,7 +79,7 @@ def test_less_asked_is_less_done(runs: dict[str, cl.Run]) -> None:
 @pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
 def test_threads_change_nothing(need: str) -> None:
     case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
-    one, two, four = (cl.check(case, need=need, jobs=jobs) for jobs in (1, 2, 4))
+    one, two, four = (cl.check(case, need=need, jobs=jobs, certify=False) for jobs in (1, 2, 4))
     for other in (two, four):
         assert one.steps.equals(other.steps)
         assert one.record.tally == other.record.tally
@@ -91,9 +91,9 @@ def test_how_steps_are_parted_changes_no_clearance(
     longest: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
-    whole = cl.check(case)
+    whole = cl.check(case, certify=False)
     monkeypatch.setattr(parts, "LONGEST_PART", longest)
-    assert cl.check(case).steps.equals(whole.steps)
+    assert cl.check(case, certify=False).steps.equals(whole.steps)
 
 
 @pytest.mark.parametrize("need", ["steps", "pairs"])
@@ -107,13 +107,13 @@ def test_a_pair_of_which_nothing_has_moved_is_not_asked_again(
     shapes = [spindle(0.05, 0.1, 6)] * 3
     near, far = (torus(0.12, 0.05, 12, 6), at(0.3, 0.25, 0.2)), (spindle(0.1, 0.2, 6), at(0.5, -0.4, 0.3))
     case = arm("resting", shapes, [near, far], positions)
-    run = cl.check(case, need=need)
+    run = cl.check(case, need=need, certify=False)
     tally = run.record.tally
     assert tally["queries"] + tally["pairs_skipped"] == 60 * 6
     assert tally["queries"] <= 60 * 2 + 11 * 4
     assert need == "steps" or tally["queries"] == 60 * 2 + 11 * 4
     monkeypatch.setattr(parts, "LONGEST_PART", 1)  # nothing is carried from step to step
-    afresh = cl.check(case, need=need)
+    afresh = cl.check(case, need=need, certify=False)
     assert afresh.steps.equals(run.steps)
     assert list(afresh.record.pair_minima) == list(run.record.pair_minima)
     assert need == "steps" or afresh.pairs.equals(run.pairs)
@@ -130,7 +130,7 @@ def test_parts_hold_every_row_once() -> None:
 def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:
     case = cl.load_case(SCENES / "box_pipe" / "case.yaml")
     case = replace(case, limits=cl.Limits(fail=0.0, warn=1e-6))
-    limit, steps = cl.check(case, need="limit"), cl.check(case)
+    limit, steps = cl.check(case, need="limit", certify=False), cl.check(case, certify=False)
     assert limit.worst["clearance"] == steps.worst["clearance"]
     assert limit.worst["step"] == steps.worst["step"]
     assert limit.status == "clear"
@@ -144,8 +144,8 @@ def test_how_long_the_first_look_searches_changes_nothing(
     """Cut short, it still gives a distance that occurs, or the least would be missed."""
     monkeypatch.setattr(measure, "FIRST_EFFORT", effort)
     case = cl.load_case(SCENES / name / "case.yaml")
-    truth = cl.check(case).steps["clearance"].to_numpy()
-    worst = cl.check(case, need="minimum").worst
+    truth = cl.check(case, certify=False).steps["clearance"].to_numpy()
+    worst = cl.check(case, need="minimum", certify=False).worst
     assert (worst["step"], worst["clearance"]) == (truth.argmin(), truth.min())
 
 
@@ -153,7 +153,6 @@ def test_needs_that_do_not_go_together_are_refused() -> None:
     case = cl.load_case(SCENES / "box_box" / "case.yaml")
     for asked, told in [
         ({"need": "all"}, "unknown need 'all'"),
-        ({"need": "minimum", "certify": True}, "certify needs every step"),
         ({"need": "limit", "cross_check": True}, "cross-check needs every step"),
         ({"need": "pairs", "method": "paper"}, "method 'paper' measures every step"),
         ({"jobs": 0}, "0 jobs"),

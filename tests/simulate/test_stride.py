@@ -101,7 +101,7 @@ def test_a_finer_motion_takes_few_more_looks(name, need):
     positions = np.column_stack([np.interp(times, asked.times, column) for column in asked.positions.T])
     finer = replace(placed, trajectory=replace(asked, times=times, positions=positions, velocities=None))
     case = replace(case, robots=(finer,))
-    whole, found = cl.check(case, jobs=1), cl.check(case, need=need, jobs=1)
+    whole, found = cl.check(case, jobs=1, certify=False), cl.check(case, need=need, jobs=1, certify=False)
     share = 0.5 if (name, need) == ("panda_shelf", "limit") else 0.6
     assert found.record.tally["steps_passed_over"] > share * len(times)
     truth, told = whole.steps["clearance"].to_numpy(), found.steps["clearance"].to_numpy()

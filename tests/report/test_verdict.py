@@ -1,0 +1,172 @@
+"""One verdict: exit code, page, terminal, JUnit, JSON and `Run.passed` say the same, whatever there is to say."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from rich.console import Console
+
+import clearance as cl
+from clearance.cli.verdict import print_verdict
+from clearance.report import summary_of, verdict_of, write_junit
+from clearance.report.page import page_of
+from clearance.run import Run
+from clearance.simulate.record import ProfileAnswer, Record
+from clearance.simulate.replay import replay_of
+from clearance.world.case import Limits
+from clearance.world.notice import Notice, Severity
+from tests.report.records import disagreeing, record
+
+NO_LIMITS = Limits()
+UNITS = Notice(Severity.SUSPECT, "units", "post.stl: 589 m away; is its scale missing?")
+WARNING = Notice(Severity.WARNING, "geometry", "links without a collision shape: antenna")
+NOT_KEPT = ProfileAnswer(
+    "floor", "xy", None, "outside", 0.02, False, False, -0.003, 1e-4, (0, 0), (0, 0), "fore", 7, ""
+)
+
+
+def made(limits=NO_LIMITS, notices=(), accept=(), **changes) -> Record:
+    """The swing, stopped before it touches."""
+    whole = record(limits=limits, **changes)
+    if limits.fail > 0.0:
+        return whole
+    steps = whole.steps.slice(0, 8)
+    motions = tuple(
+        dataclasses.replace(one, times=one.times[:8], positions=one.positions[:8]) for one in whole.motions
+    )
+    case = dataclasses.replace(whole.case, notices=tuple(notices), accept=tuple(accept))
+    minima = tuple(one for one in whole.pair_minima if one.step < 8)
+    return dataclasses.replace(whole, case=case, steps=steps, motions=motions, pair_minima=minima)
+
+
+CASES = {
+    "clear": (made(), "clear", 0),
+    "near": (made(Limits(warn=0.2)), "near", 0),
+    "contact": (record(limits=Limits(fail=0.01, warn=0.06)), "contact", 1),
+    "profile": (made(profiles=(NOT_KEPT,)), "violated", 1),
+    "suspect": (made(notices=(UNITS,)), "suspect", 2),
+    "suspect and contact": (
+        dataclasses.replace(record(), notices=(UNITS,)), "suspect", 2,
+    ),
+    "accepted": (made(notices=(UNITS,), accept=("units",)), "clear", 0),
+    "another accepted": (made(notices=(UNITS,), accept=("limits",)), "suspect", 2),
+    "warned": (made(notices=(WARNING,)), "clear", 0),
+    "disputed": (made(cross_check=disagreeing()), "clear", 3),
+    "disputed and suspect": (made(notices=(UNITS,), cross_check=disagreeing()), "suspect", 3),
+}  # fmt: skip
+
+
+def printed(one: Record) -> list[str]:
+    console = Console(file=io.StringIO(), width=200)
+    print_verdict(Run(one), None, console)
+    return console.file.getvalue().splitlines()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_answer_says_the_same(name, tmp_path):
+    one, status, exit_code = CASES[name]
+    verdict = verdict_of(one)
+    assert (verdict.status, verdict.exit_code, verdict.passed) == (status, exit_code, exit_code == 0)
+    run, summary = Run(one), summary_of(one)
+    assert (run.status, run.passed, run.verdict) == (status, exit_code == 0, verdict)
+    assert (summary["verdict"], summary["passed"], summary["exit_code"]) == (status, verdict.passed, exit_code)
+    assert summary["verdict_text"] == verdict.text() and "at the samples only" in verdict.text()
+    assert summary["basis"] == "samples" and summary["not_checked"] == ["self-collision"]
+    write_junit(one, tmp_path / "junit.xml")
+    suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
+    assert (int(suite.get("failures")) == 0) == verdict.passed
+    whole = suite.find("testcase[@classname='verdict']")
+    assert (whole.find("failure") is None) == verdict.passed
+    told = whole.find("failure").get("message") if not verdict.passed else whole.findtext("system-out")
+    assert "at the samples only" in told and "self-collision not checked" in told
+    headline, second, *_ = printed(one)
+    assert headline.startswith(verdict.text(str.upper)) and second.strip() == "self-collision not checked"
+    page = page_of(summary, replay_of(one))
+    badge = page.split('class="verdict')[1].split("</p>")[0]
+    assert "at the samples only" in badge and "Self-collision not checked" in page
+    for reason in verdict.reasons:
+        assert reason in summary["reasons"] and reason in told
+
+
+def test_a_suspect_run_still_shows_its_number_and_what_it_would_be():
+    one = CASES["suspect"][0]
+    headline, *rest = printed(one)
+    assert headline.startswith("SUSPECT (would be CLEAR at the samples only)")
+    assert "least clearance" in headline
+    assert any("suspect" in line and "589 m" in line and "--accept units" in line for line in rest[:2])
+    page = page_of(summary_of(one), replay_of(one))
+    assert "589 m" in page.split("<main>")[0]
+
+
+def test_warnings_stand_with_the_headline_not_among_the_notes():
+    for name in ("warned", "accepted"):
+        one = CASES[name][0]
+        lines = printed(one)
+        (at,) = [i for i, line in enumerate(lines) if "antenna" in line or "589 m" in line]
+        assert at <= 2 and "warning" in lines[at]
+        assert len(summary_of(one)["warnings"]) == 1
+        assert "Warning: " in page_of(summary_of(one), replay_of(one)).split("<main>")[0]
+    assert "(accepted: units)" in printed(CASES["accepted"][0])[2]
+
+
+def test_notices_of_measuring_count_as_those_of_loading():
+    one = dataclasses.replace(made(), notices=(UNITS, WARNING))
+    verdict = verdict_of(one)
+    assert verdict.suspects == (UNITS,) and verdict.warnings == (WARNING.text,)
+
+
+def test_a_peer_that_disagrees_is_in_the_headline():
+    assert printed(CASES["disputed"][0])[0].startswith("CLEAR at the samples only, but python-fcl disagrees")
+
+
+BOX = Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml"
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
+@pytest.mark.parametrize("fail", [0.0, 0.03495, 0.04])
+def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail, tmp_path):
+    """0.03495 is above what occurs between the steps (34.98 mm) by no sample, but below what can be proven."""
+    run = cl.check(cl.load_case(BOX), need=need, limits=Limits(fail, max(fail, 0.02)))
+    assert run.passed == (fail == 0.0 or (fail == 0.03495 and run.certificate.lower_bound.min() >= fail))
+    run.save(tmp_path / "out")
+    write_junit(run.record, tmp_path / "junit.xml")
+    suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
+    failed = {case.get("classname") for case in suite.iter("testcase") if case.find("failure") is not None}
+    assert ("verdict" in failed) == (not run.passed)
+    assert ("certificate" in failed) == (not run.passed)
+    assert bool(failed) == (not run.passed)
+    assert "at the samples only" not in verdict_of(run.record).text()
+
+
+def test_the_certified_minimum_has_a_row_of_its_own():
+    run = cl.check(cl.load_case(BOX))
+    lines = printed(run.record)
+    assert any(line.startswith("  certified   at least 34.8") for line in lines)
+    assert any(line.startswith("  samples     35.07 mm at step 133") for line in lines)
+    summary = summary_of(run.record)
+    worst, sample = summary["worst"]["clearance"], summary["worst_sample"]["clearance"]
+    assert summary["certified"]["lower_bound"] < worst < sample
+    head = page_of(summary, replay_of(run.record)).split("<main>")[0]
+    assert "at least 34.8" in head and "34.98" in head
+
+
+@pytest.mark.parametrize("shown", [True, False])
+def test_facets_are_told_where_they_matter(shown):
+    """0.1 mm: nothing beside 31 mm, and much beside contact."""
+    one = record()
+    if not shown:
+        one = dataclasses.replace(one, steps=one.steps.slice(0, 2))
+    bound = [line for line in printed(one) if line.startswith("  facets")]
+    assert bool(bound) == (one.worst.clearance < 0.01) == shown
+    assert not shown or "0.1 mm" in bound[0]
+
+
+def test_a_single_step_is_at_a_time():
+    whole = record()
+    one = dataclasses.replace(whole, steps=whole.steps.slice(0, 9))
+    (line,) = [line for line in printed(one) if line.startswith("  contact ")]
+    assert line.split(None, 1)[1] == "1 step: at 0.201 s"
