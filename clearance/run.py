@@ -24,7 +24,9 @@ from clearance.simulate.steps import (
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
+from clearance.world.notice import Notice, worst_first
 from clearance.world.pairs import Pair, measured_pairs
+from clearance.world.plausibility import notices_of
 from clearance.world.reach import require_within_reach
 
 if TYPE_CHECKING:
@@ -220,7 +222,7 @@ def check(
         certificate=certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
         contacts=contacts,
-        notices=() if certificate is None else certificate.notices,
+        notices=_notices(case, certificate),
         let_go=let_go,
         room=lambda: kept.folder,
     )
@@ -233,6 +235,11 @@ def check(
 
         record = replace(record, cross_check=ask_peer(record, progress))
     return Run(record)
+
+
+def _notices(case: Case, certificate: Certificate | None) -> tuple[Notice, ...]:
+    """All that a reader of the verdict must know: of the case, and of how it was measured."""
+    return worst_first([*notices_of(case), *(() if certificate is None else certificate.notices)])
 
 
 def _table(batches: Iterator[pa.Table], kept: Rows) -> tuple[pa.Table, Callable[[], None]]:

@@ -88,7 +88,7 @@ def verdict_text(
 
 def verdict_of(record: Record) -> Verdict:
     """The verdict of a record."""
-    notices = (*record.case.notices, *record.notices)
+    notices = record.notices
     suspects = [notice for notice in notices if notice.severity is Severity.SUSPECT]
     open_suspects = tuple(one for one in suspects if one.kind not in record.case.accept)
     measured = _measured(record)
@@ -96,6 +96,7 @@ def verdict_of(record: Record) -> Verdict:
     disputed = check is not None and not check.agrees
     reasons = [*_clearance_reasons(record)]
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
+    reasons += [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
     reasons += [f"suspect {one.kind}: {one.text}" for one in open_suspects]
     if disputed:
         reasons.append(f"{check.peer} disagrees at {count(len(check.disagreements), 'step')}")
@@ -111,9 +112,10 @@ def verdict_of(record: Record) -> Verdict:
 
 
 def _measured(record: Record) -> str:
-    """The worst that any step, the motion between, or a profile says."""
+    """The worst that any step, the motion between, a profile or a rule of the case says."""
     worst = int(codes_of(record.steps).max())
-    if not all(answer.passed for answer in record.profiles):
+    broken = any(notice.severity is Severity.VIOLATED for notice in record.notices)
+    if broken or not all(answer.passed for answer in record.profiles):
         worst = max(worst, STATUSES.index(Status.VIOLATED))
     return str(STATUSES[worst])
 

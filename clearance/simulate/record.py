@@ -220,7 +220,7 @@ class Record:
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
         contacts: every pair in contact at every step, steps first.
-        notices: what was found while measuring that bears on the verdict; loading's are the case's.
+        notices: what a reader of the verdict must know: of the case, and found while measuring.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
         let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
         room: tells a folder on the disk of the report for files on the way there, if there still is one.
