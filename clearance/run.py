@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
 from clearance.simulate.kinematic import kinematic_motion
@@ -32,6 +33,7 @@ from clearance.world.reach import require_within_reach
 if TYPE_CHECKING:
     import pyarrow as pa
 
+    from clearance.report.intervals import Event
     from clearance.report.verdict import Verdict
 
 MOTIONS = ("kinematic", "simulated")
@@ -102,6 +104,20 @@ class Run:
         return self.verdict.status
 
     @property
+    def events(self) -> list[Event]:
+        """Where a limit was entered or left, in order of time; see `report.intervals.events`."""
+        from clearance.report.intervals import events
+
+        return events(self.record)
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What `summary.json` holds, as plain data."""
+        from clearance.report import summary_of
+
+        return summary_of(self.record)
+
+    @property
     def certificate(self) -> Certificate | None:
         """What is proven of the motion between the steps; None where only the samples were looked at."""
         return self.record.certificate
@@ -110,6 +126,17 @@ class Run:
     def cross_check(self) -> CrossCheck | None:
         """How a peer's answers compare, if that was asked for."""
         return self.record.cross_check
+
+    def __repr__(self) -> str:
+        from clearance.report.notebook import run_text
+
+        return f"<Run {run_text(self.record)}>"
+
+    def _repr_html_(self) -> str:
+        """The verdict and the closest pairs, for a notebook."""
+        from clearance.report.notebook import run_html
+
+        return run_html(self.record)
 
     def save(self, folder: str | Path) -> Path:
         """Writes steps.parquet, steps.csv, summary.json and report.html into `folder`; returns it.
@@ -124,7 +151,7 @@ class Run:
 
 
 def check(
-    case: Case,
+    case: Case | str | PathLike[str],
     *,
     need: str = "steps",
     method: str = "exact",
@@ -140,6 +167,7 @@ def check(
     """The least clearance of every step of a case.
 
     Args:
+        case: or the path of a case file.
         need: "steps" for the clearance of every step; "pairs" for that of every pair at every step as well;
             "limit" for the steps below the warn limit, with a proven lower bound for the others;
             "minimum" for the least of all steps. The worst step is exact in each.
@@ -162,6 +190,8 @@ def check(
         BadInput: an unknown method, motion or need, or some that do not go together.
         NothingToMeasure: no pair is left.
     """
+    if not isinstance(case, Case):
+        case = _loaded(case)
     _require(method, METHODS, "method")
     _require(motion, MOTIONS, "motion")
     _require(need, NEEDS, "need")
@@ -235,6 +265,14 @@ def check(
 
         record = replace(record, cross_check=ask_peer(record, progress))
     return Run(record)
+
+
+def _loaded(path: str | PathLike[str]) -> Case:
+    from clearance.load.case_file import load_case
+
+    if not isinstance(path, str | PathLike):
+        raise BadInput(f"a {type(path).__name__} is given", valid="a Case, or the path of a case file")
+    return load_case(path)
 
 
 def _notices(case: Case, certificate: Certificate | None) -> tuple[Notice, ...]:
