@@ -57,6 +57,7 @@ def test_near_passes_and_nothing_is_written(folder):
     done = clearance(folder, "--cross-check")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("NEAR  rail: least clearance 100.0 mm")
+    assert done.stdout.splitlines()[1].strip() == "self-collision not checked"
     assert "slider - wall" in done.stdout and "agrees at all 3 steps" in done.stdout
     assert files(folder) == before
 
@@ -173,6 +174,7 @@ def test_a_case_that_is_not_there(folder):
         (("--fail-mm", "5", "--warn-mm", "2"), "below"),
         (("--method", "fast"), "fast"),
         (("--colour",), "--colour"),
+        (("--accept", "unit"), "unit"),
         (("--out", "case.yaml"), "case.yaml"),
         (("--out", "case.yaml/below"), "case.yaml"),
         (("--out", "/proc/report"), "/proc/report"),
