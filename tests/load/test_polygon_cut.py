@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadPolygon
+from clearance.load import polygon_cut
 from clearance.load.polygon_cut import cut_polygons
 
 L_SHAPE = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
@@ -78,3 +79,68 @@ def test_star_shaped_polygons_are_covered(radii, turn, backwards):
     vectors = area_vectors(points, cut_polygons(points, [list(range(n))]))
     total = np.linalg.norm(vectors.sum(axis=0))
     assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(total, rel=1e-12)
+
+
+def star(n):
+    angles = 2 * np.pi * np.arange(n) / n
+    radii = 1.0 + 0.5 * (np.arange(n) % 2)
+    return radii[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def comb(n):
+    teeth = np.column_stack([np.arange(n), np.where(np.arange(n) % 2, 50.0, 0.0)])
+    return np.concatenate([[[-1.0, -1.0], [n, -1.0]], teeth[::-1]])
+
+
+@pytest.mark.parametrize("shape", [star(1600), comb(1600), star(1600)[::-1], np.roll(comb(900), 7, axis=0)])
+def test_faces_of_very_many_corners_are_covered(shape):
+    points = placed(shape, (2, 0))
+    vectors = area_vectors(points, cut_polygons(points, [list(range(len(points)))]))
+    total = vectors.sum(axis=0)
+    assert (vectors @ total >= 0).all()
+    assert np.linalg.norm(vectors, axis=1).sum() == pytest.approx(np.linalg.norm(total), rel=1e-12)
+
+
+def test_a_star_takes_work_far_below_the_square_of_its_corners(monkeypatch):
+    n = 20_000
+    monkeypatch.setattr(polygon_cut, "MOST_WORK", n * n // 100)
+    assert len(cut_polygons(placed(star(n)), [list(range(n))])) == n - 2
+
+
+def test_the_work_is_bounded_for_all_polygons_of_a_piece(monkeypatch):
+    monkeypatch.setattr(polygon_cut, "MOST_WORK", 40_000)
+    points = placed(comb(400))
+    polygon = list(range(len(points)))
+    cut_polygons(points, [polygon])
+    with pytest.raises(BadPolygon, match="face [0-9]+ of 402 corners is too intricate"):
+        cut_polygons(points, [polygon] * 30)
+
+
+def test_a_hole_that_is_joined_by_a_cut_stays_open():
+    outer, inner = [[0, 0], [4, 0], [4, 4], [0, 4]], [[1, 1], [1, 2], [2, 2], [2, 1]]
+    points = placed(np.array([*outer, outer[0], *inner, inner[0]], dtype=float))
+    vectors = area_vectors(points, cut_polygons(points, [list(range(len(points)))]))
+    assert (vectors[:, 2] >= 0).all()
+    assert vectors[:, 2].sum() == 15
+
+
+def test_collinear_corners_and_corners_far_apart_in_size_are_covered():
+    shape = np.array([[0, 0], [1, 0], [2, 0], [3, 0], [3, 3], [1.5, 1e-200], [0, 3]])
+    for scale in (1.0, 1e200, 1e-100):
+        triangles = cut_polygons(placed(shape * scale), [list(range(7))])
+        assert len(triangles) == 5
+        assert (area_vectors(placed(shape), triangles)[:, 2] >= 0).all()
+
+
+@given(seed=st.integers(0, 10_000), n=st.integers(4, 40))
+def test_random_rings_are_covered_or_refused(seed, n):
+    shape = np.random.default_rng(seed).integers(0, 6, (n, 2)).astype(float)
+    points = placed(shape)
+    try:
+        triangles = cut_polygons(points, [list(range(n))])
+    except BadPolygon:
+        return
+    vectors = area_vectors(points, triangles)[:, 2]
+    x, y = shape.T
+    assert vectors.sum() == (np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2
+    assert (vectors >= 0).all() or (vectors <= 0).all()
