@@ -25,6 +25,7 @@ from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair, measured_pairs
+from clearance.world.plausibility import notices_of
 from clearance.world.reach import require_within_reach
 
 if TYPE_CHECKING:
@@ -137,6 +138,7 @@ def check(
         raise BadInput(f"{jobs} jobs", valid="1 or more")
     if limits is not None:
         case = replace(case, limits=limits)
+    case = replace(case, notices=notices_of(case))
     pairs, unmeasured = measured_pairs(case)
     motions = _motions(case, motion)
     require_within_reach(case, motions)

@@ -35,7 +35,7 @@ class Frame(NamedTuple):
     """What a robot's surroundings are measured by.
 
     Attributes:
-        reach: [m] length of its longest chain of joints, slides included, and of half of its bodies.
+        reach: [m] length of its longest chain of joints, slides included, and of its median body.
         base: (3,) where it stands.
     """
 
@@ -49,15 +49,15 @@ def notices_on_sizes(case: Case) -> list[Notice]:
     for placed in case.robots:
         told += _odd_origins(placed)
         told += _odd_links(placed)
-    frames = [_frame(placed) for placed in case.robots]
-    told += _odd_obstacles(case.obstacles, frames)
-    told += _odd_places(case, frames)
+    if not told:  # a robot that is odd itself is no measure for others
+        frames = [_frame(placed) for placed in case.robots]
+        told = [*_odd_obstacles(case.obstacles, frames), *_odd_places(case, frames)]
     return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
 
 
 def _frame(placed: PlacedRobot) -> Frame:
-    lengths = [_length(body) for body in placed.robot.bodies]
-    size = float(np.median(lengths)) if lengths else 0.0
+    lengths = sorted(_length(body) for body in placed.robot.bodies)
+    size = lengths[(len(lengths) - 1) // 2] if lengths else 0.0
     return Frame(_chain(placed) + size, placed.world_from_base[:3, 3])
 
 
