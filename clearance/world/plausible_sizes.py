@@ -56,8 +56,8 @@ def notices_on_sizes(case: Case) -> list[Notice]:
 
 
 def _frame(placed: PlacedRobot) -> Frame:
-    lengths = sorted(_length(body) for body in placed.robot.bodies)
-    size = lengths[(len(lengths) - 1) // 2] if lengths else 0.0
+    lengths = [_length(body) for body in placed.robot.bodies]
+    size = float(np.median(lengths)) if lengths else 0.0
     return Frame(_chain(placed) + size, placed.world_from_base[:3, 3])
 
 
@@ -102,7 +102,8 @@ def _odd_links(placed: PlacedRobot) -> list[str]:
         for (length, text), body in zip(lengths, robot.bodies, strict=True)
         if _is_mesh(body) and length * RATIO <= reach
     ]
-    long = [(length, text) for length, text in lengths if length >= RATIO * reach > 0]
+    usual = _chain(placed) + sorted(length for length, _ in lengths)[(len(lengths) - 1) // 2] if lengths else 0.0
+    long = [(length, text) for length, text in lengths if length >= RATIO * usual > 0]
     return [
         f"{listed([text for _, text in _greatest(odd)])} where the robot reaches {reach:.3g} m; {hint}"
         for odd, hint in ((long, _TOO_LARGE), (tiny, _TOO_SMALL))
