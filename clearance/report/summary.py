@@ -16,6 +16,7 @@ from clearance.report.intervals import events, intervals, not_listed, status_cou
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
 from clearance.simulate.replay import link_label
+from clearance.simulate.standing import standing_hint
 from clearance.world.body import Body
 from clearance.world.motion import Motion
 
@@ -174,7 +175,7 @@ def _tessellation_bound(record: Record) -> float:
 
 def notes_of(record: Record) -> list[str]:
     robots = [note for motion in record.motions for note in motion.placed.robot.notes]
-    return list(dict.fromkeys([*record.case.notes, *robots, *record.notes]))
+    return list(dict.fromkeys([*standing_hint(record), *record.case.notes, *robots, *record.notes]))
 
 
 def _finite(value: float) -> float | None:
