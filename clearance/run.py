@@ -204,6 +204,7 @@ def check(
         raise BadInput(f"{jobs} jobs", valid="1 or more")
     if limits is not None:
         case = replace(case, limits=limits)
+    case = replace(case, notices=notices_of(case))
     pairs, unmeasured = measured_pairs(case)
     motions = _motions(case, motion)
     require_within_reach(case, motions)

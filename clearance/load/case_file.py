@@ -10,9 +10,10 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from clearance.errors import MissingFile, at
+from clearance.errors import BadInput, MissingFile, at
 from clearance.load import schema
 from clearance.load.allow import checked_links, checked_pairs
+from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import (
@@ -101,12 +102,15 @@ class _ScenePlace:
 
 
 def _read_schema(path: Path, files: InputFiles) -> tuple[schema.Case, _ScenePlace]:
-    raw = parse_yaml(files.read(path), path.name)
+    data = files.read(path)
+    refuse_foreign(data, path.name, "a case file")
+    raw = parse_yaml(data, path.name)
     scene_at = _ScenePlace(f"{path.name}: scene", path.parent)
     if isinstance(raw, dict) and isinstance(raw.get("scene"), str):
         with at(f"{path.name}: scene"):
             scene_path = resolved(raw["scene"], path.parent)
             shown = files.shown(scene_path)
+            refuse_foreign(files.read(scene_path), shown, "a scene")
             scene = parse_yaml(files.read(scene_path), shown)
             validated(schema.Scene, scene, shown)
         raw = {**raw, "scene": scene}
@@ -150,7 +154,13 @@ def _refuse_missing_folders(given: list[str], package_dirs: tuple[Path, ...]) ->
 def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
     with at("trajectory.file"):
         shown = meshes.files.shown(path)
-        trajectory = read_trajectory(*meshes.files.unread(path), shown)
+        opened, n_bytes = meshes.files.unread(path)
+        try:
+            trajectory = read_trajectory(opened, n_bytes, shown)
+        except BadInput:
+            with opened() as file:
+                refuse_foreign(file.read(65536), shown, "a trajectory")
+            raise
         with at(shown):
             check_joint_names(trajectory.joint_names, robot)
             require_few_turns(robot, trajectory.joint_names, trajectory)

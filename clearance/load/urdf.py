@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from clearance.errors import NothingToMeasure, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.axis_check import axis_notices
+from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles
 from clearance.load.joints import joints_of
 from clearance.load.mesh_store import MeshStore
@@ -55,6 +56,7 @@ def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
         asked for, though there are others.
     """
     data = meshes.files.read(request.path)
+    refuse_foreign(data, meshes.files.shown(request.path), "a URDF file")
     with at(meshes.files.shown(request.path)):
         root = parse_document(data)
         joints, notes = joints_of(root)

@@ -17,6 +17,7 @@ from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.verdict import Verdict, verdict_of
 from clearance.simulate.record import CrossCheck, Moment, ProfileAnswer, Record
 from clearance.simulate.replay import link_label
+from clearance.simulate.standing import standing_hint
 from clearance.simulate.steps import status_of
 from clearance.world.body import Body
 from clearance.world.motion import Motion
@@ -196,7 +197,7 @@ def tessellation_bound(record: Record) -> float:
 
 def notes_of(record: Record) -> list[str]:
     robots = [note for motion in record.motions for note in motion.placed.robot.notes]
-    return list(dict.fromkeys([*record.case.notes, *robots, *record.notes]))
+    return list(dict.fromkeys([*standing_hint(record), *record.case.notes, *robots, *record.notes]))
 
 
 def _finite(value: float) -> float | None:

@@ -35,7 +35,7 @@ class Frame(NamedTuple):
     """What a robot's surroundings are measured by.
 
     Attributes:
-        reach: [m] length of its longest chain of joints, slides included, and of half of its bodies.
+        reach: [m] length of its longest chain of joints, slides included, and of its median body.
         base: (3,) where it stands.
     """
 
@@ -49,9 +49,9 @@ def notices_on_sizes(case: Case) -> list[Notice]:
     for placed in case.robots:
         told += _odd_origins(placed)
         told += _odd_links(placed)
-    frames = [_frame(placed) for placed in case.robots]
-    told += _odd_obstacles(case.obstacles, frames)
-    told += _odd_places(case, frames)
+    if not told:  # a robot that is odd itself is no measure for others
+        frames = [_frame(placed) for placed in case.robots]
+        told = [*_odd_obstacles(case.obstacles, frames), *_odd_places(case, frames)]
     return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
 
 
@@ -102,7 +102,8 @@ def _odd_links(placed: PlacedRobot) -> list[str]:
         for (length, text), body in zip(lengths, robot.bodies, strict=True)
         if _is_mesh(body) and length * RATIO <= reach
     ]
-    long = [(length, text) for length, text in lengths if length >= RATIO * reach > 0]
+    usual = _chain(placed) + sorted(length for length, _ in lengths)[(len(lengths) - 1) // 2] if lengths else 0.0
+    long = [(length, text) for length, text in lengths if length >= RATIO * usual > 0]
     return [
         f"{listed([text for _, text in _greatest(odd)])} where the robot reaches {reach:.3g} m; {hint}"
         for odd, hint in ((long, _TOO_LARGE), (tiny, _TOO_SMALL))

@@ -25,7 +25,7 @@ A_B = link("", "a") + link("", "b")
         ("", BadSyntax, "not XML"),
         ("not xml at all", BadSyntax, "not XML"),
         (robot(A_B)[:-5], BadSyntax, "not XML"),
-        ("<sdf/>", BadSyntax, "the root element is <sdf>"),
+        ("<sdf/>", BadSyntax, "this is an SDF world or model, not a URDF file"),
         (robot(), BadInput, "no links"),
         (
             '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arm/></robot>',

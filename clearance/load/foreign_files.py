@@ -1,0 +1,108 @@
+"""Files of this field that are not what is asked for, known by their content: one line says what to do with each.
+
+Not for: reading them.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import PurePath
+
+from clearance.errors import BadSyntax
+
+_ADVICE = {
+    "urdf": ("a URDF robot", "name it in a case file: robot: {{urdf: {name}}}, beside scene and trajectory"),
+    "xacro": ("a xacro robot", "turn it into URDF with the xacro command, and name that in a case file"),
+    "srdf": (
+        "a MoveIt SRDF",
+        "what it lets touch goes into the case file: allow: [[link, obstacle]]",
+    ),
+    "sdf": (
+        "an SDF world or model",
+        "give the robot as URDF and what stands around it under scene: {{obstacles: […]}} of a case file",
+    ),
+    "mjcf": (
+        "a MuJoCo model",
+        "give the robot as URDF and what stands around it under scene: {{obstacles: […]}} of a case file",
+    ),
+    "scene": (
+        "a MoveIt scene",
+        "write its objects into a case file: scene: {{obstacles: [{{name: …, box: {{size: […]}}, pose: …}}]}}",
+    ),
+    "joint trajectory": (
+        "a ROS JointTrajectory",
+        "write its points as a CSV table, time and joint names in the header, and name that in a case file: "
+        "trajectory: path.csv",
+    ),
+    "planning scene": (
+        "a MoveIt planning scene",
+        "write its collision objects into a case file: scene: {{obstacles: […]}}",
+    ),
+    "mesh": (
+        "a mesh",
+        "name it in a case file: scene: {{obstacles: [{{name: …, mesh: {{file: {name}, scale: 1}}}}]}}",
+    ),
+    "csv": ("a table", "name it in a case file: trajectory: {name}, beside robot and scene"),
+}
+"""What a file is, and what to do; `clearance schema` and the README show a whole case file."""
+
+_LEFT = {
+    "urdf": ("a URDF file",),
+    "xacro": ("a URDF file",),
+    "csv": ("a URDF file", "a trajectory"),
+}
+"""What may be wanted where a file is of a kind, or is better answered by who reads it."""
+
+_MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf"}
+
+_ROOT = re.compile(rb"<(?:\w+:)?([A-Za-z_][\w.-]*)[\s/>]")
+
+_WITHOUT = re.compile(rb"<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>", re.DOTALL)
+
+
+def refuse_foreign(data: bytes, shown: str, wanted: str) -> None:
+    """Nothing, if the file is not known to be something else than what is wanted.
+
+    Args:
+        wanted: "a case file", "a scene", "a trajectory" or "a URDF file".
+
+    Raises:
+        BadSyntax: what it is, and what to do with it.
+    """
+    name = PurePath(shown).name
+    kind = _kind(data, name)
+    if kind is None or wanted in _LEFT.get(kind, ()):
+        return
+    what, remedy = _ADVICE[kind]
+    raise BadSyntax(f"this is {what}, not {wanted}", where=shown, valid=remedy.format(name=name))
+
+
+def _kind(data: bytes, name: str) -> str | None:
+    suffix = PurePath(name).suffix.lower()
+    if suffix in _MESHES:
+        return "mesh"
+    start = data[:65536].removeprefix(b"\xef\xbb\xbf").lstrip()
+    if start.startswith(b"<"):
+        return _xml_kind(start)
+    if suffix == ".csv":
+        return "csv"
+    if suffix == ".scene" or re.match(rb"[^\n:{]*\n\* \S", start):
+        return "scene"
+    keys = set(re.findall(rb"^[ \t-]*([a-z_]+):", start, re.MULTILINE))
+    if {b"joint_names", b"points"} <= keys:
+        return "joint trajectory"
+    if b"collision_objects" in keys:
+        return "planning scene"
+    return None
+
+
+def _xml_kind(start: bytes) -> str | None:
+    root = _ROOT.search(_WITHOUT.sub(b"", start))
+    tag = root[1].decode() if root else ""
+    if tag != "robot":
+        return {"sdf": "sdf", "mujoco": "mjcf", "COLLADA": "mesh"}.get(tag)
+    if b"<xacro:" in start:
+        return "xacro"
+    groups = re.search(rb"<(disable_collisions|group|virtual_joint|end_effector)\b", start)
+    parts = re.search(rb"<(parent|visual|collision|inertial)\b", start)
+    return "srdf" if groups and not parts else "urdf"

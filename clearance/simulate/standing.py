@@ -1,0 +1,80 @@
+"""Pairs that touch all the time because neither of them moves, as an arm's foot and its table: one hint for all.
+
+Not for: pairs that touch for a while, which are what a run looks for.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.query.distance import distance
+from clearance.simulate.record import Record
+from clearance.world.mimics import followers
+from clearance.world.motion import Motion
+from clearance.world.pairs import measured_pairs
+
+
+def standing_contacts(record: Record) -> list[tuple[str, str]]:
+    """(link, obstacle) of the measured pairs that touch at every moment, since their link never moves."""
+    if not (record.clearances <= 0.0).any():
+        return []
+    case = record.case
+    standing = [_standing_links(motion) for motion in record.motions]
+    poses = [motion.poses(0, 1)[0] for motion in record.motions]
+    touching = []
+    for pair in measured_pairs(case)[0]:
+        robot = case.robots[pair.i_robot].robot
+        body, obstacle = robot.bodies[pair.i_body], case.obstacles[pair.i_obstacle]
+        if body.name not in standing[pair.i_robot]:
+            continue
+        world_from_link = poses[pair.i_robot][robot.link_names.index(body.name)]
+        if _touch(body.shape, world_from_link, obstacle.body.shape, obstacle.world_from_body):
+            touching.append((body.name, obstacle.name))
+    return touching
+
+
+def standing_hint(record: Record) -> list[str]:
+    """The hint, if there is such a pair, with the line of the case file that leaves them out."""
+    pairs = standing_contacts(record)
+    if not pairs:
+        return []
+    count = "1 pair touches" if len(pairs) == 1 else f"{len(pairs)} pairs touch"
+    line = ", ".join(json.dumps(pair, ensure_ascii=False) for pair in pairs)
+    told = f"{count} all the time, since the link never moves"
+    return [f"{told}; where that is meant, add to the case: allow: [{line}]"]
+
+
+def _touch(a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray) -> bool:
+    """True if two bodies touch; balls about their boxes that are apart decide without a search."""
+    centres = [pose[:3, :3] @ shape.bounds.mean(axis=0) + pose[:3, 3]
+               for shape, pose in ((a, world_from_a), (b, world_from_b))]  # fmt: skip
+    radii = [np.linalg.norm(np.ptp(shape.bounds, axis=0)) / 2.0 for shape in (a, b)]
+    if np.linalg.norm(centres[0] - centres[1]) > 1.001 * sum(radii):
+        return False
+    return distance(a, b, pose_a=world_from_a, pose_b=world_from_b).distance <= 0.0
+
+
+def _standing_links(motion: Motion) -> set[str]:
+    """The links that no joint moves."""
+    robot = motion.placed.robot
+    moved = set(_moved_joints(motion))
+    still = {robot.link_names[0]}
+    for joint in robot.joints:
+        if joint.parent in still and joint.name not in moved:
+            still.add(joint.child)
+    return still
+
+
+def _moved_joints(motion: Motion) -> Iterator[str]:
+    """The joints that move at any time, those that follow another included."""
+    going = np.ptp(motion.positions, axis=0) > 0.0
+    if motion.velocities is not None:
+        going |= (motion.velocities != 0.0).any(axis=0)
+    moving = {name for name, goes in zip(motion.joint_names, going, strict=True) if goes}
+    for one in followers(motion.placed.robot):
+        if one.master in moving and one.factor:
+            yield one.joint.name

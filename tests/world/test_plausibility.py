@@ -1,0 +1,148 @@
+"""Cases made in memory are looked at as those from files are; what is told twice is told once, worst first."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from clearance import box, check
+from clearance.errors import BadDimension
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.mimics import followers
+from clearance.world.notice import Notice, Severity
+from clearance.world.plausibility import notices_of
+from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from clearance.world.trajectory import Trajectory
+
+
+def moved(x: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def arm(size: float = 0.3, origin: str = "arm.stl", **joint) -> Robot:
+    """A base and an upper arm half a metre on."""
+    elbow = Joint("elbow", JointKind.REVOLUTE, "base", "upper", moved(0.0, 0.0, 0.5))
+    bodies = Body("base", box((0.3, 0.3, 0.3)), "box"), Body("upper", box((size, size, size)), origin)
+    return Robot("arm", ("base", "upper"), (replace(elbow, **joint),), bodies)
+
+
+def case_of(robot=None, obstacle=None, pose=None, positions=(0.0, 0.5), times=(0.0, 1.0), **more) -> Case:
+    asked = Trajectory(np.array(times), ("elbow",), np.array(positions)[:, None])
+    body = Body("block", obstacle or box((0.2, 0.2, 0.2)))
+    placed = PlacedRobot(robot or arm(), asked)
+    return Case("made", (placed,), (Obstacle(body, moved(1.5) if pose is None else pose),), **more)
+
+
+def told(case: Case) -> list[tuple[str, str]]:
+    return [(str(notice.severity), notice.kind) for notice in notices_of(case)]
+
+
+def test_a_good_case_tells_nothing():
+    assert told(case_of()) == []
+
+
+@pytest.mark.parametrize(
+    ("changes", "says"),
+    [
+        ({"obstacle": box((600.0, 400.0, 20.0))}, "obstacle 'block' is 600 m long"),
+        ({"obstacle": box((2e-4, 2e-4, 3e-4))}, "obstacle 'block' is 0.0003 m long"),
+        ({"pose": moved(30.0, 30.0)}, "obstacle 'block' stands 42.3 m away"),
+        ({"robot": arm(3e-4)}, "link 'upper' is 0.0003 m long"),
+        ({"robot": arm(300.0)}, "link 'upper' is 300 m long"),
+        ({"robot": arm(parent_from_joint=moved(50.0))}, "joint 'elbow' stands 50 m away"),
+        ({"positions": (0.0, 45.0)}, "joint 'elbow' goes to 45 rad"),
+        ({"times": (0.0, 1000.0)}, "is this milliseconds?"),
+        ({"limits": Limits(5.0, 20.0)}, "limits.fail is 5 m and limits.warn is 20 m"),
+    ],
+)
+def test_another_unit_is_suspect(changes, says):
+    found = [notice.text for notice in notices_of(case_of(**changes)) if notice.kind == "units"]
+    assert len(found) == 1 and says in found[0], found
+
+
+def test_a_small_box_of_a_robot_is_a_sensor():
+    assert told(case_of(arm(0.001, "box"))) == []
+
+
+def test_a_mesh_is_also_held_against_the_other_obstacles():
+    """60 m beside blocks of 0.2 m, where the robot reaches 0.8 m: under 200 times the reach, over 200 blocks."""
+    fence = Obstacle(Body("fence", box((60.0, 0.1, 40.0)), "fence.stl"), moved(2.0))
+    case = case_of()
+    case = replace(case, obstacles=(*case.obstacles, fence))
+    assert told(case) == [("suspect", "units")]
+    wall = replace(fence, body=replace(fence.body, origin="box"))
+    assert told(replace(case, obstacles=(case.obstacles[0], wall))) == []
+
+
+def test_a_surface_that_is_flat_has_an_extent():
+    vertices = np.array([[0.0, 0, 0], [3000, 0, 0], [3000, 0, 2000], [0, 0, 2000]])
+    fence = Polyhedron.from_triangles(vertices, np.array([[0, 1, 2], [0, 2, 3]]))
+    assert told(case_of(obstacle=fence)) == [("suspect", "units")]
+
+
+def test_joints_beyond_their_limits():
+    limited = arm(lower=-1.0, upper=1.0)
+    assert told(case_of(limited, positions=(0.0, 1.0 + 1e-10))) == []
+    assert told(case_of(limited, positions=(0.0, 1.2))) == [("warning", "limits")]
+    assert told(case_of(limited, positions=(0.0, 8.0))) == [("suspect", "limits")]
+    strict = Limits(joints="fail")
+    assert told(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [("violated", "joint limits")]
+
+
+def test_what_loading_told_is_kept_and_the_worst_comes_first():
+    warning = Notice(Severity.WARNING, "package", "another file")
+    of_robot = Notice(Severity.WARNING, "geometry", "a link without shape")
+    robot = replace(arm(), notices=(of_robot,))
+    case = case_of(robot, times=(0.0, 1000.0), notices=(warning, warning))
+    assert [notice.kind for notice in notices_of(case)] == ["units", "package", "geometry"]
+    again = replace(case, notices=notices_of(case))
+    assert notices_of(again) == notices_of(case)
+
+
+def test_a_run_carries_the_notices_of_its_case():
+    run = check(case_of(pose=moved(0.0, 0.0, 90.0)))
+    assert [notice.kind for notice in run.record.case.notices] == ["units"]
+    run = check(case_of(), limits=Limits(0.8, 0.9))
+    assert ["limits.fail is 0.8 m" in notice.text for notice in run.record.case.notices] == [True]
+
+
+def chain(n_joints: int, **mimic) -> Robot:
+    """Joints in a row, each following the one before."""
+    names = tuple(f"l{i}" for i in range(n_joints + 1))
+    joints = [
+        Joint(f"j{i}", JointKind.PRISMATIC, names[i], names[i + 1], np.eye(4),
+              mimic=Mimic(f"j{i - 1}", **mimic) if i else None)
+        for i in range(n_joints)
+    ]  # fmt: skip
+    bodies = (Body(names[-1], box((1.0, 1.0, 1.0))),)
+    return Robot("chain", names, tuple(joints), bodies)
+
+
+def test_a_joint_that_follows_one_that_follows():
+    found = followers(chain(4, multiplier=2.0, offset=1.0))
+    assert [(one.master, one.factor, one.offset) for one in found] == [
+        ("j0", 1.0, 0.0), ("j0", 2.0, 1.0), ("j0", 4.0, 3.0), ("j0", 8.0, 7.0)
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("mimic", [{"offset": 1e160}, {"multiplier": 1e8}, {"offset": -2e6}])
+def test_a_link_that_follows_out_of_the_world_is_refused(mimic):
+    asked = Trajectory(np.array([0.0, 1.0]), ("j0",), np.array([[0.0], [0.5]]))
+    obstacle = Obstacle(Body("block", box((1.0, 1.0, 1.0))), moved(3.0))
+    case = Case("made", (PlacedRobot(chain(2, **mimic), asked),), (obstacle,))
+    with pytest.raises(BadDimension, match=r"link 'l2': it reaches .* m from the origin"):
+        check(case)
+
+
+def test_a_turn_that_follows_out_of_the_world_is_refused():
+    joints = chain(2, offset=1e160).joints
+    turning = tuple(replace(joint, kind=JointKind.REVOLUTE) for joint in joints)
+    robot = replace(chain(2), joints=turning)
+    asked = Trajectory(np.array([0.0, 1.0]), ("j0",), np.array([[0.0], [0.5]]))
+    case = Case("made", (PlacedRobot(robot, asked),), (Obstacle(Body("b", box((1.0, 1.0, 1.0))), moved(3.0)),))
+    with pytest.raises(BadDimension, match=r"joint 'j1' stands 1e\+160 rad beyond"):
+        check(case)
