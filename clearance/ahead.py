@@ -1,8 +1,9 @@
 """Compiles the search in a process of its own while this one still reads its input: the first run on a machine.
 
 The compiler takes one function at a time in a process, which leaves all cores but one idle for half a minute. The
-second process fills the cache; who comes to a kernel that it is busy with waits for it (`kernel_table`). Two that
-start at once, as tests do, take turns. Not for: what belongs to one command alone.
+second process fills the cache and says what it has filled in; who comes to a kernel that it is busy with waits for
+that word, or for its end (`kernel_table`). Two that start at once, as tests do, take turns. Not for: what belongs
+to one command alone.
 """
 
 from __future__ import annotations
@@ -10,16 +11,18 @@ from __future__ import annotations
 import atexit
 import functools
 import os
+import signal
 import subprocess
 import sys
 import threading
 from contextlib import suppress
+from pathlib import Path
 
 import numba
 
 import clearance.kernels.body_pair  # noqa: F401 it enters `ALL` into the table
 from clearance import kernel_table
-from clearance.jit import cache_root
+from clearance.kernel_cache import cache_root
 from clearance.kernel_table import FEATURES, PARTING, REFINE, SEARCH, TOGETHER
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
@@ -30,6 +33,9 @@ FIRST = (SEARCH, REFINE, PARTING)
 
 ALL = (*FIRST, *TOGETHER, FEATURES)
 """What the second process compiles: then what some scenes need. It is stopped where the first one ends before."""
+
+LONGEST = 300
+"""[s] A guard: a second process that another run's, stopped or frozen, keeps waiting for longer than this ends."""
 
 _starting = threading.Lock()
 
@@ -44,28 +50,33 @@ def start() -> bool:
 def _start_once() -> bool:
     if numba.config.DISABLE_JIT or all(map(kernel_table.is_kept, FIRST)):
         return False
-    if usable_cores() > 1 and sys.executable and not getattr(sys, "frozen", False) and IS_SECOND not in os.environ:
+    if cache_root() is not None and usable_cores() > 1 and _can_start():
         with suppress(OSError):  # then all is compiled here
             process = _second_process()
-            atexit.register(_stop, process)
+            atexit.register(process.kill)
             kernel_table.await_from(process, ALL)
     return True
 
 
+def _can_start() -> bool:
+    return bool(sys.executable) and not getattr(sys, "frozen", False) and IS_SECOND not in os.environ
+
+
 def _second_process() -> subprocess.Popen:
-    """This interpreter once more, with the same path to import from: neither more nor less may be found there."""
-    script = f"import sys; sys.path[:] = {sys.path!r}; from clearance.ahead import main; main()"
-    options = subprocess._args_from_interpreter_flags()
-    none = subprocess.DEVNULL
+    """This interpreter once more, with the same path to import from, less the current folder.
+
+    Its stdin is a pipe that closes when this process ends, however that is, and it with it. It is in no terminal,
+    which would stop it beside another run that waits for it.
+    """
+    package = str(Path(__file__).parents[1])
+    found = [*filter(None, sys.path), *([] if package in sys.path else [package])]
+    script = f"import sys; sys.path[:] = {found!r}; from clearance.ahead import main; main()"
+    options = [*subprocess._args_from_interpreter_flags(), "-P"]
     return subprocess.Popen(
         [sys.executable, *options, "-c", script],
-        env={**os.environ, IS_SECOND: "1"}, stdin=none, stdout=none, stderr=none,
+        env={**os.environ, IS_SECOND: "1"}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL, start_new_session=True,
     )  # fmt: skip
-
-
-def _stop(process: subprocess.Popen) -> None:
-    process.terminate()
-    process.wait()
 
 
 def usable_cores() -> int:
@@ -76,11 +87,25 @@ def usable_cores() -> int:
 
 
 def main() -> None:
-    """The second process: compiles into the cache, after any other that does."""
+    """The second process: compiles into the cache, after any other that does, and says so of each kernel."""
     import fcntl
 
-    cache_root().mkdir(parents=True, exist_ok=True)
-    with open(cache_root() / "ahead.lock", "w") as lock:
+    threading.Thread(target=_end_with_the_first, daemon=True).start()
+    root = cache_root()
+    assert root is not None
+    with open(root / "ahead.lock", "w") as lock, os.fdopen(os.dup(1), "w") as told:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        signal.alarm(LONGEST)  # ends this process
         fcntl.flock(lock, fcntl.LOCK_EX)
+        signal.alarm(0)
         for place in ALL:
             kernel_table.compile_kernel(place)
+            if not kernel_table.is_kept(place):
+                return  # no room on the disk: the first has nothing to wait for
+            print(place, file=told, flush=True)
+
+
+def _end_with_the_first() -> None:
+    while os.read(0, 1):
+        pass
+    os._exit(0)

@@ -2,7 +2,8 @@
 
 numba's own cache looks only at the file of the function itself and would silently return old code when a
 callee in another kernel file has changed. Here the cache folder's name is a hash of the kernel's file and
-of every kernel file it imports, and of this one, so that an edit recompiles what depends on it and nothing else.
+of every kernel file it imports, and of this one, so that an edit recompiles what depends on it and nothing else
+(`kernel_cache` says what is believed of what lies there).
 
 A kernel that calls another one is optimised together with all that lies below it, level by level. Large ones
 are therefore kept `apart` and called by address, compiled once for all their callers (`kernel_table`).
@@ -15,7 +16,6 @@ import gc
 import hashlib
 import os
 import re
-import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -25,9 +25,10 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.targetconfig import ConfigStack
 from numba.extending import register_jitable
 
+from clearance.kernel_cache import KernelCache
+
 _PACKAGE = Path(__file__).parent
 _KERNEL_IMPORT = re.compile(r"^\s*from clearance\.(kernels(?:\.\w+)+|kernel_table) import", re.MULTILINE)
-_decorating = threading.Lock()
 
 if "NUMBA_OPT" not in os.environ:
     # LLVM's level 1 takes 40 % off the first run and 10 to 18 % off every later one (sweep, four scenes, three
@@ -55,17 +56,10 @@ def borrowing(function: Callable) -> Callable:
 
 
 def _cached(function: Callable, **options: bool) -> Callable:
-    folder = cache_root() / _source_key(Path(function.__code__.co_filename))
-    with _decorating:  # numba reads its cache folder from this global while it decorates
-        before = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = str(folder)
-        try:
-            compiled = numba.njit(
-                cache=True, nogil=True, error_model="numpy", no_cfunc_wrapper=True, **options
-            )(function)
-        finally:
-            numba.config.CACHE_DIR = before
+    compiled = numba.njit(nogil=True, error_model="numpy", no_cfunc_wrapper=True, **options)(function)
     if not numba.config.DISABLE_JIT:
+        assert function.__closure__ is None, "what a closure holds is not in the name that it is kept under"
+        compiled._cache = KernelCache(function, _source_key(Path(function.__code__.co_filename)))
         compiled.compile = _uncollected(compiled.compile)
     return _watched(compiled)
 
@@ -168,19 +162,9 @@ def shared(function: Callable) -> Callable:
 
 
 @functools.cache
-def cache_root() -> Path:
-    """Where compiled code is kept."""
-    given = os.environ.get("NUMBA_CACHE_DIR")
-    if given:
-        return Path(given)
-    base = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(base) / "clearance" / "kernels"
-
-
-@functools.cache
 def _source_key(path: Path) -> str:
     digest = hashlib.sha256()
-    for source in (Path(__file__), *sorted(_closure(path))):
+    for source in (Path(__file__), _PACKAGE / "kernel_cache.py", *sorted(_closure(path))):
         digest.update(source.name.encode() + source.read_bytes())
     return digest.hexdigest()[:16]
 

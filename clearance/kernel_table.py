@@ -13,12 +13,11 @@ Beside each address stands a stamp of the types it was compiled for, so that no 
 
 from __future__ import annotations
 
+import os
 import subprocess
 import threading
-import time
 import zlib
 from collections.abc import Callable, Sequence
-from pathlib import Path
 
 import numba
 import numpy as np
@@ -37,10 +36,8 @@ TOGETHER = (MEETING, COMMON_POINT)
 _table = np.zeros((10, 2), dtype=np.int64)  # address, stamp
 _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
+_listening = threading.Lock()
 _elsewhere: list[tuple[subprocess.Popen, Sequence[int]]] = []
-
-_PATIENCE, _AT_MOST = 0.02, 60.0
-"""[s] How often to look whether another process has compiled a kernel, and how long to wait for each."""
 
 
 def table_like() -> np.ndarray:
@@ -90,32 +87,50 @@ def call(function: Callable, *args: object) -> object:
 
 
 def is_kept(place: int) -> bool:
-    """True if the kernel lies compiled in the cache, for this processor and interpreter or others."""
+    """True if the kernel lies compiled in the cache, for this processor or others."""
     function, _ = _apart[place]
-    name = function.py_func.__name__
-    return any(Path(function.stats.cache_path).glob(f"*.{name}-*.nbc"))  # written last
+    return function._cache.holds_any()
 
 
 def await_from(process: subprocess.Popen, places: Sequence[int]) -> None:
-    """Lets kernels that are not kept come from another process, which compiles these one after the other."""
+    """Lets kernels that are not kept come from another process.
+
+    It compiles these one after the other and writes a line to its stdout, a pipe, after each.
+    """
     _elsewhere[:] = [(process, places)]
 
 
 def compile_kernel(place: int) -> None:
     """Makes the kernel of a place ready to be called.
 
-    What another process is compiling is awaited; meanwhile what goes together with it is compiled here.
+    What another process is compiling is awaited, however long that takes, for it has begun earlier than this one
+    could; meanwhile what goes together with it is compiled here.
     """
-    give_up = time.monotonic() + _AT_MOST
     while not is_kept(place) and _is_at_work_on(place):
         others = _what_goes_with(place)
-        if time.monotonic() > give_up:
-            _elsewhere.clear()
-        elif others:
+        if others:
             _compile_here(others[-1])
         else:
-            time.sleep(_PATIENCE)
+            _await_news_of(place)
     _compile_here(place)
+
+
+def _await_news_of(place: int) -> None:
+    """Returns when the other process has compiled something, or has ended."""
+    with _listening:  # another thread may have heard of it meanwhile
+        if not is_kept(place) and _is_at_work_on(place) and not _elsewhere[0][0].stdout.readline():
+            _elsewhere.clear()
+
+
+def _forget_elsewhere() -> None:
+    """In a process that was forked off: what the other process says is for the one that started it."""
+    global _listening
+    _listening = threading.Lock()
+    _elsewhere.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_elsewhere)
 
 
 def _what_goes_with(place: int) -> list[int]:
@@ -126,11 +141,10 @@ def _what_goes_with(place: int) -> list[int]:
 
 
 def _is_at_work_on(place: int) -> bool:
-    """True if another process runs, and a kernel is the first of those that it still has to compile."""
-    for process, places in _elsewhere:
-        if process.poll() is None and next((each for each in places if not is_kept(each)), None) == place:
-            return True
-    return False
+    """True if there is another process, and a kernel is the first of those that it still has to compile."""
+    return any(
+        next((each for each in places if not is_kept(each)), None) == place for _, places in _elsewhere
+    )
 
 
 def _compile_here(place: int) -> None:

@@ -2,8 +2,10 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numba
@@ -32,7 +34,7 @@ FROM_ONE_THAT_ENDS = """
 import json, subprocess, sys
 from clearance import kernel_table
 from clearance.kernels import containment
-process = subprocess.Popen([sys.executable, "-c", ""])
+process = subprocess.Popen([sys.executable, "-c", ""], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
 kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
 print(json.dumps(sum(containment.winding_number.stats.cache_misses.values())))
@@ -42,7 +44,7 @@ FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER = """
 import json, subprocess, sys
 from clearance import kernel_table
 from clearance.kernels import body_pair, containment
-process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.SEARCH, kernel_table.WINDING_NUMBER])
 kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
 runs = process.poll() is None
@@ -56,13 +58,41 @@ from clearance import kernel_table
 from clearance.kernels import body_pair, common_point, meeting
 do = f"""import sys; sys.path[:] = {sys.path!r}
 from clearance.kernels import body_pair; from clearance import kernel_table as t; t.compile_kernel(t.MEETING)"""
-process = subprocess.Popen([sys.executable, "-c", do])
+process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
 kernel_table.await_from(process, kernel_table.TOGETHER)
 kernel_table.compile_kernel(kernel_table.MEETING)
 made = [sum(f.stats.cache_misses.values()) for f in (meeting.meeting, common_point.common_point)]
 print(json.dumps([made, sum(meeting.meeting.stats.cache_hits.values())]))
 '''
 
+ONE_THAT_TAKES_LONG = """
+import json, subprocess, sys
+from clearance import kernel_table
+from clearance.kernels import containment
+process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
+listened = []
+class Pipe:
+    def readline(self):
+        listened.append(len(listened))
+        if len(listened) < 1000:
+            return b"not this one yet"
+        process.kill()
+        return b""
+process.stdout = Pipe()
+compiled = []
+kernel_table._compile_here = compiled.append
+kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
+print(json.dumps([len(listened), compiled == [kernel_table.WINDING_NUMBER]]))
+"""
+
+ENDS_WITH_THE_FIRST = """
+import json, os, signal, sys
+from clearance import ahead
+process = ahead._second_process()
+print(json.dumps(process.pid), flush=True)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
 
 WHERE_NO_PROCESS_STARTS = """
 import json, sys
@@ -72,7 +102,7 @@ print(json.dumps([ahead.start(), len(kernel_table._elsewhere)]))
 """
 
 
-def told_by(script, folder):
+def told_by(script, folder, ends=0):
     """What a script prints in a process of its own with an empty cache, from a folder with a trap in it."""
     here = folder / "work"
     here.mkdir()
@@ -83,7 +113,7 @@ def told_by(script, folder):
         [sys.executable, folder / "script.py"],
         cwd=here, env={**os.environ, **settings}, capture_output=True, text=True,
     )  # fmt: skip
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr) == (ends, "")
     assert not (here / "trapped").exists()
     return json.loads(done.stdout)
 
@@ -107,6 +137,21 @@ def test_what_another_process_has_not_come_to_is_not_waited_for(tmp_path):
 
 def test_while_one_of_two_kernels_is_awaited_the_other_is_compiled(tmp_path):
     assert told_by(WHAT_GOES_TOGETHER, tmp_path) == [[0, 1], 1]
+
+
+def test_what_takes_long_is_waited_for_until_that_process_has_ended(tmp_path):
+    """However often it has had something else to say: no clock decides."""
+    assert told_by(ONE_THAT_TAKES_LONG, tmp_path) == [1000, True]
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="another way to list processes")
+def test_the_second_process_ends_with_a_first_that_is_killed(tmp_path):
+    """It has nothing to end for but the pipe that has closed; a process that is being waited for is a zombie."""
+    second = Path("/proc", str(told_by(ENDS_WITH_THE_FIRST, tmp_path, -signal.SIGKILL)), "stat")
+    guard = time.monotonic() + 120.0
+    while second.exists() and second.read_text().rsplit(")")[-1].split()[0] != "Z":
+        assert time.monotonic() < guard
+        time.sleep(0.01)
 
 
 @pytest.mark.skipif(ahead.usable_cores() < 2, reason="one core: nothing is compiled ahead")
