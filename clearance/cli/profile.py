@@ -35,7 +35,7 @@ def compare(
     """How far the outlines in files A and B differ, with a proven error, in their unit.
 
     Each is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf). Exit code: 0,
-    1 beyond the limit, 2 bad input.
+    1 beyond the limit or not proven to be within it, 2 bad input.
     """
     if limit is not None and limit_mm is not None:
         raise click.UsageError("--limit and --limit-mm are both given")
@@ -59,8 +59,15 @@ def _compare(a: str, b: str, out: str | None, field: bool, limit: float | None) 
         _write(found, Path(out), field)
     if limit is None:
         return False
-    click.echo(f"limit {limit:g}: {'within' if found.within_limit else 'beyond'}")
+    click.echo(f"limit {limit:g}: {_verdict(found)}")
     return not found.within_limit
+
+
+def _verdict(found) -> str:
+    if found.verdict != "undecided":
+        return found.verdict
+    whole = found.found
+    return f"undecided (proven: {whole.lower:.12g} to {whole.upper:.12g}), which counts as beyond"
 
 
 def _line(direction: str, directed) -> str:

@@ -11,8 +11,9 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve_bezier import hypotenuse, jet
+from clearance.kernels.curve_follow import LARGEST_DEGREE
 from clearance.kernels.distance_map import draw, lower_bound_of_map
-from clearance.kernels.hausdorff_exact import search
+from clearance.kernels.hausdorff_search import Pair, close, examine, grown
 from clearance.kernels.hausdorff_state import (
     ARCS,
     AT_A,
@@ -52,11 +53,12 @@ def length_of_arcs(arcs):
 
 
 @inlined
-def _search_kept(
-    pa, la, pb, lb, drawn, sparing, shift_x, shift_y, gap, limit, budget, kept, state, work
-):
-    """Solves the arcs kept exactly and takes them off the list; where `sparing`, only some of many."""
-    n_kept, seen, hint = 0, 0, -1
+def _search_kept(pair, la, aim, drawn, sparing, kept, state, work, composed, heap):
+    """Solves the arcs kept exactly and takes them off the list; where `sparing`, only some of many.
+
+    Returns the queue's room, which may have grown.
+    """
+    n_kept, seen, hint, n_open = 0, 0, -1, 0
     for k in range(la.arcs.shape[0]):
         n_kept += kept[k]
     step = 1 + n_kept // SAMPLES if sparing and n_kept > MANY else 1
@@ -65,15 +67,18 @@ def _search_kept(
         if not kept[k] or seen % step > 0:
             hint = -1
             continue
-        if state[LOWER] > limit:
+        if state[LOWER] > aim.limit:
             break
         kept[k] = False
         state[KEPT] += 1.0
         hint = drawn.arc[drawn.first[k]] if hint < 0 else hint
-        hint = search(
-            pa, pb, lb, la.piece[k], la.arcs[k, S0], la.arcs[k, S1], hint, shift_x, shift_y, gap, limit,
-            budget, state, work,
+        if n_open + 2 > heap.shape[0]:
+            heap = grown(heap)
+        hint, n_open = examine(
+            pair, aim, la.piece[k], la.arcs[k, S0], la.arcs[k, S1], hint, 0.0, state, work, composed,
+            heap, n_open,
         )  # fmt: skip
+    return close(pair, aim, state, work, composed, heap, n_open)
 
 
 @inlined
@@ -105,41 +110,44 @@ def witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, out):
 
 
 @kernel
-def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, gap, limit, budget):
+def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, aim):
     """The directed distances from A to B and from B to A: (2, STATE) numbers, and witnesses (2, 5).
 
     A witness is the point of the curve searched, the point of the other, each in its own frame, and the kind:
     0 end, 1 common normal, 2 self-bisector. `ends_*` (n, 2) flag the pieces' ends that are not smooth. Stops
-    once a lower bound passes `limit`. One function, not two: a second level would be compiled all over again.
+    once a lower bound passes the limit. One function, not two: a second level would be compiled all over again.
     """
     out, points = np.zeros((2, STATE)), np.empty((2, 5))
     out[:, PIECE_A] = -1.0
     points[:] = math.nan
-    work = np.empty((11, max(96, 4 * max(widest(pa), widest(pb)) + 4), 4))
+    most = max(widest(pa), widest(pb))
+    work = np.empty((11, max(2 * LARGEST_DEGREE + 2, 4 * most + 4), 4))
+    composed, heap = np.empty((most + 1, LARGEST_DEGREE + 2, 3)), np.empty((64, 6))
     for turn in range(2):
         state, n_arcs = out[turn], la.arcs.shape[0]
         pixel = length_of_arcs(la.arcs) / min(PIXELS_AT_MOST, max(PIXELS_AT_LEAST, 2.0 * n_arcs))
         drawn = draw(pa, la, lb, shift_x, shift_y, pixel, work[0])
         state[ARCS], state[PIXELS] = n_arcs, drawn.depth.shape[0]
         state[MAP_BOUND] = lower_bound_of_map(drawn, la, lb, pixel)
+        pair = Pair(pa, pb, lb, shift_x, shift_y)
         kept = np.zeros(n_arcs, np.bool_)
         kept[drawn.deepest_leaf] = True
         # the deepest arc; then what trimming leaves, some of it first where it is much; then the rest
         for stage in range(3):
-            _search_kept(
-                pa, la, pb, lb, drawn, stage == 1, shift_x, shift_y, gap, limit, budget, kept, state, work
-            )  # fmt: skip
-            bound = max(state[LOWER], state[MAP_BOUND])
+            heap = _search_kept(
+                pair, la, aim, drawn, stage == 1, kept, state, work, composed, heap
+            )
+            bound = max(max(state[LOWER], state[MAP_BOUND]), aim.enough)
             if stage == 0:
                 kept[:] = True
                 kept[drawn.deepest_leaf] = False
                 if n_arcs >= MANY:
                     trim_nodes(la, lb, drawn, shift_x, shift_y, bound, kept, work[0])
             trim(la, lb, drawn, shift_x, shift_y, bound, kept)
-        if state[LOWER] > limit:
+        if state[LOWER] > aim.limit:
             out[1 - turn, LOWER] = state[LOWER]
             break
-        state[UPPER] = max(state[UPPER], state[LOWER])
+        state[UPPER] = max(state[UPPER], max(state[LOWER], aim.enough))
         witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, points[turn])
         pa, la, ends_a, pb, lb, ends_b = pb, lb, ends_b, pa, la, ends_a
         shift_x, shift_y = -shift_x, -shift_y

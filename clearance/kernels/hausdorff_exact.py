@@ -1,10 +1,6 @@
-"""Compiled exact solution on what trimming left: subdivision with proven exclusion, then the systems (11)-(13).
+"""Compiled bounds of the distance of one interval of A to B, and the roots of the systems (11)-(13) in it.
 
-An interval T of curve A is out when the Bernstein bound of |A(t) - B(s(t))|, s following the foot of A(t),
-does not pass the lower bound by more than `gap`. Otherwise it is cut where the systems say: at an end (11),
-at a common normal found by Newton's method (12), or where the curve meets B's self-bisector (13). To cut at
-a root makes the distance monotone on both sides, so that the next bound is exact: the certificate. Intervals
-too small to cut, or beyond the budget, are given up with their bound, which the answer's error then shows.
+Not for: which intervals are asked about, and in which order (`hausdorff_search`).
 """
 
 import math
@@ -29,20 +25,12 @@ from clearance.kernels.curve_nearest import nearest, slide_to_foot
 from clearance.kernels.hausdorff_state import (
     AT_A,
     AT_B,
-    BISECTORS,
-    CUTS,
     DISTANCE,
-    ENDS,
-    GIVEN_UP,
     LOWER,
-    NORMALS,
     PIECE_A,
     PIECE_B,
-    UPPER,
 )
 
-STACK = 90
-MANY = 512  # arcs of B from which on a straight part of A is first held against runs of them
 LONGEST_RUN = 2000
 
 
@@ -168,7 +156,7 @@ def chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
 
 
 @inlined
-def _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
+def line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
     """Whether a straight part of A lies within `lower` of the arc that was nearest before: no search needed."""
     here, there = jet(pa, i, t0), jet(pa, i, t1)
     x, y = 0.5 * (here.x + there.x) + shift_x, 0.5 * (here.y + there.y) + shift_y
@@ -178,7 +166,7 @@ def _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
 
 
 @inlined
-def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_x, shift_y, enough):
+def chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_x, shift_y, enough):
     """An upper bound of the distance of a straight part of A to the run of B's arcs `first` to `last`.
 
     The run is connected, and so is its projection onto the line: it covers all between the feet of the
@@ -210,100 +198,3 @@ def _chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_
         if most > enough:
             break
     return most
-
-
-@kernel
-def search(pa, pb, lb, i, t_first, t_last, hint, shift_x, shift_y, gap, limit, budget, state, work):
-    """Raises the lower bound in `state` to the greatest distance of A on one interval to B, proven.
-
-    Stops early once the lower bound passes `limit`; returns a leaf of B near the interval.
-    `work` is (11, k, 4); `state` the STATE numbers.
-    """
-    straight = pa.first[i + 1] - pa.first[i] == 2 and not pa.rational[i]
-    many = lb.arcs.shape[0] >= MANY
-    stack = work[10]
-    stack[0, 0], stack[0, 1], stack[0, 2], stack[0, 3] = t_first, t_last, hint, 0.0
-    top = 1
-    while top > 0:
-        top -= 1
-        t0, t1, hint, was_cut = stack[top, 0], stack[top, 1], int(stack[top, 2]), stack[top, 3]
-        middle = 0.5 * (t0 + t1)
-        if straight and _line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, state[LOWER]):
-            state[CUTS] += 1.0
-            continue
-        foot = consider(pa, pb, lb, i, middle, shift_x, shift_y, hint, state, work)
-        if state[LOWER] > limit:
-            return hint
-        j = foot.piece
-        s0, _ = slide_from(pa, pb, i, t0, j, foot.local, shift_x, shift_y)
-        s1, _ = slide_from(pa, pb, i, t1, j, foot.local, shift_x, shift_y)
-        bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
-        state[CUTS] += 1.0
-        if straight and many and bound > 1.5 * state[DISTANCE]:
-            one = consider(pa, pb, lb, i, t0, shift_x, shift_y, foot.leaf, state, work)
-            two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
-            run = _chain_bound(
-                pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
-                state[DISTANCE],
-            )  # fmt: skip
-            bound = min(bound, max(run, foot.distance))
-        if bound > state[DISTANCE] + gap:
-            other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
-            bound = min(bound, max(other, foot.distance))
-        if bound <= state[DISTANCE] + gap:
-            state[UPPER] = max(state[UPPER], bound)
-            continue
-        t, s = t0, s0
-        if share == 1.0:
-            t, s = t1, s1
-            state[ENDS] += 1.0
-        elif share > 0.0:
-            t, s = common_normal(
-                pa,
-                pb,
-                i,
-                t0 + share * (t1 - t0),
-                t0,
-                t1,
-                j,
-                s0 + share * (s1 - s0),
-                shift_x,
-                shift_y,
-            )
-            state[NORMALS] += 1.0
-        else:
-            state[ENDS] += 1.0
-        seen = consider(pa, pb, lb, i, t, shift_x, shift_y, foot.leaf, state, work)
-        if (
-            bound <= state[DISTANCE] + gap
-            or state[CUTS] > budget
-            or top + 2 > STACK
-            or t1 - t0 < 4e-16
-        ):
-            state[GIVEN_UP] += bound > state[DISTANCE] + gap
-            state[UPPER] = max(state[UPPER], bound)
-            continue
-        chosen = middle
-        # next to each other the two branches cross where B's pieces meet: there, or halving creeps up on it
-        beside = abs(seen.leaf - foot.leaf) <= 1
-        if was_cut == 0.0 and (beside or bound < 2.0 * state[DISTANCE]):
-            s, reached = slide_from(pa, pb, i, t, j, s, shift_x, shift_y)
-            if seen.distance < reached * (1.0 - 1e-12):
-                crossing = self_bisector(
-                    pa, pb, i, middle, t, j, foot.local, seen.piece, seen.local, shift_x, shift_y
-                )
-                state[BISECTORS] += 1.0
-                if not math.isnan(crossing):
-                    chosen = crossing
-                    consider(pa, pb, lb, i, crossing, shift_x, shift_y, foot.leaf, state, work)
-            elif 0.0 < share < 1.0:
-                chosen = t
-        special = 1.0 if chosen != middle else 0.0
-        if not t0 < chosen < t1:
-            chosen, special = middle, 0.0
-        stack[top, 0], stack[top, 1], stack[top, 2], stack[top, 3] = chosen, t1, foot.leaf, special
-        stack[top + 1, 0], stack[top + 1, 1] = t0, chosen
-        stack[top + 1, 2], stack[top + 1, 3] = foot.leaf, special
-        top += 2
-        hint = foot.leaf
-    return hint

@@ -214,9 +214,7 @@ def _covering(pc, i, qc, hint, shift_x, shift_y, reach_sq):
 
 
 @kernel
-def _solve_segment(
-    pc, i, qc, boxes, hint, shift_x, shift_y, gap, limit, budget, state, stack, work
-):
+def _solve_segment(pc, i, qc, boxes, hint, shift_x, shift_y, aim, state, stack, work):
     """Raises the lower bound to the greatest distance of segment `i` of A to B, proven; returns a hint.
 
     Rows of `stack` (STACK, 6) are parameter, nearest segment and distance at both ends of a part.
@@ -230,11 +228,11 @@ def _solve_segment(
         stack[0, c + 1], stack[0, c + 2] = hint, d
     state[ENDS] += 2.0
     top = 1
-    while top > 0 and state[LOWER] <= limit:
+    while top > 0 and state[LOWER] <= aim.limit:
         top -= 1
         t0, j, d0 = stack[top, 0], int(stack[top, 1]), stack[top, 2]
         t1, k, d1 = stack[top, 3], int(stack[top, 4]), stack[top, 5]
-        enough = state[LOWER] + gap
+        enough = max(state[LOWER] + aim.gap, aim.enough)
         state[CUTS] += 1.0
         if j == k:  # one segment: the distance is convex between two points already offered
             continue
@@ -259,8 +257,8 @@ def _solve_segment(
         x, y = _at(pc, i, t)
         d, m = nearest_segment(qc, boxes, x + shift_x, y + shift_y, j, nodes, gaps)
         _offer(qc, i, t, m, x + shift_x, y + shift_y, d, state)
-        done = bound <= state[LOWER] + gap
-        if done or state[CUTS] > budget or top + 2 > STACK or not t0 < t < t1:
+        done = bound <= max(state[LOWER] + aim.gap, aim.enough)
+        if done or state[CUTS] > aim.budget or top + 2 > STACK or not t0 < t < t1:
             state[GIVEN_UP] += not done
             state[UPPER] = max(state[UPPER], bound)
             continue
@@ -273,8 +271,8 @@ def _solve_segment(
 
 
 @kernel
-def directed_polyline(pc, p_boxes, qc, q_boxes, shift_x, shift_y, gap, limit, budget, state):
-    """Fills `state` with the directed distance from A to B; stops once it passes `limit`."""
+def directed_polyline(pc, p_boxes, qc, q_boxes, shift_x, shift_y, aim, state):
+    """Fills `state` with the directed distance from A to B; stops once it passes the limit of `aim`."""
     n, size = pc.shape[0] // 2, p_boxes.shape[0] // 2
     state[:] = 0.0
     state[PIECE_A], state[ARCS] = -1.0, n
@@ -291,7 +289,8 @@ def directed_polyline(pc, p_boxes, qc, q_boxes, shift_x, shift_y, gap, limit, bu
         node = todo[top]
         if p_boxes[node, 0] > p_boxes[node, 2]:
             continue
-        if _box_covered(p_boxes, node, qc, hint, shift_x, shift_y, state[LOWER] ** 2):
+        covered_sq = max(state[LOWER], aim.enough) ** 2
+        if _box_covered(p_boxes, node, qc, hint, shift_x, shift_y, covered_sq):
             continue
         if node < size:
             todo[top], todo[top + 1] = 2 * node + 1, 2 * node
@@ -299,25 +298,13 @@ def directed_polyline(pc, p_boxes, qc, q_boxes, shift_x, shift_y, gap, limit, bu
             continue
         first = (node - size) * BUCKET
         for k in range(first, min(n, first + BUCKET)):
-            reach_sq = (state[LOWER] + gap) ** 2
+            reach_sq = max(state[LOWER] + aim.gap, aim.enough) ** 2
             covering = _covering(pc, k, qc, hint, shift_x, shift_y, reach_sq)
             if covering >= 0:
                 hint = covering
-            elif state[LOWER] <= limit:
+            elif state[LOWER] <= aim.limit:
                 state[KEPT] += 1.0
                 hint = _solve_segment(
-                    pc,
-                    k,
-                    qc,
-                    q_boxes,
-                    hint,
-                    shift_x,
-                    shift_y,
-                    gap,
-                    limit,
-                    budget,
-                    state,
-                    stack,
-                    work,
+                    pc, k, qc, q_boxes, hint, shift_x, shift_y, aim, state, stack, work
                 )
-    state[UPPER] = max(state[UPPER], state[LOWER] + gap)
+    state[UPPER] = max(state[UPPER], max(state[LOWER] + aim.gap, aim.enough))

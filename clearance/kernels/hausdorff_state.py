@@ -4,6 +4,26 @@ The best point so far, the bounds of the directed distance, and what the search 
 `DISTANCE` is the value at the witnesses; they differ by the rounding of the nearest point.
 """
 
+from typing import NamedTuple
+
 LOWER, DISTANCE, PIECE_A, AT_A, PIECE_B, AT_B, UPPER = 0, 1, 2, 3, 4, 5, 6
-ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP, RUNNER_UP = range(7, 17)
-STATE = 17
+ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP = range(7, 16)
+STATE = 16
+
+
+class Aim(NamedTuple):
+    """What a search is after.
+
+    Attributes:
+        gap: how near the upper bound has to come to the best value; `wide` after `sharp` intervals.
+        enough: an upper bound that need not be improved; 0 for the distance itself.
+        limit: a lower bound beyond it ends the search.
+        budget: intervals after which the rest is left to its bounds.
+    """
+
+    gap: float
+    wide: float
+    sharp: float
+    enough: float
+    limit: float
+    budget: float

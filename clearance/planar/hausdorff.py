@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, ClearanceError
 from clearance.kernels.hausdorff import both_directions
-from clearance.kernels.hausdorff_state import LOWER
+from clearance.kernels.hausdorff_state import LOWER, UPPER, Aim
 from clearance.planar.curve import Curve
 from clearance.planar.directed import Directed, Tally, directed_of, placed
 from clearance.planar.entries import checked_number
 from clearance.planar.polylines import solve_polylines
-from clearance.tolerance import LAST_BITS, SHARPER
+from clearance.tolerance import LAST_BITS, SHARPER, TIE
 
 BUDGET = 200_000.0
 """Intervals after which a search gives the rest up with their bounds; only the error bound suffers."""
@@ -27,8 +27,31 @@ INTERVALS_A_PIECE = 20.0
 """What long curves may use beyond that for each piece of both: seen are up to seven on noisy outlines."""
 
 
+SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE = 1000.0, 2.0
+"""Intervals until which a search tries for the last bits; after them the tolerance asked for is enough."""
+
+ASKED = 0.25
+"""The share of the tolerance that a search may leave open then; the rest is for rounding."""
+
+
 class UnknownMethod(BadInput):
     """A method of solution that there is not."""
+
+
+class Undecided(ClearanceError):
+    """Whether a distance keeps a limit could not be proven either way.
+
+    Attributes:
+        lower, upper: what is proven of the distance.
+    """
+
+    def __init__(self, lower: float, upper: float, limit: float) -> None:
+        super().__init__(
+            f"a distance between {lower:.6g} and {upper:.6g} against the limit {limit:.6g}",
+            where="within",
+            valid="a limit outside these bounds",
+        )
+        self.lower, self.upper = lower, upper
 
 
 @dataclass(frozen=True)
@@ -57,6 +80,16 @@ class Hausdorff:
     directed: dict[str, Directed]
     tally: Tally
 
+    @property
+    def lower(self) -> float:
+        """A proven lower bound of the distance."""
+        return max(one.lower for one in self.directed.values())
+
+    @property
+    def upper(self) -> float:
+        """A proven upper bound of the distance."""
+        return max(one.upper for one in self.directed.values())
+
 
 def hausdorff(
     a: Curve, b: Curve, *, method: str = "trimmed", tolerance: float = 1e-12
@@ -81,24 +114,31 @@ def hausdorff(
 
         forth, back = untrimmed(a, b)
     elif method == "trimmed":
-        forth, back = _trimmed(a, b, tolerance, math.inf)
+        forth, back = _trimmed(a, b, tolerance)
     else:
         raise UnknownMethod(f"{method!r}", where="method", valid="'trimmed' or 'untrimmed'")
     return greater_of(forth, back)
 
 
 def within(a: Curve, b: Curve, distance: float) -> bool:
-    """Whether the Hausdorff distance of `a` and `b` is at most `distance`; stops at the first point beyond.
+    """Whether the Hausdorff distance of `a` and `b` is at most `distance`; no search goes on beyond that.
 
-    Exactness: distances within the rounding of the curves' points (about 1e-14 of their size) of `distance`
-        count as within.
+    Exactness: True and False are both proven, up to the rounding of the curves' points (about 1e-14 of their
+        size), within which a distance counts as equal to the limit and so as within.
+    Raises: Undecided where neither could be proven; BadCurve, NotFinite.
     """
     distance = checked_number(distance, "distance", least=0.0)
     shift, size = placed(a, b)
     slack = a.rounding + b.rounding + LAST_BITS * size
     gap = LAST_BITS * size
-    found, _ = _solve(a, b, shift, gap, distance + slack)
-    return not bool(found[0, LOWER] > distance + slack or found[1, LOWER] > distance + slack)
+    aim = Aim(gap, gap, math.inf, distance, distance + slack, _budget(a, b))
+    found, _ = _solve(a, b, shift, aim)
+    lower, upper = float(found[:, LOWER].max()), float(found[:, UPPER].max())
+    if lower > distance + slack:
+        return False
+    if upper > distance + TIE * size + slack:
+        raise Undecided(max(0.0, lower - slack), upper + slack, distance)
+    return True
 
 
 def greater_of(forth: Directed, back: Directed) -> Hausdorff:
@@ -133,20 +173,24 @@ def _sum_of(one: Tally, two: Tally) -> Tally:
     )
 
 
-def _solve(a, b, shift, gap, limit):
-    budget = BUDGET + INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces)
+def _budget(a: Curve, b: Curve) -> float:
+    return BUDGET + INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces)
+
+
+def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
     if a.is_polyline and b.is_polyline:
-        return solve_polylines(a, b, shift, gap, limit, budget)
+        return solve_polylines(a, b, shift, aim)
     return both_directions(
-        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], gap, limit,
-        budget,
-    )  # fmt: skip
+        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], aim
+    )
 
 
-def _trimmed(a: Curve, b: Curve, tolerance: float, limit: float) -> tuple[Directed, Directed]:
+def _trimmed(a: Curve, b: Curve, tolerance: float) -> tuple[Directed, Directed]:
     shift, size = placed(a, b)
     gap = max(tolerance * SHARPER, LAST_BITS) * size
-    found, points = _solve(a, b, shift, gap, limit)
+    sharp = SHARP_INTERVALS + SHARP_INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces)
+    wide = max(gap, ASKED * tolerance * size)
+    found, points = _solve(a, b, shift, Aim(gap, wide, sharp, 0.0, math.inf, _budget(a, b)))
     margin = a.rounding + b.rounding + LAST_BITS * size
     forth = directed_of(a, b, found[0].tolist(), points[0], margin, True)
     return forth, directed_of(b, a, found[1].tolist(), points[1], margin, False)

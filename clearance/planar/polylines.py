@@ -11,20 +11,20 @@ import math
 import numpy as np
 
 from clearance.kernels.hausdorff_polyline import directed_polyline
-from clearance.kernels.hausdorff_state import AT_A, AT_B, LOWER, PIECE_A, PIECE_B, STATE
+from clearance.kernels.hausdorff_state import AT_A, AT_B, LOWER, PIECE_A, PIECE_B, STATE, Aim
 from clearance.planar.curve import Curve
 from clearance.tolerance import MEETING, NORMAL, PARAMETER, TANGENT
 
 
-def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, gap: float, limit: float, budget: float):
+def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
     """Both directed searches, (2, STATE) numbers and witnesses (2, 5), as `kernels.hausdorff` gives them."""
     state, points = np.empty((2, STATE)), np.empty((2, 5))
     for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):
         directed_polyline(
             one.pieces.control, one.segment_boxes, two.pieces.control, two.segment_boxes, step[0], step[1],
-            gap, limit, budget, state[k],
+            aim, state[k],
         )  # fmt: skip
-        if state[k, LOWER] > limit:
+        if state[k, LOWER] > aim.limit:
             state[1 - k :, LOWER] = state[k, LOWER]
             break
         points[k] = _witness(one, two, step, state[k])

@@ -62,9 +62,16 @@ class Comparison:
     makers: dict[str, tuple[str, int]]
 
     @property
+    def verdict(self) -> str:
+        """ "within" or "beyond" where the proven bounds of the distance say so, else "undecided"."""
+        if self.limit is None or self.found.upper <= self.limit:
+            return "within"
+        return "beyond" if self.found.lower > self.limit else "undecided"
+
+    @property
     def within_limit(self) -> bool:
-        """True if there is no limit, or the proven upper bound of the distance keeps it."""
-        return self.limit is None or self.found.distance + self.found.error_bound <= self.limit
+        """True if there is no limit, or the proven upper bound of the distance keeps it; undecided is False."""
+        return self.verdict == "within"
 
 
 def compare(a: Drawn, b: Drawn, *, limit: float | None = None) -> Comparison:
@@ -142,6 +149,7 @@ def as_data(found: Comparison) -> dict[str, Any]:
         "area_lost": found.lost,
         "limit": found.limit,
         "within_limit": found.within_limit,
+        "verdict": found.verdict,
         "beyond": [vars(one) for one in found.beyond],
         "worst_made_by": {
             side: {"link": link, "step": step} for side, (link, step) in found.makers.items()

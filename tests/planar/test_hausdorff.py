@@ -9,7 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff_state import CUTS
+from clearance.kernels.hausdorff_state import CUTS, Aim
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import _solve, hausdorff, within
@@ -305,13 +305,17 @@ def test_rigid_motion_and_scaling(one, two, angle, mirrored, scale):
     assert abs(after.distance - scale * before.distance) <= slack
 
 
+def aim_of(gap, enough=0.0, limit=math.inf):
+    return Aim(gap, gap, math.inf, enough, limit, 1e5)
+
+
 def test_within_stops_at_the_first_point_beyond():
     """A limit far below the distance is refused after a few intervals, one above it after all of them."""
     c = np.cumsum(np.random.default_rng(5).normal(size=(60, 2)), axis=0)
     a, b = Curve.bspline(c), Curve.bspline(c + 0.3 * np.random.default_rng(6).normal(size=c.shape))
     shift, size = placed(a, b)
     intervals = [
-        int(_solve(a, b, shift, 1e-15 * size, limit)[0][:, CUTS].sum())
+        int(_solve(a, b, shift, aim_of(1e-15 * size, limit=limit))[0][:, CUTS].sum())
         for limit in (1e-3, math.inf)
     ]
     assert intervals[0] * 20 < intervals[1]
