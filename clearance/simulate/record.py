@@ -14,6 +14,7 @@ import pyarrow as pa
 from clearance.simulate.parts import BLOCK
 from clearance.world.case import Case, Unmeasured
 from clearance.world.motion import Motion
+from clearance.world.notice import Notice
 
 if TYPE_CHECKING:
     from clearance.query.contact import Contact
@@ -196,6 +197,7 @@ class Record:
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
+        notices: suspect input and warnings that measuring found, beside those of the case.
         contacts: every pair in contact at every step, steps first.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
         let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
@@ -215,6 +217,7 @@ class Record:
     need: str = "steps"
     every_pair: EveryPair | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
+    notices: tuple[Notice, ...] = ()
     contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
     let_go: Callable[[], None] = lambda: None
