@@ -1,8 +1,8 @@
-"""Surfaces that are closed but for a few faults: how each face counts, and the fans that would close them.
+"""Surfaces that are closed but for a few faults: how each face counts, and the caps that would close them.
 
 Faces that are there twice count once, faces that run the other way round than their neighbours are turned in
-thought; what is then left open are loops of edges, each closed by the fan from its first corner. Faces and fans
-together are closed, so that their winding numbers are whole; how little the fans matter is for the asker to prove
+thought; what is then left open are loops of edges, each closed by triangles between its corners. Faces and caps
+together are closed, so that their winding numbers are whole; how little the caps matter is for the asker to prove
 (`kernels.containment`). Not for: mending what is measured; distances never see any of this.
 """
 
@@ -29,14 +29,17 @@ lid has (a sixth), or a tube 4.5 times as long as it is wide without its ends (a
 RIM = 1.0 / 4.0
 """[-] Of a component's edges, those that may be open: beyond that it is a sheet or loose faces."""
 
+LONG = 256
+"""Corners of a loop beyond which its cap is a fan, which takes less time to find."""
+
 
 class Closing(NamedTuple):
     """How components that are not closed would close.
 
     Attributes:
         turns: (f,) how often each face counts in a winding number, of the components that are taken; else 0.
-        caps: (k, 3, 3) [m] the triangles of the fans, which count once.
-        loops: (h + 1,) where the fan of each loop begins in `caps`.
+        caps: (k, 3, 3) [m] the triangles between the corners of the loops, which count once.
+        loops: (h + 1,) where those of each loop begin in `caps`.
     """
 
     turns: np.ndarray
@@ -73,11 +76,11 @@ def closing_of(shape: Polyhedron, least: float = -1.0, most: float = FEW) -> Clo
     if not taken.any():
         return None
     loops = [loop for loop, i in zip(found.loops, found.component, strict=True) if taken[i]]
-    fans = [np.empty((0, 3, 3)), *map(_fan, loops)]
+    caps = [np.empty((0, 3, 3)), *map(_cap, loops)]
     return Closing(
         np.where(taken[shape.face_component], found.ways, 0),
-        np.concatenate(fans),
-        np.cumsum([len(fan) for fan in fans]),
+        np.concatenate(caps),
+        np.cumsum([len(cap) for cap in caps]),
     )
 
 
@@ -165,6 +168,22 @@ def _loops(tails: list[int], heads: list[int]) -> list[list[int]]:
                 place[head] = len(path)
                 path.append(head)
     return loops
+
+
+def _cap(loop: np.ndarray) -> np.ndarray:
+    """(n - 2, 3, 3) triangles that close a loop (n, 3): the least corner is cut off, again and again.
+
+    So a crack is sewn up along itself, where a fan from one end would be as large as what the crack goes round.
+    """
+    if len(loop) > LONG:
+        return _fan(loop)
+    cut = []
+    while len(loop) > 3:
+        before, after = np.roll(loop, 1, axis=0), np.roll(loop, -1, axis=0)
+        least = int(np.argmin((np.cross(loop - before, after - before) ** 2).sum(axis=1)))
+        cut.append([before[least], loop[least], after[least]])
+        loop = np.delete(loop, least, axis=0)
+    return np.array([*cut, loop])
 
 
 def _fan(loop: np.ndarray) -> np.ndarray:

@@ -17,10 +17,10 @@ import math
 
 import numpy as np
 
-from clearance.jit import inlined, kernel, spliced
+from clearance.jit import inlined, spliced
 from clearance.kernel_table import WINDING_NUMBER, apart, at_address
 from clearance.kernels.bounds import LEAN
-from clearance.kernels.double_double import FRAMES_AT_REST, frames_of, size
+from clearance.kernels.double_double import FRAMES_AT_REST, size
 from clearance.kernels.lanes import WIDTH
 from clearance.kernels.predicates import (
     FILTER,
@@ -31,9 +31,8 @@ from clearance.kernels.predicates import (
     side_along,
     turn_along,
 )
-from clearance.kernels.scratch import new_scratch
 from clearance.kernels.surface import box_of, is_leaf, surface_like
-from clearance.kernels.vec3 import Vec3, cross, dot, move, move_back, rigid, row, sub
+from clearance.kernels.vec3 import Vec3, cross, dot, move, move_back, row, sub
 
 AXIS = 2
 """The ray's coordinate axis."""
@@ -58,7 +57,7 @@ def _room(box, d, far):
 
 
 @inlined
-def _in_box(surface, node, x, far):
+def in_box(surface, node, x, far):
     """True unless `x` is outside the node's box by more than rounding."""
     box = box_of(surface, node)
     d = sub(x, box.centre)
@@ -161,7 +160,7 @@ def _turns_of_caps(surface, body, x):
 
 
 @inlined
-def _signed_turns_of_caps(surface, body, x):
+def signed_turns_of_caps(surface, body, x):
     """[turns] the solid angle of the body's caps from `x` in its frame, positive where seen from behind."""
     total = 0.0
     for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
@@ -229,7 +228,7 @@ def contained(a, body_a, b, body_b, frames, scratch, table):
             v = row(one.vertices, one.probes[i])
             x = move_back(frames.m, v) if is_a else move(frames.m, v)
             away = far + size(v)
-            if _in_box(two, two.roots[body_two], x, away):
+            if in_box(two, two.roots[body_two], x, away):
                 probe = row(one.exact, one.probes[i])
                 asked = (two, body_two, is_a, probe, x, away, frames, scratch.exact, scratch.nodes)
                 number = at_address(table, WINDING_NUMBER, 0, asked)
@@ -237,31 +236,3 @@ def contained(a, body_a, b, body_b, frames, scratch, table):
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a
     return False, frames.m.t
-
-
-@kernel
-def generalized_windings(surface, points, poses, poses_of_points, least, most, table):
-    """Fills the least and greatest magnitude of the points' winding numbers at each of n poses, caps not counted.
-
-    Points outside the body's box have 0. To rounding, but for points near a cap, which may be off by 1.
-
-    Args:
-        surface: of one body.
-        points: (m, 3) [m] in a frame of their own.
-        poses, poses_of_points: (n, 4, 4) [m] of the body and of the points.
-        least, most: (n,) room for them.
-    """
-    scratch = new_scratch()
-    for i in range(len(poses)):
-        frames = frames_of(rigid(poses[i]), rigid(poses_of_points[i]))
-        least[i], most[i] = np.inf, 0.0
-        for k in range(len(points)):
-            v = row(points, k)
-            x = move(frames.m, v)
-            away = size(frames.m.t) + size(v)
-            number = 0.0
-            if _in_box(surface, surface.roots[0], x, away):
-                asked = (surface, 0, False, v, x, away, frames, scratch.exact, scratch.nodes)
-                number = abs(at_address(table, WINDING_NUMBER, 0, asked) - _signed_turns_of_caps(surface, 0, x))
-            least[i] = min(least[i], number)
-            most[i] = max(most[i], number)

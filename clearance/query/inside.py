@@ -17,7 +17,8 @@ from clearance.geometry.closing import FEW, SOME, Closing, closing_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernel_table import call
-from clearance.kernels.containment import DOUBTFUL, generalized_windings
+from clearance.kernels.containment import DOUBTFUL
+from clearance.kernels.doubt import generalized_windings, near_holes
 from clearance.kernels.surface import Surface
 
 MOSTLY = 0.5
@@ -31,15 +32,13 @@ class Shell(NamedTuple):
         surface: with the winding number of these components.
         few: True if they are closed but for a few faults, so that the search decides what it can.
         bounds: (2, 3) [m] of the body.
-        centres, radii, areas: (h, 3), (h,) [m], (h,) [m^2] of the caps of each hole.
+        holes: (1 + h, 5) centres, radii [m] and areas [m^2] of balls about the caps of all holes, and of each.
     """
 
     surface: Surface
     few: bool
     bounds: np.ndarray
-    centres: np.ndarray
-    radii: np.ndarray
-    areas: np.ndarray
+    holes: np.ndarray
 
 
 class Part(NamedTuple):
@@ -47,13 +46,13 @@ class Part(NamedTuple):
 
     Attributes:
         points: (n, 3) [m] its corners. outermost: (6, 3) [m] those that reach farthest along the axes.
-        centre, radius: (3,), [m] of a ball about it.
+        low, high: (3,) [m] of its box.
     """
 
     points: np.ndarray
     outermost: np.ndarray
-    centre: np.ndarray
-    radius: float
+    low: np.ndarray
+    high: np.ndarray
 
 
 _shells: weakref.WeakKeyDictionary[Polyhedron, tuple[Shell, ...]] = weakref.WeakKeyDictionary()
@@ -69,15 +68,10 @@ class Doubt:
     def at(self, worlds_from_a: np.ndarray, worlds_from_b: np.ndarray) -> np.ndarray:
         """(n,) True at the poses (n, 4, 4) where it is open whether a body is inside, or where they touch."""
         found = np.zeros(len(worlds_from_a), dtype=bool)
-        for sides, outer, inner in (
-            (self._of_a, worlds_from_a, worlds_from_b),
-            (self._of_b, worlds_from_b, worlds_from_a),
-        ):
-            if sides:
-                turn = np.swapaxes(outer[:, :3, :3], 1, 2)
-                relative = turn @ inner[:, :3, :3], (turn @ (inner[:, :3, 3] - outer[:, :3, 3])[..., None])[..., 0]
-                for shell, part in sides:
-                    _look(shell, part, relative, outer, inner, found)
+        for shell, part in self._of_a:
+            _look(shell, part, worlds_from_a, worlds_from_b, found)
+        for shell, part in self._of_b:
+            _look(shell, part, worlds_from_b, worlds_from_a, found)
         return found
 
 
@@ -91,22 +85,20 @@ def _sides(outer: Polyhedron, inner: Polyhedron) -> tuple[tuple[Shell, Part], ..
     shells = _kept(_shells, outer, _shells_of)
     if not shells:
         return ()
-    size = float(np.linalg.norm(outer.bounds[1] - outer.bounds[0]))
     parts = _kept(_parts, inner, _parts_of)
-    return tuple((shell, part) for shell in shells for part in parts if shell.few or _breadth(part) <= size)
+    return tuple((shell, part) for shell in shells for part in parts if shell.few or _may_hold(shell, part))
 
 
-def _breadth(part: Part) -> float:
-    """[m] two corners of the part are at least so far apart."""
-    return float(np.linalg.norm(part.outermost[::2] - part.outermost[1::2], axis=1).max())
+def _may_hold(shell: Shell, part: Part) -> bool:
+    """False if two corners of the part are farther apart than any two points within the shell's bounds."""
+    breadth = np.linalg.norm(part.outermost[::2] - part.outermost[1::2], axis=1).max()
+    return bool(breadth <= np.linalg.norm(shell.bounds[1] - shell.bounds[0]))
 
 
-def _look(
-    shell: Shell, part: Part, relative: tuple, outer: np.ndarray, inner: np.ndarray, found: np.ndarray
-) -> None:
-    """Sets `found` (n,) where the part is in doubt, `relative` being the turns and shifts `outer_from_inner`."""
+def _look(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray, found: np.ndarray) -> None:
+    """Sets `found` (n,) where the part is in doubt, at poses (n, 4, 4) of the shell's body and of its own."""
     asked = _near_a_hole if shell.few else _within_bounds
-    rows = np.flatnonzero(asked(shell, part, *relative) & ~found)
+    rows = np.flatnonzero(asked(shell, part, outer, inner) & ~found)
     if not len(rows):
         return
     least, most = np.empty(len(rows)), np.empty(len(rows))
@@ -115,22 +107,17 @@ def _look(
     found[rows] = most > DOUBTFUL if shell.few else least > MOSTLY
 
 
-def _near_a_hole(shell: Shell, part: Part, turns: np.ndarray, shifts: np.ndarray) -> np.ndarray:
-    """(n,) False where the caps are seen under at most `DOUBTFUL` from all of the part: the search has decided.
-
-    A triangle of area A that is nowhere nearer than d has a solid angle of at most A / d^2.
-    """
-    centre = turns @ part.centre + shifts
-    seen = np.zeros(len(shifts))
-    for hole, radius, area in zip(shell.centres, shell.radii, shell.areas, strict=True):
-        away = np.linalg.norm(centre - hole, axis=1) * (1.0 - 1e-12) - radius - part.radius
-        seen += np.divide(area, away**2, out=np.full(len(seen), np.inf), where=away > 1e-100)
-    return seen > 0.99 * DOUBTFUL * 4.0 * np.pi
+def _near_a_hole(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+    """(n,) False where the caps are seen under at most `DOUBTFUL` from all of the part: the search has decided."""
+    found = np.empty(len(outer), dtype=bool)
+    near_holes(shell.holes, shell.bounds, part.low, part.high, outer, inner, found)
+    return found
 
 
-def _within_bounds(shell: Shell, part: Part, turns: np.ndarray, shifts: np.ndarray) -> np.ndarray:
+def _within_bounds(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
     """(n,) True where the outermost corners of the part are within the body's bounds."""
-    points = part.outermost @ np.swapaxes(turns, 1, 2) + shifts[:, None]
+    points = part.outermost @ np.swapaxes(inner[:, :3, :3], 1, 2) + (inner[:, :3, 3] - outer[:, :3, 3])[:, None]
+    points = points @ outer[:, :3, :3]
     return ((points >= shell.bounds[0]) & (points <= shell.bounds[1])).all(axis=(1, 2))
 
 
@@ -149,15 +136,17 @@ def _shell(shape: Polyhedron, closing: Closing, few: bool) -> Shell:
         surface = surface._replace(
             turns=closing.turns.astype(np.int32), caps=corners, cap_starts=np.array([0, len(corners)])
         )
-    sides = closing.caps[:, 1:] - closing.caps[:, :1]
-    areas = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     fans = [closing.caps[start:end] for start, end in zip(closing.loops, closing.loops[1:], strict=False)]
-    centres = np.array([fan.mean(axis=(0, 1)) for fan in fans])
-    radii = [np.linalg.norm(fan - centre, axis=2).max() for fan, centre in zip(fans, centres, strict=True)]
-    return Shell(
-        surface, few, shape.bounds, centres, np.array(radii) * (1.0 + 1e-12),
-        np.add.reduceat(areas, closing.loops[:-1]),
-    )  # fmt: skip
+    return Shell(surface, few, shape.bounds, np.array([_ball_of(fan) for fan in (closing.caps, *fans)]))
+
+
+def _ball_of(fan: np.ndarray) -> tuple[float, ...]:
+    """(centre, radius [m], area [m^2]) of triangles (n, 3, 3)."""
+    centre = fan.mean(axis=(0, 1))
+    sides = fan[:, 1:] - fan[:, :1]
+    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
+    radius = np.linalg.norm(fan - centre, axis=2).max()
+    return (*centre, radius * (1.0 + 1e-12), area * (1.0 + 1e-12))
 
 
 def _parts_of(shape: Polyhedron) -> tuple[Part, ...]:
@@ -169,9 +158,7 @@ def _parts_of(shape: Polyhedron) -> tuple[Part, ...]:
 
 def _part(points: np.ndarray) -> Part:
     ends = np.stack([points.argmin(axis=0), points.argmax(axis=0)], axis=1).reshape(-1)
-    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    radius = float(np.linalg.norm(points - centre, axis=1).max()) * (1.0 + 1e-12)
-    return Part(points, points[ends], centre, radius)
+    return Part(points, points[ends], points.min(axis=0), points.max(axis=0))
 
 
 def _kept(known: weakref.WeakKeyDictionary, shape: Polyhedron, make) -> tuple:

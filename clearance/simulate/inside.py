@@ -6,7 +6,7 @@ pairs where a winding number decides (`kernels.containment`); those are in conta
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -28,15 +28,25 @@ FEWER = "close the mesh's holes, or accept: [inside] in the case if it is hollow
 def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tuple[Notice, ...]:
     """One notice for each pair of which it is open at some step whether one body is inside the other."""
     names = pair_names(case, pairs)
-    found = []
-    for i, pair in enumerate(pairs):
-        doubt = doubt_of(*_shapes(case, pair))
-        if doubt is not None:
-            step = next(_steps_in_doubt(case, motions[pair.i_robot], pair, doubt), None)
+    doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
+    waiting = {i: doubt for i, doubt in doubts.items() if doubt is not None}
+    found: dict[int, int] = {}
+    for start in range(0, motions[0].n_steps if waiting else 0, AT_ONCE):
+        poses = _poses(motions, {pairs[i].i_robot for i in waiting}, start)
+        for i, doubt in list(waiting.items()):
+            step = _first_in_doubt(case, pairs[i], doubt, poses[pairs[i].i_robot])
             if step is not None:
-                time = motions[0].times[step]
-                found.append(Notice(Severity.SUSPECT, "inside", _text(names[0][i], names[1][i], step, time)))
-    return tuple(found)
+                found[i] = start + step
+                del waiting[i]
+    return tuple(
+        Notice(Severity.SUSPECT, "inside", _text(names[0][i], names[1][i], step, motions[0].times[step]))
+        for i, step in sorted(found.items())
+    )
+
+
+def _poses(motions: Sequence[Motion], robots: set[int], start: int) -> dict[int, np.ndarray]:
+    """(steps, n_links, 4, 4) [m] of each of the robots, from a step on."""
+    return {i: motions[i].poses(start, min(start + AT_ONCE, motions[i].n_steps)) for i in robots}
 
 
 def _text(link: str, obstacle: str, step: int, time: float) -> str:
@@ -52,15 +62,14 @@ def _shapes(case: Case, pair: Pair) -> tuple[Polyhedron, Polyhedron]:
     return body.shape, case.obstacles[pair.i_obstacle].body.shape
 
 
-def _steps_in_doubt(case: Case, motion: Motion, pair: Pair, doubt: Doubt) -> Iterator[int]:
-    """The steps at which a pair is in doubt and not in contact."""
+def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> int | None:
+    """The first of the steps with `poses` (n, n_links, 4, 4) at which a pair is in doubt and not in contact."""
     link, obstacle = _shapes(case, pair)
     world_from_obstacle = case.obstacles[pair.i_obstacle].world_from_body
-    robot = motion.placed.robot
-    i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
-    for start in range(0, motion.n_steps, AT_ONCE):
-        poses = motion.poses(start, min(start + AT_ONCE, motion.n_steps))[:, i_link]
-        standing = np.broadcast_to(world_from_obstacle, poses.shape).copy()
-        for k in np.flatnonzero(doubt.at(poses.copy(), standing)):
-            if not distance(link, obstacle, pose_a=poses[k], pose_b=world_from_obstacle).contact:
-                yield start + int(k)
+    robot = case.robots[pair.i_robot].robot
+    mine = np.ascontiguousarray(poses[:, robot.link_names.index(robot.bodies[pair.i_body].name)])
+    standing = np.broadcast_to(world_from_obstacle, mine.shape).copy()
+    for k in np.flatnonzero(doubt.at(mine, standing)):
+        if not distance(link, obstacle, pose_a=mine[k], pose_b=world_from_obstacle).contact:
+            return int(k)
+    return None
