@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
+from clearance.simulate import inside
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import NEEDS, Measurement, Progress, measure
 from clearance.simulate.parts import blocks
@@ -252,6 +253,7 @@ def check(
         every_pair=every_pair(case, pairs, found),
         certificate=certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
+        notices=inside.notices(case, motions, pairs) if method == "exact" else (),
         contacts=contacts,
         notices=_notices(case, certificate),
         let_go=let_go,

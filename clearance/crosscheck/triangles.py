@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from clearance.geometry.closing import closing_of
 from clearance.geometry.polyhedron import Polyhedron
 
 
@@ -21,10 +22,15 @@ class TriangleSoup:
     Attributes:
         vertices: (n, 3) [m] in the body frame, no two equal.
         triangles: (m, 3) indices, counter-clockwise as in the faces they come from.
+        turns: (m,) how often each counts in a winding number where the surface has a rim: those of closed
+            components once, of components that are closed but for a few faults as `geometry.closing` says.
+        caps: (k, 3, 3) [m] the triangles that close the latter.
     """
 
     vertices: np.ndarray
     triangles: np.ndarray
+    turns: np.ndarray
+    caps: np.ndarray
 
     @property
     def corners(self) -> np.ndarray:
@@ -46,6 +52,11 @@ class TriangleSoup:
         there = np.sort(tails * len(self.vertices) + heads)
         back = np.sort(heads * len(self.vertices) + tails)
         return bool(np.array_equal(there, back))
+
+    @property
+    def holds(self) -> bool:
+        """True if something can be inside."""
+        return self.encloses or bool(self.turns.any())
 
     @cached_property
     def part_points(self) -> np.ndarray:
@@ -70,4 +81,13 @@ def triangle_soup(shape: Polyhedron) -> TriangleSoup:
     fan_starts = np.cumsum(sizes - 2) - (sizes - 2)
     nth = np.arange(len(firsts)) - np.repeat(fan_starts, sizes - 2)
     corners = np.stack([firsts, firsts + nth + 1, firsts + nth + 2], axis=1)
-    return TriangleSoup(vertices, index.ravel()[shape.face_vertices[corners]])
+    turns, caps = _rimmed(shape)
+    faces = np.repeat(np.arange(shape.n_faces), sizes - 2)
+    return TriangleSoup(vertices, index.ravel()[shape.face_vertices[corners]], turns[faces], caps)
+
+
+def _rimmed(shape: Polyhedron) -> tuple[np.ndarray, np.ndarray]:
+    """(f,) how often each face counts, and (k, 3, 3) [m] the caps."""
+    turns = shape.component_closed[shape.face_component].astype(np.int64)
+    closing = closing_of(shape)
+    return (turns, np.empty((0, 3, 3))) if closing is None else (turns + closing.turns, closing.caps)

@@ -68,6 +68,22 @@ def two_sided(
     return asked
 
 
+def each_once(
+    corners: np.ndarray, starts: np.ndarray, component: np.ndarray, asked: np.ndarray
+) -> np.ndarray:
+    """(f,) 1 for the least of the faces with the same corners in components that are `asked` (k,) for, else 0.
+
+    Components that hold most faces as often one way round as the other have no inside to count: 0.
+    """
+    ways = np.zeros(len(starts) - 1, dtype=np.int32)
+    balance = np.zeros(len(asked), dtype=np.int64)
+    for faces, least, same, turned in _same_corners(corners, starts, asked[component]):
+        ways[faces[least]] = 1
+        two_sided = np.bincount(same, np.where(turned, -1, 1)) == 0
+        np.add.at(balance, component[faces[least]], np.where(two_sided, 1, -1))
+    return np.where(balance[component] > 0, 0, ways)
+
+
 def _same_corners(
     corners: np.ndarray, starts: np.ndarray, asked: np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from clearance.geometry.closing import Closing, closing_of
 from clearance.geometry.cones import face_cones, node_cones
 from clearance.geometry.copies import Copies, copies_of
 from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
@@ -23,6 +24,8 @@ from clearance.kernels.tree_build import build_tree, most_groups
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
 _joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Surface]]
 _joined = weakref.WeakKeyDictionary()
+
+_NO_CAPS = np.empty((0, 3))
 
 
 def surface_of(shape: Polyhedron) -> Surface:
@@ -84,6 +87,8 @@ def _join(parts: Sequence[Surface]) -> Surface:
         probe_starts=starts("probe_starts", "probes"),
         probes=stacked("probes", "vertices"),
         turns=stacked("turns"),
+        cap_starts=starts("cap_starts", "caps"),
+        caps=stacked("caps"),
     )
 
 
@@ -129,6 +134,8 @@ def _build(shape: Polyhedron) -> Surface:
     centres, boxes, children = _tree(vertices[corners], starts, copies.kept)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
+    closing = closing_of(shape)
+    caps = _NO_CAPS if closing is None else closing.caps.reshape(-1, 3)
     return Surface(
         vertices=vertices,
         exact=vertices,
@@ -151,7 +158,9 @@ def _build(shape: Polyhedron) -> Surface:
         roots=np.zeros(1, dtype=np.int64),
         probe_starts=np.array([0, len(probes)]),
         probes=probes,
-        turns=_turns(copies, shape.component_closed[shape.face_component]),
+        turns=_turns(copies, shape.component_closed[shape.face_component], closing),
+        cap_starts=np.array([0, len(caps)]),
+        caps=caps,
     )
 
 
@@ -206,11 +215,11 @@ def _owns(
     return np.where(bent | (np.diff(starts) > LISTED), ANYTHING, bits).astype(np.uint16)
 
 
-def _turns(copies: Copies, closed: np.ndarray) -> np.ndarray:
-    """(f,) `Surface.turns`, from whether each face is of a closed component."""
+def _turns(copies: Copies, closed: np.ndarray, closing: Closing | None) -> np.ndarray:
+    """(f,) `Surface.turns`, from whether each face is of a closed component, and how others close."""
     turns = np.zeros(len(closed), dtype=np.int32)
     np.add.at(turns, copies.first, copies.way * closed)
-    return turns
+    return turns if closing is None else turns + closing.turns.astype(np.int32)
 
 
 def _cones(

@@ -6,7 +6,14 @@ the signed count of the triangles that a ray along an axis of the world meets; o
 may meet are opened. Where the ray meets an edge or a corner, the point is moved aside by (e, e^2) for an
 infinitely small e, in thought: the signs of the predicates (`predicates`) then follow from coordinates, so that
 no ray is a special case. Source: Edelsbrunner & Mücke 1990, simulation of simplicity.
+
+Components that are closed but for a few faults are counted with the caps that close them (`geometry.closing`), so
+that their number is whole and exact, too. The generalized winding number of their faces alone (Jacobson, Kavan &
+Sorkine-Hornung 2013) differs from it by the solid angle of the caps in turns: where that is at most `DOUBTFUL`, the
+number is the same however the holes are closed, as long as that is seen under less than what is left of half a turn.
 """
+
+import math
 
 import numpy as np
 
@@ -25,13 +32,22 @@ from clearance.kernels.predicates import (
     turn_along,
 )
 from clearance.kernels.surface import box_of, is_leaf, surface_like
-from clearance.kernels.vec3 import Vec3, dot, move, move_back, row, sub
+from clearance.kernels.vec3 import Vec3, cross, dot, move, move_back, row, sub
 
 AXIS = 2
 """The ray's coordinate axis."""
 
 ROUNDING = 512.0 * 2.0**-53
 """Rounding of a moved point, relative to the sum of the coordinates' magnitudes, with room."""
+
+DOUBTFUL = 0.25
+"""[turns] Caps that are seen under more leave it open whether a point is inside."""
+
+ROUNDING_OF_ANGLES = 1e-6
+"""[turns] More than rounding makes of the solid angles of a cap, given `EDGE_ON`, for each of up to a million."""
+
+EDGE_ON = 1e-9
+"""[-] A triangle whose edge is seen as straight through the point, but for so much, counts as half of all that is seen."""
 
 
 @inlined
@@ -41,7 +57,7 @@ def _room(box, d, far):
 
 
 @inlined
-def _in_box(surface, node, x, far):
+def in_box(surface, node, x, far):
     """True unless `x` is outside the node's box by more than rounding."""
     box = box_of(surface, node)
     d = sub(x, box.centre)
@@ -116,6 +132,45 @@ def _crossings(surface, face, side, x, exact):
     return number
 
 
+@inlined
+def _solid_angle(a, b, c):
+    """[rad] between 0 and 2 pi, of the triangle with corners at `a`, `b`, `c` from the origin.
+
+    Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.
+    """
+    la, lb, lc = np.sqrt(dot(a, a)), np.sqrt(dot(b, b)), np.sqrt(dot(c, c))
+    volume = abs(dot(a, cross(b, c)))
+    spread = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+    if volume + abs(spread) <= EDGE_ON * la * lb * lc:
+        return 2.0 * math.pi
+    return 2.0 * math.atan2(volume, spread)
+
+
+@inlined
+def _turns_of_caps(surface, body, x):
+    """[turns] the solid angle of the body's caps from `x` in its frame, each for itself: no less than theirs together."""
+    total = 0.0
+    first, last = surface.cap_starts[body], surface.cap_starts[body + 1]
+    for i in range(first, last, 3):
+        a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
+        total += _solid_angle(sub(a, x), sub(b, x), sub(c, x))
+    if last > first:
+        total += ROUNDING_OF_ANGLES
+    return total / (4.0 * math.pi)
+
+
+@inlined
+def signed_turns_of_caps(surface, body, x):
+    """[turns] the solid angle of the body's caps from `x` in its frame, positive where seen from behind."""
+    total = 0.0
+    for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
+        a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
+        a, b, c = sub(a, x), sub(b, x), sub(c, x)
+        angle = _solid_angle(a, b, c)
+        total += angle if dot(a, cross(b, c)) > 0.0 else -angle
+    return total / (4.0 * math.pi)
+
+
 def _like():
     nodes = np.empty((0, 2), dtype=np.int32)
     nowhere = Vec3(0.0, 0.0, 0.0)
@@ -151,6 +206,11 @@ def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
                 n_waiting += 1
         elif surface.turns[first] != 0:
             number += surface.turns[first] * _crossings(surface, first, side, probe, exact)
+    for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
+        one, two = Posed(row(surface.caps, i), side), Posed(row(surface.caps, i + 1), side)
+        three = Posed(row(surface.caps, i + 2), side)
+        if not _beside(exact, one, two, three, probe):
+            number += _crossing(one, two, three, probe, exact)
     return number
 
 
@@ -168,10 +228,11 @@ def contained(a, body_a, b, body_b, frames, scratch, table):
             v = row(one.vertices, one.probes[i])
             x = move_back(frames.m, v) if is_a else move(frames.m, v)
             away = far + size(v)
-            if _in_box(two, two.roots[body_two], x, away):
+            if in_box(two, two.roots[body_two], x, away):
                 probe = row(one.exact, one.probes[i])
                 asked = (two, body_two, is_a, probe, x, away, frames, scratch.exact, scratch.nodes)
-                if at_address(table, WINDING_NUMBER, 0, asked) != 0:
+                number = at_address(table, WINDING_NUMBER, 0, asked)
+                if number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL:
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a
     return False, frames.m.t

@@ -47,7 +47,10 @@ class Surface(NamedTuple):
         roots: (bodies,) root nodes, each alone in its group.
         probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
         turns: (f,) how often a face counts in a winding number: once for each copy that runs the same way, less
-            those that run the other way; 0 in components that are not closed and consistently oriented.
+            those that run the other way; 0 in components that are neither closed and consistently oriented nor so
+            but for a few faults.
+        cap_starts, caps: (bodies + 1,), (3 k, 3) [m] the corners of the triangles that close those that are so but
+            for a few faults, in the body frame. They count once in a winding number, and nowhere else.
     """
 
     vertices: np.ndarray
@@ -72,6 +75,8 @@ class Surface(NamedTuple):
     probe_starts: np.ndarray
     probes: np.ndarray
     turns: np.ndarray
+    cap_starts: np.ndarray
+    caps: np.ndarray
 
 
 def surface_like():
@@ -83,7 +88,7 @@ def surface_like():
         points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
         indices, indices, indices, pairs, np.empty(0, dtype=np.uint16),
         np.empty((0, 4)), singles, singles, np.empty((0, 2), dtype=np.int32),
-        indices, indices, indices, np.empty(0, dtype=np.int32),
+        indices, indices, indices, np.empty(0, dtype=np.int32), indices, points,
     )  # fmt: skip
 
 

@@ -11,8 +11,10 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
 from clearance.kernel_table import call
+from clearance.kernels.body_pair import NO_FACE
 from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
 from clearance.kernels.scratch import Scratch, new_scratch
+from clearance.query.inside import doubt_of
 from clearance.query.result import Nearest
 
 _AT_REST = np.eye(4)
@@ -30,10 +32,12 @@ class OnePair:
 
     Attributes:
         held: of `hold_pair`. It knows nothing of the polyhedra, so that it does not keep them alive.
+        doubt: what of one may be inside the other, if anything.
     """
 
     def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch, *, goes_on: bool) -> None:
         self.held = hold_pair(surface_of(a), surface_of(b), ROOM if goes_on else 0, scratch)
+        self.doubt = doubt_of(a, b)
         self._goes_on = goes_on
         self._poses, self._rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), answer_rows(1)
 
@@ -50,7 +54,14 @@ class OnePair:
         return Nearest(
             distance, point_a, point_b, face_a, face_b, distance == 0.0, error,
             {"nodes": n_nodes, "polygons": n_faces, "exact_decisions": n_exact},
+            self._inside(distance, face_a),
         )  # fmt: skip
+
+    def _inside(self, distance: float, face_a: int) -> str:
+        """`Nearest.inside` at the poses of the last question."""
+        if distance == 0.0:
+            return "yes" if face_a == NO_FACE else "no"
+        return "undecided" if self.doubt is not None and self.doubt.at(*self._poses)[0] else "no"
 
 
 def answer_rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

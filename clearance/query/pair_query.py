@@ -29,12 +29,14 @@ class NearestAtPoses:
         points: (n, 2, 3) [m] witness points on a and b in the world frame.
         faces: (n, 2) polygons that hold them; -1 where one body is inside the other.
         error_bounds: (n,) [m].
+        undecided: (n,) True where one body may be inside the other, as `Nearest.inside` says.
     """
 
     distances: np.ndarray
     points: np.ndarray
     faces: np.ndarray
     error_bounds: np.ndarray
+    undecided: np.ndarray
 
 
 class Query:
@@ -91,9 +93,18 @@ class Query:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
                 call(nearest_at_poses, held, poses_a, poses_b, True, False, numbers, points, counts)
-        return NearestAtPoses(
-            numbers[:, 0].copy(), points, counts[:, :2].copy(), numbers[:, 1].copy()
-        )
+        distances = numbers[:, 0].copy()
+        undecided = self._undecided(distances, poses_a, poses_b)
+        return NearestAtPoses(distances, points, counts[:, :2].copy(), numbers[:, 1].copy(), undecided)
+
+    def _undecided(self, distances: np.ndarray, poses_a: np.ndarray, poses_b: np.ndarray) -> np.ndarray:
+        """(n,) `NearestAtPoses.undecided`."""
+        found = np.zeros(len(distances), dtype=bool)
+        apart = np.flatnonzero(distances > 0.0)
+        if self._pair.doubt is not None and len(apart):
+            rows = (poses if len(poses) == 1 else poses[apart] for poses in (poses_a, poses_b))
+            found[apart] = self._pair.doubt.at(*(np.resize(poses, (len(apart), 4, 4)) for poses in rows))
+        return found
 
 
 def _poses(given: np.ndarray | None, where: str) -> np.ndarray:

@@ -219,6 +219,7 @@ class Record:
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
+        notices: suspect input and warnings that measuring found, beside those of the case.
         contacts: every pair in contact at every step, steps first.
         notices: what a reader of the verdict must know: of the case, and found while measuring.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
@@ -239,6 +240,7 @@ class Record:
     need: str = "steps"
     every_pair: EveryPair | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
+    notices: tuple[Notice, ...] = ()
     contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
     notices: tuple[Notice, ...] = ()

@@ -1,0 +1,167 @@
+"""Whether one solid may be inside another whose surface is too open to tell: where clearance 0 is not known.
+
+The search takes a body for inside where a winding number proves it (`kernels.containment`). Here it is asked what
+that leaves open: parts of a body that reach through a hole of a surface that is closed but for a few faults, or are
+so near one that its place decides; and parts that larger holes leave wholly within a surface. Surfaces with more
+holes than `closing.SOME` have no inside. Not for: the distance, which none of this changes.
+"""
+
+from __future__ import annotations
+
+import weakref
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.geometry.closing import FEW, SOME, Closing, closing_of
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.tree import surface_of
+from clearance.kernel_table import call
+from clearance.kernels.containment import DOUBTFUL
+from clearance.kernels.doubt import generalized_windings, near_holes
+from clearance.kernels.surface import Surface
+
+MOSTLY = 0.5
+"""[turns] A part whose outermost corners are all wound round by more, past large holes, may be inside."""
+
+
+class Shell(NamedTuple):
+    """The components of a body that would close, and where they do not.
+
+    Attributes:
+        surface: with the winding number of these components.
+        few: True if they are closed but for a few faults, so that the search decides what it can.
+        bounds: (2, 3) [m] of the body.
+        holes: (1 + h, 5) centres, radii [m] and areas [m^2] of balls about the caps of all holes, and of each.
+    """
+
+    surface: Surface
+    few: bool
+    bounds: np.ndarray
+    holes: np.ndarray
+
+
+class Part(NamedTuple):
+    """A connected component of a body.
+
+    Attributes:
+        points: (n, 3) [m] its corners. outermost: (6, 3) [m] those that reach farthest along the axes.
+        low, high: (3,) [m] of its box.
+    """
+
+    points: np.ndarray
+    outermost: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+
+_shells: weakref.WeakKeyDictionary[Polyhedron, tuple[Shell, ...]] = weakref.WeakKeyDictionary()
+_parts: weakref.WeakKeyDictionary[Polyhedron, tuple[Part, ...]] = weakref.WeakKeyDictionary()
+
+
+class Doubt:
+    """What of one of two bodies may be inside the other; it does not keep the bodies alive."""
+
+    def __init__(self, of_a: tuple, of_b: tuple) -> None:
+        self._of_a, self._of_b = of_a, of_b
+
+    def at(self, worlds_from_a: np.ndarray, worlds_from_b: np.ndarray) -> np.ndarray:
+        """(n,) True at the poses (n, 4, 4) where it is open whether a body is inside, or where they touch."""
+        found = np.zeros(len(worlds_from_a), dtype=bool)
+        for shell, part in self._of_a:
+            _look(shell, part, worlds_from_a, worlds_from_b, found)
+        for shell, part in self._of_b:
+            _look(shell, part, worlds_from_b, worlds_from_a, found)
+        return found
+
+
+def doubt_of(a: Polyhedron, b: Polyhedron) -> Doubt | None:
+    """What can be in doubt of two bodies; None where all components are closed, or too open, or too small."""
+    sides = _sides(a, b), _sides(b, a)
+    return Doubt(*sides) if any(sides) else None
+
+
+def _sides(outer: Polyhedron, inner: Polyhedron) -> tuple[tuple[Shell, Part], ...]:
+    shells = _kept(_shells, outer, _shells_of)
+    if not shells:
+        return ()
+    parts = _kept(_parts, inner, _parts_of)
+    return tuple((shell, part) for shell in shells for part in parts if shell.few or _may_hold(shell, part))
+
+
+def _may_hold(shell: Shell, part: Part) -> bool:
+    """False if two corners of the part are farther apart than any two points within the shell's bounds."""
+    breadth = np.linalg.norm(part.outermost[::2] - part.outermost[1::2], axis=1).max()
+    return bool(breadth <= np.linalg.norm(shell.bounds[1] - shell.bounds[0]))
+
+
+def _look(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray, found: np.ndarray) -> None:
+    """Sets `found` (n,) where the part is in doubt, at poses (n, 4, 4) of the shell's body and of its own."""
+    asked = _near_a_hole if shell.few else _within_bounds
+    rows = np.flatnonzero(asked(shell, part, outer, inner) & ~found)
+    if not len(rows):
+        return
+    least, most = np.empty(len(rows)), np.empty(len(rows))
+    points = part.points if shell.few else part.outermost
+    call(generalized_windings, shell.surface, points, outer[rows], inner[rows], least, most)
+    found[rows] = most > DOUBTFUL if shell.few else least > MOSTLY
+
+
+def _near_a_hole(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+    """(n,) False where the caps are seen under at most `DOUBTFUL` from all of the part: the search has decided."""
+    found = np.empty(len(outer), dtype=bool)
+    near_holes(shell.holes, shell.bounds, part.low, part.high, outer, inner, found)
+    return found
+
+
+def _within_bounds(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+    """(n,) True where the outermost corners of the part are within the body's bounds."""
+    points = part.outermost @ np.swapaxes(inner[:, :3, :3], 1, 2) + (inner[:, :3, 3] - outer[:, :3, 3])[:, None]
+    points = points @ outer[:, :3, :3]
+    return ((points >= shell.bounds[0]) & (points <= shell.bounds[1])).all(axis=(1, 2))
+
+
+def _shells_of(shape: Polyhedron) -> tuple[Shell, ...]:
+    found = []
+    for few, closing in ((True, closing_of(shape)), (False, closing_of(shape, FEW, SOME))):
+        if closing is not None and len(closing.caps):
+            found.append(_shell(shape, closing, few))
+    return tuple(found)
+
+
+def _shell(shape: Polyhedron, closing: Closing, few: bool) -> Shell:
+    surface = surface_of(shape)
+    if not few:
+        corners = closing.caps.reshape(-1, 3)
+        surface = surface._replace(
+            turns=closing.turns.astype(np.int32), caps=corners, cap_starts=np.array([0, len(corners)])
+        )
+    fans = [closing.caps[start:end] for start, end in zip(closing.loops, closing.loops[1:], strict=False)]
+    return Shell(surface, few, shape.bounds, np.array([_ball_of(fan) for fan in (closing.caps, *fans)]))
+
+
+def _ball_of(fan: np.ndarray) -> tuple[float, ...]:
+    """(centre, radius [m], area [m^2]) of triangles (n, 3, 3)."""
+    centre = fan.mean(axis=(0, 1))
+    sides = fan[:, 1:] - fan[:, :1]
+    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum()
+    radius = np.linalg.norm(fan - centre, axis=2).max()
+    return (*centre, radius * (1.0 + 1e-12), area * (1.0 + 1e-12))
+
+
+def _parts_of(shape: Polyhedron) -> tuple[Part, ...]:
+    of_corner = np.repeat(shape.face_component, np.diff(shape.face_starts))
+    order = np.argsort(of_corner, kind="stable")
+    ends = np.flatnonzero(np.diff(of_corner[order])) + 1
+    return tuple(_part(shape.vertices[np.unique(rows)]) for rows in np.split(shape.face_vertices[order], ends))
+
+
+def _part(points: np.ndarray) -> Part:
+    ends = np.stack([points.argmin(axis=0), points.argmax(axis=0)], axis=1).reshape(-1)
+    return Part(points, points[ends], points.min(axis=0), points.max(axis=0))
+
+
+def _kept(known: weakref.WeakKeyDictionary, shape: Polyhedron, make) -> tuple:
+    if shape not in known:
+        known[shape] = make(shape)
+    return known[shape]

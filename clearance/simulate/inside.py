@@ -1,0 +1,75 @@
+"""Notices of links that may be inside an obstacle, or round one, whose surface is too open to tell.
+
+The clearance of such a pair is that of its surfaces: it may be that of a robot that runs inside a solid. Not for:
+pairs where a winding number decides (`kernels.containment`); those are in contact in the rows themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.query.distance import distance
+from clearance.query.inside import Doubt, doubt_of
+from clearance.simulate.steps import pair_names
+from clearance.world.case import Case
+from clearance.world.motion import Motion
+from clearance.world.notice import Notice, Severity
+from clearance.world.pairs import Pair
+
+AT_ONCE = 1024
+"""Steps whose poses are looked at together."""
+
+FEWER = "close the mesh's holes, or accept: [inside] in the case if it is hollow"
+
+
+def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tuple[Notice, ...]:
+    """One notice for each pair of which it is open at some step whether one body is inside the other."""
+    names = pair_names(case, pairs)
+    doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
+    waiting = {i: doubt for i, doubt in doubts.items() if doubt is not None}
+    found: dict[int, int] = {}
+    for start in range(0, motions[0].n_steps if waiting else 0, AT_ONCE):
+        poses = _poses(motions, {pairs[i].i_robot for i in waiting}, start)
+        for i, doubt in list(waiting.items()):
+            step = _first_in_doubt(case, pairs[i], doubt, poses[pairs[i].i_robot])
+            if step is not None:
+                found[i] = start + step
+                del waiting[i]
+    return tuple(
+        Notice(Severity.SUSPECT, "inside", _text(names[0][i], names[1][i], step, motions[0].times[step]))
+        for i, step in sorted(found.items())
+    )
+
+
+def _poses(motions: Sequence[Motion], robots: set[int], start: int) -> dict[int, np.ndarray]:
+    """(steps, n_links, 4, 4) [m] of each of the robots, from a step on."""
+    return {i: motions[i].poses(start, min(start + AT_ONCE, motions[i].n_steps)) for i in robots}
+
+
+def _text(link: str, obstacle: str, step: int, time: float) -> str:
+    return (
+        f"link {link} may be inside obstacle {obstacle}, or round it, at {time:.3f} s (step {step}): the surface has "
+        f"holes, so that inside and outside cannot be told there, and the clearance is that of the surfaces alone; "
+        f"{FEWER}"
+    )
+
+
+def _shapes(case: Case, pair: Pair) -> tuple[Polyhedron, Polyhedron]:
+    body = case.robots[pair.i_robot].robot.bodies[pair.i_body]
+    return body.shape, case.obstacles[pair.i_obstacle].body.shape
+
+
+def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> int | None:
+    """The first of the steps with `poses` (n, n_links, 4, 4) at which a pair is in doubt and not in contact."""
+    link, obstacle = _shapes(case, pair)
+    world_from_obstacle = case.obstacles[pair.i_obstacle].world_from_body
+    robot = case.robots[pair.i_robot].robot
+    mine = np.ascontiguousarray(poses[:, robot.link_names.index(robot.bodies[pair.i_body].name)])
+    standing = np.broadcast_to(world_from_obstacle, mine.shape).copy()
+    for k in np.flatnonzero(doubt.at(mine, standing)):
+        if not distance(link, obstacle, pose_a=mine[k], pose_b=world_from_obstacle).contact:
+            return int(k)
+    return None

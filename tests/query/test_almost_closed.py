@@ -1,0 +1,129 @@
+"""Bodies inside surfaces that are closed but for a few faults: decided where it is proven, else said to be open."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from clearance import Polyhedron, Query, box, contact, distance
+from clearance.geometry.closing import FEW, SOME, closing_of
+from tests import oracle
+from tests.made_cases import at, ball, dented, faces_of
+from tests.strategies import rotations
+
+BALL = ball(1.0, 2)
+CUBE = box((0.1, 0.1, 0.1))
+
+
+def faulty(shape: Polyhedron, fault: str, face: int) -> Polyhedron:
+    faces = faces_of(shape)
+    other = {
+        "twice": [*faces, faces[face]],
+        "twice, from another corner on": [*faces, np.roll(faces[face], 1).tolist()],
+        "missing": faces[:face] + faces[face + 1 :],
+        "turned": [*faces[:face], faces[face][::-1], *faces[face + 1 :]],
+        "every third turned": [f[::-1] if i % 3 == 0 else f for i, f in enumerate(faces)],
+        "every third twice": faces + faces[::3],
+    }
+    return Polyhedron(shape.vertices, other[fault])
+
+
+FAULTS = ("twice", "twice, from another corner on", "missing", "turned", "every third turned", "every third twice")
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_body_inside_a_sphere_with_one_fault_is_in_contact_either_way(fault: str) -> None:
+    outer = faulty(BALL, fault, 37)
+    assert outer.n_triangles in (319, 320, 321, 427)
+    for near in (
+        distance(outer, CUBE, pose_b=at(0.2, 0.1, -0.3)),
+        distance(CUBE, outer, pose_a=at(0.2, 0.1, -0.3)),
+        Query(outer, CUBE).distance(world_from_b=at(0.2, 0.1, -0.3)),
+    ):
+        assert (near.contact, near.distance, near.inside) == (True, 0.0, "yes")
+    outside = distance(outer, CUBE, pose_b=at(1.5, 0.1, 0.0))
+    assert not outside.contact and outside.inside == "no"
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_the_answers_are_those_of_the_whole_solid_by_the_oracle(fault: str) -> None:
+    """Of rough solids at random poses: contact only inside, none outside, open only beside a hole."""
+    random = np.random.default_rng(FAULTS.index(fault))
+    tiny = box((2.0**-12,) * 3)
+    n_inside = n_open = 0
+    for turn in rotations(random, 60):
+        whole = dented(random, 2, 0.3)
+        outer = faulty(whole, fault, int(random.integers(whole.n_faces)))
+        pose_a = at(*random.normal(size=3), turned=turn)
+        pose_b = at(*(pose_a[:3, :3] @ random.normal(scale=0.6, size=3) + pose_a[:3, 3]))
+        near = distance(outer, tiny, pose_a=pose_a, pose_b=pose_b)
+        corner = [Fraction(x) + Fraction(2) ** -13 for x in pose_b[:3, 3].tolist()]
+        truth = oracle.contains(corner, whole.vertices, faces_of(whole), pose_a)
+        n_inside += truth
+        n_open += near.inside == "undecided"
+        if near.inside != "undecided":
+            assert near.contact == truth
+    assert 15 < n_inside < 55 and n_open <= 3
+
+
+def test_what_is_in_the_hole_is_undecided_by_name() -> None:
+    outer = faulty(BALL, "missing", 37)
+    middle = BALL.face(37).mean(axis=0)
+    for share, expected in ((0.6, "yes"), (0.98, "undecided"), (1.0, "undecided"), (1.3, "no")):
+        near = distance(outer, box((0.01, 0.01, 0.01)), pose_b=at(*(share * middle)))
+        assert (near.inside, near.contact) == (expected, expected == "yes"), share
+    many = Query(outer, box((0.01, 0.01, 0.01))).distances(None, [at(*(s * middle)) for s in (0.6, 0.98, 1.3)])
+    assert many.undecided.tolist() == [False, True, False] and many.distances[1] > 0.0 == many.distances[0]
+
+
+def test_a_rod_through_the_hole_is_never_said_to_be_outside() -> None:
+    """Which of its corners is asked first decides between contact and open."""
+    outer = faulty(BALL, "missing", 37)
+    middle = BALL.face(37).mean(axis=0)
+    z = middle / np.linalg.norm(middle)
+    x = np.cross(z, [1.0, 0, 0])
+    x /= np.linalg.norm(x)
+    turn = np.column_stack([x, np.cross(z, x), z])
+    rod = box((0.01, 0.01, 1.0))
+    ways = [distance(outer, rod, pose_b=at(*middle, turned=turn * way)) for way in ([1, 1, 1], [1, -1, -1])]
+    assert sorted(near.inside for near in ways) == ["undecided", "yes"]
+
+
+def test_larger_holes_leave_it_open_and_sheets_hold_nothing() -> None:
+    some = Polyhedron(BALL.vertices, faces_of(BALL)[:-10])
+    assert closing_of(some) is None and closing_of(some, FEW, SOME) is not None
+    near = distance(some, CUBE, pose_b=at(0.1, 0.0, 0.0))
+    assert (near.contact, near.inside) == (False, "undecided")
+    for n_faces in (160, 250):
+        bowl = Polyhedron(BALL.vertices, faces_of(BALL)[:n_faces])
+        assert distance(bowl, CUBE, pose_b=at(0.1, 0.0, 0.0)).inside == "no"
+    lidless = Polyhedron(box((1.0, 1.0, 1.0)).vertices, faces_of(box((1.0, 1.0, 1.0)))[1:])
+    assert distance(lidless, CUBE).inside == "no"
+
+
+def test_a_cavity_with_a_fault_in_its_wall_stays_outside() -> None:
+    wall = faulty(ball(0.5, 2).flipped(), "turned", 12)
+    hollow = Polyhedron.merged([BALL, wall])
+    assert not distance(hollow, CUBE).contact
+    assert distance(hollow, CUBE, pose_b=at(0.75, 0.0, 0.0)).contact
+
+
+def test_caps_close_what_they_are_said_to_close() -> None:
+    """Faces as they count, and caps, have winding numbers that the oracle finds whole."""
+    random = np.random.default_rng(7)
+    for fault in FAULTS:
+        outer = faulty(BALL, fault, 5)
+        closing = closing_of(outer)
+        faces = [f[:: int(way)] for f, way in zip(faces_of(outer), closing.turns, strict=True) if way]
+        corners = np.concatenate([outer.vertices, closing.caps.reshape(-1, 3)])
+        caps = (len(outer.vertices) + np.arange(3 * len(closing.caps))).reshape(-1, 3).tolist()
+        for point in random.uniform(-1.2, 1.2, (5, 3)):
+            number = oracle.winding_number(point, corners, faces + caps)
+            assert number == oracle.winding_number(point, BALL.vertices, faces_of(BALL))
+
+
+def test_depth_and_volume_are_found_of_what_is_almost_closed() -> None:
+    deep = contact(faulty(BALL, "missing", 37), CUBE, pose_b=at(0.2, 0.0, 0.0))
+    assert deep.penetration > 0.5 and deep.volume >= 0.999e-3
