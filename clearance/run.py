@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 MOTIONS = ("kinematic", "simulated")
 METHODS = ("exact", "paper")
+CONTACT = ("none", "events", "every")
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,8 +43,8 @@ class Run:
 
     @property
     def steps(self) -> pa.Table:
-        """One row a step; columns as in `Record.steps`."""
-        return self.record.steps
+        """One row a step; columns as in `Record.steps_with_contacts`."""
+        return self.record.steps_with_contacts
 
     @property
     def pairs(self) -> pa.Table | None:
@@ -54,7 +55,7 @@ class Run:
     @property
     def worst(self) -> dict:
         """The row of the first step of least clearance."""
-        return self.steps.slice(self.record.worst_step, 1).to_pylist()[0]
+        return self.record.steps.slice(self.record.worst_step, 1).to_pylist()[0]
 
     @property
     def passed(self) -> bool:
@@ -65,7 +66,7 @@ class Run:
     def status(self) -> str:
         """The worst status of any step: "clear", "near", "violated" or "contact"; "violated" where a sweep
         does not keep to a profile of the case."""
-        occurring = set(self.steps["status"].unique().to_pylist())
+        occurring = set(self.record.steps["status"].unique().to_pylist())
         if not all(answer.passed for answer in self.record.profiles):
             occurring.add("violated")
         return str([status for status in STATUSES if status in occurring][-1])
@@ -96,6 +97,7 @@ def check(
     certify: bool = False,
     certify_gap: float = CERTIFY_GAP,
     cross_check: bool = False,
+    contact: str = "events",
     jobs: int | None = None,
     progress: Progress | None = None,
     kept: Rows | None = None,
@@ -114,6 +116,9 @@ def check(
             the trajectory has velocities, on cubics; the verdict then rests on it.
         certify_gap: [m] how far that bound may be below a distance that occurs.
         cross_check: also ask FCL at every step.
+        contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
+            deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
+            The verdict does not depend on it.
         jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.
         progress: called with steps done and all steps.
         kept: where the rows are kept; in memory by default. In a spool (`open_spool`) memory does not grow with
@@ -126,6 +131,7 @@ def check(
     _require(method, METHODS, "method")
     _require(motion, MOTIONS, "motion")
     _require(need, NEEDS, "need")
+    _require(contact, CONTACT, "contact")
     if certify and method != "exact":
         raise BadInput(f"method {method!r} proves nothing to certify with", valid="method 'exact'")
     if need != "steps" and method != "exact":
@@ -157,7 +163,6 @@ def check(
         certificate = certify_motion(
             case, motions, pairs, found, certify_gap, jobs=jobs, progress=progress, kept=kept
         )
-    contacts, contact_notes = _contacts(case, motions, pairs, found)
     steps, let_go = _table(
         step_table(
             case,
@@ -166,7 +171,6 @@ def check(
             found,
             certificate=certificate,
             with_error=motion == "simulated",
-            contacts=contacts,
         ),
         kept,
     )
@@ -182,8 +186,8 @@ def check(
         need=need,
         every_pair=every_pair(case, pairs, found),
         certificate=certificate,
-        notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
-        contacts=contacts,
+        notes=(*case.notes, *(note for made in motions for note in made.notes)),
+        contacts=_contacts(case, motions, pairs, found, contact),
         let_go=let_go,
         room=lambda: kept.folder,
     )
@@ -222,14 +226,14 @@ def _letting_go(batches: Iterator[pa.Table], kept: Rows) -> Iterator[pa.Table]:
 
 
 def _contacts(
-    case: Case, motions: tuple[Motion, ...], pairs: list[Pair], found: Measurement
-) -> tuple[Sequence[StepContact], tuple[str, ...]]:
+    case: Case, motions: tuple[Motion, ...], pairs: list[Pair], found: Measurement, work_out: str
+) -> Sequence[StepContact]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
     if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
-        return (), ()
+        return ()
     from clearance.simulate.contact import find_contacts
 
-    return find_contacts(case, motions, pairs, found.clearance, found.pair)
+    return find_contacts(case, motions, pairs, found.clearance, found.pair, work_out)
 
 
 def _motions(case: Case, kind: str) -> tuple[Motion, ...]:

@@ -34,6 +34,13 @@ if TYPE_CHECKING:
     "the warn limit, a proven bound for the rest. minimum: the worst moment only.",
 )
 @click.option(
+    "--contact",
+    type=click.Choice(["none", "events", "every"]),
+    default="events",
+    show_default=True,
+    help="Of which overlaps depth, volume and way out are told: none, the deepest moment of each event, every one.",
+)
+@click.option(
     "--jobs", type=click.IntRange(min=1), help="Threads.  [default: all cores; same bytes]"
 )
 @click.option("--cross-check", is_flag=True, help="Hold every step against FCL.")
@@ -56,6 +63,7 @@ def check(
     certify: bool,
     certify_mm: float | None,
     need: str,
+    contact: str,
     jobs: int | None,
     cross_check: bool,
     method: str,
@@ -85,6 +93,7 @@ def check(
 
     certify = certify or certify_mm is not None
     passes = ["measuring"] + ["certifying"] * certify + ["cross-checking"] * cross_check
+    passes += ["looking into contacts"]
     with kept_rows(out, quiet) as kept:
         with shown_progress(quiet or as_json, passes) as progress:
             run = answer(
@@ -97,9 +106,12 @@ def check(
                 certify=certify,
                 certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
                 cross_check=cross_check,
+                contact=contact,
                 progress=progress,
                 kept=kept,
             )
+            if out is not None or not quiet:
+                run.record.work_out_contacts(progress)
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return _exit_code(run)

@@ -174,7 +174,7 @@ def _tessellation_bound(record: Record) -> float:
 
 def notes_of(record: Record) -> list[str]:
     robots = [note for motion in record.motions for note in motion.placed.robot.notes]
-    return list(dict.fromkeys([*record.case.notes, *robots, *record.notes]))
+    return list(dict.fromkeys([*record.case.notes, *robots, *record.notes, *record.contact_notes]))
 
 
 def _finite(value: float) -> float | None:
