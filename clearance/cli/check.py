@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     type=click.Choice(["none", "events", "every"]),
     default="events",
     show_default=True,
-    help="Of which overlaps depth, volume and way out are told: none, the deepest moment of each event, every one.",
+    help="Whose depth, volume and way out are told: of none, of the deepest moment of each event, of every step.",
 )
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Threads.  [default: all cores; same bytes]"

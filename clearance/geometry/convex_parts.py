@@ -33,7 +33,7 @@ MOST_HULL = 20_000
 """Corners of which a hull is made: a second or two. Of more the envelope is taken, a hull of its own reach."""
 
 LITTLE_HULL = 500
-"""Corners of which a hull takes 5 ms; of so few it is always made, since dents may be too small to be seen else."""
+"""Corners of which a hull takes 5 ms; of so few it is always made, since small dents are seen no other way."""
 
 MOST_CUT = 30_000
 """Triangles that CoACD is given: with more it was never done within `decompose.MOST_WORK`."""
@@ -218,7 +218,8 @@ def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
     who = "its hull holds it and stands"
     if len(parts) > 1:
         who = f"{len(parts)} convex parts by CoACD hold it and stand"
-    note = f"{who} out by at most {greatest * 1e3:.2g} mm, {100.0 * extra:.2g} % more volume, in the depth; {VOLUMES}"
+    note = f"{who} out by at most {greatest * 1e3:.2g} mm in the depth, with {100.0 * extra:.2g} % more volume; "
+    note += VOLUMES
     return ConvexParts(tuple(parts), tuple(inner), solid, True, note)
 
 

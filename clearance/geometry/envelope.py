@@ -1,4 +1,4 @@
-"""What holds a body at little cost: its support planes along 26 directions, and a look at whether it is concave."""
+"""What holds a body at little cost: its support planes along 26 directions; and a look whether it is concave."""
 
 from __future__ import annotations
 

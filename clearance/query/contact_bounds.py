@@ -37,7 +37,7 @@ def bounded_contact(
     low = np.maximum(here.min(axis=0), b.bounds[0])
     high = np.minimum(here.max(axis=0), b.bounds[1])
     room = ROUNDING * float(np.abs([here.min(axis=0), here.max(axis=0), *b.bounds]).max())
-    volume = min(float(np.prod(np.maximum(0.0, high - low + room))), _volume_of(a), _volume_of(b))
+    volume = float(np.prod(np.maximum(0.0, high - low + room)))
     return Contact(
         penetration=max(0.0, float(supports[least]) + room),
         penetration_at_least=0.0,
@@ -53,13 +53,6 @@ def bounded_contact(
 
 def _extent_of(body: Polyhedron) -> np.ndarray:
     """(26,) [m] how far the body reaches along the 26 directions."""
-    if body not in ROUNDING = 1e-13
-"""[-] Of the greatest coordinate: what is added to a bound for its own rounding."""
-
-_extents:
+    if body not in _extents:
         _extents[body] = (body.vertices @ TWENTY_SIX.T).max(axis=0)
     return _extents[body]
-
-
-def _volume_of(body: Polyhedron) -> float:
-    return np.inf if body.volume is None else abs(body.volume)

@@ -14,8 +14,7 @@ from clearance.simulate.record import Record, StepContact
 
 
 def contact_of(record: Record) -> dict[str, Any] | None:
-    """The deepest overlap of the run and of every pair that overlaps, deepest first; None without contact, and where
-    none is worked out."""
+    """The deepest overlap worked out of the run and of every pair, deepest first; None if there is none."""
     if record.deepest is None:
         return None
     by_pair: dict[tuple[str, str], StepContact] = {}

@@ -53,7 +53,8 @@ def find_contacts(
         work_out: of which rows depth, volume and way out are found with the run: the deepest moment of each of the
             "events", "every" one, or "none".
     """
-    steps = np.concatenate([block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))])
+    touching = [block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))]
+    steps = np.concatenate(touching)
     finder = _Finder(case, tuple(motions), tuple(pairs), steps, np.array(nearest[steps]), work_out)
     names = list(zip(*pair_names(case, pairs), strict=True))
     return ContactRows(names, motions[0].times, finder)
@@ -137,9 +138,8 @@ class _Finder:
         poses = self._poses(i_pair, steps[few])
         if by_volume:
             return np.array([pair.shared_volume(pose) for pose in poses])
-        corners = (np.concatenate([part.vertices for part in parts.outer]) for parts in (pair.parts_a, pair.parts_b))
-        normals = np.concatenate([part.normals for part in pair.parts_b.outer])
-        return hull_depths(*corners, normals, poses)
+        corners = pair.hull_a.vertices, pair.hull_b.vertices
+        return hull_depths(*corners, pair.hull_b.normals, poses)
 
     def _bounded(self, i_pair: int, step: int, why: str) -> Contact:
         a, b = self._shapes(i_pair)
@@ -149,7 +149,7 @@ class _Finder:
         return bounded_contact(a, b, b_from_a, near.point_b, why).placed(self._obstacle(i_pair).world_from_body)
 
     def _asked(self, i_pair: int, b_from_a: np.ndarray) -> Contact:
-        """The overlap in the obstacle's frame. Seen from there, rounding may part bodies that touch in the world."""
+        """The overlap in the obstacle's frame, from where rounding may part bodies that touch in the world."""
         a, b = self._shapes(i_pair)
         near, pair = distance(a, b, pose_a=b_from_a), self._pair(i_pair)
         if isinstance(pair, str):

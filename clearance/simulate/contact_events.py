@@ -13,7 +13,6 @@ import numpy as np
 
 from clearance.geometry.envelope import TWENTY_SIX
 
-
 MOST_RATED = 32
 """Steps of an event that are rated, evenly spread; as many again on both sides of the best."""
 

@@ -1,7 +1,7 @@
 """The overlaps of a run: which pair at which step, with the figures of those that the run works out.
 
-Which pairs are in contact is asked when somebody looks, and so are depth, volume and way out: of the deepest moment
-of every event, of all, or of none. Any other row is worked out when it is looked at itself. Not for: how
+Which pairs are in contact is asked when somebody looks, and so are depth, volume and way out: of the deepest
+moment of every event, of all, or of none. Any other row is worked out when it is looked at itself. Not for: how
 (`contact`), and which moment (`contact_events`).
 """
 

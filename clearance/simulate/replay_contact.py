@@ -43,7 +43,8 @@ class DrawnContact:
 def drawn_contacts(
     record: Record, kept: np.ndarray
 ) -> tuple[tuple[DrawnContact, ...], tuple[tuple[np.ndarray, np.ndarray], ...]]:
-    """The overlaps that the run works out of the steps `kept`, and for each its region: vertices (n, 3) float32, triangles (m, 3) int32.
+    """The overlaps that the run works out of the steps `kept`, and the region of each: vertices (n, 3) float32,
+    triangles (m, 3) int32.
 
     Beyond `MOST_CONTACTS` or `MOST_TRIANGLES`, every second, third, … contact; always the deepest.
     """

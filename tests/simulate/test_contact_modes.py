@@ -167,7 +167,8 @@ def test_the_deepest_of_many_is_found_among_few(top):
 def test_a_link_in_the_wall_of_a_ring_is_deepest_in_its_middle():
     """Hulls would say: at once, since the hole is inside the hull."""
     u = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-    ring = [(r * np.cos(t), r * np.sin(t), z) for t in u for r, z in ((0.7, -0.3), (1.3, -0.3), (1.3, 0.3), (0.7, 0.3))]
+    section = ((0.7, -0.3), (1.3, -0.3), (1.3, 0.3), (0.7, 0.3))
+    ring = [(r * np.cos(t), r * np.sin(t), z) for t in u for r, z in section]
     faces = []
     for i in range(48):
         for k in range(4):
