@@ -100,7 +100,9 @@ def convex_parts(body: Polyhedron, *, rough: bool = False) -> ConvexParts:
 
 
 def _found(body: Polyhedron, rough: bool) -> ConvexParts:
-    points = body.vertices[np.unique(body.face_vertices)]
+    is_used = np.zeros(len(body.vertices), dtype=bool)
+    is_used[body.face_vertices] = True
+    points = body.vertices[is_used]
     volume = body.volume
     if volume and len(points) > (LITTLE_HULL if rough else MOST_HULL) and is_clearly_concave(body, points):
         solid, _ = _solid(body)

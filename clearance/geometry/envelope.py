@@ -15,6 +15,9 @@ TWENTY_SIX /= np.linalg.norm(TWENTY_SIX, axis=1)[:, None]
 SAMPLED = 64
 """Faces that are looked at."""
 
+MOST_POINTS = 4000
+"""Corners that are held against them."""
+
 CLEARLY = 1e-3
 """[-] Of the size: a corner so far above a face says that a body is no convex one with small dents."""
 
@@ -34,6 +37,10 @@ def envelope(points: np.ndarray) -> Polytope:
 def is_clearly_concave(body: Polyhedron, points: np.ndarray) -> bool:
     """True if one of the body's corners `points` (n, 3) [m] stands far above one of a few faces."""
     few = slice(None, None, max(1, body.n_faces // SAMPLED))
-    normals, first = body.normals[few], body.vertices[body.face_vertices[body.face_starts[:-1][few]]]
+    points = points[:: max(1, len(points) // MOST_POINTS)]
+    starts = body.face_starts[:-1][few]
+    first, second, third = (body.vertices[body.face_vertices[starts + k]] for k in range(3))
+    normals = np.cross(second - first, third - first)
+    lengths = np.linalg.norm(normals, axis=1)
     above = (points @ normals.T).max(axis=0) - np.einsum("ij,ij->i", normals, first)
-    return bool(above.max() > CLEARLY * np.ptp(points, axis=0).max())
+    return bool((above > CLEARLY * np.ptp(points, axis=0).max() * lengths).any())

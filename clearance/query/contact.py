@@ -7,9 +7,8 @@ whether bodies are in contact (`distance`), which never depends on parts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from clearance.query.intersection import Intersection, intersect
 from clearance.query.penetration import Corners, Penetration, depths_at_most, penetration
 from clearance.query.region_bounds import ball_depth, thickness, ways_through
 from clearance.query.retreat import Ray, shortened, shortened_through, ways_out
+from clearance.query.solid_near import SolidNear, solid_near
 
 EXACT = 1e-12
 """[-] Bounds that differ by no more, relative to the bodies' size, are one value."""
@@ -114,6 +114,8 @@ class BodyPair:
     b: Polyhedron
     parts_a: ConvexParts
     parts_b: ConvexParts
+    near_a: SolidNear | None = None
+    near_b: SolidNear | None = None
 
     @cached_property
     def hull_a(self) -> Polytope:
@@ -132,10 +134,25 @@ class BodyPair:
         known = all(part.solid is not None or part.convex for part in parts)
         return known and all(part.closed for part in parts) and any(part.rough for part in parts)
 
-    def shared_volume(self, b_from_a: np.ndarray) -> float | None:
-        """[m^3] what the meshes of two solids share, not both convex; None where that is not known."""
-        mesh = _Placed(self, b_from_a, np.zeros(3))._mesh_shared
-        return None if mesh is None else mesh.volume
+    def near(self, poses: np.ndarray) -> BodyPair:
+        """The same pair for poses (k, 4, 4) about these: large solids are cut down to what the other can reach."""
+        if not self.is_rated_by_volume:
+            return self
+        back = np.array([inverse(pose) for pose in poses])
+        near_a = solid_near(self.a, self.parts_a, self.b, back)
+        near_b = solid_near(self.b, self.parts_b, self.a, poses)
+        return replace(self, near_a=near_a, near_b=near_b)
+
+    def shared(self, b_from_a: np.ndarray) -> ClosedMesh | None:
+        """What the meshes of two solids share, not both convex; None where that is not known."""
+        try:
+            a = self.near_a if self.near_a and self.near_a.holds(self.b, inverse(b_from_a)) else self.parts_a
+            b = self.near_b if self.near_b and self.near_b.holds(self.a, b_from_a) else self.parts_b
+            solids = (one.solid if one.solid is not None else solid_of(one.outer[0]) for one in (a, b))
+            one, other = solids
+        except ClearanceError:
+            return None
+        return boolean.mesh_of(boolean.moved(one, b_from_a) ^ other)
 
     def contact(self, b_from_a: np.ndarray, witness: np.ndarray) -> Contact:
         """The overlap in the frame of b, of bodies that are in contact.
@@ -340,11 +357,7 @@ class _Placed:
         """What the meshes themselves share, of closed bodies that are not both convex."""
         if self._both_convex or not self._both_closed or not boolean.available():
             return None
-        try:
-            a, b = (_solid(p) for p in self._both_parts)
-        except ClearanceError:
-            return None
-        return boolean.mesh_of(boolean.moved(a, self.b_from_a) ^ b)
+        return self.pair.shared(self.b_from_a)
 
     def _shell(self, region: ClosedMesh) -> float:
         """[m^3] what facets that stand out can add: their height times the area of those about the region."""
@@ -367,11 +380,9 @@ def _shell_of(body: Polyhedron, pose: np.ndarray, region: ClosedMesh) -> float:
 
 
 def _hull_of(parts: ConvexParts) -> Polytope:
+    if len(parts.outer) == 1:
+        return parts.outer[0]
     return Polytope(np.concatenate([part.vertices for part in parts.outer]))
-
-
-def _solid(parts: ConvexParts) -> Any:
-    return solid_of(parts.outer[0]) if parts.solid is None else parts.solid
 
 
 def _joined(parts: list[Corners]) -> Corners:

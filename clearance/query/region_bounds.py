@@ -113,6 +113,7 @@ def _distance(point: np.ndarray, corners: np.ndarray) -> float:
 
     The nearest point of a triangle is its foot where that is inside, or else on an edge.
     """
+    corners = corners[_may_be_nearest(corners, point)]
     off = corners - point
     ahead = np.roll(corners, -1, axis=1) - corners
     lengths = np.einsum("ijk,ijk->ij", ahead, ahead)
@@ -126,3 +127,12 @@ def _distance(point: np.ndarray, corners: np.ndarray) -> float:
     inside = (beside >= 0.0).all(axis=1) & (area_sq > 0.0)
     foot = height * height / np.where(area_sq > 0.0, area_sq, 1.0)
     return float(np.sqrt(np.where(inside, np.minimum(foot, least), least).min()))
+
+
+def _may_be_nearest(corners: np.ndarray, point: np.ndarray) -> np.ndarray:
+    """(t,) False for triangles whose box is farther from the point than the nearest corner of all."""
+    off = corners - point
+    low, high = off.min(axis=1), off.max(axis=1)
+    beside = np.maximum(0.0, np.maximum(low, -high))
+    nearest_sq = np.einsum("ij,ij->i", off[:, 0], off[:, 0]).min()
+    return np.einsum("ij,ij->i", beside, beside) <= nearest_sq * (1.0 + 1e-9)

@@ -20,7 +20,7 @@ from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
 from clearance.simulate.contact_budget import Budget
-from clearance.simulate.contact_events import Event, deepest_of, events_of, hull_depths
+from clearance.simulate.contact_events import MOST_RATED, Event, deepest_of, events_of, hull_depths
 from clearance.simulate.contact_rows import ContactRows, Progress
 from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.parts import blocks
@@ -127,9 +127,15 @@ class _Finder:
             row = event.rows[n_rows // 2]
         else:
             by_volume = pair.is_rated_by_volume
+            self._made[i_pair] = pair = self._near(pair, i_pair, steps[event.rows])
             rated = partial(self._rated, pair, i_pair, steps[event.rows], by_volume)
             row = event.rows[deepest_of(n_rows, rated, *([MOST_VOLUMES] if by_volume else []))]
         return int(row), self.contact(int(steps[row]), i_pair)
+
+    def _near(self, pair: BodyPair, i_pair: int, steps: np.ndarray) -> BodyPair:
+        """The pair with what of large solids can be reached in an event."""
+        few = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), MOST_RATED)).round().astype(np.int64))
+        return pair.near(self._poses(i_pair, steps[few])) if pair.is_rated_by_volume else pair
 
     def _rated(
         self, pair: BodyPair, i_pair: int, steps: np.ndarray, by_volume: bool, few: np.ndarray
@@ -137,7 +143,7 @@ class _Finder:
         """How deep the steps `few` of an event seem to be: [m^3] shared, or [m] of the hulls."""
         poses = self._poses(i_pair, steps[few])
         if by_volume:
-            return np.array([pair.shared_volume(pose) for pose in poses])
+            return np.array([pair.shared(pose).volume for pose in poses])
         corners = pair.hull_a.vertices, pair.hull_b.vertices
         return hull_depths(*corners, pair.hull_b.normals, poses)
 
