@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
-
-if TYPE_CHECKING:
-    from clearance.simulate.contact_rows import ContactRows
 
 NAMES = ("penetration", "volume")
 
@@ -18,8 +15,12 @@ def no_contact_columns(n_steps: int) -> dict[str, pa.Array]:
     return {name: pa.nulls(n_steps, pa.float64()) for name in NAMES}
 
 
-def contact_columns(contacts: ContactRows, block: slice) -> dict[str, pa.Array]:
-    """Of each step the penetration of the deepest pair and the volume of all; null unless all are worked out."""
+def contact_columns(contacts: Any, block: slice) -> dict[str, pa.Array]:
+    """Of each step the penetration of the deepest pair and the volume of all; null unless all are worked out.
+
+    Args:
+        contacts: a `ContactRows`.
+    """
     n_steps = block.stop - block.start
     depth, volume = np.zeros((2, n_steps))
     n_open = np.zeros(n_steps, dtype=np.int64)
