@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 MOTIONS = ("kinematic", "simulated")
 METHODS = ("exact", "paper")
+CONTACT = ("none", "events", "every")
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,8 +50,8 @@ class Run:
 
     @property
     def steps(self) -> pa.Table:
-        """One row a step; columns as in `Record.steps`."""
-        return self.record.steps
+        """One row a step; columns as in `Record.steps_with_contacts`."""
+        return self.record.steps_with_contacts
 
     @property
     def pairs(self) -> pa.Table | None:
@@ -78,7 +79,7 @@ class Run:
         return self._row(self.record.worst_step)
 
     def _row(self, step: int) -> dict:
-        row = self.steps.slice(step, 1).to_pylist()[0]
+        row = self.record.steps.slice(step, 1).to_pylist()[0]
         if row.get("between"):
             known = row["clearance"]
             status = None if known is None else status_of(known, self.record.case.limits)
@@ -161,6 +162,7 @@ def check(
     certify: bool = True,
     certify_gap: float = CERTIFY_GAP,
     cross_check: bool = False,
+    contact: str = "events",
     jobs: int | None = None,
     progress: Progress | None = None,
     kept: Rows | None = None,
@@ -182,6 +184,9 @@ def check(
         certify_gap: [m] how far that bound may be below a distance that occurs; no finer than rounding allows
             (`tolerance.FINEST_CERTIFY_GAP`), with a warning.
         cross_check: also ask FCL at every step.
+        contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
+            deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
+            The verdict does not depend on it.
         jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.
         progress: called with steps done and all steps.
         kept: where the rows are kept; in memory by default. In a spool (`open_spool`) memory does not grow with
@@ -197,6 +202,7 @@ def check(
     _require(motion, MOTIONS, "motion")
     _require(need, NEEDS, "need")
     certify = certify and method == "exact"
+    _require(contact, CONTACT, "contact")
     if need != "steps" and method != "exact":
         raise BadInput(f"method {method!r} measures every step", valid="need 'steps', or method 'exact'")
     if need in ("limit", "minimum") and cross_check:
@@ -227,7 +233,6 @@ def check(
             case, motions, pairs, found, certify_gap,
             need=need, jobs=jobs, progress=progress, kept=kept,
         )  # fmt: skip
-    contacts, contact_notes = _contacts(case, motions, pairs, found)
     steps, let_go = _table(
         step_table(
             case,
@@ -236,7 +241,6 @@ def check(
             found,
             certificate=certificate,
             with_error=motion == "simulated",
-            contacts=contacts,
         ),
         kept,
     )
@@ -252,10 +256,9 @@ def check(
         need=need,
         every_pair=every_pair(case, pairs, found),
         certificate=certificate,
-        notes=(*case.notes, *(note for made in motions for note in made.notes), *contact_notes),
-        notices=inside.notices(case, motions, pairs) if method == "exact" else (),
-        contacts=contacts,
-        notices=_notices(case, certificate),
+        notes=(*case.notes, *(note for made in motions for note in made.notes)),
+        notices=_notices(case, certificate, inside.notices(case, motions, pairs) if method == "exact" else ()),
+        contacts=_contacts(case, motions, pairs, found, contact),
         let_go=let_go,
         room=lambda: kept.folder,
     )
@@ -278,9 +281,12 @@ def _loaded(path: str | PathLike[str]) -> Case:
     return load_case(path)
 
 
-def _notices(case: Case, certificate: Certificate | None) -> tuple[Notice, ...]:
+def _notices(
+    case: Case, certificate: Certificate | None, measured: Sequence[Notice]
+) -> tuple[Notice, ...]:
     """All that a reader of the verdict must know: of the case, and of how it was measured."""
-    return worst_first([*notices_of(case), *(() if certificate is None else certificate.notices)])
+    proven = () if certificate is None else certificate.notices
+    return worst_first([*notices_of(case), *measured, *proven])
 
 
 def _table(batches: Iterator[pa.Table], kept: Rows) -> tuple[pa.Table, Callable[[], None]]:
@@ -307,14 +313,14 @@ def _letting_go(batches: Iterator[pa.Table], kept: Rows) -> Iterator[pa.Table]:
 
 
 def _contacts(
-    case: Case, motions: tuple[Motion, ...], pairs: list[Pair], found: Measurement
-) -> tuple[Sequence[StepContact], tuple[str, ...]]:
+    case: Case, motions: tuple[Motion, ...], pairs: list[Pair], found: Measurement, work_out: str
+) -> Sequence[StepContact]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
     if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
-        return (), ()
+        return ()
     from clearance.simulate.contact import find_contacts
 
-    return find_contacts(case, motions, pairs, found.clearance, found.pair)
+    return find_contacts(case, motions, pairs, found.clearance, found.pair, work_out)
 
 
 def _motions(case: Case, kind: str) -> tuple[Motion, ...]:

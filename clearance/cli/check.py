@@ -52,6 +52,13 @@ if TYPE_CHECKING:
     help=f"Let no suspect input of this kind decide the verdict ({', '.join(KINDS)}).",
 )
 @click.option(
+    "--contact",
+    type=click.Choice(["none", "events", "every"]),
+    default="events",
+    show_default=True,
+    help="Whose depth, volume and way out are told: of none, of the deepest moment of each event, of every step.",
+)
+@click.option(
     "--jobs", type=click.IntRange(min=1), help="Threads.  [default: all cores; same bytes]"
 )
 @click.option("--cross-check", is_flag=True, help="Hold every step against FCL.")
@@ -76,6 +83,7 @@ def check(
     certify_mm: float | None,
     need: str,
     accept: tuple[str, ...],
+    contact: str,
     jobs: int | None,
     cross_check: bool,
     method: str,
@@ -109,6 +117,7 @@ def check(
 
     certify = not samples_only and method == "exact"
     passes = ["measuring"] + ["certifying"] * certify + ["cross-checking"] * cross_check
+    passes += ["looking into contacts"]
     with kept_rows(out, quiet) as kept:
         with shown_progress(quiet or as_json, passes) as progress:
             run = answer(
@@ -121,9 +130,12 @@ def check(
                 certify=certify,
                 certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
                 cross_check=cross_check,
+                contact=contact,
                 progress=progress,
                 kept=kept,
             )
+            if out is not None or not quiet:
+                run.record.work_out_contacts(progress)
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return ExitCode(run.verdict.exit_code)

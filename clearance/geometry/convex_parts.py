@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.errors import BadPolygon, ClearanceError, Unavailable
 from clearance.geometry import boolean, decompose
+from clearance.geometry.envelope import envelope, is_clearly_concave
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.tolerance import TESSELLATION
@@ -28,6 +29,24 @@ MUCH_MORE = 1.1
 MISSED = 1e-12
 """[-] Relative to the volume: parts that miss no more of a body hold it."""
 
+MOST_HULL = 20_000
+"""Corners of which a hull is made: a second or two. Of more the envelope is taken, a hull of its own reach."""
+
+LITTLE_HULL = 500
+"""Corners of which a hull takes 5 ms; of so few it is always made, since small dents are seen no other way."""
+
+MOST_CUT = 30_000
+"""Triangles that CoACD is given: with more it was never done within `decompose.MOST_WORK`."""
+
+MOST_COMPARED = 200_000_000
+"""Faces of a hull times triangles whose depth below it is measured: about 2 s."""
+
+VOLUMES = "volumes shared with a closed body are of its own mesh"
+"""What is said of bodies that manifold3d has a solid of: only their depth comes from what stands for them."""
+
+SAMPLED = 64
+"""Triangles that are looked at before all others."""
+
 
 @dataclass(frozen=True, eq=False)
 class ConvexParts:
@@ -39,6 +58,7 @@ class ConvexParts:
         tight: the one outer part stands out of the body by no more than `tolerance.TESSELLATION`.
         solid: manifold3d's solid of the body; None where it has none or is not needed.
         closed: the body has an inside.
+        rough: it was not cut: the region with another body tells more of a depth than the outer part.
         note: how the parts stand for the body; empty where it is convex and not faceted.
     """
 
@@ -49,16 +69,22 @@ class ConvexParts:
     note: str
     convex: bool = False
     tight: bool = False
+    rough: bool = False
 
 
-_known: WeakKeyDictionary[Polyhedron, ConvexParts] = WeakKeyDictionary()
+_known: dict[bool, WeakKeyDictionary[Polyhedron, ConvexParts]] = {
+    rough: WeakKeyDictionary() for rough in (False, True)
+}
 
 
-def convex_parts(body: Polyhedron) -> ConvexParts:
+def convex_parts(body: Polyhedron, *, rough: bool = False) -> ConvexParts:
     """The convex parts of a body in its own frame, found at the first call.
 
     Closed concave bodies are cut by CoACD; surfaces that are not closed, or where a library is missing, are
     held by their hull alone.
+
+    Args:
+        rough: concave bodies are not cut, and of those that are clearly concave no hull is made: milliseconds.
 
     Raises:
         NotSolid: the body is flat: it has no hull with a volume.
@@ -67,31 +93,63 @@ def convex_parts(body: Polyhedron) -> ConvexParts:
         part stands out of the body is measured on the mesh of what stands out, and `inner` is the part drawn
         in by that much. Faceted bodies are drawn in by their `excess` as well.
     """
-    if body not in _known:
-        _known[body] = _found(body)
-    return _known[body]
+    known = _known[rough]
+    if body not in known:
+        known[body] = _found(body, rough)
+    return known[body]
 
 
-def _found(body: Polyhedron) -> ConvexParts:
-    hull = Polytope(body.vertices[np.unique(body.face_vertices)])
+def _found(body: Polyhedron, rough: bool) -> ConvexParts:
+    is_used = np.zeros(len(body.vertices), dtype=bool)
+    is_used[body.face_vertices] = True
+    points = body.vertices[is_used]
     volume = body.volume
+    if volume and len(points) > (LITTLE_HULL if rough else MOST_HULL) and is_clearly_concave(body, points):
+        solid, _ = _solid(body)
+        if solid is not None:
+            return _uncut(envelope(points), solid)
+    hull = Polytope(points) if len(points) <= MOST_HULL else envelope(points)
     if volume is None:
         return _held_by(hull, None, False, "its surface is not closed")
     if not volume > FLAT * hull.volume:
         return _held_by(hull, None, False, "its surface holds no volume")
     if hull.volume - volume <= FLAT * hull.volume:
         return _of_convex(hull, body.excess)
-    corners = body.vertices[body.triangles()]
-    dent = _depth_in(hull, corners)
     solid, missing = _solid(body)
-    if dent <= TESSELLATION and _proves(hull, dent, corners):
-        note = f"its hull stands for it, its dents are at most {dent * 1e3:.2g} mm deep"
-        return ConvexParts(
-            (hull,), _drawn_in(hull, dent + body.excess), solid, True, note, tight=True
-        )
+    dented = _dented(body, hull, solid)
+    if dented is not None:
+        return dented
+    if rough and solid is not None:
+        return _uncut(hull, solid)
+    if not missing:
+        missing = _uncuttable(body)
     if missing:
         return _held_by(hull, solid, True, f"concave, {missing}")
     return _of_concave(body, hull, solid)
+
+
+def _uncut(outer: Polytope, solid: Any) -> ConvexParts:
+    """A closed concave body between its outer part and its own mesh."""
+    note = f"concave: its depth is bounded by the region shared and by the distance after a way out; {VOLUMES}"
+    return ConvexParts((outer,), (), solid, True, note, rough=True)
+
+
+def _dented(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts | None:
+    """A body that is its hull but for small dents; None if it is not."""
+    corners = body.vertices[body.triangles()]
+    dent = _dent(hull, corners)
+    if not (dent <= TESSELLATION and _proves(hull, dent, corners)):
+        return None
+    note = f"its hull stands for it, its dents are at most {dent * 1e3:.2g} mm deep"
+    return ConvexParts((hull,), _drawn_in(hull, dent + body.excess), solid, True, note, tight=True)
+
+
+def _dent(hull: Polytope, triangles: np.ndarray) -> float:
+    """[m] as `_depth_in`; infinite where a few of them are deeper than facets may be, or all take too long."""
+    few = triangles[:: max(1, len(triangles) // SAMPLED)]
+    if _depth_in(hull, few) > TESSELLATION or hull.n_faces * len(triangles) > MOST_COMPARED:
+        return np.inf
+    return _depth_in(hull, triangles)
 
 
 def hull_drawn_in(surface: np.ndarray, only_convex: bool) -> tuple[Polytope, ...]:
@@ -113,7 +171,10 @@ def hull_drawn_in(surface: np.ndarray, only_convex: bool) -> tuple[Polytope, ...
 
 
 def _held_by(hull: Polytope, solid: Any, closed: bool, why: str) -> ConvexParts:
-    note = f"{why}: its hull stands for it, from which depth and volume are upper bounds"
+    if solid is None:
+        note = f"{why}: its hull stands for it, from which depth and volume are upper bounds"
+    else:
+        note = f"{why}: its hull stands for it in the depth, an upper bound; {VOLUMES}"
     return ConvexParts((hull,), (), solid, closed, note)
 
 
@@ -125,16 +186,20 @@ def _of_convex(hull: Polytope, excess: float) -> ConvexParts:
 
 
 def _solid(body: Polyhedron) -> tuple[Any, str]:
-    """manifold3d's solid, and in a few words why CoACD cannot follow ("" where it can)."""
+    """manifold3d's solid; None where there is none, and in a few words why."""
     try:
-        solid = boolean.solid(body.vertices, body.triangles())
+        return boolean.solid(body.vertices, body.triangles()), ""
     except Unavailable as error:
         return None, f"{error.problem} ({error.valid})"
     except BadPolygon:
         return None, "not a manifold surface"
+
+
+def _uncuttable(body: Polyhedron) -> str:
+    """Why CoACD cannot cut a body, in a few words; nothing where it can."""
     if not decompose.available():
-        return solid, f"CoACD is not installed ({boolean.INSTALL})"
-    return solid, ""
+        return f"CoACD is not installed ({boolean.INSTALL})"
+    return "" if body.n_triangles <= MOST_CUT else f"of more than {MOST_CUT} triangles, which are not cut"
 
 
 def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
@@ -155,7 +220,8 @@ def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
     who = "its hull holds it and stands"
     if len(parts) > 1:
         who = f"{len(parts)} convex parts by CoACD hold it and stand"
-    note = f"{who} out by at most {greatest * 1e3:.2g} mm, with {100.0 * extra:.2g} % more volume"
+    note = f"{who} out by at most {greatest * 1e3:.2g} mm in the depth, with {100.0 * extra:.2g} % more volume; "
+    note += VOLUMES
     return ConvexParts(tuple(parts), tuple(inner), solid, True, note)
 
 

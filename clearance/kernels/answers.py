@@ -51,6 +51,12 @@ def still_holds(answers, pair, moves, gap):
 
 
 @inlined
+def was_contact(answers, pair):
+    """True if a pair was in contact when it was last measured."""
+    return answers.asked[pair] != NEVER and answers.gaps_sq[pair] == 0.0
+
+
+@inlined
 def answer_of(answers, pair):
     """(the hit, the proven bound [m]) of a pair."""
     face_a, face_b = answers.faces[pair]

@@ -106,6 +106,13 @@ def _like():
 
 
 @merged
+def _afresh(a, root_a, b, root_b, m):
+    """What a search begins with that knows nothing: the bodies' centres."""
+    p, q = box_of(a, root_a).centre, move(m, box_of(b, root_b).centre)
+    return Near(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
+
+
+@merged
 def _begin(a, root_a, b, root_b, m, margin, asked):
     """What a search begins with: the faces that were nearest and what is seen of them, or the bodies' centres."""
     if asked.face_a >= 0:
@@ -115,8 +122,7 @@ def _begin(a, root_a, b, root_b, m, margin, asked):
         p = row(a.vertices, a.face_vertices[a.face_starts[asked.face_a]])
         q = row(b.vertices, b.face_vertices[b.face_starts[asked.face_b]])
         return Near(Hit(np.inf, 2**62, 2**62, p, move(m, q)), NOTHING_SEEN)
-    p, q = box_of(a, root_a).centre, move(m, box_of(b, root_b).centre)
-    return Near(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
+    return _afresh(a, root_a, b, root_b, m)
 
 
 @apart(SEARCH, _like)
@@ -168,8 +174,8 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
         if not (found.meeting.found and resumed):
             break
         # which of several contacts is found must not depend on where the search began
-        best = nothing_yet(np.inf)
-        first = Near(best, NOTHING_SEEN)
+        first = _afresh(a, root_a, b, root_b, frames.m)
+        best = first.best
         limit = np.inf
         wanted = np.inf
         resumed = False

@@ -11,7 +11,14 @@ import numpy as np
 
 from clearance.jit import borrowing, kernel, merged, shared, spliced
 from clearance.kernel_table import lend
-from clearance.kernels.answers import Answers, answer_of, no_answers, note_answer, still_holds
+from clearance.kernels.answers import (
+    Answers,
+    answer_of,
+    no_answers,
+    note_answer,
+    still_holds,
+    was_contact,
+)
 from clearance.kernels.body_boxes import BodyBoxes, bound_of_bodies, place_box, room_for_boxes
 from clearance.kernels.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
 from clearance.kernels.descent import nothing_yet
@@ -185,9 +192,12 @@ def _asked(world, pair, floor, gap, effort, lent, known, tally, table):
     if floor <= 0.0:
         forget(known.fronts, pair)  # where bodies may meet, nearest first from the roots is best
     apart = floor > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
+    face_a, face_b = seeds[pair, 0], seeds[pair, 1]
+    if was_contact(answers, pair):  # which one it is must not depend on seeds: then they save nothing
+        limit, gap, face_a, face_b = np.inf, np.inf, NO_FACE, NO_FACE
     measured = measure_pair(
         lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses),
-        Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, effort),
+        Asked(limit, gap, face_a, face_b, apart, effort),
         known.fronts, pair, moved, known.scratch, table,
     )  # fmt: skip
     note_answer(answers, pair, moves, measured.hit, measured.lower_bound)
@@ -242,6 +252,9 @@ def _nearest_of(
             if turn >= 0 and pair == first:
                 continue
             floor = _carried(world, pair, known)
+            if best.gap_sq == 0.0 and pair > best_pair and not goal.each:  # no nearer, and not the least pair
+                nearest = min(nearest, floor)
+                continue
             if goal.each:
                 gap = within[pair]
             elif floor > gap:  # and so are those after it

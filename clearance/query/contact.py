@@ -7,9 +7,8 @@ whether bodies are in contact (`distance`), which never depends on parts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -23,10 +22,15 @@ from clearance.geometry.pose import inverse, validated_pose
 from clearance.query.distance import distance
 from clearance.query.intersection import Intersection, intersect
 from clearance.query.penetration import Corners, Penetration, depths_at_most, penetration
-from clearance.query.retreat import Ray, shortened, ways_out
+from clearance.query.region_bounds import ball_depth, thickness, ways_through
+from clearance.query.retreat import Ray, shortened, shortened_through, ways_out
+from clearance.query.solid_near import SolidNear, solid_near
 
 EXACT = 1e-12
 """[-] Bounds that differ by no more, relative to the bodies' size, are one value."""
+
+MOST_CORNERS = 2000
+"""Corners of a region whose hull is made where the bodies were not cut: a tenth of a second."""
 
 CLOSE = 0.99
 """[-] A lower bound that is this share of the upper one is not worth a costly second one."""
@@ -110,6 +114,8 @@ class BodyPair:
     b: Polyhedron
     parts_a: ConvexParts
     parts_b: ConvexParts
+    near_a: SolidNear | None = None
+    near_b: SolidNear | None = None
 
     @cached_property
     def hull_a(self) -> Polytope:
@@ -120,6 +126,33 @@ class BodyPair:
     def hull_b(self) -> Polytope:
         """The hull of b."""
         return _hull_of(self.parts_b)
+
+    @property
+    def is_rated_by_volume(self) -> bool:
+        """True where a body was not cut, both have an inside, and manifold3d knows what they share."""
+        parts = (self.parts_a, self.parts_b)
+        known = all(part.solid is not None or part.convex for part in parts)
+        return known and all(part.closed for part in parts) and any(part.rough for part in parts)
+
+    def near(self, poses: np.ndarray) -> BodyPair:
+        """The same pair for poses (k, 4, 4) about these: large solids are cut down to what the other can reach."""
+        if not self.is_rated_by_volume:
+            return self
+        back = np.array([inverse(pose) for pose in poses])
+        near_a = solid_near(self.a, self.parts_a, self.b, back)
+        near_b = solid_near(self.b, self.parts_b, self.a, poses)
+        return replace(self, near_a=near_a, near_b=near_b)
+
+    def shared(self, b_from_a: np.ndarray) -> ClosedMesh | None:
+        """What the meshes of two solids share, not both convex; None where that is not known."""
+        try:
+            a = self.near_a if self.near_a and self.near_a.holds(self.b, inverse(b_from_a)) else self.parts_a
+            b = self.near_b if self.near_b and self.near_b.holds(self.a, b_from_a) else self.parts_b
+            solids = (one.solid if one.solid is not None else solid_of(one.outer[0]) for one in (a, b))
+            one, other = solids
+        except ClearanceError:
+            return None
+        return boolean.mesh_of(boolean.moved(one, b_from_a) ^ other)
 
     def contact(self, b_from_a: np.ndarray, witness: np.ndarray) -> Contact:
         """The overlap in the frame of b, of bodies that are in contact.
@@ -184,11 +217,13 @@ class _Placed:
         ray = Ray(whole.depth, whole.direction)
         if self._both_convex and not self._faceted:
             return ray, whole.at_least
-        if self._needs_search:
+        if self._by_region:
+            ray = self._through_region(ray)
+        elif self._needs_search:
             extra = np.array([whole.direction, *self._thin_ways()])
             rays = ways_out(self.outer_a, self.outer_b, whole.depth, extra)
             ray = self._confirmed([*rays, ray])
-        at_least = self._depth_of_inner()
+        at_least = self._depth_of_balls() if self._by_region else self._depth_of_inner()
         is_close = at_least > CLOSE * ray.length
         return ray, max(at_least, self._width_of_region(at_least, only_convex=is_close))
 
@@ -197,9 +232,41 @@ class _Placed:
         """True where hulls are more than the bodies; surfaces without an inside are left as their hulls."""
         return self._both_closed and not all(parts.tight for parts in self._both_parts)
 
+    @property
+    def _by_region(self) -> bool:
+        """True where a body was not cut, and what both share is known."""
+        is_rough = any(parts.rough for parts in self._both_parts)
+        return is_rough and self._both_closed and self._mesh_shared is not None and not self._mesh_shared.is_empty
+
+    def _through_region(self, proven: Ray) -> Ray:
+        """The shortest way that the bodies confirm along what the region is thin in, or its normals."""
+        region = self._region[0]
+        thin = [Ray(self._thin.depth, way) for way in self._thin_ways()]
+        rays = sorted([*thin, *ways_through(region)], key=lambda ray: ray.length)
+        found = shortened_through(self._padded(rays), proven.length, self._is_clear, self._still_shared)
+        return found or self._confirmed([proven])
+
+    def _still_shared(self, shift: np.ndarray, along: np.ndarray) -> float:
+        """[m] how thick what both share is along a unit direction after a translation (3,) of a; 0 if nothing."""
+        pose = self.b_from_a.copy()
+        pose[:3, 3] += shift
+        mesh = _Placed(self.pair, pose, self.witness)._mesh_shared
+        return 0.0 if mesh is None or mesh.is_empty else float(thickness(mesh, along[None, :])[0])
+
+    def _depth_of_balls(self) -> float:
+        """[m] as `ball_depth`."""
+        a, b = self.pair.a, self.pair.b
+        placed_a = a.vertices @ self.b_from_a[:3, :3].T + self.b_from_a[:3, 3]
+        bodies = [placed_a[a.triangles()], b.vertices[b.triangles()]]
+        return ball_depth(self._region[0], bodies, a.excess + b.excess)
+
+    def _padded(self, rays: list[Ray]) -> list[Ray]:
+        """The same a little longer, so that rounding does not leave a touch."""
+        return [Ray(r.length * (1.0 + 1e-12) + 1e-13 * self.size, r.direction) for r in rays]
+
     def _confirmed(self, rays: list[Ray]) -> Ray:
         """The shortest way that the bodies confirm; the last of `rays` is proven by the hulls anyway."""
-        padded = [Ray(r.length * (1.0 + 1e-12) + 1e-13 * self.size, r.direction) for r in rays]
+        padded = self._padded(rays)
         return shortened(padded, self._is_clear) or padded[-1]
 
     def _is_clear(self, shift: np.ndarray) -> bool:
@@ -244,6 +311,8 @@ class _Placed:
         region, volume, volume_at_least = self._region
         if volume_at_least < volume or self._thin is None or self._thin.depth <= more_than:
             return 0.0
+        if len(region.vertices) > MOST_CORNERS and any(parts.rough for parts in self._both_parts):
+            return 0.0
         try:
             parts = hull_drawn_in(region.vertices[region.triangles], only_convex)
         except ClearanceError:  # thinner than rounding
@@ -259,10 +328,9 @@ class _Placed:
     @cached_property
     def _region(self) -> tuple[ClosedMesh, float, float]:
         """The region, or that of the hulls, and its volume [m^3] from above and from below."""
-        if not self._both_convex and self._both_closed and boolean.available():
-            mesh = self._region_of_solids()
-            if mesh is not None:
-                return mesh, mesh.volume, max(0.0, mesh.volume - self._shell(mesh))
+        mesh = self._mesh_shared
+        if mesh is not None:
+            return mesh, mesh.volume, max(0.0, mesh.volume - self._shell(mesh))
         shared = intersect(self._hulls())
         mesh = _mesh_of(shared)
         if self._both_convex:
@@ -284,12 +352,12 @@ class _Placed:
     def _both_parts(self) -> tuple[ConvexParts, ConvexParts]:
         return self.pair.parts_a, self.pair.parts_b
 
-    def _region_of_solids(self) -> ClosedMesh | None:
-        try:
-            a, b = (_solid(p) for p in self._both_parts)
-        except ClearanceError:
+    @cached_property
+    def _mesh_shared(self) -> ClosedMesh | None:
+        """What the meshes themselves share, of closed bodies that are not both convex."""
+        if self._both_convex or not self._both_closed or not boolean.available():
             return None
-        return boolean.mesh_of(boolean.moved(a, self.b_from_a) ^ b)
+        return self.pair.shared(self.b_from_a)
 
     def _shell(self, region: ClosedMesh) -> float:
         """[m^3] what facets that stand out can add: their height times the area of those about the region."""
@@ -312,11 +380,9 @@ def _shell_of(body: Polyhedron, pose: np.ndarray, region: ClosedMesh) -> float:
 
 
 def _hull_of(parts: ConvexParts) -> Polytope:
+    if len(parts.outer) == 1:
+        return parts.outer[0]
     return Polytope(np.concatenate([part.vertices for part in parts.outer]))
-
-
-def _solid(parts: ConvexParts) -> Any:
-    return solid_of(parts.outer[0]) if parts.solid is None else parts.solid
 
 
 def _joined(parts: list[Corners]) -> Corners:

@@ -7,13 +7,13 @@ be pushed out any farther. Not for: concave bodies (`retreat`).
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.envelope import TWENTY_SIX
 from clearance.geometry.polytope import Polytope
 
 ROUNDING = 32 * 2.0**-53
@@ -120,10 +120,6 @@ class _Search:
         before = len(self.points)
         self.points = np.unique(np.concatenate([self.points, self.b[i_b] - self.a[i_a]]), axis=0)
         return len(self.points) > before
-
-
-TWENTY_SIX = np.array([d for d in itertools.product((-1.0, 0.0, 1.0), repeat=3) if any(d)])
-TWENTY_SIX /= np.linalg.norm(TWENTY_SIX, axis=1)[:, None]
 
 
 def _every(rows: np.ndarray, most: int) -> np.ndarray:

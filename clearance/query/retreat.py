@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.query.penetration import TWENTY_SIX, Corners
+from clearance.geometry.envelope import TWENTY_SIX
+from clearance.query.penetration import Corners
 
 MOST_DIRECTIONS = 192
 MOST_NUMBERS = 2_000_000
@@ -24,6 +25,9 @@ RAYS_ASKED = 6
 
 HALVINGS = 10
 """A ray's length is right to this many halvings of what it could be shortened by."""
+
+GOES_ON = 5
+"""How often a ray is made longer until the bodies are parted."""
 
 APART = np.cos(np.radians(5.0))
 """Rays closer to each other than 5 degrees count as one."""
@@ -109,6 +113,32 @@ def shortened(rays: Sequence[Ray], is_clear: Callable[[np.ndarray], bool]) -> Ra
         asked = ray.length if best is None else min(ray.length, 0.99 * best.length)
         if is_clear(asked * ray.direction):
             best = Ray(_halved(asked, ray.direction, is_clear), ray.direction)
+    return best
+
+
+def shortened_through(
+    rays: Sequence[Ray],
+    within: float,
+    is_clear: Callable[[np.ndarray], bool],
+    still_shared: Callable[[np.ndarray, np.ndarray], float],
+) -> Ray | None:
+    """As `shortened` for rays that need not be long enough: each goes on by as much as the bodies still share.
+
+    Args:
+        within: [m] none as long is sought.
+        still_shared: [m] how thick what the bodies share is along a unit direction, after a translation (3,).
+    """
+    best: Ray | None = None
+    for ray in _different(rays):
+        length, most = ray.length, within if best is None else 0.99 * best.length
+        for _ in range(GOES_ON):
+            if length >= most:
+                break
+            if is_clear(length * ray.direction):
+                best = Ray(_halved(length, ray.direction, is_clear), ray.direction)
+                break
+            more = still_shared(length * ray.direction, ray.direction)
+            length += max(more, 0.01 * length) * (1.0 + 1e-9)
     return best
 
 

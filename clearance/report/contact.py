@@ -5,6 +5,7 @@ Not for: finding them (`simulate.contact`).
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 from clearance.report.markup import Html, element, section, step_link, table
@@ -13,14 +14,13 @@ from clearance.simulate.record import Record, StepContact
 
 
 def contact_of(record: Record) -> dict[str, Any] | None:
-    """The deepest overlap of the run and of every pair that overlaps, deepest first; None without contact."""
+    """The deepest overlap worked out of the run and of every pair, deepest first; None if there is none."""
     if record.deepest is None:
         return None
     by_pair: dict[tuple[str, str], StepContact] = {}
-    n_steps: dict[tuple[str, str], int] = {}
-    for row in record.contacts:
+    n_steps = Counter((row.link, row.obstacle) for row in record.contacts)
+    for row in record.worked_out:
         pair = (row.link, row.obstacle)
-        n_steps[pair] = n_steps.get(pair, 0) + 1
         if pair not in by_pair or row.numbers.penetration > by_pair[pair].numbers.penetration:
             by_pair[pair] = row
     deepest = sorted(by_pair.values(), key=lambda row: -row.numbers.penetration)

@@ -197,7 +197,8 @@ def tessellation_bound(record: Record) -> float:
 
 def notes_of(record: Record) -> list[str]:
     robots = [note for motion in record.motions for note in motion.placed.robot.notes]
-    return list(dict.fromkeys([*standing_hint(record), *record.case.notes, *robots, *record.notes]))
+    told = [*standing_hint(record), *record.case.notes, *robots, *record.notes, *record.contact_notes]
+    return list(dict.fromkeys(told))
 
 
 def _finite(value: float) -> float | None:

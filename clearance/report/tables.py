@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pyarrow as pa
 
+from clearance.simulate.contact_columns import with_contact_columns
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record, StepContact
 
@@ -17,13 +18,14 @@ CONTACTS = 10_000
 
 
 def contact_batches(record: Record) -> Iterator[pa.Table]:
-    """One row for each pair in contact at each step; lengths in metres, directions of the link, world frame."""
+    """One row for each pair in contact at each step; lengths in metres, directions of the link, world frame; null
+    where the run has not worked out a pair at a step."""
     for start in range(0, max(1, len(record.contacts)), CONTACTS):
         yield _contact_table(record.contacts[start : start + CONTACTS])
 
 
 def _contact_table(rows: Sequence[StepContact]) -> pa.Table:
-    found = [row.numbers for row in rows]
+    found = [row.known for row in rows]
     columns = {
         "step": pa.array([row.step for row in rows], pa.int64()),
         "time": pa.array([row.time for row in rows], pa.float64()),
@@ -31,10 +33,10 @@ def _contact_table(rows: Sequence[StepContact]) -> pa.Table:
         "obstacle": pa.array([row.obstacle for row in rows], pa.string()),
     }
     for name in ("penetration", "penetration_at_least", "volume", "volume_at_least"):
-        columns[name] = pa.array([getattr(one, name) for one in found], pa.float64())
+        columns[name] = pa.array([getattr(one, name, None) for one in found], pa.float64())
     for name in ("direction", "centroid"):
         for i, axis in enumerate("xyz"):
-            values = [float(getattr(one, name)[i]) for one in found]
+            values = [None if one is None else float(getattr(one, name)[i]) for one in found]
             columns[f"{name}_{axis}"] = pa.array(values, pa.float64())
     return pa.table(columns)
 
@@ -74,7 +76,8 @@ def _write_csv(batches: Iterable[pa.Table], path: Path, quoting: str) -> None:
 def step_batches(record: Record) -> Iterator[pa.Table]:
     """The steps of a record, a block at a time; what a block took of memory is let go after it."""
     for block in blocks(record.steps.num_rows):
-        yield record.steps.slice(block.start, block.stop - block.start).combine_chunks()
+        rows = record.steps.slice(block.start, block.stop - block.start).combine_chunks()
+        yield with_contact_columns(rows, record.contacts, block.start)
         record.let_go()
 
 

@@ -1,14 +1,14 @@
 """Looks closer at the steps in contact: which pairs overlap, how deep, in which region.
 
 Called when the clearance of every step is known and some of them are 0; a run without contact does not even
-load this room. Not for: whether there is contact (`measure`).
+load this room, and nothing is found before somebody looks. Not for: whether there is contact (`measure`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import partial
 
 import numpy as np
 
@@ -17,10 +17,13 @@ from clearance.geometry.convex_parts import ConvexParts, convex_parts
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import inverse
 from clearance.query.contact import BodyPair, Contact
+from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
-from clearance.simulate.contact_rows import ContactRows
+from clearance.simulate.contact_budget import Budget
+from clearance.simulate.contact_events import MOST_RATED, Event, deepest_of, events_of, hull_depths
+from clearance.simulate.contact_rows import ContactRows, Progress
+from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import StepContact
 from clearance.simulate.steps import pair_names
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
@@ -30,8 +33,8 @@ from clearance.world.pairs import Pair
 MOST_KNOWN = 1000
 """Poses whose overlap is remembered, in case they occur again."""
 
-Box = tuple[np.ndarray, np.ndarray]
-"""The least and the greatest coordinates (3,) [m]."""
+MOST_VOLUMES = 9
+"""Steps of an event at which the volume shared is asked for, and as many again about the best."""
 
 
 def find_contacts(
@@ -40,20 +43,21 @@ def find_contacts(
     pairs: Sequence[Pair],
     clearance: np.ndarray,
     nearest: np.ndarray,
-) -> tuple[Sequence[StepContact], tuple[str, ...]]:
-    """The overlap of every pair in contact, step by step and pair by pair; and notes, one line each.
+    work_out: str = "events",
+) -> ContactRows:
+    """The overlap of every pair in contact, step by step and pair by pair.
 
     Args:
         clearance: (n,) [m] of every step; those at 0 are looked at.
         nearest: (n,) the pair that has it. It is in contact for sure; the others are asked.
+        work_out: of which rows depth, volume and way out are found with the run: the deepest moment of each of the
+            "events", "every" one, or "none".
     """
-    finder = _Finder(case, tuple(motions), tuple(pairs))
+    touching = [block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))]
+    steps = np.concatenate(touching)
+    finder = _Finder(case, tuple(motions), tuple(pairs), steps, np.array(nearest[steps]), work_out)
     names = list(zip(*pair_names(case, pairs), strict=True))
-    rows = ContactRows(names, motions[0].times, finder.once_more)
-    for step in _touching(clearance):
-        for i_pair, found in finder.at(step, int(nearest[step])):
-            rows.add(step, i_pair, found)
-    return (rows if len(rows) else ()), finder.notes()
+    return ContactRows(names, motions[0].times, finder)
 
 
 @dataclass(eq=False)
@@ -63,42 +67,137 @@ class _Finder:
     case: Case
     motions: tuple[Motion, ...]
     pairs: tuple[Pair, ...]
-    _parts: dict[int, ConvexParts | str] = field(default_factory=dict)
-    _known: dict[tuple[int, bytes], Contact | None] = field(default_factory=dict)
-    _made: dict[int, BodyPair] = field(default_factory=dict)
+    steps: np.ndarray
+    nearest: np.ndarray
+    work_out: str
+    _known: dict[tuple[int, bytes], Contact] = field(default_factory=dict)
+    _made: dict[int, BodyPair | str] = field(default_factory=dict)
     _told: dict[str, None] = field(default_factory=dict)
 
-    def at(self, step: int, i_nearest: int) -> Iterator[tuple[int, Contact]]:
-        """The pairs in contact at one step, in order, each with its overlap in the world frame."""
-        for i, world_from_link in self._near(step):
-            world_from_obstacle = self._obstacle(i).world_from_body
-            b_from_a = inverse(world_from_obstacle) @ world_from_link
-            key = (i, b_from_a.tobytes())
-            is_sure = i == i_nearest
-            if key not in self._known or (is_sure and self._known[key] is None):
-                if len(self._known) >= MOST_KNOWN:
-                    del self._known[next(iter(self._known))]
-                self._known[key] = self._asked(i, b_from_a, is_sure)
-            found = self._known[key]
-            if found is not None:
-                yield i, found.placed(world_from_obstacle)
+    def touching(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) steps and (n,) pairs in contact, steps first; the nearest pair of a step is one for sure."""
+        rows, pairs = pairs_in_contact(self.case, self.motions, self.pairs, self.steps)
+        sure = np.arange(len(self.steps)) * len(self.pairs) + self.nearest
+        both = np.union1d(rows * len(self.pairs) + pairs, sure)
+        rows, pairs = np.divmod(both, len(self.pairs))
+        return self.steps[rows], pairs
 
-    def once_more(self, step: int, i_pair: int) -> Contact:
-        """The overlap of a pair that was found in contact at a step."""
-        return dict(self.at(step, i_pair))[i_pair]
+    def chosen(
+        self, steps: np.ndarray, pairs: np.ndarray, progress: Progress | None
+    ) -> Iterator[tuple[int, Contact]]:
+        """The rows that the run works out, each with its overlap in the world frame."""
+        work = []
+        if self.work_out == "every":
+            work = [partial(self._one, int(i), steps, pairs) for i in range(len(steps))]
+        elif self.work_out == "events":
+            budgets: dict[int, Budget] = {}
+            for event in events_of(steps, pairs):
+                budget = budgets.setdefault(event.i_pair, self._budget(event.i_pair))
+                work.append(partial(self._deepest, event, steps, budget))
+        for n_done, ask in enumerate(work, start=1):
+            yield ask()
+            if progress:
+                progress(n_done, len(work))
 
-    def _near(self, step: int) -> Iterator[tuple[int, np.ndarray]]:
-        """The pairs whose boxes meet at one step, each with its link's pose."""
-        poses = [motion.poses(step, step + 1)[0] for motion in self.motions]
-        boxes: dict[tuple[int, int], Box] = {}
-        for i, pair in enumerate(self.pairs):
-            link = (pair.i_robot, pair.i_body)
-            robot, body = self.case.robots[pair.i_robot].robot, self._link(i)
-            pose = poses[pair.i_robot][robot.link_names.index(body.name)]
-            if link not in boxes:
-                boxes[link] = _world_box(body.shape, pose)
-            if _meet(boxes[link], self._obstacle_boxes[pair.i_obstacle]):
-                yield i, pose
+    def notes(self) -> tuple[str, ...]:
+        """What stands for the bodies that were in contact, where it is not they themselves."""
+        return tuple(self._told)
+
+    def contact(self, step: int, i_pair: int) -> Contact:
+        """The overlap of a pair that is in contact at a step, in the world frame."""
+        b_from_a = self._poses(i_pair, np.array([step]))[0]
+        key = (i_pair, b_from_a.tobytes())
+        if key not in self._known:
+            if len(self._known) >= MOST_KNOWN:
+                del self._known[next(iter(self._known))]
+            self._known[key] = self._asked(i_pair, b_from_a)
+        return self._known[key].placed(self._obstacle(i_pair).world_from_body)
+
+    def _one(self, i: int, steps: np.ndarray, pairs: np.ndarray) -> tuple[int, Contact]:
+        return i, self.contact(int(steps[i]), int(pairs[i]))
+
+    def _deepest(self, event: Event, steps: np.ndarray, budget: Budget) -> tuple[int, Contact]:
+        """The row of an event that is worked out, and its overlap; bounds alone beyond the budget."""
+        i_pair, n_rows = event.i_pair, len(event.rows)
+        if not budget.take_event(n_rows):
+            row = event.rows[n_rows // 2]
+            return int(row), self._bounded(i_pair, int(steps[row]), budget.why)
+        pair = self._pair(i_pair)
+        if isinstance(pair, str):
+            row = event.rows[n_rows // 2]
+        else:
+            by_volume = pair.is_rated_by_volume
+            self._made[i_pair] = pair = self._near(pair, i_pair, steps[event.rows])
+            rated = partial(self._rated, pair, i_pair, steps[event.rows], by_volume)
+            row = event.rows[deepest_of(n_rows, rated, *([MOST_VOLUMES] if by_volume else []))]
+        return int(row), self.contact(int(steps[row]), i_pair)
+
+    def _near(self, pair: BodyPair, i_pair: int, steps: np.ndarray) -> BodyPair:
+        """The pair with what of large solids can be reached in an event."""
+        few = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), MOST_RATED)).round().astype(np.int64))
+        return pair.near(self._poses(i_pair, steps[few])) if pair.is_rated_by_volume else pair
+
+    def _rated(
+        self, pair: BodyPair, i_pair: int, steps: np.ndarray, by_volume: bool, few: np.ndarray
+    ) -> np.ndarray:
+        """How deep the steps `few` of an event seem to be: [m^3] shared, or [m] of the hulls."""
+        poses = self._poses(i_pair, steps[few])
+        if by_volume:
+            return np.array([pair.shared(pose).volume for pose in poses])
+        corners = pair.hull_a.vertices, pair.hull_b.vertices
+        return hull_depths(*corners, pair.hull_b.normals, poses)
+
+    def _bounded(self, i_pair: int, step: int, why: str) -> Contact:
+        a, b = self._shapes(i_pair)
+        b_from_a = self._poses(i_pair, np.array([step]))[0]
+        near = distance(a, b, pose_a=b_from_a)
+        self._tell(i_pair, why)
+        return bounded_contact(a, b, b_from_a, near.point_b, why).placed(self._obstacle(i_pair).world_from_body)
+
+    def _asked(self, i_pair: int, b_from_a: np.ndarray) -> Contact:
+        """The overlap in the obstacle's frame, from where rounding may part bodies that touch in the world."""
+        a, b = self._shapes(i_pair)
+        near, pair = distance(a, b, pose_a=b_from_a), self._pair(i_pair)
+        if isinstance(pair, str):
+            return bounded_contact(a, b, b_from_a, near.point_b, pair)
+        return pair.contact(b_from_a, near.point_b)
+
+    def _pair(self, i_pair: int) -> BodyPair | str:
+        """The bodies with their parts, or why there are none."""
+        if i_pair not in self._made:
+            self._made[i_pair] = self._with_parts(i_pair)
+        return self._made[i_pair]
+
+    def _with_parts(self, i_pair: int) -> BodyPair | str:
+        bodies, names = self._shapes(i_pair), [names[i_pair] for names in self._names]
+        parts: list[ConvexParts] = []
+        for body, name in zip(bodies, names, strict=True):
+            try:
+                parts.append(convex_parts(body, rough=self.work_out != "every"))
+            except ClearanceError as error:
+                self._told[f"contact: {name}: no depth from below, {error.problem}"] = None
+                return f"{name}: {error.problem}"
+            if parts[-1].note:
+                self._told[f"contact: {name}: {parts[-1].note}"] = None
+        return BodyPair(*bodies, *parts)
+
+    def _tell(self, i_pair: int, why: str) -> None:
+        links, obstacles = self._names
+        self._told[f"contact: {links[i_pair]} - {obstacles[i_pair]}: {why}"] = None
+
+    def _budget(self, i_pair: int) -> Budget:
+        return Budget(sum(body.n_triangles for body in self._shapes(i_pair)))
+
+    def _poses(self, i_pair: int, steps: np.ndarray) -> np.ndarray:
+        """(k, 4, 4) the link of a pair as its obstacle sees it."""
+        pair = self.pairs[i_pair]
+        motion, robot = self.motions[pair.i_robot], self.case.robots[pair.i_robot].robot
+        i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
+        from_world = inverse(self._obstacle(i_pair).world_from_body)
+        return np.array([from_world @ motion.poses(int(s), int(s) + 1)[0, i_link] for s in steps])
+
+    def _shapes(self, i_pair: int) -> tuple[Polyhedron, Polyhedron]:
+        return self._link(i_pair).shape, self._obstacle(i_pair).body.shape
 
     def _link(self, i_pair: int) -> Body:
         pair = self.pairs[i_pair]
@@ -107,60 +206,6 @@ class _Finder:
     def _obstacle(self, i_pair: int) -> Obstacle:
         return self.case.obstacles[self.pairs[i_pair].i_obstacle]
 
-    @cached_property
+    @property
     def _names(self) -> tuple[list[str], list[str]]:
         return pair_names(self.case, self.pairs)
-
-    @cached_property
-    def _obstacle_boxes(self) -> list[Box]:
-        return [_world_box(o.body.shape, o.world_from_body) for o in self.case.obstacles]
-
-    def notes(self) -> tuple[str, ...]:
-        """What stands for the bodies that were in contact, where it is not they themselves."""
-        return tuple(self._told)
-
-    def _asked(self, i_pair: int, b_from_a: np.ndarray, is_sure: bool) -> Contact | None:
-        """The overlap of a pair in the obstacle's frame.
-
-        Seen from there, rounding may part bodies that touch in the world: a pair that is sure is not asked.
-        """
-        a, b = self._link(i_pair).shape, self._obstacle(i_pair).body.shape
-        near = distance(a, b, pose_a=b_from_a)
-        if not (near.contact or is_sure):
-            return None
-        links, obstacles = self._names
-        parts = self._cut(a, links[i_pair]), self._cut(b, obstacles[i_pair])
-        if any(isinstance(part, str) for part in parts):
-            return None
-        pair = self._made.setdefault(i_pair, BodyPair(a, b, *parts))
-        return pair.contact(b_from_a, near.point_b)
-
-    def _cut(self, body: Polyhedron, name: str) -> ConvexParts | str:
-        if id(body) not in self._parts:
-            try:
-                made = convex_parts(body)
-                note = made.note
-            except ClearanceError as error:
-                made = note = f"no depth, {error.problem}"
-            self._parts[id(body)] = made
-            if note:
-                self._told[f"contact: {name}: {note}"] = None
-        return self._parts[id(body)]
-
-
-def _touching(clearance: np.ndarray) -> Iterator[int]:
-    for block in blocks(len(clearance)):
-        yield from (block.start + np.flatnonzero(clearance[block] <= 0.0)).tolist()
-
-
-def _meet(a: Box, b: Box) -> bool:
-    """False only if two axis-parallel boxes are apart."""
-    return bool((a[0] <= b[1]).all() and (b[0] <= a[1]).all())
-
-
-def _world_box(body: Polyhedron, pose: np.ndarray) -> Box:
-    """A box around the body in the world, a little wider than rounding."""
-    middle = pose[:3, :3] @ body.bounds.mean(axis=0) + pose[:3, 3]
-    half = np.abs(pose[:3, :3]) @ (0.5 * (body.bounds[1] - body.bounds[0]))
-    half += 1e-12 * (np.abs(middle).max() + half.max())
-    return middle - half, middle + half

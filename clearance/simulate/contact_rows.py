@@ -1,14 +1,16 @@
-"""The overlaps of a run as a sequence that takes little memory however many there are.
+"""The overlaps of a run: which pair at which step, with the figures of those that the run works out.
 
-Each is one row of numbers; the regions of the first ones are kept, those of the others are found again when they
-are looked at. Not for: finding overlaps (`contact`).
+Which pairs are in contact is asked when somebody looks, and so are depth, volume and way out: of the deepest
+moment of every event, of all, or of none. Any other row is worked out when it is looked at itself. Not for: how
+(`contact`), and which moment (`contact_events`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import overload
+from functools import cached_property
+from typing import Protocol, overload
 
 import numpy as np
 
@@ -19,17 +21,35 @@ from clearance.simulate.record import StepContact
 MOST_REGIONS = 2000
 """Regions that are kept; one takes some 2 to 10 kB."""
 
+Progress = Callable[[int, int], None]
+
 _NUMBERS = ("penetration", "penetration_at_least", "volume", "volume_at_least", "direction", "centroid", "exact")
 _ROW = np.dtype(
     [
-        ("step", "i8"),
-        ("pair", "i4"),
         ("notes", "i4"),
         *[(name, "f8") for name in _NUMBERS[:4]],
         *[(name, "f8", 3) for name in _NUMBERS[4:6]],
         ("exact", "?", 2),
     ]
 )
+
+
+class Finder(Protocol):
+    """What finds overlaps."""
+
+    def touching(self) -> tuple[np.ndarray, np.ndarray]:
+        """(n,) steps and (n,) pairs in contact, steps first."""
+
+    def contact(self, step: int, i_pair: int) -> Contact:
+        """The overlap of a pair that is in contact at a step, in the world frame."""
+
+    def chosen(
+        self, steps: np.ndarray, pairs: np.ndarray, progress: Progress | None
+    ) -> Iterator[tuple[int, Contact]]:
+        """The rows that the run works out, each with its overlap."""
+
+    def notes(self) -> tuple[str, ...]:
+        """What stands for the bodies so far, where it is not they themselves."""
 
 
 @dataclass(eq=False)
@@ -39,40 +59,74 @@ class ContactRows(Sequence[StepContact]):
     Attributes:
         names: link and obstacle of each pair.
         times: (n,) [s] of the steps.
-        again: finds the overlap of a step and pair once more, in the world frame.
+        finder: finds what is looked at.
     """
 
     names: Sequence[tuple[str, str]]
     times: np.ndarray
-    again: Callable[[int, int], Contact]
+    finder: Finder
+    _slots: dict[int, int] = field(default_factory=dict)
     _rows: np.ndarray = field(default_factory=lambda: np.empty(64, dtype=_ROW))
-    _n_rows: int = 0
     _regions: list[ClosedMesh] = field(default_factory=list)
     _notes: dict[tuple[str, ...], int] = field(default_factory=dict)
+    _told: tuple[str, ...] | None = None
 
-    def add(self, step: int, i_pair: int, found: Contact) -> None:
-        """Appends the overlap of a pair at a step; `found` is in the world frame."""
-        if self._n_rows == len(self._rows):
-            self._rows = np.resize(self._rows, 2 * self._n_rows)
-        i_notes = self._notes.setdefault(found.notes, len(self._notes))
-        numbers = [getattr(found, name) for name in _NUMBERS]
-        self._rows[self._n_rows] = (step, i_pair, i_notes, *numbers)
-        self._n_rows += 1
-        if len(self._regions) < MOST_REGIONS:
-            self._regions.append(found.region)
+    @cached_property
+    def _touching(self) -> tuple[np.ndarray, np.ndarray]:
+        return self.finder.touching()
 
     @property
     def steps(self) -> np.ndarray:
         """(k,) the step of each, not decreasing."""
-        return self._rows["step"][: self._n_rows]
+        return self._touching[0]
 
     @property
-    def penetrations(self) -> np.ndarray:
-        """(k,) [m]."""
-        return self._rows["penetration"][: self._n_rows]
+    def pairs(self) -> np.ndarray:
+        """(k,) the pair of each, as an index into `names`."""
+        return self._touching[1]
+
+    def work_out(self, progress: Progress | None = None) -> None:
+        """Works out what the run asks for, once; `progress` is told how many of how many."""
+        if self._told is None:
+            for i, found in self.finder.chosen(*self._touching, progress):
+                self._add(i, found)
+            self._told = self.finder.notes()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What stands for the bodies in contact, where it is not they themselves; one line each."""
+        self.work_out()
+        return self._told
+
+    @property
+    def worked_out(self) -> Sequence[StepContact]:
+        """The rows that the run works out, steps first."""
+        self.work_out()
+        return tuple(self._at(i) for i in sorted(self._slots))
+
+    def numbers_between(self, start: int, stop: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+        """The steps of the rows from a step to before another, their depth and volume; NaN if not worked out."""
+        self.work_out()
+        low, high = np.searchsorted(self.steps, [start, stop])
+        numbers = {name: np.full(high - low, np.nan) for name in ("penetration", "volume")}
+        slots = [(i - low, self._slots[i]) for i in range(low, high) if i in self._slots]
+        for name, column in numbers.items():
+            for place, slot in slots:
+                column[place] = self._rows[name][slot]
+        return self.steps[low:high], numbers
+
+    def _add(self, i: int, found: Contact) -> None:
+        slot = len(self._slots)
+        if slot == len(self._rows):
+            self._rows = np.resize(self._rows, 2 * slot)
+        i_notes = self._notes.setdefault(found.notes, len(self._notes))
+        self._rows[slot] = (i_notes, *(getattr(found, name) for name in _NUMBERS))
+        self._slots[i] = slot
+        if len(self._regions) < MOST_REGIONS:
+            self._regions.append(found.region)
 
     def __len__(self) -> int:
-        return self._n_rows
+        return len(self.steps)
 
     @overload
     def __getitem__(self, index: int) -> StepContact: ...
@@ -80,19 +134,24 @@ class ContactRows(Sequence[StepContact]):
     def __getitem__(self, index: slice) -> tuple[StepContact, ...]: ...
 
     def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
-        chosen = range(self._n_rows)[index]
+        chosen = range(len(self))[index]
+        self.work_out()
         return self._at(chosen) if isinstance(chosen, int) else tuple(map(self._at, chosen))
 
     def _at(self, i: int) -> StepContact:
-        row = self._rows[i]
-        step, i_pair = int(row["step"]), int(row["pair"])
-        known = i < len(self._regions)
-        found = Contact(
+        step, i_pair = int(self.steps[i]), int(self.pairs[i])
+        slot = self._slots.get(i)
+        has_region = slot is not None and slot < len(self._regions)
+        again = None if has_region else lambda: self.finder.contact(step, i_pair)
+        known = None if slot is None else self._known(slot)
+        return StepContact(step, float(self.times[step]), *self.names[i_pair], known, again)
+
+    def _known(self, slot: int) -> Contact:
+        row = self._rows[slot]
+        return Contact(
             **{name: row[name].tolist() for name in _NUMBERS[:4]},
             **{name: row[name].copy() for name in _NUMBERS[4:6]},
-            region=self._regions[i] if known else ClosedMesh.empty(),
+            region=self._regions[slot] if slot < len(self._regions) else ClosedMesh.empty(),
             exact=tuple(row["exact"].tolist()),
             notes=tuple(self._notes)[row["notes"]],
         )
-        again = None if known else lambda: self.again(step, i_pair)
-        return StepContact(step, float(self.times[step]), *self.names[i_pair], found, again)

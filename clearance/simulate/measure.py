@@ -242,6 +242,21 @@ def measure(
     return _measurement(work, rows, lambda most: _pair_minima(work.quiet, rows, most))
 
 
+def pairs_in_contact(
+    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], steps: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
+    work = _Sweep(lay_out(case, pairs), motions, 1, Rows())
+    goal = Goal(np.zeros(work.n_pairs), True, False)
+    found = []
+    for span in parts(len(steps), sparse=True):
+        every = np.full((span.stop - span.start, work.n_pairs), np.inf)
+        rows = _no_pair_rows(work.n_pairs, work.n_pairs, every)
+        work.sweep_steps(steps[span], goal, _rows_of(None, span), rows)
+        found.append(np.argwhere(every <= 0.0) + [span.start, 0])
+    return tuple(np.concatenate(found).T)
+
+
 def _every_pair(work: _Sweep) -> Measurement:
     rows, every, minima = work.every_row("pairs", range(work.n_steps))
     return _measurement(work, rows, lambda most: minima, every=every)

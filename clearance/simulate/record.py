@@ -39,7 +39,8 @@ class StepContact:
     """One link-obstacle pair that overlaps at one step.
 
     Attributes:
-        numbers: the overlap in the world frame, the link its body a; without its region if there is `again`.
+        known: the overlap in the world frame, the link its body a; without its region if there is `again`; None
+            where the run has not worked it out.
         again: finds all of it once more.
     """
 
@@ -47,13 +48,18 @@ class StepContact:
     time: float  # [s]
     link: str
     obstacle: str
-    numbers: Contact
+    known: Contact | None
     again: Callable[[], Contact] | None = None
+
+    @property
+    def numbers(self) -> Contact:
+        """The overlap, perhaps without its region; worked out now if it is not known."""
+        return self.found if self.known is None else self.known
 
     @cached_property
     def found(self) -> Contact:
         """The overlap with its region."""
-        return self.numbers if self.again is None else self.again()
+        return self.known if self.again is None else self.again()
 
 
 @dataclass(frozen=True)
@@ -213,14 +219,14 @@ class Record:
             tracking_error when simulated; when certified, lower_bound and upper_bound of the motion from the step
             to the next, and `between`: the motion is worse there than at both of its ends, and the status is that
             of the motion, not of the step; else lower_bound of the step where `need` leaves clearances unknown
-            (null); penetration [m] of the deepest pair in contact and volume [m3] of all, or upper bounds
-            of them, null without contact.
+            (null); penetration [m] of the deepest pair in contact and volume [m3] of all, both null here and
+            filled in by `steps_with_contacts`.
         pair_minima: one entry a measured pair, least clearance first; empty if `need` asks for less.
         need: what was asked for, "steps", "pairs", "limit" or "minimum".
         every_pair: the clearance of every pair at every step, if `need` is "pairs".
         tally: counters by name (pairs, queries, nodes, polygons, …).
-        notices: suspect input and warnings that measuring found, beside those of the case.
-        contacts: every pair in contact at every step, steps first.
+        contacts: every pair in contact at every step, steps first; what the run works out of them is worked out
+            when it is first looked at.
         notices: what a reader of the verdict must know: of the case, and found while measuring.
         method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
         let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
@@ -243,14 +249,36 @@ class Record:
     notices: tuple[Notice, ...] = ()
     contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
-    notices: tuple[Notice, ...] = ()
     let_go: Callable[[], None] = lambda: None
     room: Callable[[], Path | None] = lambda: None
 
+    def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
+        """Works out now what the run asks for of its contacts; `progress` is told how many of how many."""
+        if len(self.contacts):
+            self.contacts.work_out(progress)
+
+    @property
+    def worked_out(self) -> Sequence[StepContact]:
+        """The contacts whose depth the run works out: the deepest moment of each event, all, or none."""
+        return getattr(self.contacts, "worked_out", self.contacts)
+
+    @property
+    def contact_notes(self) -> tuple[str, ...]:
+        """What stands for the bodies in contact, where it is not they themselves."""
+        return getattr(self.contacts, "notes", ())
+
     @cached_property
     def deepest(self) -> StepContact | None:
-        """The first contact of greatest penetration; None without contact."""
-        return max(self.contacts, key=lambda row: row.numbers.penetration, default=None)
+        """The first of the contacts worked out of greatest penetration; None without any."""
+        return max(self.worked_out, key=lambda row: row.numbers.penetration, default=None)
+
+    @cached_property
+    def steps_with_contacts(self) -> pa.Table:
+        """`steps` with penetration and volume where all pairs in contact at a step are worked out, upper bounds if
+        not exact; null at all others."""
+        from clearance.simulate.contact_columns import with_contact_columns
+
+        return with_contact_columns(self.steps, self.contacts)
 
     @property
     def clearances(self) -> np.ndarray:

@@ -43,12 +43,13 @@ class DrawnContact:
 def drawn_contacts(
     record: Record, kept: np.ndarray
 ) -> tuple[tuple[DrawnContact, ...], tuple[tuple[np.ndarray, np.ndarray], ...]]:
-    """The overlaps of the steps `kept`, and for each its region: vertices (n, 3) float32, triangles (m, 3) int32.
+    """The overlaps that the run works out of the steps `kept`, and the region of each: vertices (n, 3) float32,
+    triangles (m, 3) int32.
 
     Beyond `MOST_CONTACTS` or `MOST_TRIANGLES`, every second, third, … contact; always the deepest.
     """
     frames = {int(step): i for i, step in enumerate(kept)}
-    rows = [row for row in record.contacts if row.step in frames]
+    rows = [row for row in record.worked_out if row.step in frames]
     chosen = _thinned(rows, record.deepest)
     return (
         tuple(_drawn(row, frames[row.step]) for row in chosen),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from functools import cached_property
@@ -10,10 +9,11 @@ from functools import cached_property
 import numpy as np
 import pyarrow as pa
 
+from clearance.simulate.contact_columns import no_contact_columns
 from clearance.simulate.measure import Measurement
 from clearance.simulate.names import pair_names
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import Certificate, EveryPair, PairMinimum, StepContact
+from clearance.simulate.record import Certificate, EveryPair, PairMinimum
 from clearance.world.case import Case, Limits, Unmeasured
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -69,13 +69,11 @@ def step_table(
     *,
     certificate: Certificate | None = None,
     with_error: bool = False,
-    contacts: Sequence[StepContact] = (),
 ) -> Iterator[pa.Table]:
     """One row a step; columns as in `Record.steps`, null where only a bound is known. In blocks of steps."""
     names = pair_names(case, pairs)
     n_steps = len(found.clearance)
     bounded = any((found.pair[block] < 0).any() for block in blocks(n_steps))
-    first = [row.step for row in contacts]
     for block in blocks(n_steps):
         columns = _measured_columns(names, found, motions[0].times, block)
         codes = _sample_codes(found, case.limits, block)
@@ -89,8 +87,7 @@ def step_table(
         if with_error:
             errors = [motion.tracking_error[block] for motion in motions]
             columns["tracking_error"] = pa.array(np.max(errors, axis=0))
-        touching = contacts[bisect_left(first, block.start) : bisect_left(first, block.stop)]
-        columns |= _contact_columns(block, touching)
+        columns |= no_contact_columns(block.stop - block.start)
         yield pa.table(columns)
 
 
@@ -140,18 +137,6 @@ def _measured_columns(
             values = found.points[block, i_side, i_axis]
             columns[f"{side}_{axis}"] = pa.array(values, from_pandas=True)
     return columns
-
-
-def _contact_columns(block: slice, contacts: Sequence[StepContact]) -> dict[str, pa.Array]:
-    """The penetration of the deepest pair and the volume of all, step by step; null without contact."""
-    n_steps = block.stop - block.start
-    depth, volume, none = np.zeros(n_steps), np.zeros(n_steps), np.ones(n_steps, dtype=bool)
-    for row in contacts:
-        i = row.step - block.start
-        depth[i] = max(depth[i], row.numbers.penetration)
-        volume[i] += row.numbers.volume
-        none[i] = False
-    return {"penetration": pa.array(depth, mask=none), "volume": pa.array(volume, mask=none)}
 
 
 class PairMinima(Sequence[PairMinimum]):

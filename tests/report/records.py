@@ -125,7 +125,7 @@ def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
     return dataclasses.replace(made, **changes)
 
 
-def with_contacts(made: Record) -> Record:
+def with_contacts(made: Record, work_out: str = "every") -> Record:
     """The record with the overlaps of its steps at 0, as a run finds them."""
     from clearance.simulate.contact import find_contacts
     from clearance.simulate.steps import pair_names
@@ -135,8 +135,8 @@ def with_contacts(made: Record) -> Record:
     named = list(zip(*pair_names(made.case, pairs), strict=True))
     links, obstacles = (made.steps[name].to_pylist() for name in ("link", "obstacle"))
     nearest = [named.index(pair) for pair in zip(links, obstacles, strict=True)]
-    found, notes = find_contacts(made.case, made.motions, pairs, made.clearances, np.array(nearest))
-    return dataclasses.replace(made, contacts=found, notes=notes)
+    asked = made.case, made.motions, pairs, made.clearances, np.array(nearest)
+    return dataclasses.replace(made, contacts=find_contacts(*asked, work_out))
 
 
 def measure(motions, case):

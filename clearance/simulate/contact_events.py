@@ -1,0 +1,77 @@
+"""Events of contact: unbroken stretches in which a pair overlaps, and the step of each that is worked out.
+
+What is rated is cheap: how far 26 directions and the normals of one body would have to part the hulls, or how much
+two solids share. Not for: how deep a pair is (`contact`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.geometry.envelope import TWENTY_SIX
+
+MOST_RATED = 32
+"""Steps of an event that are rated, evenly spread; as many again on both sides of the best."""
+
+MOST_NORMALS = 32
+"""Normals of a body along which hulls are rated."""
+
+
+class Event(NamedTuple):
+    """One pair in contact, without a break; `rows` (k,) are those of `ContactRows`, steps in order."""
+
+    i_pair: int
+    rows: np.ndarray
+
+
+def events_of(steps: np.ndarray, pairs: np.ndarray) -> Iterator[Event]:
+    """The events of all pairs, pair by pair.
+
+    Args:
+        steps, pairs: (n,) of each row, steps first.
+    """
+    order = np.lexsort((steps, pairs))
+    apart = (np.diff(pairs[order]) != 0) | (np.diff(steps[order]) != 1)
+    for rows in np.split(order, np.flatnonzero(apart) + 1):
+        if len(rows):
+            yield Event(int(pairs[rows[0]]), rows)
+
+
+def deepest_of(n_steps: int, rated: Callable[[np.ndarray], np.ndarray], most: int = MOST_RATED) -> int:
+    """The place of greatest rating among so many of `n_steps` places, then among as many about it; the first.
+
+    Args:
+        rated: the ratings of some places.
+    """
+    if n_steps == 1:
+        return 0
+    few = np.unique(np.linspace(0, n_steps - 1, min(n_steps, most)).round().astype(np.int64))
+    best = int(np.argmax(rated(few)))
+    if len(few) == n_steps:
+        return best
+    low, high = few[max(0, best - 1)], few[min(len(few) - 1, best + 1)]
+    near = np.unique(np.linspace(low, high, min(high - low + 1, most)).round().astype(np.int64))
+    near = np.union1d(near, few[best])
+    return int(near[np.argmax(rated(near))])
+
+
+def hull_depths(
+    corners_a: np.ndarray, corners_b: np.ndarray, normals_b: np.ndarray, b_from_a: np.ndarray
+) -> np.ndarray:
+    """(k,) [m] no less than the depth of the hull of a in that of b, by 26 directions and some normals of b.
+
+    Args:
+        corners_a, corners_b: (n, 3), (m, 3) [m]. b_from_a: (k, 4, 4).
+    """
+    every = max(1, -(-len(normals_b) // MOST_NORMALS))
+    directions = np.concatenate([TWENTY_SIX, normals_b[::every]])
+    highest = (directions @ corners_b.T).max(axis=1)
+    return np.array([_depth(directions, highest, corners_a, pose) for pose in b_from_a])
+
+
+def _depth(directions: np.ndarray, highest: np.ndarray, corners: np.ndarray, pose: np.ndarray) -> float:
+    lowest = (directions @ pose[:3, :3] @ corners.T).min(axis=1) + directions @ pose[:3, 3]
+    return float((highest - lowest).min())

@@ -1,0 +1,186 @@
+"""Which overlaps a run works out, when, and that the verdict never waits for them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput
+from clearance.query.contact import BodyPair
+from clearance.simulate import contact_budget, contact_events
+from clearance.simulate.contact_events import deepest_of, events_of
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+
+ROOT = Path(__file__).parents[2]
+WAY = np.array([0.5, 0.75, 0.8, 0.85, 0.9, 0.82, 0.6, 0.5, 0.79, 0.78, 0.5])
+"""Two events: rows 2 to 5 (a wall from 0.9, a cube of 0.2: at 0.9 it is 0.1 deep), and 8 alone; 0.78 is apart."""
+
+
+def sliding(shape, way=WAY):
+    """A cube of 0.2 m that slides along x into a body whose face is at 0.89."""
+    joint = Joint("rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4))
+    robot = Robot("cart", ("ground", "cube"), (joint,), (Body("cube", cl.box((0.2, 0.2, 0.2))),))
+    path = Trajectory(np.arange(float(len(way))), ("rail",), np.array(way)[:, None])
+    pose = np.eye(4)
+    pose[0, 3] = 0.99 - 0.105
+    return Case("slide", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", shape), pose),))
+
+
+def wall():
+    pose = np.eye(4)
+    pose[0, 3] = 0.1
+    return cl.box((0.2, 1.0, 1.0)).transformed(pose)
+
+
+def channel():
+    """The wall with a groove in its far side: concave, far from where the cube is."""
+    outline = [(0.0, -0.5), (0.2, -0.5), (0.2, -0.2), (0.1, -0.2), (0.1, 0.2), (0.2, 0.2), (0.2, 0.5), (0.0, 0.5)]
+    vertices = np.array([(x, y, z) for z in (-0.5, 0.5) for x, y in outline])
+    top = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 7), (4, 5, 7), (5, 6, 7)]
+    faces = [*(t[::-1] for t in top), *(tuple(i + 8 for i in t) for t in top)]
+    for i in range(8):
+        j = (i + 1) % 8
+        faces += [(i, j, j + 8), (i, j + 8, i + 8)]
+    return cl.Polyhedron.from_triangles(vertices, np.array(faces))
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """How often an overlap was worked out."""
+    calls = []
+    real = BodyPair.contact
+    monkeypatch.setattr(BodyPair, "contact", lambda *given: calls.append(1) or real(*given))
+    return calls
+
+
+@pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
+def test_the_verdict_works_out_nothing(asked, shape):
+    for how in ("none", "events", "every"):
+        run = cl.check(sliding(shape), contact=how)
+        assert run.status == "contact" and not run.passed and run.worst["clearance"] == 0.0
+    assert asked == []
+
+
+@pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
+def test_what_is_worked_out_is_none_the_deepest_moments_or_all(asked, shape):
+    found = {}
+    for how, n_asked in (("none", 0), ("events", 2), ("every", 5)):
+        asked.clear()
+        run = cl.check(sliding(shape), contact=how)
+        found[how] = [(row.step, row.known is not None) for row in run.record.contacts]
+        assert len(run.record.worked_out) == len(asked) == n_asked
+    assert [step for step, _ in found["none"]] == [2, 3, 4, 5, 8]
+    assert found["events"] == [(2, False), (3, False), (4, True), (5, False), (8, True)]
+    assert all(known for _, known in found["every"]) and not any(known for _, known in found["none"])
+
+
+@pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
+def test_the_other_rows_are_worked_out_when_they_are_looked_at(asked, shape):
+    run = cl.check(sliding(shape), contact="none")
+    row = run.record.contacts[1]
+    assert row.known is None and run.record.deepest is None and asked == []
+    assert row.numbers.penetration == pytest.approx(WAY[3] + 0.1 - 0.885, abs=1e-9)
+    assert not row.found.region.is_empty and len(asked) == 1
+    every = cl.check(sliding(shape), contact="every").record.contacts[1]
+    assert every.numbers.penetration_at_least <= row.numbers.penetration * (1.0 + 1e-12)
+    assert row.numbers.penetration_at_least <= every.numbers.penetration * (1.0 + 1e-12)
+
+
+def test_the_answers_do_not_depend_on_what_is_worked_out():
+    case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
+    runs = [cl.check(case, contact=how) for how in ("none", "events", "every")]
+    tables = [run.record.steps.drop_columns(["penetration", "volume"]) for run in runs]
+    assert tables[0].equals(tables[1]) and tables[1].equals(tables[2])
+    assert [run.status for run in runs] == ["contact"] * 3
+    contacts = [[(row.step, row.link) for row in run.record.contacts] for run in runs]
+    assert contacts[0] == contacts[1] == contacts[2]
+
+
+def test_the_steps_say_how_deep_only_where_all_is_worked_out():
+    run = cl.check(sliding(wall()))
+    depths = run.steps["penetration"].to_pylist()
+    assert [i for i, depth in enumerate(depths) if depth is not None] == [4, 8]
+    assert depths[4] == pytest.approx(0.115, abs=1e-12)
+    assert run.steps["volume"].to_pylist()[4] == pytest.approx(0.115 * 0.04, rel=1e-9)
+    none = cl.check(sliding(wall()), contact="none").steps
+    assert none["penetration"].null_count == none["volume"].null_count == none.num_rows
+
+
+def test_the_deepest_moment_of_the_shelf_is_that_of_all_its_steps():
+    case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
+    events, every = (cl.check(case, contact=how).record.deepest for how in ("events", "every"))
+    assert (events.step, events.link) == (every.step, every.link)
+    assert events.known.penetration == pytest.approx(every.known.penetration, rel=1e-3)
+
+
+def test_beyond_the_budget_there_are_bounds_and_it_is_said(monkeypatch, asked):
+    monkeypatch.setattr(contact_budget, "WORK", int(1.5 * contact_budget.ROW))
+    exact = [row.known for row in cl.check(sliding(channel()), contact="every").record.contacts]
+    asked.clear()
+    runs = [cl.check(sliding(channel())) for _ in range(2)]
+    told = [[row.known for row in run.record.worked_out] for run in runs]
+    assert [repr(one) for one in told[0]] == [repr(one) for one in told[1]]
+    assert len(told[0]) == 2 and len(asked) == 2  # the first event of each run
+    beyond, truth = told[0][1], exact[4]
+    assert beyond.penetration >= truth.penetration_at_least and beyond.penetration_at_least == 0.0
+    assert beyond.volume >= truth.volume_at_least and beyond.exact == (False, False)
+    assert any("beyond the work allowed" in note for note in runs[0].record.contact_notes)
+
+
+def test_progress_is_told_event_by_event():
+    told = []
+    cl.check(sliding(wall())).record.work_out_contacts(lambda done, total: told.append((done, total)))
+    assert told == [(1, 2), (2, 2)]
+
+
+def test_a_way_that_is_not_known_is_refused():
+    with pytest.raises(BadInput, match="contact"):
+        cl.check(sliding(wall()), contact="all")
+
+
+def test_events_are_unbroken_stretches_of_one_pair():
+    steps = np.array([3, 3, 4, 4, 5, 7, 7])
+    pairs = np.array([0, 2, 0, 2, 0, 0, 1])
+    found = [(event.i_pair, steps[event.rows].tolist()) for event in events_of(steps, pairs)]
+    assert found == [(0, [3, 4, 5]), (0, [7]), (1, [7]), (2, [3, 4])]
+    assert list(events_of(steps[:0], pairs[:0])) == []
+
+
+@pytest.mark.parametrize("top", [0, 1, 17, 333, 998, 999])
+def test_the_deepest_of_many_is_found_among_few(top):
+    looked = []
+
+    def rated(few):
+        looked.extend(few.tolist())
+        return -np.abs(few - top).astype(float)
+
+    assert abs(deepest_of(1000, rated) - top) <= 1
+    assert len(looked) <= 2 * contact_events.MOST_RATED + 3
+
+
+def test_a_link_in_the_wall_of_a_ring_is_deepest_in_its_middle():
+    """Hulls would say: at once, since the hole is inside the hull."""
+    u = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+    section = ((0.7, -0.3), (1.3, -0.3), (1.3, 0.3), (0.7, 0.3))
+    ring = [(r * np.cos(t), r * np.sin(t), z) for t in u for r, z in section]
+    faces = []
+    for i in range(48):
+        for k in range(4):
+            a, b = 4 * i + k, 4 * i + (k + 1) % 4
+            c, d = 4 * ((i + 1) % 48) + (k + 1) % 4, 4 * ((i + 1) % 48) + k
+            faces += [(a, c, b), (a, d, c)]
+    shape = cl.Polyhedron.from_triangles(np.array(ring), np.array(faces)).outward()
+    joint = Joint("rail", JointKind.PRISMATIC, "ground", "cube", np.eye(4))
+    robot = Robot("cart", ("ground", "cube"), (joint,), (Body("cube", cl.box((0.4, 0.4, 0.4))),))
+    way = np.linspace(0.0, 2.0, 101)
+    path = Trajectory(way, ("rail",), way[:, None])
+    case = Case("ring", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("ring", shape), np.eye(4)),))
+    (row,) = cl.check(case).record.worked_out
+    assert 0.9 <= way[row.step] <= 1.1
+    assert 0.0 < row.known.penetration_at_least <= row.known.penetration <= 0.52
