@@ -219,6 +219,13 @@ class Profile(Strict):
     links: list[Name] = []
 
 
+class Report(Strict):
+    """What the report is signed with."""
+
+    author: Name | None = None
+    revision: Name | None = None
+
+
 class Case(Strict):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
@@ -230,3 +237,4 @@ class Case(Strict):
     allow: list[Annotated[list[Name], Field(min_length=2, max_length=2)]] = []
     contact_response: bool = False
     profiles: list[Profile] = []
+    report: Report | None = None

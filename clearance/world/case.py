@@ -84,6 +84,14 @@ class ReservedSpace:
     links: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class SignOff:
+    """Who answers for a case, in which revision, for the report; empty where that is not given."""
+
+    author: str = ""
+    revision: str = ""
+
+
 @dataclass(frozen=True, eq=False)
 class Case:
     """Robots, obstacles, trajectories, limits.
@@ -98,6 +106,7 @@ class Case:
         notices: suspect input and warnings, which stand in the headline.
         accept: kinds of suspect input that do not make the verdict suspect.
         profiles: outlines that the sweep must keep to.
+        sign_off: for the report; None where it has no such fields.
     """
 
     name: str
@@ -111,3 +120,4 @@ class Case:
     profiles: tuple[ReservedSpace, ...] = ()
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
+    sign_off: SignOff | None = None
