@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from html import escape
+from typing import Any
 
 
 class Html(str):
@@ -46,6 +47,7 @@ def step_link(step: int) -> Html:
     return element("a", f"step {step:,}", href="#stage", data_step=step)
 
 
-def time_link(time: float, text: str) -> Html:
-    """A link that moves the replay to a moment [s]."""
-    return element("a", text, href="#stage", data_time=time)
+def moment_link(moment: dict[str, Any], text: str) -> Html:
+    """A link that moves the replay to a step, or to a moment between two."""
+    at = {"data_time": moment["time"]} if moment["between"] else {"data_step": moment["step"]}
+    return element("a", text, href="#stage", **at)

@@ -176,7 +176,7 @@
 
   function plotted() {
     const axis = {gridcolor: css("--grid"), zerolinecolor: css("--rule"), linecolor: css("--rule"), ticks: "outside", tickcolor: css("--rule"), fixedrange: false};
-    const highest = Math.max(greatest, ...(chosen === null ? [] : [1.06 * toPlot(data.pairs[chosen].clearance)]));
+    const highest = Math.max(greatest, ...pairTraces().flatMap((trace) => trace.y.map((y) => 1.06 * y)));
     return {
       margin: {l: 58, r: roomForLimits(), t: 8, b: 46}, showlegend: false, hovermode: "x", hoverdistance: -1, dragmode: "zoom",
       font: {family: getComputedStyle(document.body).fontFamily, size: 12, color: css("--soft")},

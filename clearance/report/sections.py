@@ -13,10 +13,10 @@ from clearance.report.contact import contacts
 from clearance.report.markup import (
     Html,
     element,
+    moment_link,
     section,
     step_link,
     table,
-    time_link,
 )
 from clearance.report.profiles import profiles
 from clearance.report.verdict import verdict_text
@@ -170,7 +170,7 @@ def worst_moment(summary: dict[str, Any]) -> Html:
         element(
             "p",
             f"{mm(worst['clearance'])} mm between {worst['link']} and {worst['obstacle']} at ",
-            time_link(worst["time"], moment_of(worst)),
+            moment_link(worst, moment_of(worst)),
             ".",
         ),
         *_worst_sample(summary),
@@ -256,7 +256,7 @@ def matrix(summary: dict[str, Any]) -> Html:
     head = element(
         "tr",
         element("td", ""),
-        *[element("th", element("span", name), scope="col") for name in obstacles],
+        *[element("th", element("span", name), scope="col", title=name) for name in obstacles],
     )
     rows = [
         element(
