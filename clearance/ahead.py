@@ -20,10 +20,10 @@ from pathlib import Path
 
 import numba
 
-import clearance.kernels.body_pair  # noqa: F401 it enters `ALL` into the table
+import clearance.kernels.certify  # noqa: F401 it enters `ALL` into the table, with what it imports
 from clearance import kernel_table
 from clearance.kernel_cache import cache_root
-from clearance.kernel_table import FEATURES, PARTING, REFINE, SEARCH, TOGETHER
+from clearance.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 """Set in the environment of the second process, so that no other one follows whatever it comes to run."""
@@ -31,8 +31,9 @@ IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 FIRST = (SEARCH, REFINE, PARTING)
 """What questions about distances need, in the order in which it is come to; the last one where bodies move."""
 
-ALL = (*FIRST, *TOGETHER, FEATURES)
-"""What the second process compiles: then what some scenes need. It is stopped where the first one ends before."""
+ALL = (*FIRST, CERTIFY, *TOGETHER, FEATURES)
+"""What the second process compiles: then what the proof for the motion and what some scenes need. It is stopped
+where the first one ends before."""
 
 LONGEST = 300
 """[s] A guard: a second process that another run's, stopped or frozen, keeps waiting for longer than this ends."""

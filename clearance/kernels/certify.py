@@ -16,16 +16,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.jit import borrowing, inlined, kernel
+from clearance.jit import inlined, kernel
+from clearance.kernel_table import CERTIFY, Lent, apart, at_address, borrow, lend, table_like
 from clearance.kernels.double_double import frames_of
-from clearance.kernels.drift import Drift, drift_of, drift_of_box
+from clearance.kernels.drift import Chain, Drift, drift_of, drift_of_box
 from clearance.kernels.front import KEPT_DOWN
 from clearance.kernels.hold import allowed_gap, hold
-from clearance.kernels.joint_path import part_of
+from clearance.kernels.joint_path import JointPath, part_of
 from clearance.kernels.kinematics import forward
 from clearance.kernels.placed import GROWTH
 from clearance.kernels.scratch import Scratch, new_scratch
-from clearance.kernels.surface import box_of
+from clearance.kernels.surface import box_of, surface_like
 from clearance.kernels.vec3 import Vec3, rigid
 
 DEPTH = 64
@@ -205,12 +206,31 @@ def certify(surface, chain, asked, path, order, first, last, clearance, aim, bou
     )  # fmt: skip
     for pair in range(n_pairs):
         known.links[asked.bodies[pair, 0]] = asked.links[pair]
-    _certify(surface, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table)
+    at_address(
+        table,
+        CERTIFY,
+        0,
+        (lend(surface), chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table),
+    )
 
 
-@borrowing
-def _certify(surface, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table):
+def _like():
+    numbers, places, rows = np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 0))
+    pairs, poses = np.empty((0, 2), dtype=np.int64), np.empty((0, 0, 0))
+    chain = Chain(rows, places, places, poses, rows)
+    middle = Middle(rows, numbers, numbers, np.empty((0, 0, 0, 0)))
+    known = Known(middle, middle, places, rows, numbers, numbers, pairs, rows, new_scratch())
+    asked, path = Asked(pairs, places, poses), JointPath(numbers, rows, rows)
+    aim, bounds = Aim(0.0, 0.0, 0), Bounds(numbers, numbers, numbers, places)
+    return (
+        Lent(surface_like()), chain, asked, path, places, 0, 0, numbers, aim, bounds, places, known, table_like()
+    )  # fmt: skip
+
+
+@apart(CERTIFY, _like)
+def _certify(lent, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table):
     """`certify`, with room for what is known."""
+    surface = borrow(lent)
     n_pairs = len(asked.bodies)
     travel, floors = known.travel, known.floors
     for i in range(len(tally)):
@@ -239,6 +259,7 @@ def _certify(surface, chain, asked, path, order, first, last, clearance, aim, bo
         bounds.upper[step] = least
         bounds.share[step] = share
         bounds.pair[step] = seen
+    return 0
 
 
 @inlined

@@ -29,7 +29,7 @@ from clearance.load.schema_errors import validated
 from clearance.load.trajectory_file import read_trajectory
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
-from clearance.world.case import Case, Limits, PlacedRobot
+from clearance.world.case import Case, Limits, PlacedRobot, SignOff
 from clearance.world.notice import Notice
 from clearance.world.pairs import measured_pairs
 from clearance.world.reach import require_few_turns
@@ -71,6 +71,7 @@ def load_case(path: str | Path) -> Case:
         profiles=profiles,
         notices=tuple(_notices(given)),
         accept=tuple(given.accept),
+        sign_off=_sign_off(given.report),
     )
     with at(path.name):
         measured_pairs(case)  # refuses a case that leaves nothing to measure
@@ -165,6 +166,10 @@ def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
             check_joint_names(trajectory.joint_names, robot)
             require_few_turns(robot, trajectory.joint_names, trajectory)
     return trajectory
+
+
+def _sign_off(given: schema.Report | None) -> SignOff | None:
+    return None if given is None else SignOff(given.author or "", given.revision or "")
 
 
 def _limits(given: schema.Limits) -> Limits:

@@ -231,6 +231,13 @@ def _known_kind(kind: str) -> str:
 Kind = Annotated[str, AfterValidator(_known_kind)]
 
 
+class Report(Strict):
+    """What the report is signed with."""
+
+    author: Name | None = None
+    revision: Name | None = None
+
+
 class Case(Strict):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
@@ -243,3 +250,4 @@ class Case(Strict):
     contact_response: bool = False
     profiles: list[Profile] = []
     accept: list[Kind] = []
+    report: Report | None = None

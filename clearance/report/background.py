@@ -142,7 +142,7 @@ def loaded(summary: dict[str, Any]) -> Html:
         table((name, *heads[1:]), [_body_row(body) for body in bodies], class_="bodies")
         for name, bodies in groups
     ]
-    return section("What was loaded", element("div", *parts, class_="scroll"))
+    return section("What was loaded", *parts)
 
 
 def _quality(body: dict[str, Any]) -> str:
@@ -198,9 +198,21 @@ def provenance(summary: dict[str, Any]) -> Html:
     )
     return section(
         "Where this comes from",
-        element(
-            "div", table(("File", ">Bytes", "sha256"), files, class_="bodies"), class_="scroll"
-        ),
+        table(("File", ">Bytes", "sha256"), files, class_="bodies"),
         element("p", versions, class_="faint"),
         element("p", f"Counted: {counters}." if counters else "", class_="faint"),
     )
+
+
+def sign_off(fields: dict[str, str] | None) -> Html:
+    """Author and revision, and room to sign; nothing where the case has no such fields."""
+    if fields is None:
+        return Html("")
+    heads = ("", "Name", "Date", "Signature")
+    roles = {"Author": fields["author"], "Checked": "", "Approved": ""}
+    rows = [
+        element("tr", element("th", role, scope="row"), element("td", name), *[element("td", "")] * 2)
+        for role, name in roles.items()
+    ]
+    revision = element("p", f"Revision {fields['revision']}") if fields["revision"] else Html("")
+    return section("Sign-off", revision, table(heads, rows, class_="sign-off"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from html import escape
+from typing import Any
 
 
 class Html(str):
@@ -28,7 +29,8 @@ def section(title: str, *content: Html) -> Html:
 
 
 def table(heads: Iterable[str], rows: list[Html], class_: str | None = None) -> Html:
-    """A table; a heading that begins with `>` stands over numbers, to the right."""
+    """A table that scrolls in a box of its own where it is too wide; a heading that begins with `>` stands over
+    numbers, to the right."""
     cells = [
         element(
             "th", name.lstrip(">"), scope="col", class_="number" if name.startswith(">") else None
@@ -36,7 +38,8 @@ def table(heads: Iterable[str], rows: list[Html], class_: str | None = None) -> 
         for name in heads
     ]
     head = element("tr", *cells)
-    return element("table", element("thead", head), element("tbody", *rows), class_=class_)
+    body = element("table", element("thead", head), element("tbody", *rows), class_=class_)
+    return element("div", body, class_="scroll")
 
 
 def step_link(step: int) -> Html:
@@ -44,11 +47,7 @@ def step_link(step: int) -> Html:
     return element("a", f"step {step:,}", href="#stage", data_step=step)
 
 
-def time_link(time: float, text: str) -> Html:
-    """A link that moves the replay to a moment [s]."""
-    return element("a", text, href="#stage", data_time=time)
-
-
-def scrolling(content: Html) -> Html:
-    """What is too wide for its place scrolls in a box of its own."""
-    return element("div", content, class_="scroll")
+def moment_link(moment: dict[str, Any], text: str) -> Html:
+    """A link that moves the replay to a step, or to a moment between two."""
+    at = {"data_time": moment["time"]} if moment["between"] else {"data_step": moment["step"]}
+    return element("a", text, href="#stage", **at)

@@ -8,6 +8,7 @@ from typing import Any
 
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.page import page_of
+from clearance.report.pair_curves import pair_curves
 from clearance.report.summary import summary_of
 from clearance.report.tables import (
     contact_batches,
@@ -44,7 +45,8 @@ def write(record: Record, folder: str | Path) -> None:
         Unwritable: `folder` cannot be written.
     """
     summary, replay = summary_of(record), replay_of(record)
-    page = page_of(summary, replay, {answer.name: answer.picture for answer in record.profiles})
+    pictures = {answer.name: answer.picture for answer in record.profiles}
+    page = page_of(summary, replay, pictures, pair_curves(record))
 
     def fill(place: Path) -> None:
         write_parquet(step_batches(record), place / "steps.parquet")

@@ -6,8 +6,10 @@
   const times = decode(data.times, Float64Array), clearances = decode(data.clearances, Float64Array);
   const n = times.length, byId = (id) => document.getElementById(id);
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const colours = data.statuses.map((status) => css(`--${status}`));
-  let frame = 0, playing = null, replay = null;
+  const dark = matchMedia("(prefers-color-scheme: dark)");
+  const palette = () => data.statuses.map((status) => css(`--${status}`));
+  let colours = palette();
+  let frame = 0, playing = null, replay = null, chosen = null; // chosen: the place of a pair in data.pairs
 
   // Rounded down, as in the tables: what is shown is never more than what was measured.
   function mm(metres) {
@@ -21,7 +23,9 @@
 
   const measured = (i) => `${data.known[i] ? "" : "at least "}${mm(clearances[i])} mm`;
   const between = (i) => !data.known[i] ? "not measured further" : data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
-  const word = (i) => ({clear: "clear", near: "near miss", violated: "violated", contact: "contact"})[data.statuses[data.status[i]]];
+  const wordOf = (code) => ({clear: "clear", near: "near miss", violated: "violated", contact: "contact"})[data.statuses[code]];
+  const word = (i) => wordOf(data.status[i]);
+  const nameOf = (pair) => pair.bodies.map((k) => data.bodies[k].name).join(" – ");
 
   function frameOfStep(step) {
     let low = 0, high = n - 1;
@@ -43,20 +47,32 @@
     return data.between[i] ? `between the steps ${shown(step)} and ${shown(step + 1)}` : `step ${shown(step)}`;
   };
 
+  const statusOf = (clearance) => {
+    const {fail, warn} = data.limits;
+    return clearance <= 0 ? 3 : clearance < fail ? 2 : clearance < warn ? 1 : 0;
+  };
+
+  // What is shown at this frame: the nearest pair, or the chosen one at the step where it comes closest.
+  function told() {
+    const pair = chosen === null ? null : data.pairs[chosen];
+    if (pair === null || frame !== frameOfStep(pair.step)) return null;
+    return {...pair, status: statusOf(pair.clearance)};
+  }
+
   function showFrame(i) {
     frame = Math.max(0, Math.min(n - 1, i));
     byId("scrub").value = frame;
     byId("scrub").setAttribute("aria-valuetext", `${times[frame].toFixed(3)} s, ${measured(frame)}`);
     byId("readout").textContent = "";
-    const strong = document.createElement("strong");
-    strong.textContent = measured(frame);
-    strong.style.color = colours[data.status[frame]];
-    byId("readout").append(strong, ` ${word(frame)}`, document.createElement("br"), between(frame),
-      document.createElement("br"), `${times[frame].toFixed(3)} s, ${stepText(frame)}`);
+    const pair = told(), strong = document.createElement("strong");
+    strong.textContent = pair ? `${mm(pair.clearance)} mm` : measured(frame);
+    strong.style.color = colours[pair ? pair.status : data.status[frame]];
+    byId("readout").append(strong, ` ${pair ? wordOf(pair.status) : word(frame)}`, document.createElement("br"),
+      pair ? nameOf(pair) : between(frame), document.createElement("br"), `${times[frame].toFixed(3)} s, ${stepText(frame)}`);
     for (const contact of data.contacts) if (contact.frame === frame) {
       byId("readout").append(document.createElement("br"), contact.text);
     }
-    if (replay) replay.show(frame);
+    if (replay) replay.show(frame, pair);
     moveCursor();
   }
 
@@ -80,7 +96,7 @@
       x: Array.from(times), y: Array.from(clearances, toPlot), mode: "lines", line: {width: 0}, opacity: 0, cliponaxis: false,
       text: Array.from(times, (t, i) =>
         `<b>${measured(i)}</b> ${word(i)}<br>${between(i).replace(/</g, "&lt;")}<br>${t.toFixed(3)} s, ${stepText(i)}`),
-      hovertemplate: "%{text}<extra></extra>", hoverlabel: {bgcolor: "#ffffff", bordercolor: css("--rule"), font: {color: css("--ink")}, align: "left"},
+      hovertemplate: "%{text}<extra></extra>", hoverlabel: {bgcolor: css("--card"), bordercolor: css("--rule"), font: {color: css("--ink")}, align: "left"},
     };
   }
 
@@ -88,8 +104,33 @@
     const i = data.worst;
     return {
       x: [times[i]], y: [toPlot(clearances[i])], mode: "markers", hoverinfo: "skip", cliponaxis: false,
-      marker: {size: 9, color: colours[data.status[i]], line: {color: "#ffffff", width: 1}},
+      marker: {size: 9, color: colours[data.status[i]], line: {color: css("--card"), width: 1}},
     };
+  }
+
+  // The chosen pair's own curve, where every pair was measured at every step, and its least clearance.
+  function pairTraces() {
+    if (chosen === null) return [];
+    const pair = data.pairs[chosen], colour = css("--accent");
+    const traces = [{
+      x: [pair.time], y: [toPlot(pair.clearance)], mode: "markers", hoverinfo: "skip", cliponaxis: false,
+      marker: {size: 9, symbol: "diamond", color: colour, line: {color: css("--card"), width: 1}},
+    }];
+    if (!data.curves) return traces;
+    const x = decode(data.curves.times, Float64Array), y = decode(data.curves.clearances[chosen], Float32Array);
+    const line = {x: Array.from(x), y: Array.from(y, toPlot), mode: "lines", line: {color: colour, width: 1.4}, hoverinfo: "skip"};
+    return [line, ...traces];
+  }
+
+  function choose(place) {
+    if (place === chosen) return;
+    for (const cell of document.querySelectorAll("[data-pair]")) {
+      cell.classList.toggle("chosen", Number(cell.dataset.pair) === place && place !== null);
+    }
+    chosen = place;
+    byId("pair-name").textContent = place === null ? "" : nameOf(data.pairs[place]);
+    byId("pair-clear").hidden = place === null;
+    redraw();
   }
 
   function band([start, end], colour) {
@@ -101,8 +142,11 @@
     return {type: "line", xref: "paper", x0: 0, x1: 1, y0: toPlot(metres), y1: toPlot(metres), line: {color: colour, width: 1.2, dash: "4px,3px"}};
   }
 
+  // Labels stand beside their lines, or above and below where the lines are too near for both.
   function limitLabel(name, metres, colour) {
-    return {xref: "paper", x: 1, xanchor: "left", xshift: 4, y: toPlot(metres), yanchor: name === "warn" ? "bottom" : "top", yshift: name === "warn" ? -9 : 9, showarrow: false,
+    const {fail, warn} = data.limits, pixels = Math.max(100, curve.clientHeight - 54) / (zoomed() ? near : greatest);
+    const close = fail > 0 && toPlot(warn - fail) * pixels < 14, up = name === "warn";
+    return {xref: "paper", x: 1, xanchor: "left", xshift: 4, y: toPlot(metres), yanchor: close ? (up ? "bottom" : "top") : "middle", yshift: 0, showarrow: false,
       text: limitText(name, metres), font: {color: colour, size: 11}};
   }
 
@@ -130,20 +174,28 @@
   const greatest = toPlot(Math.max(...clearances, data.limits.warn)) * 1.06;
   const near = Math.min(greatest, 2.5 * toPlot(Math.max(data.limits.warn, data.limits.fail, Math.min(...clearances))));
 
-  function drawCurve() {
+  function plotted() {
     const axis = {gridcolor: css("--grid"), zerolinecolor: css("--rule"), linecolor: css("--rule"), ticks: "outside", tickcolor: css("--rule"), fixedrange: false};
-    const traces = [hoverTrace(), ...data.statuses.map((_, code) => statusTrace(code)), worstTrace()];
-    const layout = {
+    const highest = Math.max(greatest, ...pairTraces().flatMap((trace) => trace.y.map((y) => 1.06 * y)));
+    return {
       margin: {l: 58, r: roomForLimits(), t: 8, b: 46}, showlegend: false, hovermode: "x", hoverdistance: -1, dragmode: "zoom",
       font: {family: getComputedStyle(document.body).fontFamily, size: 12, color: css("--soft")},
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
       xaxis: {...axis, title: {text: "time, s", standoff: 6}, range: [times[0], n > 1 ? times[n - 1] : times[0] + 1]},
-      yaxis: {...axis, title: {text: "clearance, mm", standoff: 8}, range: [0, greatest]},
+      yaxis: {...axis, title: {text: "clearance, mm", standoff: 8}, range: [0, zoomed() ? near : highest]},
       shapes: [...data.intervals.below_warn.map((range) => band(range, css("--near"))),
         ...data.intervals.below_fail.map((range) => band(range, css("--violated"))),
         ...shownLimits().map(([, limit, colour]) => limitLine(limit, colour))],
       annotations: shownLimits().map(([name, limit, colour]) => limitLabel(name, limit, colour)),
     };
+  }
+
+  const zoomed = () => byId("zoom-limits").getAttribute("aria-pressed") === "true";
+  const allTraces = () => [hoverTrace(), ...data.statuses.map((_, code) => statusTrace(code)), worstTrace(), ...pairTraces()];
+  const redraw = () => Plotly.react(curve, allTraces(), plotted());
+
+  function drawCurve() {
+    const traces = allTraces(), layout = plotted();
     Plotly.newPlot(curve, traces, layout, {responsive: true, displaylogo: false, displayModeBar: false, doubleClick: "reset"});
     new ResizeObserver(() => { if (curve.clientHeight > 0) Plotly.Plots.resize(curve); }).observe(curve); // hidden in print
     const cursor = document.createElement("div");
@@ -151,8 +203,15 @@
     curve.append(cursor);
     curve.on("plotly_click", (event) => { pause(); showFrame(event.points[0].pointIndex); });
     curve.on("plotly_afterplot", moveCursor);
-    Plotly.toImage({data: traces, layout: {...layout, paper_bgcolor: "#ffffff"}}, {format: "svg", width: 860, height: 330})
+    Plotly.toImage({data: traces, layout: onPaper(layout)}, {format: "svg", width: 860, height: 330})
       .then((image) => { byId("curve-still").src = image; });
+  }
+
+  // As it prints: dark lines on white, whatever the screen's theme.
+  function onPaper(layout) {
+    const axis = {gridcolor: "#eceeec", zerolinecolor: "#d9dcd8", linecolor: "#d9dcd8", tickcolor: "#d9dcd8"};
+    return {...layout, paper_bgcolor: "#ffffff", font: {...layout.font, color: "#4a5664"},
+      xaxis: {...layout.xaxis, ...axis}, yaxis: {...layout.yaxis, ...axis}};
   }
 
   function moveCursor() {
@@ -193,7 +252,8 @@
     if (!target) return;
     event.preventDefault();
     pause();
-    const {step, time} = target.dataset;
+    const {step, time, pair} = target.dataset;
+    choose(pair === undefined ? null : Number(pair));
     showFrame(time === undefined ? frameOfStep(Number(step)) : frameOfTime(Number(time)));
     byId("stage").scrollIntoView({behavior: matchMedia("(prefers-reduced-motion: reduce)").matches ? "auto" : "smooth"});
   }
@@ -202,21 +262,23 @@
     byId("scrub").max = n - 1;
     byId("scrub").addEventListener("input", (event) => { pause(); showFrame(Number(event.target.value)); });
     byId("play").addEventListener("click", () => (playing === null ? play() : pause()));
-    byId("worst-step").addEventListener("click", () => { pause(); showFrame(data.worst); });
+    byId("worst-step").addEventListener("click", () => { pause(); choose(null); showFrame(data.worst); });
     byId("camera-gap").addEventListener("click", () => replay && replay.atGap());
     byId("camera-all").addEventListener("click", () => replay && replay.overview());
     byId("zoom-limits").addEventListener("click", (event) => {
       const on = event.target.getAttribute("aria-pressed") !== "true";
       event.target.setAttribute("aria-pressed", on);
-      Plotly.relayout(curve, {"yaxis.range": [0, on ? near : greatest]});
+      redraw();
     });
+    byId("pair-clear").addEventListener("click", () => { choose(null); showFrame(frame); });
+    dark.addEventListener("change", () => { colours = palette(); redraw(); showFrame(frame); });
     document.addEventListener("click", follow);
     document.addEventListener("keydown", follow);
   }
 
   function startReplay() {
     try {
-      replay = new Replay(byId("pane"), data);
+      replay = new Replay(byId("pane"), data, colours, dark.matches ? "dark" : "light");
     } catch (error) {
       byId("pane").textContent = "This browser cannot draw in 3-D (WebGL); every figure on this page stands without it.";
       byId("pane").classList.add("missing");

@@ -21,6 +21,7 @@ import numpy as np
 
 from clearance.errors import Unavailable
 from clearance.report.markup import element
+from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import badge_text, header, sections
 from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
@@ -33,12 +34,16 @@ FINEST = 2000
 
 
 def page_of(
-    summary: dict[str, Any], replay: Replay, pictures: dict[str, str] | None = None
+    summary: dict[str, Any],
+    replay: Replay,
+    pictures: dict[str, str] | None = None,
+    curves: PairCurves | None = None,
 ) -> str:
     """The whole page.
 
     Args:
         pictures: SVG of each profile by its name.
+        curves: each pair's own, if every pair was measured at every step.
 
     Raises:
         Unavailable: meshcat is installed without its viewer.
@@ -51,7 +56,7 @@ def page_of(
         stage_note=_stage_note(replay),
         sections=sections(summary, pictures or {}),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
-        data=_json_inside_script(_data(summary, replay)),
+        data=_json_inside_script(_data(summary, replay) | _pairs(summary, replay, curves)),
         plotly=_inside_script(_plotly()),
         meshcat=_inside_script(_meshcat()),
         replay_script=_inside_script(_own("replay.js")),
@@ -104,6 +109,27 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
     }
 
 
+def _pairs(
+    summary: dict[str, Any], replay: Replay, curves: PairCurves | None
+) -> dict[str, Any]:
+    """The least clearance of each pair with its line, and its curve if there is one."""
+    index = {(body.kind, body.name): i for i, body in enumerate(replay.bodies)}
+    pairs = [
+        {
+            "bodies": [index["link", pair["link"]], index["obstacle", pair["obstacle"]]],
+            "step": pair["step"],
+            "time": pair["time"],
+            "clearance": pair["clearance"],
+            "line": [*pair["point_link"], *pair["point_obstacle"]],
+        }
+        for pair in summary["pairs"]
+    ]
+    if curves is None:
+        return {"pairs": pairs, "curves": None}
+    rows = [_floats(row, "<f4") for row in curves.clearances]
+    return {"pairs": pairs, "curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
+
+
 def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:
     """Start and end [s] of each interval; those that no screen can tell apart are one."""
     bands: list[list[float]] = []
@@ -116,11 +142,12 @@ def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:
 
 
 def _stage_note(replay: Replay) -> str:
-    if len(replay.steps) == replay.n_steps:
+    n_drawn = int((replay.between == 0).sum())
+    if n_drawn == replay.n_steps:
         return ""
     return element(
         "p",
-        f"Drawn are {len(replay.steps):,} of {count(replay.n_steps, 'step')}, chosen so that the "
+        f"Drawn are {n_drawn:,} of {count(replay.n_steps, 'step')}, chosen so that the "
         "least clearance of every stretch is kept; all steps are in steps.csv and steps.parquet.",
         class_="faint",
     )

@@ -2,9 +2,9 @@
 // It knows frames, not times; page.js decides which frame is shown.
 "use strict";
 
-const STATUS_COLOURS = {clear: 0x2b7a4b, near: 0xc77d0a, violated: 0xc0281c, contact: 0x8a0f45};
 const LINK = 0x5c7390, LINK_IDLE = 0xa9b4c0, OBSTACLE = 0xb9b4a8;
 const LINE_PIXELS = 2.4, DOT_PIXELS = 4;
+const EDGE = {light: 0x1c2530, dark: 0xd8e0e8}, GRID = {light: [0xd3d8dc, 0xe3e7ea], dark: [0x3a444f, 0x2b333c]};
 const REGION = 0xe01010, WAY_OUT = 0x4a0008, ARROW_PIXELS = 78;
 
 function decode(text, Kind) {
@@ -13,8 +13,11 @@ function decode(text, Kind) {
 }
 
 class Replay {
-  constructor(pane, data) {
+  // colours: of each status, as CSS; theme: "light" or "dark".
+  constructor(pane, data, colours, theme) {
     this.data = data;
+    this.colours = colours;
+    this.theme = theme;
     this.pane = pane;
     this.three = MeshCat.THREE;
     this.viewer = new MeshCat.Viewer(pane);
@@ -50,7 +53,7 @@ class Replay {
       color: colour, flatShading: true, side: this.three.DoubleSide, transparent: !solid, opacity: solid ? 1 : 0.5,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
-    const edges = new this.three.LineBasicMaterial({color: 0x1c2530, transparent: true, opacity: solid ? 0.35 : 0.28});
+    const edges = new this.three.LineBasicMaterial({color: EDGE[this.theme], transparent: true, opacity: solid ? 0.35 : 0.28});
     const shape = this.geometries[body.shape];
     this.viewer.set_object(path.concat("surface"), new this.three.Mesh(shape.surface, surface));
     this.viewer.set_object(path.concat("edges"), new this.three.LineSegments(shape.edges, edges));
@@ -133,19 +136,21 @@ class Replay {
     body.node.quaternion.set(pose[3], pose[4], pose[5], pose[6]);
   }
 
-  show(frame) {
-    const {data, lines} = this;
+  // Of the nearest pair, or of the one that is chosen: its line (6 numbers), its bodies and its status.
+  show(frame, chosen = null) {
+    const {data} = this;
     this.frame = frame;
-    const status = data.statuses[data.status[frame]];
-    const colour = new this.three.Color(STATUS_COLOURS[status]);
+    this.nearest = chosen ? chosen.bodies : data.nearest[frame];
+    this.ends = chosen ? chosen.line : this.lines.subarray(6 * frame, 6 * frame + 6);
+    const colour = new this.three.Color(this.colours[chosen ? chosen.status : data.status[frame]]);
     this.bodies.forEach((body, i) => {
       if (body.poses.length > 7) this.place(body, frame);
       body.surface.color.set(body.colour);
-      if (data.nearest[frame].includes(i)) body.surface.color.lerp(colour, 0.55);
+      if (this.nearest.includes(i)) body.surface.color.lerp(colour, 0.55);
     });
     this.material.color.copy(colour);
     for (const contact of this.contacts) for (const part of contact.parts) part.visible = contact.frame === frame;
-    const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(lines, 6 * frame + at));
+    const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(this.ends, at));
     this.dots.forEach((dot, i) => dot.position.copy(ends[i]));
     const along = ends[1].clone().sub(ends[0]);
     const length = along.length();
@@ -169,6 +174,7 @@ class Replay {
     return {
       frame: this.frame,
       step: this.data.steps[this.frame],
+      nearest: this.nearest.map((i) => i < 0 ? null : this.data.bodies[i].name),
       line: this.line.visible ? [-0.5, 0.5].map((z) => world(this.line, z).toArray()) : null,
       dots: this.dots.map((dot) => world(dot, 0).toArray()),
       contacts: this.contacts.filter((contact) => contact.region.visible).map((contact) => ({
@@ -210,7 +216,7 @@ class Replay {
   floor() {
     const spacing = 10 ** Math.round(Math.log10(this.size / 12));
     const cells = 2 * Math.ceil(0.9 * this.size / spacing);
-    const grid = new this.three.GridHelper(cells * spacing, cells, 0xd3d8dc, 0xe3e7ea);
+    const grid = new this.three.GridHelper(cells * spacing, cells, ...GRID[this.theme]);
     grid.rotateX(Math.PI / 2);
     const centre = this.box.getCenter(new this.three.Vector3());
     grid.position.set(Math.round(centre.x / spacing) * spacing, Math.round(centre.y / spacing) * spacing, Math.min(0, this.box.min.z));
@@ -224,18 +230,17 @@ class Replay {
   }
 
   atGap() {
-    const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(this.lines, 6 * this.frame + at));
+    const ends = [0, 3].map((at) => new this.three.Vector3().fromArray(this.ends, at));
     this.look(ends[0].clone().add(ends[1]).multiplyScalar(0.5), Math.max(6 * ends[0].distanceTo(ends[1]), this.size / 12));
   }
 
   // From whichever side shows the line, or in contact the way out, least hidden and most from its side.
   look(target, distance) {
-    const line = new this.three.Vector3().fromArray(this.lines, 6 * this.frame + 3)
-      .sub(new this.three.Vector3().fromArray(this.lines, 6 * this.frame)).normalize();
+    const line = new this.three.Vector3().fromArray(this.ends, 3).sub(new this.three.Vector3().fromArray(this.ends)).normalize();
     const contact = this.data.contacts.find((one) => one.frame === this.frame);
     if (contact) line.set(...contact.direction);
-    const middle = new this.three.Vector3().fromArray(this.lines, 6 * this.frame)
-      .add(new this.three.Vector3().fromArray(this.lines, 6 * this.frame + 3)).multiplyScalar(0.5);
+    const middle = new this.three.Vector3().fromArray(this.ends)
+      .add(new this.three.Vector3().fromArray(this.ends, 3)).multiplyScalar(0.5);
     let best = null;
     for (let k = 0; k < 16; k++) {
       const turn = (k + 0.5) * Math.PI / 8, lift = 0.42;
@@ -260,7 +265,7 @@ class Replay {
     const ray = new this.three.Ray(point, eye.clone().sub(point).normalize());
     const span = eye.distanceTo(point);
     return this.bodies.filter((body, i) => {
-      if (this.data.nearest[this.frame].includes(i)) return false;
+      if (this.nearest.includes(i)) return false;
       body.node.updateMatrix();
       const hit = ray.intersectBox(body.bounds.clone().applyMatrix4(body.node.matrix), new this.three.Vector3());
       return hit !== null && hit.distanceTo(point) < span;

@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from clearance.report.background import certainty, loaded, provenance, unmeasured
+from clearance.report.background import certainty, loaded, provenance, sign_off, unmeasured
 from clearance.report.contact import contacts
 from clearance.report.markup import (
     Html,
     element,
-    scrolling,
+    moment_link,
     section,
     step_link,
     table,
-    time_link,
 )
 from clearance.report.profiles import profiles
 from clearance.report.verdict import verdict_text
@@ -50,6 +49,8 @@ def header(summary: dict[str, Any]) -> Html:
         ("Measured", f"{_extent(summary)}, {summary['motion']} motion"),
         ("Cross-check", _cross_check_word(summary["cross_check"])),
     ]
+    signed = summary["sign_off"] or {}
+    facts += [(name.capitalize(), value) for name, value in signed.items() if value]
     items = [element("div", element("dt", name), element("dd", value)) for name, value in facts]
     title = element(
         "div", element("p", "Clearance report", class_="kicker"), element("h1", summary["name"])
@@ -75,8 +76,11 @@ def _badge_class(summary: dict[str, Any]) -> str:
 
 def _beside(summary: dict[str, Any]) -> Html:
     """What a reader must know beside the clearance, right below the verdict."""
-    rows = [element("li", f"Suspect {one['kind']}: {one['text']}") for one in summary["suspects"]]
-    rows += [element("li", f"Warning: {text}") for text in summary["warnings"]]
+    rows = [
+        element("li", f"Suspect {one['kind']}: {one['text']}", class_="text-suspect")
+        for one in summary["suspects"]
+    ]
+    rows += [element("li", f"Warning: {text}", class_="text-near") for text in summary["warnings"]]
     rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]
     return element("ul", *rows, class_="beside") if rows else Html("")
 
@@ -131,6 +135,7 @@ def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
                 unmeasured(summary),
                 loaded(summary),
                 provenance(summary),
+                sign_off(summary["sign_off"]),
             ]
         )
     )
@@ -165,7 +170,7 @@ def worst_moment(summary: dict[str, Any]) -> Html:
         element(
             "p",
             f"{mm(worst['clearance'])} mm between {worst['link']} and {worst['obstacle']} at ",
-            time_link(worst["time"], moment_of(worst)),
+            moment_link(worst, moment_of(worst)),
             ".",
         ),
         *_worst_sample(summary),
@@ -223,7 +228,7 @@ def events(summary: dict[str, Any]) -> Html:
         told.append("A step with + is the one before a moment between two steps.")
     notes = [element("p", text, class_="faint") for text in told]
     heads = (">Time", ">Step", "What", ">mm", ">Least, mm", "Between")
-    return section("Events", scrolling(table(heads, rows, class_="clickable")), *notes)
+    return section("Events", table(heads, rows, class_="clickable"), *notes)
 
 
 def _event_cells(event: dict[str, Any]) -> tuple[Html, Html, Html]:
@@ -236,11 +241,14 @@ def _event_cells(event: dict[str, Any]) -> tuple[Html, Html, Html]:
     return now, until, element("td", who)
 
 
+_PAIR_SHOWN = {True: "its own curve", False: "its place beside the curve"}
+
+
 def matrix(summary: dict[str, Any]) -> Html:
     """Least clearance of each link and obstacle in mm, coloured by the limits; nothing if not asked for."""
     if not summary["pairs"]:
         return Html("")
-    cells = {(pair["link"], pair["obstacle"]): pair for pair in summary["pairs"]}
+    cells = {(pair["link"], pair["obstacle"]): (i, pair) for i, pair in enumerate(summary["pairs"])}
     links = [body["name"] for robot in summary["robots"] for body in robot["links"]]
     links = [name for name in dict.fromkeys(links) if any(name == link for link, _ in cells)]
     obstacles = [body["name"] for body in summary["obstacles"]]
@@ -248,7 +256,7 @@ def matrix(summary: dict[str, Any]) -> Html:
     head = element(
         "tr",
         element("td", ""),
-        *[element("th", element("span", name), scope="col") for name in obstacles],
+        *[element("th", element("span", name), scope="col", title=name) for name in obstacles],
     )
     rows = [
         element(
@@ -261,19 +269,21 @@ def matrix(summary: dict[str, Any]) -> Html:
     body = element("table", element("thead", head), element("tbody", *rows), class_="matrix")
     return section(
         "Least clearance of every pair, mm",
-        element("div", body, class_="scroll"),
+        element("div", body, class_="scroll tall"),
         element(
             "p",
-            "Rounded down. A click moves the replay to the step where that pair comes closest; "
+            "At the steps, rounded down. A click moves the replay to the step where that pair comes "
+            f"closest, with its line and {_PAIR_SHOWN[summary['need'] == 'pairs']}; "
             "\N{EN DASH} marks a pair that was not measured.",
             class_="faint",
         ),
     )
 
 
-def _matrix_cell(pair: dict[str, Any] | None, limits: dict[str, float]) -> Html:
-    if pair is None:
+def _matrix_cell(found: tuple[int, dict[str, Any]] | None, limits: dict[str, float]) -> Html:
+    if found is None:
         return element("td", "\N{EN DASH}", class_="none")
+    place, pair = found
     title = (
         f"{pair['link']} - {pair['obstacle']}: {mm(pair['clearance'])} mm, step {pair['step']}, "
         f"{seconds(pair['time'])}"
@@ -283,6 +293,7 @@ def _matrix_cell(pair: dict[str, Any] | None, limits: dict[str, float]) -> Html:
         mm(pair["clearance"]),
         class_=f"cell {_shade(pair['clearance'], limits)}",
         data_step=pair["step"],
+        data_pair=place,
         tabindex=0,
         title=title,
     )

@@ -60,6 +60,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "tessellation_bound": tessellation_bound(record),
         "profiles": [_profile(answer) for answer in record.profiles],
         "tally": dict(record.tally),
+        "sign_off": None if case.sign_off is None else asdict(case.sign_off),
         "notes": notes_of(record),
         "inputs": inputs(case),
         "versions": versions(),

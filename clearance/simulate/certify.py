@@ -237,7 +237,7 @@ def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, Chain, Asked]:
     links = [robot.link_names.index(robot.bodies[pair.i_body].name) for pair in pairs]
     return (
         _with_whole_faces(layout.surface),
-        Chain(np.ascontiguousarray(placed.world_from_base, dtype=np.float64), *chain_arrays(robot)),
+        Chain(_writable(placed.world_from_base), *chain_arrays(robot)),
         Asked(layout.world.pairs, np.array(links, dtype=np.int64), layout.world.standing),
     )
 
@@ -261,4 +261,9 @@ def _joint_path(motion: Motion, steps: slice) -> JointPath:
     velocities = np.empty((0, positions.shape[1]))
     if motion.velocities is not None:
         velocities = velocities_by_link(robot, motion.velocities[steps])
-    return JointPath(np.ascontiguousarray(motion.times[steps], dtype=np.float64), positions, velocities)
+    return JointPath(_writable(motion.times[steps]), _writable(positions), _writable(velocities))
+
+
+def _writable(numbers: np.ndarray) -> np.ndarray:
+    """As the kernel takes them: it is compiled once, for arrays that could be written to."""
+    return np.require(numbers, np.float64, ["C", "W"])

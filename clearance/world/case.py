@@ -140,6 +140,14 @@ class ReservedSpace:
     links: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True)
+class SignOff:
+    """Who answers for a case, in which revision, for the report; empty where that is not given."""
+
+    author: str = ""
+    revision: str = ""
+
+
 @dataclass(frozen=True, eq=False)
 class Case:
     """Robots, obstacles, trajectories, limits.
@@ -154,6 +162,7 @@ class Case:
         notices: suspect input and warnings that only loading can tell; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
         profiles: outlines that the sweep must keep to.
+        sign_off: for the report; None where it has no such fields.
     """
 
     name: str
@@ -167,6 +176,7 @@ class Case:
     profiles: tuple[ReservedSpace, ...] = ()
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
+    sign_off: SignOff | None = None
 
     def with_trajectory(
         self,

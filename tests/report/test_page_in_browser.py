@@ -6,9 +6,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.report import write
 from clearance.report.wording import mm
-from clearance.world.case import Limits
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, Limits, PlacedRobot, SignOff
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+from tests.made_cases import at
 from tests.report.browser import Page, chromium, executable
 from tests.report.records import record
 
@@ -156,6 +161,28 @@ def test_it_prints_with_a_still_of_the_worst_moment(page):
         page.call("Emulation.setEmulatedMedia", media="")
 
 
+def click_pair(page: Page, place: int) -> None:
+    """Clicks the cell of the matrix that stands for the pair of that place among the minima."""
+    page.run(f"document.querySelector(`[data-pair='{place}']`).click()")
+    page.settle()
+
+
+def test_a_clicked_pair_has_its_own_line_and_its_place_on_the_curve(page):
+    pair = max(RUN.pair_minima, key=lambda minimum: minimum.clearance)
+    place = list(RUN.pair_minima).index(pair)
+    click_pair(page, place)
+    state = page.run("window.clearance.state()")
+    assert (state["step"], state["nearest"]) == (pair.step, [pair.link, pair.obstacle])
+    assert np.abs(np.subtract(state["dots"], [pair.point_link, pair.point_obstacle])).max() < 1e-9
+    assert mm(pair.clearance) in page.run("document.getElementById('readout').textContent")
+    mark = page.run("document.getElementById('curve').data.at(-1)")
+    assert (mark["x"], mark["y"]) == ([pair.time], [pytest.approx(pair.clearance * 1000.0)])
+    page.run("document.getElementById('pair-clear').click()")
+    page.settle()
+    assert page.run("window.clearance.state().nearest")[0] == row(pair.step)["link"]
+    assert page.run("document.querySelectorAll('.chosen').length") == 0
+
+
 def test_no_error_came_up_in_all_this(page):
     assert page.errors == []
 
@@ -169,3 +196,89 @@ def test_a_page_without_webgl_says_so_and_keeps_its_tables(tmp_path):
         assert "cannot draw in 3-D" in page.run("document.getElementById('pane').textContent")
         assert page.run("window.clearance.state().step") == 0
         assert page.run("document.querySelectorAll('.cell').length") == 9
+
+
+@pytest.fixture(scope="module")
+def crowded(tmp_path_factory) -> Page:
+    """43 links among 60 obstacles, every pair at every step, with a moment between two steps; and its run."""
+    run = cl.check(hand_among_boxes(), need="pairs")
+    folder = tmp_path_factory.mktemp("crowded") / "out"
+    run.save(folder)
+    with chromium() as page:
+        page.run_of = run
+        page.report = (folder / "report.html").as_uri()
+        yield page
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("width", [420, 800, 1400, 2000])
+def test_nothing_is_clipped_and_wide_tables_scroll_in_their_own_box(crowded, width, theme):
+    page = crowded
+    page.call(
+        "Emulation.setEmulatedMedia", media="", features=[{"name": "prefers-color-scheme", "value": theme}]
+    )
+    page.open(page.report, "window.clearance", width=width, height=900)
+    page.settle()
+    assert page.run("document.documentElement.scrollWidth") <= width
+    beyond = page.run(
+        "Array.from(document.querySelectorAll('body *')).filter((e) => !e.closest('.scroll, #pane, #curve')"
+        " && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))"
+    )
+    assert beyond == []
+    box = page.run("(() => { const b = document.querySelector('.matrix').parentElement;"
+                   "return [b.clientHeight, b.scrollHeight, b.clientWidth, b.scrollWidth]; })()")  # fmt: skip
+    assert box[0] <= 900 and box[1] > box[0] and box[3] > box[2]
+    paper = page.run("getComputedStyle(document.body).backgroundColor")
+    light = sum(map(int, paper.strip("rgb()").split(","))) > 384
+    assert light == (theme == "light")
+    assert page.errors == []
+
+
+def test_the_replay_opens_at_the_moment_between_two_steps_with_its_bodies_marked(crowded):
+    page, worst = crowded, crowded.run_of.worst
+    page.open(page.report, "window.clearance", width=1400, height=900)
+    page.settle()
+    assert worst["between"] and worst["clearance"] == 0.0
+    state = page.run("window.clearance.state()")
+    assert (state["step"], state["nearest"]) == (worst["step"], [worst["link"], worst["obstacle"]])
+    text = page.run("document.getElementById('readout').textContent")
+    assert "contact" in text and f"between the steps {worst['step']} and {worst['step'] + 1}" in text
+    dip = page.run("Math.min(...document.getElementById('curve').data[0].y)")
+    assert dip == 0.0
+    page.run("window.clearance.showFrame(0)")
+    page.run("Array.from(document.querySelectorAll('tr[data-time]')).at(-1).click()")
+    assert page.run("window.clearance.state().nearest") == [worst["link"], worst["obstacle"]]
+
+
+def test_a_clicked_pair_shows_its_own_curve_where_every_pair_was_measured(crowded):
+    page, record = crowded, crowded.run_of.record
+    page.open(page.report, "window.clearance", width=1400, height=900)
+    place = 1000
+    click_pair(page, place)
+    drawn = np.array(page.run("document.getElementById('curve').data.at(-2).y")) / 1000.0
+    pair = record.pair_minima[place]
+    named = list(zip(record.every_pair.links, record.every_pair.obstacles, strict=True))
+    truth = record.every_pair.clearance[:, named.index((pair.link, pair.obstacle))]
+    assert (drawn <= truth).all() and np.abs(drawn - truth).max() < 1e-6
+
+
+def hand_among_boxes() -> Case:
+    """A chain of 43 boxes that turns a little; one box flies through an obstacle between steps 3 and 4."""
+    names = ["base", *(f"finger_{i // 3}_phalanx_link_{i}" for i in range(43))]
+    joints = tuple(
+        Joint(f"j{i}", JointKind.REVOLUTE, names[i], names[i + 1], at(x=0.05), np.array([0.0, 0, 1]), -3, 3)
+        for i in range(43)
+    )
+    shape = cl.box((0.04, 0.03, 0.03))
+    robot = Robot("hand", tuple(names), joints, tuple(Body(name, shape) for name in names[1:]))
+    positions = np.zeros((8, 43))
+    positions[:, 0] = [-0.3, -0.25, -0.2, -0.15, 0.15, 0.2, 0.25, 0.3]
+    asked = Trajectory(np.arange(8.0), tuple(joint.name for joint in joints), positions)
+    things = [at(x=-1.0 - 0.2 * (i % 10), y=0.3 * (i // 10), z=0.2) for i in range(59)]
+    poses = [at(x=2.0), *things]
+    obstacles = tuple(
+        Obstacle(Body(f"obstacle_with_a_long_name_{i:02d}", cl.box((0.05, 0.05, 0.05))), pose)
+        for i, pose in enumerate(poses)
+    )
+    placed = PlacedRobot(robot, asked)
+    return Case("a hand of 43 links among 60 things", (placed,), obstacles, sign_off=SignOff("J. Doe", "B"))
