@@ -1,32 +1,38 @@
-"""Mesh files to solids, and the one door to trimesh.
+"""Mesh files to solids, and the one door to trimesh, which writes them.
 
-STL, OBJ and COLLADA have readers of our own beside this file, because trimesh loses or bends
-something in each (NOTES.md); PLY, OFF and GLB are read by trimesh, which is imported only then (0.5
-s). trimesh's `process`, which merges points by a tolerance, is never used. Not for: primitive
-shapes (`geometry.shapes`).
+Every format has a reader of our own beside this file, because the usual ones lose or bend something in
+each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).
 """
 
 from __future__ import annotations
 
-import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadSyntax, EmptyMesh, at
+from clearance.errors import BadSyntax, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.collada_file import UpAxis, read_collada
+from clearance.load.gltf_file import read_glb
 from clearance.load.input_files import read_bytes
 from clearance.load.obj_file import read_obj
+from clearance.load.off_file import read_off
 from clearance.load.placing import Z_FROM_Y_UP
+from clearance.load.ply_file import read_ply
 from clearance.load.stl_file import read_stl
 from clearance.load.triangles import Triangles, checked, n_without_area, scaled
 
-_OWN = {".stl": read_stl, ".obj": read_obj}
-_TRIMESH = (".ply", ".off", ".glb")
+_READERS: dict[str, Callable[[bytes, UpAxis], Triangles]] = {
+    ".stl": lambda data, _: read_stl(data),
+    ".obj": lambda data, _: read_obj(data),
+    ".dae": read_collada,
+    ".ply": lambda data, _: read_ply(data),
+    ".off": lambda data, _: read_off(data),
+    ".glb": lambda data, _: read_glb(data),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,13 +79,9 @@ def mesh_from_bytes(
 def triangles_from_bytes(data: bytes, name: str, up_axis: UpAxis = "file") -> Triangles:
     """The triangles of a mesh file as they are in it, before anything is mended."""
     suffix = Path(name).suffix.lower()
-    if suffix == ".dae":
-        return checked(read_collada(data, up_axis))
-    if suffix in _OWN:
-        return checked(_OWN[suffix](data))
-    if suffix in _TRIMESH:
-        return checked(_by_trimesh(data, suffix))
-    raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join([*_OWN, ".dae", *_TRIMESH]))
+    if suffix not in _READERS:
+        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS))
+    return checked(_READERS[suffix](data, up_axis))
 
 
 def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
@@ -90,34 +92,15 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
     return trimesh.Trimesh(turned, triangles, process=False).export(file_type=kind)
 
 
-def _by_trimesh(data: bytes, suffix: str) -> Triangles:
-    import trimesh
-
-    try:
-        scene = trimesh.load_scene(io.BytesIO(data), file_type=suffix[1:], process=False)
-        pieces = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh)]
-    except Exception as error:  # trimesh raises whatever its parsing hits
-        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        raise BadSyntax(
-            f"not a {suffix[1:].upper()} file that can be read: {reason:.200}"
-        ) from None
-    if not pieces:
-        raise EmptyMesh("the mesh has no faces", valid="at least one triangle is needed")
-    starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
-    vertices = np.concatenate([piece.vertices for piece in pieces])
-    corners = np.concatenate([p.faces + s for p, s in zip(pieces, starts, strict=False)])
-    if suffix != ".glb":
-        return Triangles(vertices, corners)
-    return Triangles(vertices @ Z_FROM_Y_UP.T, corners, ("turned from y up to z up, as glTF says",))
-
-
 def _solid(triangles: Triangles) -> LoadedMesh:
     given = Polyhedron.from_triangles(triangles.vertices, triangles.corners)
     shape = given.outward()
     notes = [*triangles.notes, *_notes_on_flat(n_without_area(triangles), shape)]
     if shape is not given:
         notes.append("closed surfaces that were inside out are turned round")
-    return LoadedMesh(shape, len(triangles.corners), (*notes, *_notes_on_sides(shape.component_two_sided)))
+    return LoadedMesh(
+        shape, len(triangles.corners), (*notes, *_notes_on_sides(shape.component_two_sided))
+    )
 
 
 def _notes_on_sides(two_sided: np.ndarray) -> list[str]:
@@ -125,7 +108,9 @@ def _notes_on_sides(two_sided: np.ndarray) -> list[str]:
     if not n_two_sided:
         return []
     which = "it holds" if n_two_sided == n_parts else f"{n_two_sided} of its {n_parts} parts hold"
-    return [f"{which} each face once for each side: what is wholly inside is not seen to be in contact"]
+    return [
+        f"{which} each face once for each side: what is wholly inside is not seen to be in contact"
+    ]
 
 
 def _notes_on_flat(n_flat: int, shape: Polyhedron) -> list[str]:
