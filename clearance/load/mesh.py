@@ -23,7 +23,7 @@ from clearance.load.off_file import read_off
 from clearance.load.placing import Z_FROM_Y_UP
 from clearance.load.ply_file import read_ply
 from clearance.load.stl_file import read_stl
-from clearance.load.triangles import Triangles, checked, n_without_area, scaled
+from clearance.load.triangles import Triangles, checked, n_without_area, scaled, without_copies
 
 _READERS: dict[str, Callable[[bytes, UpAxis], Triangles]] = {
     ".stl": lambda data, _: read_stl(data),
@@ -33,6 +33,9 @@ _READERS: dict[str, Callable[[bytes, UpAxis], Triangles]] = {
     ".off": lambda data, _: read_off(data),
     ".glb": lambda data, _: read_glb(data),
 }
+
+OPEN = "the surface is open: it has no inside"
+"""The note on a mesh of which no part is closed; the same text for all, so that they can be told in one line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,23 +96,56 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
 
 
 def _solid(triangles: Triangles) -> LoadedMesh:
-    given = Polyhedron.from_triangles(triangles.vertices, triangles.corners)
+    kept, n_copies = without_copies(triangles)
+    given = Polyhedron.from_triangles(kept.vertices, kept.corners)
     shape = given.outward()
-    notes = [*triangles.notes, *_notes_on_flat(n_without_area(triangles), shape)]
-    if shape is not given:
-        notes.append("closed surfaces that were inside out are turned round")
-    return LoadedMesh(
-        shape, len(triangles.corners), (*notes, *_notes_on_sides(shape.component_two_sided))
-    )
+    notes = [
+        *triangles.notes,
+        *_notes_on_copies(n_copies),
+        *_notes_on_flat(n_without_area(kept), shape),
+        *_notes_on_turned(given),
+        *_notes_on_sides(shape.component_two_sided),
+        *_notes_on_open(shape.component_closed),
+    ]
+    return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+
+
+def _notes_on_copies(n_copies: int) -> list[str]:
+    if not n_copies:
+        return []
+    return [
+        f"{_counted(n_copies, 'exact copy of a face is', 'exact copies of faces are')} left out"
+    ]
+
+
+def _notes_on_turned(given: Polyhedron) -> list[str]:
+    n_parts, n_turned = len(given.component_inside_out), int(given.component_inside_out.sum())
+    if not n_turned:
+        return []
+    which = "the closed surface" if n_parts == 1 else f"{n_turned} of its {n_parts} parts"
+    were = "was" if n_turned == 1 else "were"
+    return [f"{which} {were} inside out and {'is' if n_turned == 1 else 'are'} turned round"]
 
 
 def _notes_on_sides(two_sided: np.ndarray) -> list[str]:
     n_parts, n_two_sided = len(two_sided), int(np.count_nonzero(two_sided))
     if not n_two_sided:
         return []
-    which = "it holds" if n_two_sided == n_parts else f"{n_two_sided} of its {n_parts} parts hold"
+    hold = "holds" if n_two_sided == 1 else "hold"
+    which = "it holds" if n_two_sided == n_parts else f"{n_two_sided} of its {n_parts} parts {hold}"
     return [
         f"{which} each face once for each side: what is wholly inside is not seen to be in contact"
+    ]
+
+
+def _notes_on_open(closed: np.ndarray) -> list[str]:
+    n_parts, n_open = len(closed), int(np.count_nonzero(~closed))
+    if not n_open:
+        return []
+    if n_open == n_parts:
+        return [OPEN]
+    return [
+        f"{n_open} of its {n_parts} parts {'is open: it has' if n_open == 1 else 'are open: they have'} no inside"
     ]
 
 
@@ -117,5 +153,13 @@ def _notes_on_flat(n_flat: int, shape: Polyhedron) -> list[str]:
     if not n_flat:
         return []
     n_kept = int(np.count_nonzero(~shape.normals.any(axis=1)))
-    kept = f"; {n_kept} are kept as faces, because nothing else covers them" if n_kept else ""
-    return [f"{n_flat} triangles have no area{kept or ' and are covered by their neighbours'}"]
+    what = f"{_counted(n_flat, 'triangle', 'triangles')} {'has' if n_flat == 1 else 'have'} no area"
+    if not n_kept:
+        covered = "is covered by its" if n_flat == 1 else "are covered by their"
+        return [f"{what} and {covered} neighbours"]
+    kept = "1 is kept as a face" if n_kept == 1 else f"{n_kept} are kept as faces"
+    return [f"{what}; {kept}, because nothing else covers {'it' if n_kept == 1 else 'them'}"]
+
+
+def _counted(n: int, one: str, many: str) -> str:
+    return f"{n} {one if n == 1 else many}"
