@@ -246,7 +246,7 @@ def test_files_are_read_from_disk(tmp_path):
         read_mesh(tmp_path / "folder.stl")
 
 
-def test_fifty_thousand_triangles_load_in_less_than_a_second():
+def test_fifty_thousand_triangles_take_less_than_a_second_of_processor_time():
     n = 159
     heights = np.random.default_rng(3).random((n, n)).astype(np.float32)
     x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
@@ -257,9 +257,9 @@ def test_fifty_thousand_triangles_load_in_less_than_a_second():
     facets["c"] = corners
     data = bytes(80) + struct.pack("<I", len(facets)) + facets.tobytes()
     mesh_from_bytes(cube_stl(), "warm.stl")
-    start = time.perf_counter()
+    start = time.process_time()
     mesh = mesh_from_bytes(data, "land.stl")
-    elapsed = time.perf_counter() - start
+    elapsed = time.process_time() - start
     assert mesh.n_triangles == mesh.shape.n_faces == 49928
     assert len(mesh.shape.vertices) == n * n
     assert elapsed < 1.0
@@ -299,7 +299,8 @@ def test_a_flat_closed_surface_is_not_said_to_be_inside_out(seed):
     turned = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     a, b, c, d = (fan[:4] + 7.0) @ turned
     sides = np.array([[a, b, c], [a, c, d], [a, d, b], [b, d, c]])
-    assert "inside out" not in " ".join(mesh_from_bytes(binary_stl(sides[:, ::-1]), "m.stl").notes)
+    for way in (sides, sides[:, ::-1]):
+        assert "inside out" not in " ".join(mesh_from_bytes(text_stl(way), "m.stl").notes)
 
 
 def test_exact_copies_of_faces_are_left_out_with_a_note():
