@@ -237,12 +237,16 @@ class Polyhedron:
         )
         return float(volumes.sum())
 
+    @cached_property
+    def component_inside_out(self) -> np.ndarray:
+        """(k,) True for the closed components that are inside out; cavities and two-sided ones are not."""
+        component = self.face_component[self.triangle_faces]
+        holds = self.component_closed & ~self.component_two_sided
+        return inside_out_components(self.vertices, self.triangles(), component, holds)
+
     def outward(self) -> Polyhedron:
         """The surface with closed components that are inside out turned round; cavities stay as they are."""
-        component = self.face_component[self.triangle_faces]
-        wrong = inside_out_components(
-            self.vertices, self.triangles(), component, self.component_closed
-        )
+        wrong = self.component_inside_out
         return self._with_reversed(wrong[self.face_component]) if wrong.any() else self
 
     def flipped(self) -> Polyhedron:

@@ -85,7 +85,8 @@ def inside_out_components(
 ) -> np.ndarray:
     """(n_components,) True for closed components that are inside out and not the wall of a cavity.
 
-    A closed component of negative volume is taken for a cavity where another closed component holds it.
+    A closed component of negative volume is taken for a cavity where another closed component holds it, and for a
+    flat one, which holds nothing, where rounding alone explains the volume.
 
     Args:
         vertices: (n, 3) [m]. triangles: (m, 3). component: (m,) of each triangle. closed: (n_components,).
@@ -93,10 +94,19 @@ def inside_out_components(
     volumes = component_volumes(vertices, triangles, component, len(closed))
     wrong = closed & (volumes < 0.0)
     for i in np.flatnonzero(wrong):
+        if -volumes[i] <= _rounding_of_volume(vertices[triangles[component == i]]):
+            wrong[i] = False
+            continue
         point = vertices[triangles[np.argmax(component == i), 0]]
         others = triangles[closed[component] & (component != i)]
         wrong[i] = not len(others) or not _is_inside(point, vertices, others)
     return wrong
+
+
+def _rounding_of_volume(corners: np.ndarray) -> float:
+    """[m^3] what rounding alone can make of the volume of (m, 3, 3) triangles: a flat surface holds no more."""
+    size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
+    return 1e-15 * len(corners) * size**3
 
 
 def _is_inside(point: np.ndarray, vertices: np.ndarray, triangles: np.ndarray) -> bool:

@@ -1,9 +1,9 @@
 """Compiled ear cutting of one polygon in the plane: exact turns, and a grid over what can block an ear.
 
 A corner that turns left is an ear if no corner that does not turn left lies in its triangle (Meisters, Polygons
-have ears, 1975). Where a polygon is simple, corners that turn left keep doing so while ears go, so the grid is made once
-and only loses corners. All triangles turn left or are flat, and their boundaries add up to the polygon's: where it is simple
-they cover exactly it. Not for: which polygons need this (`load.polygon_cut`).
+have ears, 1975). Where a polygon is simple, corners that turn left keep doing so while ears go, so the grid is
+made once and only loses corners. All triangles turn left or are flat, and their boundaries add up to the
+polygon's: where it is simple they cover exactly it. Not for: which polygons need this (`load.polygon_cut`).
 """
 
 from __future__ import annotations
@@ -202,7 +202,7 @@ def _ring_of(points, terms):
 
 @kernel
 def _frame_of(points, turns):
-    """The grid's corner, its cells per length, and how many there are a side: about one for each blocking corner."""
+    """The grid's corner, its cells per length, and how many there are a side: one for each blocking corner."""
     n_side = int(np.sqrt(np.count_nonzero(turns != LEFT))) + 1
     least, per_length = np.empty(2), np.empty(2)
     for axis in range(2):

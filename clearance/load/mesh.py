@@ -1,32 +1,41 @@
-"""Mesh files to solids, and the one door to trimesh.
+"""Mesh files to solids, and the one door to trimesh, which writes them.
 
-STL, OBJ and COLLADA have readers of our own beside this file, because trimesh loses or bends
-something in each (NOTES.md); PLY, OFF and GLB are read by trimesh, which is imported only then (0.5
-s). trimesh's `process`, which merges points by a tolerance, is never used. Not for: primitive
-shapes (`geometry.shapes`).
+Every format has a reader of our own beside this file, because the usual ones lose or bend something in
+each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).
 """
 
 from __future__ import annotations
 
-import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadSyntax, EmptyMesh, at
+from clearance.errors import BadSyntax, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.collada_file import UpAxis, read_collada
+from clearance.load.gltf_file import read_glb
 from clearance.load.input_files import read_bytes
 from clearance.load.obj_file import read_obj
+from clearance.load.off_file import read_off
 from clearance.load.placing import Z_FROM_Y_UP
+from clearance.load.ply_file import read_ply
 from clearance.load.stl_file import read_stl
-from clearance.load.triangles import Triangles, checked, n_without_area, scaled
+from clearance.load.triangles import Triangles, checked, n_without_area, scaled, without_copies
 
-_OWN = {".stl": read_stl, ".obj": read_obj}
-_TRIMESH = (".ply", ".off", ".glb")
+_READERS: dict[str, Callable[[bytes, UpAxis], Triangles]] = {
+    ".stl": lambda data, _: read_stl(data),
+    ".obj": lambda data, _: read_obj(data),
+    ".dae": read_collada,
+    ".ply": lambda data, _: read_ply(data),
+    ".off": lambda data, _: read_off(data),
+    ".glb": lambda data, _: read_glb(data),
+}
+
+OPEN = "the surface is open: it has no inside"
+"""The note on a mesh of which no part is closed; the same text for all, so that they can be told in one line."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,13 +82,9 @@ def mesh_from_bytes(
 def triangles_from_bytes(data: bytes, name: str, up_axis: UpAxis = "file") -> Triangles:
     """The triangles of a mesh file as they are in it, before anything is mended."""
     suffix = Path(name).suffix.lower()
-    if suffix == ".dae":
-        return checked(read_collada(data, up_axis))
-    if suffix in _OWN:
-        return checked(_OWN[suffix](data))
-    if suffix in _TRIMESH:
-        return checked(_by_trimesh(data, suffix))
-    raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join([*_OWN, ".dae", *_TRIMESH]))
+    if suffix not in _READERS:
+        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS))
+    return checked(_READERS[suffix](data, up_axis))
 
 
 def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
@@ -90,47 +95,71 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
     return trimesh.Trimesh(turned, triangles, process=False).export(file_type=kind)
 
 
-def _by_trimesh(data: bytes, suffix: str) -> Triangles:
-    import trimesh
-
-    try:
-        scene = trimesh.load_scene(io.BytesIO(data), file_type=suffix[1:], process=False)
-        pieces = [mesh for mesh in scene.dump() if isinstance(mesh, trimesh.Trimesh)]
-    except Exception as error:  # trimesh raises whatever its parsing hits
-        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        raise BadSyntax(
-            f"not a {suffix[1:].upper()} file that can be read: {reason:.200}"
-        ) from None
-    if not pieces:
-        raise EmptyMesh("the mesh has no faces", valid="at least one triangle is needed")
-    starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
-    vertices = np.concatenate([piece.vertices for piece in pieces])
-    corners = np.concatenate([p.faces + s for p, s in zip(pieces, starts, strict=False)])
-    if suffix != ".glb":
-        return Triangles(vertices, corners)
-    return Triangles(vertices @ Z_FROM_Y_UP.T, corners, ("turned from y up to z up, as glTF says",))
-
-
 def _solid(triangles: Triangles) -> LoadedMesh:
-    given = Polyhedron.from_triangles(triangles.vertices, triangles.corners)
+    kept, n_copies = without_copies(triangles)
+    given = Polyhedron.from_triangles(kept.vertices, kept.corners)
     shape = given.outward()
-    notes = [*triangles.notes, *_notes_on_flat(n_without_area(triangles), shape)]
-    if shape is not given:
-        notes.append("closed surfaces that were inside out are turned round")
-    return LoadedMesh(shape, len(triangles.corners), (*notes, *_notes_on_sides(shape.component_two_sided)))
+    notes = [
+        *triangles.notes,
+        *_notes_on_copies(n_copies),
+        *_notes_on_flat(n_without_area(kept), shape),
+        *_notes_on_turned(given),
+        *_notes_on_sides(shape.component_two_sided),
+        *_notes_on_open(shape.component_closed),
+    ]
+    return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+
+
+def _notes_on_copies(n_copies: int) -> list[str]:
+    if not n_copies:
+        return []
+    return [
+        f"{_counted(n_copies, 'exact copy of a face is', 'exact copies of faces are')} left out"
+    ]
+
+
+def _notes_on_turned(given: Polyhedron) -> list[str]:
+    n_parts, n_turned = len(given.component_inside_out), int(given.component_inside_out.sum())
+    if not n_turned:
+        return []
+    which = "the closed surface" if n_parts == 1 else f"{n_turned} of its {n_parts} parts"
+    were = "was" if n_turned == 1 else "were"
+    return [f"{which} {were} inside out and {'is' if n_turned == 1 else 'are'} turned round"]
 
 
 def _notes_on_sides(two_sided: np.ndarray) -> list[str]:
     n_parts, n_two_sided = len(two_sided), int(np.count_nonzero(two_sided))
     if not n_two_sided:
         return []
-    which = "it holds" if n_two_sided == n_parts else f"{n_two_sided} of its {n_parts} parts hold"
-    return [f"{which} each face once for each side: what is wholly inside is not seen to be in contact"]
+    hold = "holds" if n_two_sided == 1 else "hold"
+    which = "it holds" if n_two_sided == n_parts else f"{n_two_sided} of its {n_parts} parts {hold}"
+    return [
+        f"{which} each face once for each side: what is wholly inside is not seen to be in contact"
+    ]
+
+
+def _notes_on_open(closed: np.ndarray) -> list[str]:
+    n_parts, n_open = len(closed), int(np.count_nonzero(~closed))
+    if not n_open:
+        return []
+    if n_open == n_parts:
+        return [OPEN]
+    return [
+        f"{n_open} of its {n_parts} parts {'is open: it has' if n_open == 1 else 'are open: they have'} no inside"
+    ]
 
 
 def _notes_on_flat(n_flat: int, shape: Polyhedron) -> list[str]:
     if not n_flat:
         return []
     n_kept = int(np.count_nonzero(~shape.normals.any(axis=1)))
-    kept = f"; {n_kept} are kept as faces, because nothing else covers them" if n_kept else ""
-    return [f"{n_flat} triangles have no area{kept or ' and are covered by their neighbours'}"]
+    what = f"{_counted(n_flat, 'triangle', 'triangles')} {'has' if n_flat == 1 else 'have'} no area"
+    if not n_kept:
+        covered = "is covered by its" if n_flat == 1 else "are covered by their"
+        return [f"{what} and {covered} neighbours"]
+    kept = "1 is kept as a face" if n_kept == 1 else f"{n_kept} are kept as faces"
+    return [f"{what}; {kept}, because nothing else covers {'it' if n_kept == 1 else 'them'}"]
+
+
+def _counted(n: int, one: str, many: str) -> str:
+    return f"{n} {one if n == 1 else many}"

@@ -16,7 +16,8 @@ from clearance.errors import BadPolygon
 from clearance.kernels.ears import TOO_MUCH, cut_ears
 
 MOST_WORK = 30_000_000
-"""Corners that cutting the polygons of a piece may look at, some 3 s. A star of 100,000 corners takes 24,000,000."""
+"""Corners that cutting the polygons of a piece may look at: some 3 s. A star of 100,000 corners takes
+24,000,000."""
 
 
 def cut_rings(vertices: np.ndarray, corners: np.ndarray, counts: np.ndarray) -> np.ndarray:

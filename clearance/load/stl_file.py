@@ -12,12 +12,17 @@ import re
 import numpy as np
 
 from clearance.errors import BadSyntax
+from clearance.load.number_text import floats
 from clearance.load.triangles import Triangles
 
 _HEADER_BYTES = 84
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _SOLID_LINE = re.compile(rb"^[ \t]*(end)?solid\b.*$", re.IGNORECASE | re.MULTILINE)
-_LOOP = re.compile(rb"outer\s+loop(.*?)endloop", re.IGNORECASE | re.DOTALL)
+_FACET_WORDS = (
+    b"facet normal 0 0 0 outer loop vertex 0 0 0 vertex 0 0 0 vertex 0 0 0 endloop endfacet".split()
+)
+_KEYWORDS = [i for i, word in enumerate(_FACET_WORDS) if word != b"0"]
+_COORDINATES = [8, 9, 10, 12, 13, 14, 16, 17, 18]
 
 
 def read_stl(data: bytes) -> Triangles:
@@ -45,20 +50,43 @@ def _binary(data: bytes, n_facets: int) -> Triangles:
 
 
 def _text(data: bytes) -> Triangles:
+    data = data.replace(b"\r", b"\n")
     n_solids = len(re.findall(rb"^[ \t]*solid\b", data, re.IGNORECASE | re.MULTILINE))
     if n_solids != len(re.findall(rb"^[ \t]*endsolid\b", data, re.IGNORECASE | re.MULTILINE)):
         raise BadSyntax("the text STL file is cut off", valid="every 'solid' ends with 'endsolid'")
-    body = _SOLID_LINE.sub(b"", data)
-    loops = _LOOP.findall(body)
-    if len(loops) != len(re.findall(rb"\bfacet\s+normal\b", body, re.IGNORECASE)):
-        raise BadSyntax("a facet of the text STL file has no closed outer loop")
-    words = b" ".join(loops).split()
+    words = _SOLID_LINE.sub(b"", data).split()
+    if len(words) % len(_FACET_WORDS):
+        raise _bad_facet(words)
+    rows = [words[i :: len(_FACET_WORDS)] for i in range(len(_FACET_WORDS))]
+    if any(word.lower() != _FACET_WORDS[i] for i in _KEYWORDS for word in rows[i]):
+        raise _bad_facet(words)
     try:
-        if len(words) != 12 * len(loops) or any(w.lower() != b"vertex" for w in words[::4]):
-            raise ValueError
-        rows = np.array(words).reshape(-1, 4)[:, 1:].astype(np.float64)
-    except ValueError:
+        columns = [floats(rows[i]) for i in _COORDINATES]
+    except BadSyntax as error:
         raise BadSyntax(
-            "a facet of the text STL file is not three vertices of three numbers"
+            f"a facet is not three vertices of three numbers: {error.problem}"
         ) from None
-    return Triangles(rows, np.arange(len(rows)).reshape(-1, 3))
+    return Triangles(
+        np.stack(columns, axis=1).reshape(-1, 3), np.arange(3 * len(rows[0])).reshape(-1, 3)
+    )
+
+
+def _bad_facet(words: list[bytes]) -> BadSyntax:
+    """What is wrong with the first facet that is not as facets are."""
+    size = len(_FACET_WORDS)
+    for i in range(0, len(words), size):
+        facet = [word.lower() for word in words[i : i + size]]
+        wrong = [k for k in _KEYWORDS if facet[k : k + 1] != [_FACET_WORDS[k]]]
+        if not wrong:
+            continue
+        given = (
+            facet[wrong[0]].decode("utf-8", errors="replace")
+            if wrong[0] < len(facet)
+            else "nothing"
+        )
+        return BadSyntax(
+            f"facet {i // size} of the text STL file has {given!r:.40} where "
+            f"{_FACET_WORDS[wrong[0]].decode()!r} is due",
+            valid="a normal and a closed outer loop of three vertices of three numbers",
+        )
+    return BadSyntax("the text STL file is no list of facets")

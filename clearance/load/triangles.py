@@ -12,6 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadDimension, BadPolygon, EmptyMesh, NotFinite
+from clearance.geometry.edges import distinct_vertices
+
+
+_ODD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
+"""Factors of a hash: odd, with bits all over."""
 
 
 class Triangles(NamedTuple):
@@ -82,6 +87,35 @@ def scaled(triangles: Triangles, scale: float | Sequence[float]) -> Triangles:
         raise BadDimension(f"scale {factors.tolist()} makes coordinates overflow")
     mirrored = np.count_nonzero(factors < 0) % 2 == 1
     return Triangles(vertices, triangles.corners[:, :: -1 if mirrored else 1], triangles.notes)
+
+
+def without_copies(triangles: Triangles) -> tuple[Triangles, int]:
+    """The triangles without those that come again, same corners, same way round, and how many these are.
+
+    A triangle that is there once for each side is no copy. Equal corners are equal bit for bit.
+    """
+    if not _may_hold_copies(triangles):
+        return triangles, 0
+    _, kinds = distinct_vertices(triangles.vertices)
+    corners = kinds[triangles.corners]
+    least = np.argmin(corners, axis=1)[:, None]
+    a, b, c = np.take_along_axis(corners, (least + np.arange(3)) % 3, axis=1).T
+    order = np.lexsort((c, b, a))
+    rows = np.stack([a, b, c], axis=1)[order]
+    again = np.zeros(len(rows), dtype=bool)
+    again[order[1:]] = (rows[1:] == rows[:-1]).all(axis=1)  # lexsort is stable: the first of its kind stays
+    if not again.any():
+        return triangles, 0
+    return triangles._replace(corners=triangles.corners[~again]), int(again.sum())
+
+
+def _may_hold_copies(triangles: Triangles) -> bool:
+    """False if no two triangles have the same corners, in any order; told by a hash, to save time."""
+    bits = np.ascontiguousarray(triangles.vertices + 0.0).view(np.uint64)
+    mixed = (bits * _ODD).sum(axis=1, dtype=np.uint64)
+    mixed = (mixed ^ (mixed >> np.uint64(29))) * _ODD[0]
+    found = np.sort(mixed[triangles.corners].sum(axis=1, dtype=np.uint64))
+    return bool((found[1:] == found[:-1]).any())
 
 
 def n_without_area(triangles: Triangles) -> int:

@@ -1,0 +1,73 @@
+"""Rows of a text PLY file, one a line, each with as many numbers as the header and its lists say."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.errors import BadSyntax
+from clearance.load.number_text import floats, integers
+from clearance.load.ply_rows import Element, Property, Rows
+
+
+class TextRows:
+    """Rows of a text file: one a line."""
+
+    def __init__(self, body: bytes) -> None:
+        self.lines = [row for line in body.splitlines() if (row := line.split())]
+        self.place = 0
+
+    def rows(self, element: Element) -> Rows:
+        """The next rows."""
+        lines = self.lines[self.place : self.place + element.count]
+        if len(lines) < element.count:
+            raise BadSyntax(
+                f"{len(lines)} of its {element.count} lines are there: the file is cut off"
+            )
+        self.place += element.count
+        lists = [item for item in element.properties if item.length_kind is not None]
+        if not lists:
+            return self._table(lines, element.properties)
+        return self._with_lists(lines, element.properties)
+
+    def _table(self, lines: list[list[bytes]], properties: list[Property]) -> Rows:
+        for i, row in enumerate(lines):
+            if len(row) != len(properties):
+                raise BadSyntax(f"row {i} has {len(row)} numbers", valid=f"{len(properties)}")
+        columns = {
+            item.name: _column([row[k] for row in lines], item.kind)
+            for k, item in enumerate(properties)
+        }
+        return Rows(len(lines), columns, {})
+
+    def _with_lists(self, lines: list[list[bytes]], properties: list[Property]) -> Rows:
+        single: dict[str, list[bytes]] = {p.name: [] for p in properties if p.length_kind is None}
+        flat: dict[str, list[bytes]] = {p.name: [] for p in properties if p.length_kind is not None}
+        counts: dict[str, list[int]] = {name: [] for name in flat}
+        for i, row in enumerate(lines):
+            place = 0
+            for item in properties:
+                if item.length_kind is None:
+                    single[item.name] += row[place : place + 1]
+                    place += 1
+                    continue
+                count = int(row[place]) if place < len(row) and row[place].isdigit() else -1
+                flat[item.name] += row[place + 1 : place + 1 + max(count, 0)]
+                counts[item.name].append(count)
+                place = place + 1 + count if count >= 0 else -len(row) - 1
+            if place != len(row):
+                raise BadSyntax(f"row {i} has {len(row)} numbers, which is not what its lists say")
+        kinds = {item.name: item.kind for item in properties}
+        columns = {name: _column(words, kinds[name]) for name, words in single.items()}
+        lists = {n: (_column(words, kinds[n]), np.array(counts[n])) for n, words in flat.items()}
+        return Rows(len(lines), columns, lists)
+
+    def refuse_rest(self) -> None:
+        """Refuses lines that no element has."""
+        if self.place < len(self.lines):
+            n_more = len(self.lines) - self.place
+            raise BadSyntax(f"the PLY file has {n_more} lines more than its header says")
+
+
+def _column(words: list[bytes], kind: np.dtype) -> np.ndarray:
+    """The words as numbers: whole ones where the header says so, others in double precision."""
+    return integers(words) if kind.kind in "iu" else floats(words)
