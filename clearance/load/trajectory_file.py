@@ -97,11 +97,13 @@ def _header(opened: Opener) -> list[str]:
             "the file is empty", valid=f"a header with {_TIME!r} and joint names is needed"
         )
     names = [cell.strip() for cell in cells]
+    seen: set[str] = set()
     for i, name in enumerate(names):
         if not name:
             raise BadSyntax(f"column {i + 1} of the header has no name")
-        if name in names[:i]:
+        if name in seen:
             raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
+        seen.add(name)
         checked_name(name)
     if _TIME not in names:
         raise MissingKey(
@@ -117,13 +119,14 @@ def _header(opened: Opener) -> list[str]:
 def _refuse_unmatched_velocities(names: list[str]) -> None:
     joints = [name for name in names if name != _TIME and not name.endswith(_VELOCITY)]
     given = [name.removesuffix(_VELOCITY) for name in names if name.endswith(_VELOCITY)]
+    known, moving = frozenset(joints), frozenset(given)
     for joint in given:
-        if joint not in joints:
+        if joint not in known:
             raise MissingKey(
                 f"column {joint + _VELOCITY!r} is the velocity of {joint!r}, which has no column",
                 valid=nearest_name(joint, joints),
             )
-    without = [joint for joint in joints if joint not in given]
+    without = [joint for joint in joints if joint not in moving]
     if given and without:
         raise MissingKey(
             f"joint {without[0]!r} has no column {without[0] + _VELOCITY!r}, joint {given[0]!r} has one",
