@@ -47,12 +47,15 @@ def parse_trajectory(data: bytes, shown: str) -> Trajectory:
     return read_trajectory(lambda: io.BytesIO(data), len(data), shown)
 
 
-def read_trajectory(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
+def read_trajectory(
+    opened: Opener, n_bytes: int, shown: str, *, joints_needed: bool = True
+) -> Trajectory:
     """The samples in a CSV file; joints in the order of their position columns.
 
     Args:
         opened: opens the file, `n_bytes` long, again and again.
         shown: the file's name in errors.
+        joints_needed: False for a robot that has no joint to move, for which times alone do.
 
     Raises:
         BadSyntax, BadShape, MissingKey, DuplicateName, NotFinite, BadTime: with the line in the
@@ -60,6 +63,8 @@ def read_trajectory(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
     """
     with at(shown):
         names = _header(opened)
+        if joints_needed and len(names) == 1:
+            raise BadShape("there is no joint column", valid="time and at least one joint are needed")
         joints = tuple(name for name in names if name != _TIME and not name.endswith(_VELOCITY))
         parts = [[_TIME], joints]
         if len(joints) < len(names) - 1:
@@ -110,8 +115,6 @@ def _header(opened: Opener) -> list[str]:
             f"there is no column {_TIME!r} in the header {','.join(names)!r:.80}",
             valid="the header names the columns, separated by commas: time and joint names",
         )
-    if len(names) == 1:
-        raise BadShape("there is no joint column", valid="time and at least one joint are needed")
     _refuse_unmatched_velocities(names)
     return names
 
