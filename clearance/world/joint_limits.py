@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import BadInput
 from clearance.world.case import PlacedRobot
 from clearance.world.joint_positions import JointCourse, extremes_of, joint_courses, turns
 from clearance.world.notice import Notice, Severity, listed
@@ -36,7 +37,12 @@ def notices_on_joints(placed: PlacedRobot, rule: str) -> list[Notice]:
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`.
+
+    Raises:
+        BadInput: another rule.
     """
+    if rule not in ("warn", "fail"):
+        raise BadInput(f"limits.joints is {rule!r}", valid="'warn' or 'fail'")
     asked = placed.trajectory
     found = [excess for course in joint_courses(placed) for excess in _excesses(course, asked)]
     far = [excess for excess in found if _is_far(excess)]

@@ -64,7 +64,7 @@ def _frame(placed: PlacedRobot) -> Frame:
 def _chain(placed: PlacedRobot) -> float:
     """[m] the longest way from the root over joints' origins, sliding joints as far as they go."""
     asked = placed.trajectory
-    columns = {name: i for i, name in enumerate(asked.joint_names)}
+    columns = {} if asked is None else {name: i for i, name in enumerate(asked.joint_names)}
     way = {placed.robot.link_names[0]: 0.0}
     for joint in placed.robot.joints:
         step = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
