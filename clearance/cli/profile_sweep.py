@@ -47,6 +47,7 @@ def sweep(
     The motion between the samples is included, joints moving linearly, or on cubics where the
     trajectory has velocities; the outline exceeds what is swept by at most the tolerance.
     """
+    from clearance.cli.notices import say_notices
     from clearance.cli.places import require_file_place
     from clearance.cli.progress import shown_progress
     from clearance.load.case_file import load_case
@@ -55,7 +56,10 @@ def sweep(
 
     require_suffix(out)
     require_file_place(out)
-    moved = _moved(load_case(case_file), motion)
+    case = load_case(case_file)
+    if not quiet:
+        say_notices(case)
+    moved = _moved(case, motion)
     with shown_progress(quiet, ["covering", "sweeping"]) as progress:
         found = swept_profile(
             moved,

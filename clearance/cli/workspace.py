@@ -55,13 +55,17 @@ def workspace(
     Each CASE.yaml has its robot with its own base; all are of one cell, in one world frame. The
     volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
     """
+    from clearance.cli.notices import say_notices
     from clearance.cli.places import require_folder_place
     from clearance.load.case_file import load_case
     from clearance.simulate.workspace import WITHIN, shared_workspace
 
     require_folder_place(out)
+    cases = [load_case(path) for path in case_files]
+    for case in cases:
+        say_notices(case)
     found = shared_workspace(
-        [load_case(path) for path in case_files],
+        cases,
         within=WITHIN if within_mm is None else within_mm,
         cut_concave=convex_parts,
     )

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 APART = 0.25
 """[-] Boxes whose sides are farther apart than this part of the link's length lie otherwise."""
 
+ALIKE = 0.02
+"""[-] Boxes whose sides are no farther apart than this part of the link's length lie alike."""
+
 _UP = re.compile(rb"up_axis\s*>\s*Z_UP")
 
 
@@ -49,7 +52,7 @@ def axis_notices(
         if name not in boxes or not _has_tag(link, reader):
             continue
         turn = _Turn(boxes[name], _bounds(link, reader.kind(link), reader, _other(reader)))
-        if turn.agrees(*turn):
+        if turn.is_the_same:
             continue
         points = np.array([np.zeros(3), *below.get(name, [])])
         if _picture_agrees_only_otherwise(link, turn, reader):
@@ -71,6 +74,11 @@ class _Turn(NamedTuple):
 
     chosen: np.ndarray
     other: np.ndarray
+
+    @property
+    def is_the_same(self) -> bool:
+        """True for a link that lies alike either way."""
+        return float(np.abs(self.chosen - self.other).max()) <= ALIKE * self._length
 
     def agrees(self, a: np.ndarray, b: np.ndarray) -> bool:
         """True for two boxes whose sides are near each other for a link of this size."""

@@ -157,7 +157,8 @@ def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
         shown = meshes.files.shown(path)
         opened, n_bytes = meshes.files.unread(path)
         try:
-            trajectory = read_trajectory(opened, n_bytes, shown)
+            needed = bool(robot.moving_joints)
+            trajectory = read_trajectory(opened, n_bytes, shown, joints_needed=needed)
         except BadInput:
             with opened() as file:
                 refuse_foreign(file.read(65536), shown, "a trajectory")

@@ -47,12 +47,15 @@ def parse_trajectory(data: bytes, shown: str) -> Trajectory:
     return read_trajectory(lambda: io.BytesIO(data), len(data), shown)
 
 
-def read_trajectory(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
+def read_trajectory(
+    opened: Opener, n_bytes: int, shown: str, *, joints_needed: bool = True
+) -> Trajectory:
     """The samples in a CSV file; joints in the order of their position columns.
 
     Args:
         opened: opens the file, `n_bytes` long, again and again.
         shown: the file's name in errors.
+        joints_needed: False for a robot that has no joint to move, for which times alone do.
 
     Raises:
         BadSyntax, BadShape, MissingKey, DuplicateName, NotFinite, BadTime: with the line in the
@@ -60,6 +63,8 @@ def read_trajectory(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
     """
     with at(shown):
         names = _header(opened)
+        if joints_needed and len(names) == 1:
+            raise BadShape("there is no joint column", valid="time and at least one joint are needed")
         joints = tuple(name for name in names if name != _TIME and not name.endswith(_VELOCITY))
         parts = [[_TIME], joints]
         if len(joints) < len(names) - 1:
@@ -97,19 +102,19 @@ def _header(opened: Opener) -> list[str]:
             "the file is empty", valid=f"a header with {_TIME!r} and joint names is needed"
         )
     names = [cell.strip() for cell in cells]
+    seen: set[str] = set()
     for i, name in enumerate(names):
         if not name:
             raise BadSyntax(f"column {i + 1} of the header has no name")
-        if name in names[:i]:
+        if name in seen:
             raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
+        seen.add(name)
         checked_name(name)
     if _TIME not in names:
         raise MissingKey(
             f"there is no column {_TIME!r} in the header {','.join(names)!r:.80}",
             valid="the header names the columns, separated by commas: time and joint names",
         )
-    if len(names) == 1:
-        raise BadShape("there is no joint column", valid="time and at least one joint are needed")
     _refuse_unmatched_velocities(names)
     return names
 
@@ -117,13 +122,14 @@ def _header(opened: Opener) -> list[str]:
 def _refuse_unmatched_velocities(names: list[str]) -> None:
     joints = [name for name in names if name != _TIME and not name.endswith(_VELOCITY)]
     given = [name.removesuffix(_VELOCITY) for name in names if name.endswith(_VELOCITY)]
+    known, moving = frozenset(joints), frozenset(given)
     for joint in given:
-        if joint not in joints:
+        if joint not in known:
             raise MissingKey(
                 f"column {joint + _VELOCITY!r} is the velocity of {joint!r}, which has no column",
                 valid=nearest_name(joint, joints),
             )
-    without = [joint for joint in joints if joint not in given]
+    without = [joint for joint in joints if joint not in moving]
     if given and without:
         raise MissingKey(
             f"joint {without[0]!r} has no column {without[0] + _VELOCITY!r}, joint {given[0]!r} has one",

@@ -9,10 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import BadInput
 from clearance.world.case import PlacedRobot
-from clearance.world.joint_positions import JointCourse, joint_courses, turns
+from clearance.world.joint_positions import JointCourse, extremes_of, joint_courses, turns
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Joint
+from clearance.world.trajectory import Trajectory
 
 ROUNDING = 1e-9
 """[rad or m] A joint that is beyond its limit by less than this is at it."""
@@ -35,8 +37,14 @@ def notices_on_joints(placed: PlacedRobot, rule: str) -> list[Notice]:
 
     Args:
         rule: "warn" or "fail", as `Limits.joints`.
+
+    Raises:
+        BadInput: another rule.
     """
-    found = [excess for course in joint_courses(placed) for excess in _excesses(course)]
+    if rule not in ("warn", "fail"):
+        raise BadInput(f"limits.joints is {rule!r}", valid="'warn' or 'fail'")
+    asked = placed.trajectory
+    found = [excess for course in joint_courses(placed) for excess in _excesses(course, asked)]
     far = [excess for excess in found if _is_far(excess)]
     near = [excess for excess in found if not _is_far(excess)]
     notices = []
@@ -50,7 +58,7 @@ def notices_on_joints(placed: PlacedRobot, rule: str) -> list[Notice]:
     return notices
 
 
-def _excesses(course: JointCourse) -> list[_Excess]:
+def _excesses(course: JointCourse, asked: Trajectory) -> list[_Excess]:
     joint = course.joint
     at_samples = _beyond(joint, course.at_samples, course.at_samples)
     n_beyond = int((at_samples > ROUNDING).sum())
@@ -58,10 +66,11 @@ def _excesses(course: JointCourse) -> list[_Excess]:
     if n_beyond:
         where = f"in {n_beyond} of {len(at_samples)} steps"
         told.append(_excess(joint, at_samples, where))
-    if course.least is None:
+    reached = extremes_of(course, asked)
+    if reached is None:
         return told
     ends = np.maximum(0.0, np.maximum(at_samples[:-1], at_samples[1:]))
-    between = _beyond(joint, course.least, course.greatest)
+    between = _beyond(joint, *reached)
     farther = between > ends + ROUNDING
     if farther.any():
         where = (

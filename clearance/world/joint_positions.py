@@ -11,6 +11,7 @@ from clearance.world.case import PlacedRobot
 from clearance.world.cubic import extremes_between
 from clearance.world.mimics import followers
 from clearance.world.robot import Joint, JointKind
+from clearance.world.trajectory import Trajectory
 
 
 class JointCourse(NamedTuple):
@@ -18,40 +19,41 @@ class JointCourse(NamedTuple):
 
     Attributes:
         at_samples: (n,) [rad] or [m] at each sample; (1,) for a joint that rests.
-        least, greatest: (n - 1,) between samples where it moves on cubics, else None.
+        i_column: of the trajectory that moves it; None for a joint that rests.
+        factor, offset: position = factor * that column + offset.
     """
 
     joint: Joint
     at_samples: np.ndarray
-    least: np.ndarray | None = None
-    greatest: np.ndarray | None = None
+    i_column: int | None = None
+    factor: float = 1.0
+    offset: float = 0.0
 
 
 def joint_courses(placed: PlacedRobot) -> Iterator[JointCourse]:
     """Where each joint goes that the case gives a value, and where those go that follow one of them."""
-    columns = {name: i for i, name in enumerate(placed.trajectory.joint_names)}
+    asked = placed.trajectory
+    columns = {name: i for i, name in enumerate(asked.joint_names)}
     for joint, master, factor, offset in followers(placed.robot):
-        if master in columns:
-            yield _course(joint, placed, columns[master], factor, offset)
+        i = columns.get(master)
+        if i is not None:
+            yield JointCourse(joint, factor * asked.positions[:, i] + offset, i, factor, offset)
         elif master in placed.fixed_positions:
             yield JointCourse(joint, np.array([factor * placed.fixed_positions[master] + offset]))
         elif joint.mimic is not None:
             yield JointCourse(joint, np.array([offset]))
 
 
+def extremes_of(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, np.ndarray] | None:
+    """(n - 1,) least and greatest position between samples; None where the joint moves linearly or rests."""
+    if asked.velocities is None or course.i_column is None:
+        return None
+    column = slice(course.i_column, course.i_column + 1)
+    ends = extremes_between(asked.times, asked.positions[:, column], asked.velocities[:, column])
+    moved = [course.factor * end[:, 0] + course.offset for end in ends]
+    return np.minimum(*moved), np.maximum(*moved)
+
+
 def turns(joint: Joint) -> bool:
     """True for a joint whose position is an angle."""
     return joint.kind in (JointKind.REVOLUTE, JointKind.CONTINUOUS)
-
-
-def _course(
-    joint: Joint, placed: PlacedRobot, i_column: int, factor: float, offset: float
-) -> JointCourse:
-    asked = placed.trajectory
-    column = slice(i_column, i_column + 1)
-    at_samples = factor * asked.positions[:, i_column] + offset
-    if asked.velocities is None:
-        return JointCourse(joint, at_samples)
-    ends = extremes_between(asked.times, asked.positions[:, column], asked.velocities[:, column])
-    moved = [factor * end[:, 0] + offset for end in ends]
-    return JointCourse(joint, at_samples, np.minimum(*moved), np.maximum(*moved))

@@ -20,15 +20,20 @@ is usual.
 
 
 def notices_of(case: Case) -> tuple[Notice, ...]:
-    """All that is suspect about a case, and all warnings, worst first: what loading told and what is seen here."""
+    """All that is suspect about a case, and all warnings, worst first: what loading told and what is seen here.
+
+    Raises:
+        BadInput: `limits.joints` is neither "warn" nor "fail".
+    """
     found = [*case.notices]
     for placed in case.robots:
         found += placed.robot.notices
     found += _notices_on_limits(case.limits)
     found += notices_on_sizes(case)
     for placed in case.robots:
-        found += notices_on_motion(placed)
-        found += notices_on_joints(placed, case.limits.joints)
+        if placed.trajectory is not None:  # else nothing is asked of it
+            found += notices_on_motion(placed)
+            found += notices_on_joints(placed, case.limits.joints)
     return worst_first(found)
 
 

@@ -64,7 +64,7 @@ def _frame(placed: PlacedRobot) -> Frame:
 def _chain(placed: PlacedRobot) -> float:
     """[m] the longest way from the root over joints' origins, sliding joints as far as they go."""
     asked = placed.trajectory
-    columns = {name: i for i, name in enumerate(asked.joint_names)}
+    columns = {} if asked is None else {name: i for i, name in enumerate(asked.joint_names)}
     way = {placed.robot.link_names[0]: 0.0}
     for joint in placed.robot.joints:
         step = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
@@ -94,16 +94,25 @@ def _odd_origins(placed: PlacedRobot) -> list[str]:
 
 def _odd_links(placed: PlacedRobot) -> list[str]:
     """Links that are much longer than the robot reaches, and meshes that are much shorter."""
-    robot = placed.robot
+    bodies = placed.robot.bodies
+    lengths = [_length(body) for body in bodies]
+    if not lengths:
+        return []
     reach = _frame(placed).reach
-    lengths = [(_length(body), f"link {body.name!r} is {_length(body):.3g} m long") for body in robot.bodies]
-    tiny = [
-        (-length, text)
-        for (length, text), body in zip(lengths, robot.bodies, strict=True)
-        if _is_mesh(body) and length * RATIO <= reach
-    ]
-    usual = _chain(placed) + sorted(length for length, _ in lengths)[(len(lengths) - 1) // 2] if lengths else 0.0
-    long = [(length, text) for length, text in lengths if length >= RATIO * usual > 0]
+    usual = _chain(placed) + sorted(lengths)[(len(lengths) - 1) // 2]
+    long, tiny = [], []
+    for body, length in zip(bodies, lengths, strict=True):
+        text = f"link {body.name!r} is {length:.3g} m long"
+        if length >= RATIO * usual > 0:
+            long.append((length, text))
+        elif _is_mesh(body) and length * RATIO <= reach:
+            tiny.append((-length, text))
+    return _lengths_told(long, tiny, reach)
+
+
+def _lengths_told(
+    long: list[tuple[float, str]], tiny: list[tuple[float, str]], reach: float
+) -> list[str]:
     return [
         f"{listed([text for _, text in _greatest(odd)])} where the robot reaches {reach:.3g} m; {hint}"
         for odd, hint in ((long, _TOO_LARGE), (tiny, _TOO_SMALL))
@@ -126,12 +135,7 @@ def _odd_obstacles(obstacles: Sequence[Obstacle], frames: Sequence[Frame]) -> li
             large.append((lengths[i], text))
         elif _is_small(obstacle.body, lengths[i], others, least):
             small.append((-lengths[i], text))
-    reach = f"where the robot reaches {least:.3g} m"
-    return [
-        f"{listed([text for _, text in _greatest(odd)])} {reach}; {hint}"
-        for odd, hint in ((large, _TOO_LARGE), (small, _TOO_SMALL))
-        if odd
-    ]
+    return _lengths_told(large, small, least)
 
 
 def _is_large(body: Body, length: float, others: list[float], reach: float) -> bool:

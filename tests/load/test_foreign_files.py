@@ -2,10 +2,12 @@
 
 import pytest
 
-from clearance.errors import BadSyntax
+from clearance import check
+from clearance.errors import BadShape, BadSyntax
 from clearance.load.case_file import load_case
 from tests.load.making import ARM, CASE, cube_stl
 from tests.load.making_case import changed, load_small
+from tests.load.making_urdf import BOX, link, robot
 
 SRDF = """<?xml version="1.0"?><!-- made by an assistant -->
 <robot name="arm"><group name="g"><link name="base"/><joint name="shoulder"/></group>
@@ -80,3 +82,11 @@ def test_a_case_without_a_name_has_that_of_its_file_or_folder(tmp_path):
     assert load_small(folder, unnamed).name == "welding_cell"
     (folder / "night_shift.yaml").write_text(unnamed)
     assert load_case(folder / "night_shift.yaml").name == "night_shift"
+
+
+def test_a_robot_without_joints_needs_times_only(tmp_path):
+    case = load_small(tmp_path, urdf=robot(link(BOX, "base")), trajectory="time\n0\n1\n")
+    assert case.robots[0].trajectory.positions.shape == (2, 0)
+    assert check(case).worst["clearance"] == pytest.approx(1.45, abs=1e-12)
+    with pytest.raises(BadShape, match="there is no joint column"):
+        load_small(tmp_path, trajectory="time\n0\n1\n")

@@ -5,11 +5,13 @@ import importlib.util
 import numpy as np
 import pytest
 
+from clearance.errors import BadSyntax
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
+from clearance.world.mimics import followers
 from clearance.world.robot import JointKind
 from clearance.world.trajectory import Trajectory
 from tests.load.making import ARM, cube_stl, signed_volume
@@ -270,3 +272,24 @@ def test_a_robot_that_a_package_brings(tmp_path):
     assert {source.path.split(":")[0] for source in files.sources} == {"pybullet_data"}
     assert arm.bodies[0].origin == "pybullet_data:kuka_iiwa/meshes/link_0.stl"
     assert importlib.util.find_spec("pybullet_data").origin not in str(files.sources)
+
+
+def test_a_chain_of_thousands_of_links_and_followers_is_read(tmp_path):
+    """Neither links in a row nor joints that follow each other in a row are gone through by recursion."""
+    n = 3000
+    follows = '<origin xyz="0 0 0.001"/><mimic joint="j{}" multiplier="1" offset="0.001"/>'
+    links = [link(BOX, f"l{i}") for i in (0, n)] + [link("", f"l{i}") for i in range(1, n)]
+    joints = [joint("j0", "l0", "l1")]
+    joints += [joint(f"j{i}", f"l{i}", f"l{i + 1}", inner=follows.format(i - 1)) for i in range(1, n)]
+    joints.reverse()  # those that follow come before what they follow
+    arm = load_urdf(tmp_path, robot(*links, *joints))
+    assert arm.link_names == tuple(f"l{i}" for i in range(n + 1))
+    last = followers(arm)[-1]
+    assert (last.joint.name, last.master, last.factor) == (f"j{n - 1}", "j0", 1.0)
+    assert last.offset == pytest.approx(0.001 * (n - 1), rel=1e-12)
+
+
+def test_elements_in_each_other_without_end_are_refused(tmp_path):
+    deep = "<x>" * 100_000 + "</x>" * 100_000
+    with pytest.raises(BadSyntax, match="not XML"):
+        load_urdf(tmp_path, robot(link(BOX), deep))

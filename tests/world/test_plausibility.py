@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance import box, check
-from clearance.errors import BadDimension
+from clearance.errors import BadDimension, BadInput
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot
@@ -89,8 +89,16 @@ def test_joints_beyond_their_limits():
     assert told(case_of(limited, positions=(0.0, 1.0 + 1e-10))) == []
     assert told(case_of(limited, positions=(0.0, 1.2))) == [("warning", "limits")]
     assert told(case_of(limited, positions=(0.0, 8.0))) == [("suspect", "limits")]
+    with pytest.raises(BadInput, match=r"limits\.joints is 'stop'; 'warn' or 'fail'"):
+        notices_of(case_of(limits=Limits(joints="stop")))
     strict = Limits(joints="fail")
     assert told(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [("violated", "joint limits")]
+
+
+def test_a_robot_of_which_nothing_is_asked_is_looked_at_too():
+    far = case_of(pose=moved(30.0, 30.0))
+    resting = replace(far.robots[0], trajectory=None)
+    assert told(replace(far, robots=(resting,))) == [("suspect", "units")]
 
 
 def test_what_loading_told_is_kept_and_the_worst_comes_first():
