@@ -7,10 +7,12 @@ fault of this program, with its traceback; 130 interrupted.
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from enum import IntEnum
+
+from clearance.cli.streams import leave, make_streams_safe
 
 
 class ExitCode(IntEnum):
@@ -27,7 +29,8 @@ class ExitCode(IntEnum):
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Runs the command line and leaves with its exit code."""
-    sys.exit(int(run(sys.argv[1:] if arguments is None else arguments)))
+    make_streams_safe()
+    leave(int(run(sys.argv[1:] if arguments is None else arguments)))
 
 
 def run(arguments: Sequence[str]) -> int:
@@ -38,12 +41,19 @@ def run(arguments: Sequence[str]) -> int:
         _say("interrupted")
         return ExitCode.INTERRUPTED
     except BrokenPipeError:  # the reader of our output left, as in `clearance check … | head -1`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return ExitCode.PIPE_CLOSED
+    except SystemExit as left:  # rich leaves with 1 for the same reason: our "violated"
+        if isinstance(left.__context__, BrokenPipeError):
+            return ExitCode.PIPE_CLOSED
+        raise
+    except OSError as error:
+        _say(f"error: {_shown(error)}")
+        return ExitCode.BAD_INPUT
     except Exception:
         import traceback
 
-        traceback.print_exc()
+        with suppress(OSError):
+            traceback.print_exc()
         _say("error: a fault of this program, not of the input; please report the lines above")
         return ExitCode.FAULT
 
@@ -55,11 +65,13 @@ def _dispatch(arguments: list[str]) -> int:
     from clearance.errors import ClearanceError
 
     try:
+        _require_text(arguments)
         with clearance.make_context("clearance", arguments) as context:
             code = clearance.invoke(context)
         sys.stdout.flush()
         return code or ExitCode.CLEAR
     except click.exceptions.Exit as leave:
+        sys.stdout.flush()
         return leave.exit_code
     except click.exceptions.NoArgsIsHelpError as error:
         error.show()
@@ -72,10 +84,34 @@ def _dispatch(arguments: list[str]) -> int:
         return ExitCode.BAD_INPUT
 
 
+def _require_text(arguments: list[str]) -> None:
+    for argument in arguments:
+        if not _is_text(argument):
+            from clearance.errors import BadSyntax
+
+            raise BadSyntax(f"{argument!a} is not UTF-8 text", valid="rename the file, or spell it in UTF-8")
+
+
+def _is_text(argument: str) -> bool:
+    try:
+        argument.encode()
+    except UnicodeEncodeError:  # bytes that were no text stand in it as lone surrogates
+        return False
+    return True
+
+
+def _shown(error: OSError) -> str:
+    """One line on a place that the system refuses; output that goes nowhere has none."""
+    reason = error.strerror or str(error) or type(error).__name__
+    place = "the output cannot be written" if error.filename is None else ascii(str(error.filename))
+    return f"{place:.300}: {reason}"
+
+
 def _hint(error: Exception) -> str:
     context = getattr(error, "ctx", None)
     return f" (see {context.command_path} --help)" if context is not None else ""
 
 
 def _say(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
+    with suppress(OSError):
+        print(line, file=sys.stderr, flush=True)

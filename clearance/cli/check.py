@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import Millimetres, motion_option
+from clearance.cli.options import Millimetres, OutputPath, motion_option
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -20,9 +21,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("case_file", metavar="CASE.yaml", type=click.Path(path_type=Path))
-@click.option(
-    "--out", metavar="DIR", type=click.Path(path_type=Path), help="Write the report here."
-)
+@click.option("--out", metavar="DIR", type=OutputPath(), help="Write the report here.")
 @click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the case's.")
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the case's.")
 @click.option(
@@ -71,7 +70,7 @@ if TYPE_CHECKING:
 )
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
-@click.option("--junit", metavar="FILE", type=click.Path(path_type=Path), help="Write JUnit XML.")
+@click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
     case_file: Path,
@@ -99,7 +98,11 @@ def check(
     (or near), 1 a limit is violated, 2 bad or suspect input, 3 the cross-check disagrees; the
     greatest that holds.
     """
-    from clearance.cli.places import require_file_place, require_folder_place
+    from clearance.cli.places import (
+        refuse_inputs_of_cases,
+        require_file_place,
+        require_folder_place,
+    )
     from clearance.cli.progress import shown_progress
     from clearance.load.case_file import load_case
 
@@ -109,6 +112,7 @@ def check(
     require_file_place(junit)
     _compile_ahead(quiet)
     case = load_case(case_file)
+    refuse_inputs_of_cases([case], _outputs(out, junit))
     limits = _limits(case.limits, fail_mm, warn_mm)
     case = replace(case, accept=tuple(dict.fromkeys([*case.accept, *accept])))
     from clearance.cli.kept import kept_rows
@@ -139,6 +143,23 @@ def check(
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return ExitCode(run.verdict.exit_code)
+
+
+def _outputs(out: Path | None, junit: Path | None) -> list[Path]:
+    """The files that may be written; the report's own are none for `junit`.
+
+    Raises:
+        Unwritable: it would overwrite one of them.
+    """
+    from clearance.errors import Unwritable
+    from clearance.report.output import OWN
+
+    report = [] if out is None else [out / name for name in OWN]
+    if junit is None:
+        return report
+    if os.path.realpath(junit) in map(os.path.realpath, report):
+        raise Unwritable("is a file of the report", where=str(junit), valid="--junit needs another name")
+    return [*report, junit]
 
 
 def _compile_ahead(quiet: bool) -> None:

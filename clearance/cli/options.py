@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+from pathlib import Path
 
 import click
 
@@ -23,6 +25,21 @@ class Millimetres(click.ParamType):
         if not (math.isfinite(length) and length >= 0.0):
             self.fail(f"{value!r} is not a length; a number of millimetres, 0 or more", param, ctx)
         return length / 1000.0
+
+
+class OutputPath(click.Path):
+    """A place to write; an empty one, mostly a variable that is not set, would be the current folder."""
+
+    def __init__(self) -> None:
+        super().__init__(path_type=Path)
+
+    def convert(
+        self, value: str | Path, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Path:
+        """The path."""
+        if not os.fspath(value):
+            self.fail("an empty path; a place to write is needed ('.' is the current folder)", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 motion_option = click.option(

@@ -6,9 +6,11 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import Millimetres
+from clearance.cli.options import Millimetres, OutputPath
 from clearance.cli.profile_fit import fit
 from clearance.cli.profile_sweep import sweep
+
+_FILES = ("comparison.svg", "comparison.png", "comparison.json")
 
 
 @click.group()
@@ -23,14 +25,14 @@ profile.add_command(sweep)
 @profile.command()
 @click.argument("a", type=click.Path())
 @click.argument("b", type=click.Path())
-@click.option("--out", type=click.Path(), help="Picture (.svg, .png), or a folder for all results.")
+@click.option("--out", type=OutputPath(), help="Picture (.svg, .png), or a folder for all results.")
 @click.option(
     "--field", is_flag=True, help="Colour the page by the nearest arc of B (the distance map)."
 )
 @click.option("--limit", type=float, help="Exit with 1 where the Hausdorff distance is above this.")
 @click.option("--limit-mm", type=Millimetres(), help="The same in mm, for files in metres.")
 def compare(
-    a: str, b: str, out: str | None, field: bool, limit: float | None, limit_mm: float | None
+    a: str, b: str, out: Path | None, field: bool, limit: float | None, limit_mm: float | None
 ) -> None:
     """How far the outlines in files A and B differ, with a proven error, in their unit.
 
@@ -43,11 +45,14 @@ def compare(
         click.get_current_context().exit(1)
 
 
-def _compare(a: str, b: str, out: str | None, field: bool, limit: float | None) -> bool:
+def _compare(a: str, b: str, out: Path | None, field: bool, limit: float | None) -> bool:
+    from clearance.cli.places import refuse_inputs
     from clearance.planar.entries import checked_number
     from clearance.profiles.compare import compare as compared
     from clearance.profiles.outline_file import read_outline
 
+    if out is not None:
+        refuse_inputs([out, *(out / name for name in _FILES)], [a, b])
     limit = None if limit is None else checked_number(limit, "--limit", least=0.0)
     found = compared(read_outline(a), read_outline(b), limit=limit)
     for direction, directed in found.found.directed.items():
@@ -56,7 +61,7 @@ def _compare(a: str, b: str, out: str | None, field: bool, limit: float | None) 
     click.echo(f"hausdorff {whole.distance:.12g} ± {whole.error_bound:.1e} ({whole.direction})")
     _tell(found)
     if out is not None:
-        _write(found, Path(out), field)
+        _write(found, out, field)
     if limit is None:
         return False
     click.echo(f"limit {limit:g}: {_verdict(found)}")
@@ -114,9 +119,10 @@ def _write(found, out: Path, field: bool) -> None:
     from clearance.cli.places import require_folder_place
 
     require_folder_place(out)
-    for name in ("comparison.svg", "comparison.png"):
+    *pictures, data = _FILES
+    for name in pictures:
         draw_outlines(found.a, found.b, _array(ends), title, out / name)
-    _write_data(found, out / "comparison.json")
+    _write_data(found, out / data)
     click.echo(f"written {out}")
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import Millimetres
+from clearance.cli.options import Millimetres, OutputPath
 
 
 @click.command()
@@ -23,10 +23,8 @@ from clearance.cli.options import Millimetres
 @click.option(
     "--free", help="Dimensions to change, separated by commas.  [default: the driven ones]"
 )
-@click.option(
-    "--out", required=True, type=click.Path(path_type=Path), help="Sketch to write, .yaml."
-)
-@click.option("--picture", type=click.Path(path_type=Path), help="Picture to write, .svg or .png.")
+@click.option("--out", required=True, type=OutputPath(), help="Sketch to write, .yaml.")
+@click.option("--picture", type=OutputPath(), help="Picture to write, .svg or .png.")
 def fit(
     sketch_file: Path,
     profile_file: Path,
@@ -40,7 +38,7 @@ def fit(
 
     PROFILE is a swept profile, a sketch, a list of curves (.yaml) or a drawing (.dxf).
     """
-    from clearance.cli.places import require_file_place
+    from clearance.cli.places import refuse_inputs, require_file_place
     from clearance.errors import BadInput, at
     from clearance.profiles.fit import fit as fitted
     from clearance.profiles.outline_file import Drawn, read_outline
@@ -49,6 +47,7 @@ def fit(
     if out.suffix.lower() not in (".yaml", ".yml"):
         raise BadInput(f"a sketch {out.suffix or 'without suffix'}", where=str(out), valid=".yaml")
     require_file_place(out)
+    refuse_inputs([out, *([] if picture is None else [picture])], [sketch_file, profile_file])
     outline = read_outline(profile_file)
     sketch = Sketch.load(sketch_file)
     names = None if free is None else [name.strip() for name in free.split(",")]

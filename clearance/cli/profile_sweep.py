@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from clearance.cli.options import Millimetres, motion_option
+from clearance.cli.options import Millimetres, OutputPath, motion_option
 
 
 @click.command()
@@ -26,7 +26,7 @@ from clearance.cli.options import Millimetres, motion_option
 @click.option(
     "--out",
     required=True,
-    type=click.Path(path_type=Path),
+    type=OutputPath(),
     help="File to write: .yaml, .dxf, .svg or .geojson.",
 )
 @click.option("--quiet", is_flag=True, help="Print nothing but errors.")
@@ -48,7 +48,7 @@ def sweep(
     trajectory has velocities; the outline exceeds what is swept by at most the tolerance.
     """
     from clearance.cli.notices import say_notices
-    from clearance.cli.places import require_file_place
+    from clearance.cli.places import refuse_inputs_of_cases, require_file_place
     from clearance.cli.progress import shown_progress
     from clearance.load.case_file import load_case
     from clearance.profiles.profile_file import require_suffix, write_profile
@@ -57,6 +57,7 @@ def sweep(
     require_suffix(out)
     require_file_place(out)
     case = load_case(case_file)
+    refuse_inputs_of_cases([case], [out])
     if not quiet:
         say_notices(case)
     moved = _moved(case, motion)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import Millimetres
+from clearance.cli.options import Millimetres, OutputPath
 
 if TYPE_CHECKING:
     from clearance.simulate.workspace import Workspace
@@ -23,7 +23,7 @@ MOST_LINKS = 8
 @click.option(
     "--out",
     metavar="DIR",
-    type=click.Path(path_type=Path),
+    type=OutputPath(),
     help="Write the region (STL, GLB), a picture (SVG) and the figures (JSON) here.",
 )
 @click.option(
@@ -56,12 +56,15 @@ def workspace(
     volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
     """
     from clearance.cli.notices import say_notices
-    from clearance.cli.places import require_folder_place
+    from clearance.cli.places import refuse_inputs_of_cases, require_folder_place
     from clearance.load.case_file import load_case
+    from clearance.report.workspace import OWN
     from clearance.simulate.workspace import WITHIN, shared_workspace
 
     require_folder_place(out)
     cases = [load_case(path) for path in case_files]
+    if out is not None:
+        refuse_inputs_of_cases(cases, [out / name for name in OWN])
     for case in cases:
         say_notices(case)
     found = shared_workspace(

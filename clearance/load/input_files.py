@@ -49,7 +49,7 @@ class InputFiles:
             data = read_bytes(path, self.shown(path))
             self._contents[path] = data
             digest = hashlib.sha256(data).hexdigest()
-            self._sources[path] = Source(self.shown(path), digest, len(data))
+            self._sources[path] = Source(self.shown(path), digest, len(data), str(path))
         return self._contents[path]
 
     def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
@@ -63,7 +63,7 @@ class InputFiles:
         with _openable(self.shown(path)), path.open("rb") as file:
             n_bytes = os.fstat(file.fileno()).st_size
             digest = hashlib.file_digest(file, "sha256").hexdigest()
-        self._sources[path] = Source(self.shown(path), digest, n_bytes)
+        self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
         return lambda: path.open("rb"), n_bytes
 
     def shown(self, path: Path) -> str:

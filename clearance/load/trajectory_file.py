@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -148,10 +149,27 @@ def _batches(opened: Opener, names: list[str]) -> Iterator[pa.RecordBatch]:
     )
     reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(opened))
     try:
-        with opened() as file:
-            yield from arrow_csv.open_csv(file, reading, convert_options=types)
+        with opened() as file, _native(file) as stream:
+            yield from arrow_csv.open_csv(stream, reading, convert_options=types)
     except pa.ArrowException as error:
         raise _fault_in_rows(opened, names) or BadSyntax(f"not a table of numbers: {error}") from None
+
+
+def _native(file: BinaryIO) -> pa.NativeFile:
+    """The same file, read without Python: pyarrow reads ahead in threads of its own.
+
+    One that is still inside a Python file when the interpreter ends takes the whole process with it
+    ("terminate called without an active exception").
+    """
+    import pyarrow as pa
+
+    name = getattr(file, "name", None)
+    if isinstance(name, str | bytes):
+        return pa.OSFile(os.fsdecode(name), "rb")
+    content = file.read()
+    held = pa.allocate_buffer(len(content))
+    np.frombuffer(held, dtype=np.uint8)[:] = np.frombuffer(content, dtype=np.uint8)
+    return pa.BufferReader(held)
 
 
 def _no_rows() -> ClearanceError:

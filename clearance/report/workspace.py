@@ -13,6 +13,8 @@ from clearance.report.workspace_picture import picture_of
 from clearance.simulate.workspace import Workspace
 
 MESHES = {"workspace.stl": "stl", "workspace.glb": "glb"}
+OWN = ("workspace.svg", "workspace.json", *MESHES)
+"""All files that it can have."""
 
 
 def workspace_summary(workspace: Workspace) -> dict[str, Any]:
@@ -52,4 +54,4 @@ def write_workspace(workspace: Workspace, folder: Path) -> None:
             json_text(workspace_summary(workspace)), encoding="utf-8"
         )
 
-    fill_folder(folder, fill, ("workspace.svg", "workspace.json", *MESHES))
+    fill_folder(folder, fill, OWN)

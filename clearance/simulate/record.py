@@ -167,15 +167,25 @@ class EveryPair:
         size = max(1, BLOCK // n_pairs)
         for start in range(0, n_steps, size):
             part = self.clearance[start : start + size]
-            i_pair = pa.array(np.tile(np.arange(n_pairs, dtype=np.int32), len(part)))
             yield pa.table(
                 {
                     "step": pa.array(np.repeat(np.arange(start, start + len(part)), n_pairs)),
-                    "link": pa.DictionaryArray.from_arrays(i_pair, self.links),
-                    "obstacle": pa.DictionaryArray.from_arrays(i_pair, self.obstacles),
+                    "link": _repeated(self.links, len(part)),
+                    "obstacle": _repeated(self.obstacles, len(part)),
                     "clearance": pa.array(part.reshape(-1)),
                 }
             )
+
+
+def _repeated(names: Sequence[str], times: int) -> pa.DictionaryArray:
+    """All names, so many times over.
+
+    Each is in the dictionary once: pyarrow writes one that has a name twice with room for both, and what it leaves
+    empty is whatever lay in memory there.
+    """
+    codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
+    indices = np.array([codes[name] for name in names], dtype=np.int32)
+    return pa.DictionaryArray.from_arrays(pa.array(np.tile(indices, times)), pa.array([*codes], pa.string()))
 
 
 @dataclass(frozen=True)

@@ -57,11 +57,17 @@ class Limits:
 
 @dataclass(frozen=True)
 class Source:
-    """A file that the case was made from."""
+    """A file that the case was made from.
+
+    Attributes:
+        path: as it is shown, the same on every machine.
+        read_from: where it was found, for nobody but who must not overwrite it.
+    """
 
     path: str
     sha256: str
     n_bytes: int
+    read_from: str = field(default="", compare=False, repr=False)
 
 
 @dataclass(frozen=True)

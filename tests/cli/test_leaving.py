@@ -1,0 +1,107 @@
+"""Leaving with an error depends on no thread and on no other process: every bad input, thirty times."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+from clearance.load.input_files import InputFiles
+from clearance.load.trajectory_file import parse_trajectory, read_trajectory
+from tests.cli.test_check_command import BAD, CASE, PATH, ROOT, URDF
+
+TIMES = 30
+
+LEAVING = """
+import json, os, sys
+import clearance.ahead, clearance.cli.check, clearance.load.case_file, clearance.run, pyarrow.csv
+from clearance import cli
+from clearance.load import case_file
+ends = {}
+for name in sys.argv[2:]:
+    found = set()
+    for i in range(int(sys.argv[1])):
+        child = os.fork()
+        if child == 0:
+            with open(f"{name}/out", "wb") as out, open(f"{name}/err", "wb") as err:
+                os.dup2(out.fileno(), 1), os.dup2(err.fileno(), 2)
+            cli.main(["check", f"{name}/case.yaml", "--out", f"{name}/report"])
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        found.add((code, open(f"{name}/out").read(), open(f"{name}/err").read()))
+    ends[name] = sorted(found)
+print(json.dumps(ends))
+"""
+
+
+def write_case(folder: Path, fault: str | None) -> None:
+    folder.mkdir()
+    texts = {"cart.urdf": URDF, "case.yaml": CASE, "path.csv": PATH}
+    if fault is not None:
+        name, good, bad, _ = BAD[fault]
+        texts[name] = texts[name].replace(good, bad, 1)
+    for name, text in texts.items():
+        (folder / name).write_text(text)
+    (folder / "none.stl").write_text("solid none\nendsolid none\n")
+
+
+def ends_of(folder: Path, faults: list[str], times: int, **environment: str) -> dict[str, list]:
+    """The different ends that so many processes came to, for each fault: exit code, stdout, stderr.
+
+    Each is forked off one that has only imported what they need, which costs a twentieth of a start.
+    """
+    for fault in faults:
+        write_case(folder / fault, fault)
+    done = subprocess.run(
+        [sys.executable, "-c", LEAVING, str(times), *faults], cwd=folder, capture_output=True, text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment}, check=True,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
+def test_every_bad_input_ends_thirty_times_in_the_same_way(tmp_path: Path) -> None:
+    ends = ends_of(tmp_path, [*BAD], TIMES, CLEARANCE_COMPILES_AHEAD="1")
+    for fault, found in ends.items():
+        ((code, out, err),) = found
+        assert (code, out, err.count("\n")) == (2, "", 1), fault
+        assert err.startswith("error: ") and BAD[fault][3] in err
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
+def test_nor_does_it_depend_on_what_compiles_ahead(tmp_path: Path) -> None:
+    """Each has a second process, as in the first run on a machine, and ends before that has done anything."""
+    ends = ends_of(tmp_path, ["unknown joint"], 5, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+    ((code, out, err),) = ends["unknown joint"]
+    assert (code, out, err.count("\n")) == (2, "", 1)
+
+
+def test_only_the_thread_that_asks_reads_a_trajectory_through_python(tmp_path: Path) -> None:
+    """pyarrow's own threads may be inside a Python file when the interpreter ends, and end it badly."""
+    path = tmp_path / "path.csv"
+    path.write_text("time,rail\n" + "".join(f"{i},{i / 1e6}\n" for i in range(200_000)))
+    readers = set()
+
+    class Watched:
+        def __init__(self, file: object) -> None:
+            self._file = file
+
+        def __getattr__(self, name: str) -> object:
+            readers.add(threading.get_ident())
+            return getattr(self._file, name)
+
+        def __enter__(self) -> Watched:
+            return self
+
+        def __exit__(self, *problem: object) -> None:
+            self._file.close()
+
+    opened, n_bytes = InputFiles(tmp_path).unread(path)
+    watched = read_trajectory(lambda: Watched(opened()), n_bytes, "path.csv")
+    assert watched.n_steps == 200_000
+    assert readers == {threading.get_ident()}
+    assert (parse_trajectory(path.read_bytes(), "path.csv").positions == watched.positions).all()

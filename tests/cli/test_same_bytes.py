@@ -1,0 +1,48 @@
+"""The same run in two processes gives the same bytes, whatever lay in the memory that they were given."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from clearance.simulate.record import EveryPair
+from tests.cli.test_check_command import ROOT, files
+
+FILL = ("17", "99")
+"""What glibc fills memory with that it hands out; pyarrow is told to ask it. Elsewhere chance has to do."""
+
+
+@pytest.mark.parametrize("given", [("--need", "pairs", "--certify"), ("--need", "limit", "--jobs", "1")])
+def test_every_file_of_a_report(tmp_path: Path, given: tuple[str, ...]) -> None:
+    case = ROOT / "scenes" / "iiwa_pipe_rack" / "case.yaml"
+    reports = []
+    for fill in FILL:
+        out = tmp_path / fill / "report"
+        memory = {"MALLOC_PERTURB_": fill, "ARROW_DEFAULT_MEMORY_POOL": "system"}
+        subprocess.run(
+            [sys.executable, "-m", "clearance", "check", case, "--quiet", "--out", out, *given],
+            env={**os.environ, "PYTHONPATH": str(ROOT), **memory}, check=True,
+        )  # fmt: skip
+        reports.append(files(out))
+    assert ("pairs.parquet" in reports[0]) == ("pairs" in given)
+    assert reports[0] == reports[1]
+
+
+def test_a_name_is_in_a_dictionary_once() -> None:
+    """pyarrow leaves room unwritten in the file for one that is there twice."""
+    links, obstacles = ["arm", "hand", "arm", "hand"], ["post", "post", "wall", "wall"]
+    clearance = np.arange(12.0).reshape(3, 4)
+    every = EveryPair(links, obstacles, clearance)
+    for column, names in (("link", ["arm", "hand"]), ("obstacle", ["post", "wall"])):
+        (chunk,) = every.table[column].chunks
+        assert chunk.dictionary.to_pylist() == names
+    rows = every.table.to_pydict()
+    assert rows["link"] == 3 * links and rows["obstacle"] == 3 * obstacles
+    assert rows["step"] == [0] * 4 + [1] * 4 + [2] * 4 and rows["clearance"] == list(np.arange(12.0))
+    assert pa.types.is_dictionary(every.table.schema.field("link").type)

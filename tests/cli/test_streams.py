@@ -1,0 +1,111 @@
+"""Standard streams that are closed, full or not read, and names that cannot be: one line, 2 or 141, never 70."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.cli.test_check_command import CASE, PATH, ROOT, URDF
+
+pytestmark = pytest.mark.skipif(not Path("/dev/full").exists(), reason="other shells and devices")
+
+LONG = "n" * 300
+JUST_LEGAL = "n" * 250
+"""With what is put before and behind it while it is written, too long."""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("streams")
+    (place / "cart.urdf").write_text(URDF)
+    (place / "case.yaml").write_text(CASE)
+    (place / "path.csv").write_text(PATH)
+    return place
+
+
+def ended(folder: Path, line: str, **environment: str) -> tuple[int, str]:
+    """The exit code of the command in a shell's line, in which it is `clearance`, and stderr."""
+    command = f'clearance() {{ "{sys.executable}" -m clearance "$@"; }}; {line}'
+    done = subprocess.run(
+        ["bash", "-c", command], cwd=folder, capture_output=True, text=True, errors="surrogateescape",
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+    )  # fmt: skip
+    return done.returncode, done.stderr
+
+
+FAILING = {
+    "clearance check case.yaml >/dev/full": "No space left",
+    "clearance check case.yaml --json >/dev/full": "No space left",
+    "clearance --help >/dev/full": "No space left",
+    "clearance check case.yaml >&-": "standard output is closed",
+    "clearance check case.yaml --json >&-": "standard output is closed",
+    "clearance check --help >&-": "standard output is closed",
+    "clearance check $'caf\\xe9.yaml'": "not UTF-8",
+    "clearance check case.yaml --out $'caf\\xe9'": "not UTF-8",
+    "clearance workspace case.yaml --out $'caf\\xe9'": "not UTF-8",
+    f"clearance check {LONG}": "name too long",
+    f"clearance check case.yaml --out {LONG}": "name too long",
+    f"clearance check case.yaml --out {LONG}/below": "name too long",
+    f"clearance check case.yaml --junit {LONG}": "name too long",
+    f"clearance check case.yaml --out {JUST_LEGAL}": "name too long",
+    f"clearance check case.yaml --quiet --junit {JUST_LEGAL}": "name too long",
+    f"clearance workspace case.yaml --out {LONG}": "name too long",
+    f"clearance profile sweep case.yaml --out {LONG}.yaml": "name too long",
+    f"clearance view {LONG}": "name too long",
+}
+
+
+@pytest.mark.parametrize("line", FAILING)
+def test_it_is_told_in_one_line(folder: Path, line: str) -> None:
+    code, told = ended(folder, line)
+    assert (code, told.count("\n")) == (2, 1), told
+    assert told.startswith("error: ") and FAILING[line].lower() in told.lower()
+    assert sorted(path.name for path in folder.iterdir()) == ["cart.urdf", "case.yaml", "path.csv"]
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("clearance check case.yaml --quiet >&-", 0),
+        ("clearance check case.yaml --quiet <&- 2>&-", 0),
+        ("clearance check case.yaml --quiet --fail-mm 150 >/dev/full 2>/dev/full", 1),
+        ("clearance check gone.yaml 2>&-", 2),
+        ("clearance check gone.yaml 2>/dev/full", 2),
+        ("clearance check gone.yaml <&- >&- 2>&-", 2),
+        ("clearance check case.yaml >/dev/full 2>&1", 2),
+    ],
+)
+def test_where_nothing_can_be_told_the_exit_code_tells(folder: Path, line: str, code: int) -> None:
+    assert ended(folder, line) == (code, "")
+
+
+@pytest.mark.parametrize("given", ["check case.yaml", "check case.yaml --json"])
+@pytest.mark.parametrize("limits", ["", "--fail-mm 150"])
+def test_who_stops_reading_is_told_by_141(folder: Path, given: str, limits: str) -> None:
+    """Also where the verdict is "violated": nobody has read it. The pipe is closed before anything is written."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [sys.executable, "-m", "clearance", *f"{given} {limits}".split()], cwd=folder, stdout=writing,
+        stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+def test_what_is_written_is_not_mixed_with_what_libraries_print(folder: Path, tmp_path: Path) -> None:
+    """With a stream closed, the next file that is opened has its number."""
+    code, told = ended(folder, f"clearance check case.yaml --quiet --out {tmp_path}/whole")
+    assert (code, told) == (0, "")
+    code, told = ended(folder, f"clearance check case.yaml --quiet --out {tmp_path}/closed <&- >&- 2>&-")
+    assert (code, told) == (0, "")
+    for path in (tmp_path / "whole").iterdir():
+        assert (tmp_path / "closed" / path.name).read_bytes() == path.read_bytes()
+
+
+def test_characters_that_a_terminal_lacks_stop_nothing(folder: Path) -> None:
+    assert ended(folder, "clearance check case.yaml >/dev/null", PYTHONIOENCODING="ascii") == (0, "")
