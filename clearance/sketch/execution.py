@@ -15,8 +15,9 @@ from clearance.kernels.sketch_equations import LENGTHS, RATIO
 from clearance.kernels.sketch_execute import FAILED, KEPT
 from clearance.kernels.sketch_fit import set_down
 from clearance.kernels.sketch_graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
-from clearance.kernels.sketch_search import RESTARTS, solve_block
+from clearance.kernels.sketch_search import BANDED, RESTARTS, solve_block
 from clearance.kernels.sketch_start import unsettled
+from clearance.sketch.folds import solve_from
 from clearance.sketch.movement import least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
@@ -149,7 +150,8 @@ def _solve_parts(
     loose = _loosened(problem, problem.plan.dependent)
     broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part):
-        _numeric_part(problem, p, x, start, effort)
+        if effort < 2 or not _from_drawing(problem, p, x, start):
+            _numeric_part(problem, p, x, start, effort)
     if effort < 2:
         return fates, x
     x = nearest_roots(problem, x, start, fates)
@@ -171,6 +173,19 @@ def _nearest(
         if moved is not None:
             x = moved
     return x
+
+
+def _from_drawing(problem: Problem, part: int, x: np.ndarray, start: np.ndarray) -> bool:
+    """Solves one whole part of many freedoms by least squares from the drawing, in place on x; True when
+    it holds."""
+    if problem.free[part] + np.sum(problem.row_part == part) < BANDED:
+        return False
+    mine = (problem.system.vertex_of > 0) & (problem.part[problem.system.vertex_of] == part)
+    found = solve_from(problem, part, np.where(mine, start, x), RESIDUAL * problem.size)
+    if found is None:
+        return False
+    x[:] = found
+    return True
 
 
 def _numeric_part(
