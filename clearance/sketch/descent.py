@@ -75,20 +75,28 @@ class Part:
         return (place.matrix.T @ place.matrix + 0.5 * (bent + bent.T)).tocsc()
 
 
-def descend(part: Part, x: np.ndarray, damping: float = FIRST) -> Place:
+def descend(
+    part: Part,
+    x: np.ndarray,
+    damping: float = FIRST,
+    longest: int = LONGEST,
+    corrections: int = CORRECTIONS,
+) -> Place:
     """Where the sum of squares ends that goes down from x: a root, or another minimum."""
     place = part.at(x)
-    for _ in range(LONGEST):
+    for _ in range(longest):
         if place.total <= part.enough:
             break
-        lower, damping, last = _step(part, place, damping)
+        lower, damping, last = _step(part, place, damping, corrections)
         place = lower if lower.total < place.total else place
         if last:
             break
     return place
 
 
-def _step(part: Part, place: Place, damping: float) -> tuple[Place, float, bool]:
+def _step(
+    part: Part, place: Place, damping: float, corrections: int
+) -> tuple[Place, float, bool]:
     """(a place that is lower, damping for the next step, whether this was the last one)."""
     from scipy.sparse import eye_array
 
@@ -102,7 +110,7 @@ def _step(part: Part, place: Place, damping: float) -> tuple[Place, float, bool]
         step = -factor.solve(slope)
         promised = -float(2.0 * slope @ step + step @ (curved @ step))
         least = promised < FLAT * place.total and damping < 1e-13
-        lower = _corrected(part, place, step, factor)
+        lower = _corrected(part, place, step, factor, corrections)
         if lower.total < place.total or least:
             return lower, _eased(damping, place.total - lower.total, promised, place.total), least
         damping = max(4.0 * damping, 1e-12)
@@ -135,11 +143,11 @@ def _factored(matrix):
     return factor if straight and (factor.U.diagonal() > 0.0).all() else None
 
 
-def _corrected(part: Part, place: Place, step: np.ndarray, factor) -> Place:
+def _corrected(part: Part, place: Place, step: np.ndarray, factor, corrections: int) -> Place:
     """The place after a step, corrected for what the equations' curvature adds to it while that helps."""
     goal, length = place.error + place.matrix @ step, float(np.linalg.norm(step))
     best = part.moved(place.x, step)
-    for _ in range(CORRECTIONS):
+    for _ in range(corrections):
         more = -factor.solve(place.matrix.T @ (best.error - goal))
         if not np.linalg.norm(more) <= length:
             break

@@ -15,7 +15,7 @@ import numpy as np
 
 from clearance.kernels.sketch_equations import POINT_POINT
 from clearance.kernels.sketch_graph import RADIUS
-from clearance.sketch.descent import Part, Place, descend
+from clearance.sketch.descent import CORRECTIONS, Part, Place, descend
 from clearance.sketch.problem import Problem
 
 GAIN = 0.02
@@ -31,6 +31,10 @@ BESIDE = 1e-4
 """[-] First damping after a fold: what is right elsewhere must not be thrown about."""
 
 
+WAYS = (CORRECTIONS, 1)
+"""Corrections of the first descent: with fewer another minimum may be found."""
+
+
 class Fold(NamedTuple):
     """A point's first variable, where it goes (2,), and how far it goes for what is gained."""
 
@@ -44,15 +48,21 @@ def solve_from(problem: Problem, part: int, x: np.ndarray, tolerance: float) -> 
     work = Part(problem, part)
     if not work.rows.size or not work.n:
         return None
-    place = descend(work, x.copy())
+    sizes = problem.tables.role == RADIUS
+    for corrections in WAYS:
+        place = _descended(work, descend(work, x.copy(), corrections=corrections), tolerance)
+        if place is not None and (place.x[sizes] > 0.0).all():
+            return place.x
+    return None
+
+
+def _descended(work: Part, place: Place | None, tolerance: float) -> Place | None:
+    """The root that is reached from a minimum over folds; None for none."""
     left = ALTOGETHER
-    while np.abs(place.error).max() > tolerance:
+    while place is not None and np.abs(place.error).max() > tolerance:
         place, used = _unfolded(work, place, min(left, TRIED))
         left -= used
-        if place is None or left <= 0:
-            return None
-    sizes = problem.tables.role == RADIUS
-    return place.x if (place.x[sizes] > 0.0).all() else None
+    return place
 
 
 def _unfolded(work: Part, place: Place, most: int) -> tuple[Place | None, int]:
