@@ -18,7 +18,7 @@ from clearance.kernels.sketch_graph import CONTRADICTED, DIRECTION, IN_GRAPH, PO
 from clearance.kernels.sketch_search import BANDED, RESTARTS, solve_block
 from clearance.kernels.sketch_start import unsettled
 from clearance.sketch.folds import solve_from
-from clearance.sketch.movement import least_movement
+from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.start import Sides, sides_hold, started
@@ -101,7 +101,7 @@ def _run_at_unit(
     x, sketch = started(problem, before, sides)
     loose = _loosened(problem, dependent)
     active = unsettled(
-        problem.system, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
+        problem.regular, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
     )
     if turned is not None:
         active[problem.part[problem.plan.vertex[turned < 0.0]]] = 1
@@ -155,7 +155,19 @@ def _solve_parts(
     if effort < 2:
         return fates, x
     x = nearest_roots(problem, x, start, fates)
-    return fates, _nearest(problem, x, sketch, start, active_part)
+    x = _nearest(problem, x, sketch, start, active_part)
+    return fates, _touching(problem, x, active_part)
+
+
+def _touching(problem: Problem, x: np.ndarray, active: np.ndarray) -> np.ndarray:
+    """x with the points of contact where they touch to the last digits."""
+    if problem.contacts is None:
+        return x
+    parts = np.unique(problem.row_part[problem.contacts.rows])
+    for p in parts[parts >= 0]:
+        moved = closed(problem, p, x) if active[p] else None
+        x = x if moved is None else moved
+    return x
 
 
 def _nearest(
