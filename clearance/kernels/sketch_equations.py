@@ -33,6 +33,8 @@ ACROSS = 9
 """t . (q - p) = 0 with t the line's direction"""
 RATIO = 10
 """x0 = value x1"""
+IN_LINE = 11
+"""A point lies on the line through two centres: its distance from that line is 0."""
 
 
 @inlined
@@ -49,6 +51,22 @@ def _distance(x, var, row, i, gradient, g):
     gradient[i + 2] -= g * ux
     gradient[i + 3] -= g * uy
     return length
+
+
+@inlined
+def _beside(x, var, row, gradient):
+    """The distance of the point in slots 0, 1 from the line through those in 2, 3 and 4, 5; fills `gradient`."""
+    wx, wy = x[var[row, 4]] - x[var[row, 2]], x[var[row, 5]] - x[var[row, 3]]
+    qx, qy = x[var[row, 0]] - x[var[row, 2]], x[var[row, 1]] - x[var[row, 3]]
+    length = math.sqrt(wx * wx + wy * wy)
+    if length == 0.0:
+        return math.sqrt(qx * qx + qy * qy)
+    ux, uy = wx / length, wy / length
+    f = ux * qy - uy * qx
+    gradient[0], gradient[1] = -uy, ux
+    gradient[4], gradient[5] = (qy - f * ux) / length, (-qx - f * uy) / length
+    gradient[2], gradient[3] = -gradient[0] - gradient[4], -gradient[1] - gradient[5]
+    return f
 
 
 @inlined
@@ -90,6 +108,8 @@ def evaluate(code, var, coef, value, x, row, gradient):
     if kind == LENGTHS:
         first = _distance(x, var, row, 0, gradient, 1.0)
         return first - v * _distance(x, var, row, 4, gradient, -v)
+    if kind == IN_LINE:
+        return _beside(x, var, row, gradient)
     if kind == RATIO:
         gradient[0] = 1.0
         gradient[1] = -v

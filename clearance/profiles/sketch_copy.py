@@ -65,6 +65,6 @@ def _copy_entity(made: Sketch, entity, motion: np.ndarray) -> None:
         if entity.ends is not None:
             ends = [made.entity(p.name) for p in entity.ends]
         else:
-            foot = entity.offset * np.array([-entity.direction[1], entity.direction[0]])
+            foot = entity.foot
             ends = [moved(foot - 0.5 * entity.direction), moved(foot + 0.5 * entity.direction)]
         (made.segment if entity.what == "segment" else made.line)(*ends, name=name)

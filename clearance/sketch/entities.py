@@ -14,7 +14,12 @@ import numpy as np
 
 
 class Numbers(Protocol):
-    """What an entity needs of its sketch: part of the flat vector of all numbers."""
+    """What an entity needs of its sketch: part of the flat vector of all numbers, and their origin."""
+
+    @property
+    def origin(self) -> np.ndarray:
+        """(2,) [m] what the numbers are counted from."""
+        ...
 
     def numbers(self, first: int, count: int) -> list[float]:
         """The `count` numbers from `first` on."""
@@ -43,7 +48,7 @@ class Point(Entity):
     @property
     def position(self) -> np.ndarray:
         """(2,) coordinates [m]."""
-        return np.array(self.sketch.numbers(self.variable, 2))
+        return self.sketch.origin + self.sketch.numbers(self.variable, 2)
 
 
 class Line(Entity):
@@ -67,14 +72,23 @@ class Line(Entity):
     @property
     def offset(self) -> float:
         """[m] signed distance of the line from the origin along its normal (-sin, cos)."""
-        return float(self.sketch.numbers(self.variable, 2)[1])
+        d = self.direction
+        beside = d[0] * self.sketch.origin[1] - d[1] * self.sketch.origin[0]
+        return float(self.sketch.numbers(self.variable, 2)[1] + beside)
+
+    @property
+    def foot(self) -> np.ndarray:
+        """(2,) [m] a point of the line, near the sketch."""
+        offset, d = self.sketch.numbers(self.variable, 2)[1], self.direction
+        return self.sketch.origin + offset * np.array([-d[1], d[0]])
 
     @property
     def length(self) -> float:
         """[m] distance of its two points; NaN without points."""
         if self.ends is None:
             return math.nan
-        return float(np.linalg.norm(self.ends[1].position - self.ends[0].position))
+        a, b = (self.sketch.numbers(p.variable, 2) for p in self.ends)
+        return math.dist(a, b)
 
 
 class Segment(Line):

@@ -15,9 +15,10 @@ from clearance.kernels.sketch_equations import LENGTHS, RATIO
 from clearance.kernels.sketch_execute import FAILED, KEPT
 from clearance.kernels.sketch_fit import set_down
 from clearance.kernels.sketch_graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
-from clearance.kernels.sketch_search import RESTARTS, solve_block
+from clearance.kernels.sketch_search import BANDED, RESTARTS, solve_block
 from clearance.kernels.sketch_start import unsettled
-from clearance.sketch.movement import least_movement
+from clearance.sketch.folds import solve_from
+from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.start import Sides, sides_hold, started
@@ -100,7 +101,7 @@ def _run_at_unit(
     x, sketch = started(problem, before, sides)
     loose = _loosened(problem, dependent)
     active = unsettled(
-        problem.system, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
+        problem.regular, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
     )
     if turned is not None:
         active[problem.part[problem.plan.vertex[turned < 0.0]]] = 1
@@ -149,11 +150,24 @@ def _solve_parts(
     loose = _loosened(problem, problem.plan.dependent)
     broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
     for p in np.flatnonzero(broken & active_part):
-        _numeric_part(problem, p, x, start, effort)
+        if effort < 2 or not _from_drawing(problem, p, x, start):
+            _numeric_part(problem, p, x, start, effort)
     if effort < 2:
         return fates, x
     x = nearest_roots(problem, x, start, fates)
-    return fates, _nearest(problem, x, sketch, start, active_part)
+    x = _nearest(problem, x, sketch, start, active_part)
+    return fates, _touching(problem, x, active_part)
+
+
+def _touching(problem: Problem, x: np.ndarray, active: np.ndarray) -> np.ndarray:
+    """x with the points of contact where they touch to the last digits."""
+    if problem.contacts is None:
+        return x
+    parts = np.unique(problem.row_part[problem.contacts.rows])
+    for p in parts[parts >= 0]:
+        moved = closed(problem, p, x) if active[p] else None
+        x = x if moved is None else moved
+    return x
 
 
 def _nearest(
@@ -171,6 +185,19 @@ def _nearest(
         if moved is not None:
             x = moved
     return x
+
+
+def _from_drawing(problem: Problem, part: int, x: np.ndarray, start: np.ndarray) -> bool:
+    """Solves one whole part of many freedoms by least squares from the drawing, in place on x; True when
+    it holds."""
+    if problem.free[part] + np.sum(problem.row_part == part) < BANDED:
+        return False
+    mine = (problem.system.vertex_of > 0) & (problem.part[problem.system.vertex_of] == part)
+    found = solve_from(problem, part, np.where(mine, start, x), RESIDUAL * problem.size)
+    if found is None:
+        return False
+    x[:] = found
+    return True
 
 
 def _numeric_part(

@@ -9,6 +9,8 @@ import math
 from array import array
 from collections.abc import Iterable
 
+import numpy as np
+
 from clearance.sketch.constraints import Constraint
 from clearance.sketch.rows import Row
 
@@ -22,6 +24,7 @@ class FlatLists:
 
     def __init__(self) -> None:
         self._numbers: list[float] = []
+        self._origin: tuple[float, float] | None = None
         self._roles = array("q")
         self._line_ends = array("q")
         self._codes = array("q")
@@ -34,6 +37,17 @@ class FlatLists:
         self._ranks = array("q")
         self._ordered: list[Constraint] = []
         self._together: list[tuple[int, int]] = []
+
+    @property
+    def origin(self) -> np.ndarray:
+        """(2,) [m] what the numbers are counted from: the first place that was drawn."""
+        return np.array(self._origin or (0.0, 0.0))
+
+    def _local(self, x: float, y: float) -> tuple[float, float]:
+        """A drawn place as counted from the origin, so that no digits go to where a sketch lies."""
+        if self._origin is None:
+            self._origin = (x, y)
+        return x - self._origin[0], y - self._origin[1]
 
     def _grow(self, *pairs: tuple[float, int]) -> int:
         """Takes in numbers with their roles; the first one's place."""

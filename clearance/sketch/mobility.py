@@ -68,7 +68,7 @@ class Equations:
         self.solution = x
         self.vertices = np.flatnonzero(problem.part == part)
         self.first, self.n = numbered(problem, self.vertices)
-        s = problem.system
+        self.system = s = problem.regular
         self.unit = np.ones(self.n)
         self.unit[self.first[self.vertices[s.kind[self.vertices] == TURN]]] = 1.0 / problem.size
         self.error = np.zeros(rows.size)
@@ -80,14 +80,14 @@ class Equations:
 
     def at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (m,) and derivative (m, n)."""
-        f, i, j, value = spread(self.problem.system, self.rows, x, self.first)
+        f, i, j, value = spread(self.system, self.rows, x, self.first)
         matrix = np.zeros((self.rows.size, self.n))
         np.add.at(matrix, (i, j), value)
         return f - self.error, matrix * self.unit
 
     def curvature(self, x: np.ndarray, weights: np.ndarray, motions: np.ndarray) -> np.ndarray:
         """(k, k) the second derivative of the weighted equations along motions (n, k)."""
-        i, j, value = bend(self.problem.system, self.rows, x.copy(), self.first, weights)
+        i, j, value = bend(self.system, self.rows, x.copy(), self.first, weights)
         matrix = np.zeros((self.n, self.n))
         np.add.at(matrix, (i, j), value)
         scaled = self.unit[:, None] * motions
@@ -96,7 +96,7 @@ class Equations:
     def moved(self, x: np.ndarray, step: np.ndarray) -> np.ndarray:
         """The numbers after a step (n,) of the columns."""
         out = x.copy()
-        step_by(self.problem.system, self.vertices, self.unit * step, 1.0, out, self.first)
+        step_by(self.system, self.vertices, self.unit * step, 1.0, out, self.first)
         return out
 
     def walked(self, x: np.ndarray, step: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:

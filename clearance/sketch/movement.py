@@ -9,6 +9,7 @@ with a line search.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,13 +34,21 @@ def least_movement(problem: Problem, part: int, x, target, weight, start=None) -
         x: numbers that satisfy the equations (or nearly); `start`, the sketch, is tried first.
         weight: (n,) how much each variable of a point counts.
     """
-    work = _Work(problem, part, target, weight)
+    best = _best(_Work(problem, part, target, weight), x, start)
+    if best is None and problem.contacts is not None:  # what is regular may lead to a line's other side
+        plain = replace(problem, contacts=None)
+        return _best(_Work(plain, part, target, weight), x, start)
+    return best
+
+
+def _best(work: _Work, x: np.ndarray, start: np.ndarray | None) -> np.ndarray | None:
+    """The nearest of the optima that are found from x and from the sketch."""
     best, least = None, math.inf
     for origin in (x, start):
         if origin is None or (best is not None and work.n > DENSE // 2):
             continue
         found = work.optimum(origin.copy())
-        if found is None:
+        if found is None or not work.holds(found):
             continue
         moved = work.movement(found)
         if moved < least * (1.0 - 1e-9):
@@ -47,12 +56,20 @@ def least_movement(problem: Problem, part: int, x, target, weight, start=None) -
     return best
 
 
+def closed(problem: Problem, part: int, x: np.ndarray) -> np.ndarray | None:
+    """The numbers (n,) next to a solution x at which the equations of a part hold to rounding, points of
+    contact with them; None when there are none."""
+    work = _Work(problem, part, x, problem.weight)
+    found = work.restored(x)
+    return found if found is not None and work.holds(found) else None
+
+
 class _Work:
     """One part's columns, weights and equations."""
 
     def __init__(self, problem: Problem, part: int, target: np.ndarray, weight: np.ndarray) -> None:
-        s = problem.system
-        self.system: System = s
+        self.system: System = problem.regular
+        s = self.system
         self.problem = problem
         self.vertices = np.flatnonzero(problem.part == part)
         dependent = np.zeros(problem.row_part.size, bool)
@@ -84,6 +101,13 @@ class _Work:
                 for j in s.member[s.member_start[v] : s.member_start[v + 1]]:
                     entries.append((c, c, s.scale[j] ** 2 * (WEAK if int(j) - 1 in drawn else 1.0)))
         return np.array(entries).reshape(-1, 3)
+
+    def holds(self, x: np.ndarray) -> bool:
+        """Whether the equations hold as they are counted: a contact may be regular on a line's other side."""
+        if self.problem.contacts is None:
+            return True
+        error = spread(self.problem.system, self.rows, x, self.first)[0]
+        return bool(np.abs(error).max(initial=0.0) <= RESIDUAL * self.problem.size)
 
     def offsets(self, x: np.ndarray) -> np.ndarray:
         """(n,) how far every column is from its target."""
@@ -120,7 +144,7 @@ class _Work:
             x, multipliers = moved, fresh
             if taken * np.abs(step).max() <= 1e-9 * size:
                 break
-        return self._restored(x)
+        return self.restored(x)
 
     def _step(self, f, rows, cols, entries, gap, bent):
         i, _, h = self.hessian.T
@@ -191,7 +215,7 @@ class _Work:
             size *= 0.5
         return moved, size
 
-    def _restored(self, x: np.ndarray) -> np.ndarray | None:
+    def restored(self, x: np.ndarray) -> np.ndarray | None:
         """Least-norm Newton steps until the equations hold to rounding."""
         size = self.problem.size
         best, least = None, RESIDUAL * size

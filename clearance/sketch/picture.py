@@ -58,7 +58,7 @@ def _drawn(e, low, high, scale: float) -> str:
         return _path(f"M{at(e.ends[0].position)} L{at(e.ends[1].position)}", "black", 1.6)
     if isinstance(e, Line):
         reach = 2.0 * float(np.max(high - low)) * e.direction
-        middle = e.offset * np.array([-e.direction[1], e.direction[0]])
+        middle = e.foot
         middle = middle + e.direction * float(e.direction @ (0.5 * (low + high) - middle))
         return _path(f"M{at(middle - reach)} L{at(middle + reach)}", "#bbb", 0.8)
     if isinstance(e, Arc):

@@ -27,6 +27,7 @@ from clearance.kernels.sketch_graph import (
 from clearance.kernels.sketch_place import System
 from clearance.kernels.sketch_plan import Plan, make_plan, peeled_plan
 from clearance.kernels.sketch_start import counts, row_parts
+from clearance.sketch.contacts import Contacts, contacts_of
 
 RESIDUAL = 1e-12
 """[-] Largest residual of a solved sketch relative to its size: some hundred roundings of a
@@ -123,7 +124,12 @@ class Problem:
     row_part: np.ndarray
     length_scale: np.ndarray
     size: float
-    value_scale: float = 1.0
+    contacts: Contacts | None = None
+
+    @property
+    def regular(self) -> System:
+        """The system as it is regular at a solution, where points of contact are double roots otherwise."""
+        return self.system if self.contacts is None else self.contacts.regular(self.system)
 
     @property
     def is_rigid(self) -> np.ndarray:
@@ -230,6 +236,7 @@ def _fresh(
     return Problem(
         tables, alias, weight, repeated, system, fate, ground, theta_of, plan, part, n_parts, hold,
         free, row_parts(ends, var, part, vertex_of), length_scale, size,
+        contacts_of(tables.code, var, (tables.scale == 0.0) & (tables.offset == 0.0)),
     )  # fmt: skip
 
 

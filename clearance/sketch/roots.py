@@ -122,5 +122,10 @@ def _by_name(sketch, problem: Problem, x: np.ndarray) -> dict[str, np.ndarray]:
     for name, e in sketch.entities.items():
         count = 1 if e.what in ("circle", "arc") else 2
         i = problem.alias[e.variable]
-        out[name] = x[i : i + count].copy()
+        numbers = x[i : i + count].copy()
+        if e.what == "point":
+            numbers += sketch.origin
+        elif count == 2:
+            numbers[1] += np.cos(x[i]) * sketch.origin[1] - np.sin(x[i]) * sketch.origin[0]
+        out[name] = numbers
     return out

@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from clearance.kernels import sketch_equations as equation
-from clearance.sketch.entities import Line, Point
+from clearance.sketch.entities import Arc, Line, Point
 
 NOWHERE, GROUNDED, ORIENTED = 0, 1, 2
 """How a row refers to the ground: not, by position, by direction only."""
@@ -115,10 +115,22 @@ def line_touches(x, line, c):
     return [Row(equation.LINE_CIRCLE, place, (side,))]
 
 
+def shared_end(c, d) -> Point | None:
+    """The point in which two arcs end, if there is one: their centres lie on one side of it or on both."""
+    if isinstance(c, Arc) and isinstance(d, Arc):
+        return next((p for p in (c.start, c.end) if p in (d.start, d.end)), None)
+    return None
+
+
 def circles_touch(x, c, d, inside=None):
     r, q = x[c.variable], x[d.variable]
     apart = span(x, c.center, d.center)
-    if inside is None:
+    shared = shared_end(c, d)
+    if inside is None and shared is not None:
+        (px, py), *centers = ((x[i], x[i + 1]) for i in (shared.variable, c.center.variable, d.center.variable))
+        (ax, ay), (bx, by) = centers
+        inside = (ax - px) * (bx - px) + (ay - py) * (by - py) > 0.0
+    elif inside is None:
         inside = abs(apart - abs(r - q)) < abs(apart - (r + q))
     signs = (1.0, 1.0) if not inside else ((1.0, -1.0) if r >= q else (-1.0, 1.0))
     place = (*pair(c.center), *pair(d.center), c.variable, d.variable)

@@ -37,7 +37,7 @@ class Sketch(Relations):
     def point(self, x: float, y: float, *, name: str | None = None) -> Point:
         """A new point at (x, y) [m]."""
         name = self._name(name, "point")
-        x, y = number(x, f"{name}.x"), number(y, f"{name}.y")
+        x, y = self._local(number(x, f"{name}.x"), number(y, f"{name}.y"))
         return self._add(Point(self, name, self._grow((x, X), (y, Y))))
 
     def line(
@@ -75,8 +75,8 @@ class Sketch(Relations):
         name = self._name(name, "arc")
         for p in (start, end):
             self._own(p, Point)
-        c = center.position if isinstance(center, Entity) else two(center, name)
-        radius = math.hypot(c[0] - start.position[0], c[1] - start.position[1])
+        c = self._place(center) if isinstance(center, Entity) else self._local(*two(center, name))
+        radius = math.dist(c, self._place(start))
         if radius == 0.0:
             raise DegenerateSketch(f"{name} starts at its centre", valid="a radius above 0")
         variable, middle = self._round(center, radius, name)
@@ -135,6 +135,10 @@ class Sketch(Relations):
         """Part of the flat vector of all entities' numbers; for the entities."""
         return self._numbers[first : first + count]
 
+    def _place(self, point: Point) -> list[float]:
+        """A point's coordinates as counted from the origin."""
+        return self._numbers[point.variable : point.variable + 2]
+
     def _result(self, problem, before, outcome) -> SketchResult:
         from clearance.sketch.result import SketchResult
 
@@ -153,7 +157,8 @@ class Sketch(Relations):
         if points:
             for p in (a, b):
                 self._own(p, Point)
-        (px, py), (qx, qy) = ((p.position if points else two(p, name)) for p in (a, b))
+        places = [self._place(p) if points else self._local(*two(p, name)) for p in (a, b)]
+        (px, py), (qx, qy) = places
         if px == qx and py == qy:
             raise DegenerateSketch(
                 f"the two points of {name} coincide", valid="two different points"

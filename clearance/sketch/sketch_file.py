@@ -184,14 +184,8 @@ def _tree(sketch) -> dict:
 
 
 def _drawn(line: Entity) -> list:
-    foot = line.offset * _normal(line)
+    foot = line.foot
     return [(foot - 0.5 * line.direction).tolist(), (foot + 0.5 * line.direction).tolist()]
-
-
-def _normal(line):
-    import numpy as np
-
-    return np.array([-line.direction[1], line.direction[0]])
 
 
 def _entry(sketch, c) -> dict:

@@ -60,7 +60,7 @@ class Solver:
         if outcome.broken == -1:
             target = outcome.x.copy()
             i = problem.alias[point.variable]
-            target[i : i + 2] = position
+            target[i : i + 2] = np.array(position) - self.sketch.origin
             weight = problem.weight.copy()
             weight[i : i + 2] = DRAGGED
             part = problem.part[problem.system.vertex_of[i]]
