@@ -27,7 +27,7 @@ INTERVALS_A_PIECE = 20.0
 """What long curves may use beyond that for each piece of both: seen are up to seven on noisy outlines."""
 
 
-SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE = 1000.0, 2.0
+SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE = 250.0, 0.5
 """Intervals until which a search tries for the last bits; after them the tolerance asked for is enough."""
 
 ASKED = 0.25
