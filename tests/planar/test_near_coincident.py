@@ -4,65 +4,15 @@ What holds is shown in 80-bit floats: feet of many points by the golden section 
 with the package.
 """
 
-import math
-
 import numpy as np
 import pytest
 
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff, within
 from tests.oracle import planar_hausdorff as oracle
-from tests.planar.unlike import (
-    CUBIC,
-    periodic_circle,
-    quintic_circle,
-    reparametrised,
-    semicircle,
-)
+from tests.planar.unlike import CASES, reparametrised, warped
 
 pytestmark = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
-
-HALF = np.array([[1, 0], [1, 2], [-1, 2], [-1, 0.0]])
-TURN = 2.0 * math.pi
-
-
-def noise(shape, seed, size):
-    return size * np.random.default_rng(seed).normal(size=shape)
-
-
-def warped(through, size=0.0, seed=0):
-    raised = reparametrised(CUBIC, through)
-    return Curve.bezier(CUBIC), Curve.bezier(raised + noise(raised.shape, seed, size))
-
-
-CASES = {
-    "rational cubic semicircle, arc": lambda: (semicircle(), Curve.arc([0, 0], 1, 0, math.pi)),
-    "circle, periodic cubic of 1000 points": lambda: (
-        Curve.circle([0, 0], 1), periodic_circle(1000),
-    ),
-    "circle, periodic cubic of 100 points": lambda: (
-        Curve.circle([0, 0], 1), periodic_circle(100),
-    ),
-    "circle, rational quintic": lambda: (Curve.circle([0, 0], 1), quintic_circle()),
-    "quadratic q": lambda: warped([0, 0.2, 1]),
-    "cubic q": lambda: warped([0, 0.6, 0.4, 1]),
-    "q = u^2, at rest at its start": lambda: warped([0, 0, 1]),
-    "q = u^3": lambda: warped([0, 0, 0, 1]),
-    "q beyond 1 and back": lambda: warped([0, 1.2, 1]),
-    "weights 1 to 1e3": lambda: (
-        Curve.bezier(CUBIC, [1, 10.0, 100.0, 1000.0]), Curve.bezier(CUBIC),
-    ),
-    "weights 1 to 1e6, quadratic q": lambda: (
-        Curve.bezier(CUBIC, [1, 1e2, 1e4, 1e6]), Curve.bezier(reparametrised(CUBIC, [0, 0.3, 1])),
-    ),
-}  # fmt: skip
-for exponent in range(1, 15):
-    CASES[f"cubic, degree 6 copy 1e-{exponent} off"] = lambda e=exponent: warped(
-        [0, 0.3, 1], 10.0**-e, e
-    )
-    CASES[f"semicircle 1e-{exponent} off, arc"] = lambda e=exponent: (
-        semicircle(HALF + noise(HALF.shape, e, 10.0**-e)), Curve.arc([0, 0], 1, 0, math.pi),
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize("name", CASES)
