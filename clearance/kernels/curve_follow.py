@@ -47,8 +47,23 @@ COEFFICIENTS = _interpolations()
 
 @inlined
 def order_for(n, m):
-    """The degree of the map for a part of A of degree `n` and one of B of degree `m`; below 2 none is tried."""
+    """The highest degree of a map for a part of A of degree `n`, one of B of degree `m`; below 2 none serves."""
     return min(HIGHEST_ORDER, (LARGEST_DEGREE - n) // m)
+
+
+@inlined
+def least_order(bend, length, fine, most):
+    """The degree of a map that likely leaves a drift below `fine`, at most `most`.
+
+    `bend` is how far the middle foot is off the middle, as a share of the `length` between the outer feet; the
+    terms of the feet's map fall about as its powers.
+    """
+    left = length * 2.0 * bend
+    for order in range(2, most):
+        left *= 2.0 * bend
+        if left <= fine:
+            return order
+    return most
 
 
 @inlined
@@ -75,23 +90,21 @@ def _set_map(feet, order, curve_map):
 
 @inlined
 def _compose(composed, n, curve_map, order, columns):
-    """Turns the n + 1 points composed[:, 0] into the scaled coefficients composed[0] of degree n times order.
+    """Turns the points composed[:n + 1, :, 0] into the scaled coefficients composed[0] of degree n times order.
 
-    De Casteljau's scheme with a polynomial for its ratio.
+    De Casteljau's scheme with a polynomial for its ratio; row n + 1 is work space.
     """
-    degree = 0
+    degree, made = 0, composed[n + 1]
     for level in range(1, n + 1):
         for i in range(n + 1 - level):
-            for r in range(degree + order, -1, -1):
+            one, two = composed[i], composed[i + 1]
+            made[:columns, : degree + order + 1] = 0.0
+            for k in range(order + 1):
+                share, rest = curve_map[k, 0], curve_map[k, 1]
                 for c in range(columns):
-                    value = 0.0
-                    for k in range(max(0, r - degree), min(order, r) + 1):
-                        value += curve_map[k, 1] * composed[i, r - k, c]
-                        value += curve_map[k, 0] * composed[i + 1, r - k, c]
-                    composed[n + 1, r, c] = value
-            for r in range(degree + order + 1):
-                for c in range(columns):
-                    composed[i, r, c] = composed[n + 1, r, c]
+                    for r in range(degree + 1):
+                        made[c, r + k] += rest * one[c, r] + share * two[c, r]
+            one[:columns, : degree + order + 1] = made[:columns, : degree + order + 1]
         degree += order
     return degree
 
@@ -108,49 +121,49 @@ def _relative(points, n, x, y):
 
 
 @inlined
-def _raised(row, degree, to, columns, spare):
-    """Raises scaled coefficients to the degree `to`."""
+def _raised(row, degree, to, made):
+    """Raises the scaled coefficients in `row` to the degree `to`, into the same row."""
     if to == degree:
         return
-    for r in range(to + 1):
-        for c in range(columns):
-            value = 0.0
-            for k in range(max(0, r - degree), min(to - degree, r) + 1):
-                value += CHOOSE[to - degree, k] * row[r - k, c]
-            spare[r, c] = value
-    for r in range(to + 1):
-        for c in range(columns):
-            row[r, c] = spare[r, c]
+    made[: to + 1] = 0.0
+    for k in range(to - degree + 1):
+        factor = CHOOSE[to - degree, k]
+        for r in range(degree + 1):
+            made[r + k] += factor * row[r]
+    row[: to + 1] = made[: to + 1]
 
 
 @inlined
-def _gaps(one, n, two, m, rational, spare):
-    """Scaled coefficients of one - two into `spare`, with its weight where rational; returns their degree."""
+def _gaps(one, n, two, m, rational, gap):
+    """Scaled coefficients of one - two into `gap`, with its weight where rational; returns their degree."""
     if not rational:
         degree = max(n, m)
-        _raised(one, n, degree, 2, spare)
-        _raised(two, m, degree, 2, spare)
-        for r in range(degree + 1):
-            spare[r, 0], spare[r, 1] = one[r, 0] - two[r, 0], one[r, 1] - two[r, 1]
+        for c in range(2):
+            _raised(one[c], n, degree, gap[2])
+            _raised(two[c], m, degree, gap[2])
+            for r in range(degree + 1):
+                gap[c, r] = one[c, r] - two[c, r]
         return degree
-    for r in range(n + m + 1):
-        x, y, w = 0.0, 0.0, 0.0
-        for k in range(max(0, r - m), min(n, r) + 1):
-            x += one[k, 0] * two[r - k, 2] - two[r - k, 0] * one[k, 2]
-            y += one[k, 1] * two[r - k, 2] - two[r - k, 1] * one[k, 2]
-            w += one[k, 2] * two[r - k, 2]
-        spare[r, 0], spare[r, 1], spare[r, 2] = x, y, w
+    gap[:, : n + m + 1] = 0.0
+    for k in range(n + 1):
+        x, y, w = one[0, k], one[1, k], one[2, k]
+        for r in range(m + 1):
+            gap[0, r + k] += x * two[2, r] - two[0, r] * w
+            gap[1, r + k] += y * two[2, r] - two[1, r] * w
+            gap[2, r + k] += w * two[2, r]
     return n + m
 
 
 @inlined
 def _largest_sq(gap, degree, rational):
-    """The largest squared coefficient, what rounding of their products is relative to."""
-    largest = 0.0
+    """The largest squared coefficient, which bounds the square, and its index."""
+    largest, which = 0.0, 0
     for r in range(degree + 1):
-        weight = gap[r, 2] if rational else CHOOSE[degree, r]
-        largest = max(largest, (gap[r, 0] ** 2 + gap[r, 1] ** 2) / weight**2)
-    return largest
+        weight = gap[2, r] if rational else CHOOSE[degree, r]
+        square = (gap[0, r] ** 2 + gap[1, r] ** 2) / weight**2
+        if square > largest:
+            largest, which = square, r
+    return largest, which
 
 
 @inlined
@@ -158,22 +171,26 @@ def _squares(gap, degree, rational, out):
     """Bernstein coefficients (or their ratios) of the squared length of `gap`, scaled, into out[:, 0]."""
     for r in range(2 * degree + 1):
         square, weight = 0.0, 0.0
-        for k in range(max(0, r - degree), min(degree, r) + 1):
-            square += gap[k, 0] * gap[r - k, 0] + gap[k, 1] * gap[r - k, 1]
-            if rational:
-                weight += gap[k, 2] * gap[r - k, 2]
+        low = max(0, r - degree)
+        for k in range(low, (r + 1) // 2):
+            square += 2.0 * (gap[0, k] * gap[0, r - k] + gap[1, k] * gap[1, r - k])
+            weight += 2.0 * gap[2, k] * gap[2, r - k]
+        if r % 2 == 0:
+            square += gap[0, r // 2] ** 2 + gap[1, r // 2] ** 2
+            weight += gap[2, r // 2] ** 2
         out[r, 0] = square / (weight if rational else CHOOSE[2 * degree, r])
     return 2 * degree
 
 
 @kernel
-def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, work, composed):
+def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, work, composed):
     """A proven upper bound of the distance of A on [t0, t1] to B, where it is largest, and its rounding.
 
-    `feet` are parameters on piece `j` at the places SHARES[order] of [t0, t1]. Returns (bound, share of
-    [t0, t1], rounding), (inf, 0, 0) where the feet span nothing.
+    `feet` are parameters on piece `j` at the places SHARES[order] of [t0, t1]. The largest coefficient itself
+    will do where it is below `enough`; else the squares' coefficients are the bound. Returns (bound, share of
+    [t0, t1], rounding), (inf, 0, 0) where the feet span nothing. `composed` is (points, 3, coefficients).
     """
-    p, q, curve_map, spare, out = work[6], work[7], work[5], work[8], work[9]
+    p, q, curve_map = work[6], work[7], work[5]
     low, high = _set_map(feet, order, curve_map)
     if not high > low:
         return np.inf, 0.0, 0.0
@@ -184,21 +201,23 @@ def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, work, comp
     reach = max(reach, _relative(p, n, x - shift_x, y - shift_y))
     rational = pa.rational[i] or pb.rational[j]
     columns = 3 if rational else 2
-    for k in range(m + 1):
-        for c in range(columns):
-            composed[k, 0, c] = q[k, c]
+    gap, own = composed[m + 2], composed[m + 1]
+    for c in range(columns):
+        for k in range(m + 1):
+            composed[k, c, 0] = q[k, c]
     degree = _compose(composed, m, curve_map, order, columns)
-    for k in range(n + 1):
-        for c in range(columns):
-            p[k, c] *= CHOOSE[n, k]
-    degree = _gaps(p, n, composed[0], degree, rational, spare)
-    largest_sq = _largest_sq(spare, degree, rational)
-    degree = _squares(spare, degree, rational, out)
-    most, which = greatest(out, degree)
-    bound = math.sqrt(most)
+    for c in range(columns):
+        for k in range(n + 1):
+            own[c, k] = CHOOSE[n, k] * p[k, c]
     # each of m levels sums 2 (order + 1) products, the common degree one more run; squares up to `degree`
-    steps = m * (2 * order + 6) + degree + 16
-    rounding = 2.0 * ROUNDOFF * steps * reach
+    degree = _gaps(own, n, composed[0], degree, rational, gap)
+    rounding = 2.0 * ROUNDOFF * reach * (m * (2 * order + 6) + 2 * degree + 16)
+    largest_sq, which = _largest_sq(gap, degree, rational)
+    if largest_sq <= enough * enough:
+        return math.sqrt(largest_sq), which / degree, rounding
+    degree = _squares(gap, degree, rational, work[9])
+    most, which = greatest(work[9], degree)
+    bound = math.sqrt(most)
     rounding += math.sqrt(most + 2.0 * ROUNDOFF * (degree + 8) * largest_sq) - bound
     return bound, which / degree, rounding
 

@@ -191,6 +191,7 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
     points, stack = work[0], work[1]
     stack[0, 0], stack[0, 1] = s0, s1
     top, found, lower, where = 1, best, np.inf, s0
+    fine = -1.0  # what the points' rounding is relative to: those of the whole, not of ever smaller parts
     while top > 0:
         top -= 1
         a, b = stack[top, 0], stack[top, 1]
@@ -199,6 +200,7 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
             points[k, 0] -= x * points[k, 2]
             points[k, 1] -= y * points[k, 2]
         least, reach = least_square(points, n, rational, work[2])
+        fine = math.sqrt(reach) if fine < 0.0 else fine
         slack = (n + 8.0) * ROUNDOFF * reach  # of 2 n + 1 sums of products, each term below `reach`
         if least - slack > found * found:
             continue
@@ -221,7 +223,7 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
             below = math.sqrt(max(0.0, distance * distance - defect))
             if distance < found:
                 found, where = distance, t
-            if distance - below <= 4.0 * ROUNDOFF * math.sqrt(reach) or b - a < 1e-14:
+            if distance - below <= 4.0 * ROUNDOFF * fine or b - a < 1e-14:
                 lower = min(lower, below)
                 continue
         middle = 0.5 * (a + b)

@@ -13,7 +13,7 @@ from clearance.kernels.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve_bezier import hypotenuse, jet
 from clearance.kernels.curve_follow import LARGEST_DEGREE
 from clearance.kernels.distance_map import draw, lower_bound_of_map
-from clearance.kernels.hausdorff_search import Pair, close, examine, grown
+from clearance.kernels.hausdorff_search import ROOM, Pair, close, examine, grown
 from clearance.kernels.hausdorff_state import (
     ARCS,
     AT_A,
@@ -72,7 +72,7 @@ def _search_kept(pair, la, aim, drawn, sparing, kept, state, work, composed, hea
         kept[k] = False
         state[KEPT] += 1.0
         hint = drawn.arc[drawn.first[k]] if hint < 0 else hint
-        if n_open + 2 > heap.shape[0]:
+        if n_open + ROOM > heap.shape[0]:
             heap = grown(heap)
         hint, n_open = examine(
             pair, aim, la.piece[k], la.arcs[k, S0], la.arcs[k, S1], hint, 0.0, state, work, composed,
@@ -122,7 +122,7 @@ def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, aim):
     points[:] = math.nan
     most = max(widest(pa), widest(pb))
     work = np.empty((11, max(2 * LARGEST_DEGREE + 2, 4 * most + 4), 4))
-    composed, heap = np.empty((most + 1, LARGEST_DEGREE + 2, 3)), np.empty((64, 6))
+    composed, heap = np.empty((most + 2, 3, LARGEST_DEGREE + 1)), np.empty((4 * ROOM, 6))
     for turn in range(2):
         state, n_arcs = out[turn], la.arcs.shape[0]
         pixel = length_of_arcs(la.arcs) / min(PIXELS_AT_MOST, max(PIXELS_AT_LEAST, 2.0 * n_arcs))
@@ -134,9 +134,7 @@ def both_directions(pa, la, ends_a, pb, lb, ends_b, shift_x, shift_y, aim):
         kept[drawn.deepest_leaf] = True
         # the deepest arc; then what trimming leaves, some of it first where it is much; then the rest
         for stage in range(3):
-            heap = _search_kept(
-                pair, la, aim, drawn, stage == 1, kept, state, work, composed, heap
-            )
+            heap = _search_kept(pair, la, aim, drawn, stage == 1, kept, state, work, composed, heap)
             bound = max(max(state[LOWER], state[MAP_BOUND]), aim.enough)
             if stage == 0:
                 kept[:] = True

@@ -16,7 +16,7 @@ import numpy as np
 from clearance.jit import inlined, kernel
 from clearance.kernels.arc_fit import Leaves
 from clearance.kernels.curve_bezier import Pieces, hypotenuse, jet
-from clearance.kernels.curve_follow import SHARES, drift, follow_bound, order_for
+from clearance.kernels.curve_follow import SHARES, drift, follow_bound, least_order, order_for
 from clearance.kernels.curve_nearest import slide_to_foot
 from clearance.kernels.hausdorff_exact import (
     chain_bound,
@@ -43,6 +43,9 @@ MANY = 512  # arcs of B from which on a straight part of A is first held against
 WORTH = 0.25  # the drift's share of what a bound is too large, from which on a map of higher order is tried
 SMALLEST = 4e-16  # an interval that floats cannot cut
 BESIDE = 1e-9  # share of an interval next to its ends where no cut beside a joint is made
+CLOSELY = 0.01  # how near a joint must be, as a share of the part of A that it cuts off
+MOST_PARTS = 32  # that an interval is cut into at once
+ROOM = MOST_PARTS + 2  # what the queue must have left
 BOUND, T0, T1, HINT, WAS_CUT, PIECE = 0, 1, 2, 3, 4, 5
 
 
@@ -117,37 +120,73 @@ def grown(heap):
 
 
 @inlined
-def _follow(pair, i, t0, t1, j, s0, s_middle, s1, work, composed):
-    """`follow_bound` through the feet of a part of A on piece `j`, those at its ends and middle known."""
-    n = pair.a.first[i + 1] - pair.a.first[i] - 1
-    order = order_for(n, pair.b.first[j + 1] - pair.b.first[j] - 1)
+def _follow(pair, i, t0, t1, j, s0, s_middle, s1, bound, share, order, enough, work, composed):
+    """A known bound, or `follow_bound` where less: through the feet of a part of A on piece `j` of B.
+
+    The feet of its ends and middle are given.
+    """
     if order < 2:
-        return np.inf, 0.0, 0.0
+        return bound, share, 0.0
     feet = work[10, :, 0]
     feet[0], feet[order] = s0, s1
     for r in range(1, order):
-        share = SHARES[order, r]
-        near = 2.0 * share
-        s = s0 + near * (s_middle - s0) if share <= 0.5 else s1 + (2.0 - near) * (s_middle - s1)
-        t = t0 + share * (t1 - t0)
+        place = SHARES[order, r]
+        near = 2.0 * place
+        s = s0 + near * (s_middle - s0) if place <= 0.5 else s1 + (2.0 - near) * (s_middle - s1)
+        t = t0 + place * (t1 - t0)
         feet[r], _ = slide_from(pair.a, pair.b, i, t, j, s, pair.shift_x, pair.shift_y)
-    return follow_bound(
-        pair.a, pair.b, i, t0, t1, j, feet, order, pair.shift_x, pair.shift_y, work, composed
+    closer, where, rounding = follow_bound(
+        pair.a,
+        pair.b,
+        i,
+        t0,
+        t1,
+        j,
+        feet,
+        order,
+        pair.shift_x,
+        pair.shift_y,
+        enough,
+        work,
+        composed,
     )
+    if closer < bound:
+        return closer, where, rounding
+    return bound, share, 0.0
 
 
 @inlined
-def _beside_joint(pair, i, t0, t1, t, j, other):
-    """The parameter of A next to a joint of B halfway from piece `j` to the piece `other`; nan where none is."""
-    between = (j + other) // 2 if other > j else (j + other + 1) // 2
-    joint = jet(pair.b, between, 1.0 if other > j else 0.0)
-    x, y = joint.x - pair.shift_x, joint.y - pair.shift_y
-    t = slide_to_foot(pair.a, i, x, y, t, t0, t1)
-    here = jet(pair.a, i, t)
-    near = BESIDE * (t1 - t0)
-    apart = hypotenuse(here.x - x, here.y - y)
-    long = hypotenuse(here.dx, here.dy) * (t1 - t0)
-    return t if t0 + near < t < t1 - near and apart < 0.01 * long else math.nan
+def _cut_beside_joints(pair, heap, n_open, bound, i, t0, t1, t, j, other, hint):
+    """Cuts an interval next to B's joints between piece `j`, nearest to its middle, and `other`, nearest to `t`.
+
+    Only where A passes them closely: elsewhere the branches cross at another place. Returns the number of open
+    intervals, the same where no cut was made.
+    """
+    forward, count = t > 0.5 * (t0 + t1), abs(other - j)
+    stride = (count + MOST_PARTS - 1) // MOST_PARTS
+    near, before = BESIDE * (t1 - t0), n_open
+    last = t0 if forward else t1
+    for step in range(stride // 2, count, stride):
+        piece = j + step if other > j else j - step
+        joint = jet(pair.b, piece, 1.0 if other > j else 0.0)
+        x, y = joint.x - pair.shift_x, joint.y - pair.shift_y
+        guess = 0.5 * (t0 + t1) + (t - 0.5 * (t0 + t1)) * (step + 0.5) / count
+        cut_at = slide_to_foot(pair.a, i, x, y, guess, t0, t1)
+        here = jet(pair.a, i, cut_at)
+        apart = hypotenuse(here.x - x, here.y - y) * count
+        low, high = (last, t1) if forward else (t0, last)
+        if not low + near < cut_at < high - near:
+            continue
+        if apart < CLOSELY * hypotenuse(here.dx, here.dy) * (t1 - t0):
+            if forward:
+                n_open = _push(heap, n_open, bound, last, cut_at, hint, 0.0, i)
+            else:
+                n_open = _push(heap, n_open, bound, cut_at, last, hint, 0.0, i)
+            last = cut_at
+    if n_open > before:
+        low, high = (last, t1) if forward else (t0, last)
+        n_open = _push(heap, n_open, bound, low, high, hint, 0.0, i)
+    return n_open
 
 
 @kernel
@@ -179,19 +218,24 @@ def examine(pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_
             settled_below(aim, state),
         )  # fmt: skip
         bound = min(bound, max(run, foot.distance))
-    if bound > settled_below(aim, state):
-        other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
-        bound = min(bound, max(other, foot.distance))
-    enough, lost = settled_below(aim, state), 0.0
+    enough, lost, followed = settled_below(aim, state), 0.0, False
+    highest = order_for(pa.first[i + 1] - pa.first[i] - 1, pb.first[j + 1] - pb.first[j] - 1)
     if bound > enough and max(d0, d1) <= enough:
         there = jet(pb, j, foot.local)
         off = abs(foot.local - 0.5 * (s0 + s1)) * hypotenuse(there.dx, there.dy)
         if drift(off, foot.distance) > WORTH * (bound - enough):
-            closer, where, rounding = _follow(
-                pair, i, t0, t1, j, s0, foot.local, s1, work, composed
+            followed = True
+            length = abs(s1 - s0) * hypotenuse(there.dx, there.dy)
+            fine = aim.gap + math.sqrt(2.0 * aim.gap * foot.distance)
+            order = least_order(off / length, length, fine, highest) if length > 0.0 else highest
+            bound, share, lost = _follow(
+                pair, i, t0, t1, j, s0, foot.local, s1, bound, share, order, enough, work, composed
             )
-            if closer < bound:
-                bound, share, lost = closer, where, rounding
+    if bound > enough:
+        other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
+        other = max(other, foot.distance)
+        if other < bound:
+            bound, lost = other, 0.0
     if bound <= settled_below(aim, state):
         state[UPPER] = max(state[UPPER], bound + lost)
         return foot.leaf, n_open
@@ -207,16 +251,29 @@ def examine(pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_
         state[ENDS] += 1.0
     seen = consider(pa, pb, lb, i, t, shift_x, shift_y, foot.leaf, state, work)
     open_still = bound > settled_below(aim, state)
+    if open_still and not followed and seen.piece == j and max(d0, d1) <= enough:
+        # near an inflection of the feet's map the middle does not tell how far the two drift apart
+        bound, share, lost = _follow(
+            pair, i, t0, t1, j, s0, foot.local, s1, bound, share, highest, settled_below(aim, state),
+            work, composed,
+        )  # fmt: skip
+        open_still = bound > settled_below(aim, state)
     if not open_still or t1 - t0 < SMALLEST:
         state[GIVEN_UP] += open_still
         state[UPPER] = max(state[UPPER], bound + lost)
         return foot.leaf, n_open
-    chosen = math.nan
+    bound += lost
     if seen.piece != j:
-        chosen = _beside_joint(pair, i, t0, t1, 0.5 * (middle + t), j, seen.piece)
+        before = n_open
+        n_open = _cut_beside_joints(
+            pair, heap, n_open, bound, i, t0, t1, t, j, seen.piece, foot.leaf
+        )
+        if n_open > before:
+            return foot.leaf, n_open
+    chosen = math.nan
     # next to each other the two branches cross where B's pieces meet: there, or halving creeps up on it
     beside = abs(seen.leaf - foot.leaf) <= 1
-    if math.isnan(chosen) and was_cut == 0.0 and (beside or bound < 2.0 * state[DISTANCE]):
+    if was_cut == 0.0 and (beside or bound < 2.0 * state[DISTANCE]):
         s, reached = slide_from(pa, pb, i, t, j, s, shift_x, shift_y)
         if seen.distance < reached * (1.0 - 1e-12):
             crossing = self_bisector(
@@ -231,8 +288,8 @@ def examine(pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_
     special = 1.0
     if not t0 < chosen < t1:
         chosen, special = middle, 0.0
-    n_open = _push(heap, n_open, bound + lost, t0, chosen, foot.leaf, special, i)
-    n_open = _push(heap, n_open, bound + lost, chosen, t1, foot.leaf, special, i)
+    n_open = _push(heap, n_open, bound, t0, chosen, foot.leaf, special, i)
+    n_open = _push(heap, n_open, bound, chosen, t1, foot.leaf, special, i)
     return foot.leaf, n_open
 
 
@@ -252,7 +309,9 @@ def close(pair, aim, state, work, composed, heap, n_open):
         n_open = _pop(heap, n_open)
         row = heap[n_open]
         t0, t1, hint, was_cut, i = row[T0], row[T1], int(row[HINT]), row[WAS_CUT], int(row[PIECE])
-        if n_open + 2 > heap.shape[0]:
+        if n_open + ROOM > heap.shape[0]:
             heap = grown(heap)
-        _, n_open = examine(pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_open)
+        _, n_open = examine(
+            pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_open
+        )
     return heap

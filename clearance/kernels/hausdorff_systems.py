@@ -1,35 +1,36 @@
-"""Compiled solution of the systems (11), (12), (13) on whole curves: the way without trimming.
+"""Compiled solution of the systems (11), (12), (13): the multivariate solver of the paper, with proofs.
 
 Source: Elber, Grandine, Hausdorff and minimal distances between parametric freeforms (2008). Every interval
 T of curve A carries the cells of B that may hold a foot of its points, found by excluding the rest with
 interval bounds; both are halved until each system in T has provably no root or one, which is then found by
-Newton's method. No distance excludes anything, which is what trimming is measured against. A cell without
-length is an end or corner of B. At each root the distance to the whole of B is taken, so that a superfluous
-root does no harm; a lost one would, and is excluded by the proofs named below.
+Newton's method. A system that is settled on T is not asked again on T's halves; two feet in one cell are a
+system of their own. No distance excludes anything, which is what trimming is measured against. A cell
+without length is an end or corner of B. At each root the distance to the whole of B is taken, so that a
+superfluous root does no harm; a lost one would, and is excluded by the proofs named below.
 """
-
-import math
 
 import numpy as np
 
 from clearance.jit import inlined, kernel
-from clearance.kernels.curve_bezier import jet
+from clearance.kernels.curve_bezier import cut, hypotenuse, jet
 from clearance.kernels.curve_interval import derived, dot, enclose, times
-from clearance.kernels.curve_nearest import closest_on
 from clearance.kernels.hausdorff import widest, witness
-from clearance.kernels.hausdorff_exact import common_normal, consider
+from clearance.kernels.hausdorff_exact import consider, slide_from, upper_bound
 from clearance.kernels.hausdorff_state import (
-    BISECTORS,
     CUTS,
+    DISTANCE,
     ENDS,
     GIVEN_UP,
-    NORMALS,
     PIECE_A,
+    ROOT,
     UPPER,
 )
+from clearance.kernels.system_roots import keep_root, try_bisector, try_normal
 
 DEEPEST = 34
-MOST_CELLS = 4000
+MOST_CELLS, MOST_PAIRS = 4000, 40_000
+A_ROOT = 40.0  # what finding a root costs beside excluding a cell
+PIECE, S0, S1, OPEN = 0, 1, 2, 3
 
 
 @inlined
@@ -124,229 +125,247 @@ def _same_foot(pb, db, one, two, ends_b, a_box, shift_x, shift_y, points, union,
     return False
 
 
-@kernel
-def _solve_systems(
-    pa, da, pb, lb, db, ends_b, i, shift_x, shift_y, budget, state, work, cells, boxes
-):
-    """Finds all candidates on piece `i` of A; see the module. `cells` (levels, most, 3) piece, s0, s1.
-
-    Returns False where the budget or the depth ran out with systems unresolved.
-    """
-    a_box, gap, gap_two, union = np.empty((4, 4)), np.empty(4), np.empty(4), np.empty((4, 4))
-    points = work[9]
-    counts = np.zeros(DEEPEST + 2, np.int64)
-    n_pieces = pb.first.shape[0] - 1
+@inlined
+def _first_cells(b_parts, ends_b, cells):
+    """The parts of B and its ends and corners as cells; returns their number, 0 where they are too many."""
     n = 0
-    for j in range(n_pieces):
-        cells[0, n, 0], cells[0, n, 1], cells[0, n, 2] = j, 0.0, 1.0
+    for k in range(b_parts.shape[0]):
+        j = int(b_parts[k, 0])
+        if n + 3 > cells.shape[0]:
+            return 0
+        cells[n, PIECE], cells[n, S0], cells[n, S1], cells[n, OPEN] = (
+            j,
+            b_parts[k, 1],
+            b_parts[k, 2],
+            1.0,
+        )
         n += 1
         for side in range(2):
-            if ends_b[j, side] and not (side == 0 and j > 0 and ends_b[j - 1, 1]):
-                cells[0, n, 0], cells[0, n, 1], cells[0, n, 2] = j, side, side
+            shared = side == 0 and j > 0 and ends_b[j - 1, 1]
+            if ends_b[j, side] and not shared and b_parts[k, 1 + side] == side:
+                cells[n, PIECE], cells[n, S0], cells[n, S1], cells[n, OPEN] = j, side, side, 1.0
                 n += 1
-            if n + 3 > cells.shape[1]:
-                return False
-    counts[0] = n
+    return n
+
+
+@inlined
+def _child_cells(
+    pb, db, old, n_old, split, a_box, shift_x, shift_y, points, new, boxes, child, ranges, gap
+):
+    """Halves of the `n_old` cells that may hold a foot; `child` (n, 2) says where they are, -1 where none is.
+
+    `ranges` (n, 2) are the squared distances they may have. Returns their number, -1 where there are too many.
+    """
+    n = 0
+    for k in range(n_old):
+        child[k, 0], child[k, 1] = -1, -1
+        for half in range(2 if split and old[k, S0] != old[k, S1] else 1):
+            s0, s1 = old[k, S0], old[k, S1]
+            if split and s0 != s1:
+                middle = 0.5 * (s0 + s1)
+                s0, s1 = (s0, middle) if half == 0 else (middle, s1)
+            if n >= new.shape[0]:
+                return -1
+            enclose(pb, db[0], db[1], db[2], int(old[k, PIECE]), s0, s1, points, boxes[n])
+            _gap_box(a_box[0], boxes[n, 0], shift_x, shift_y, gap)
+            if s0 != s1:
+                f0, f1, g0, _, _, _ = _foot_slopes(gap, boxes[n])
+                # no foot, or only farthest points, in this cell
+                if f0 > 0.0 or f1 < 0.0 or g0 > 0.0:
+                    continue
+            ranges[n, 0], ranges[n, 1] = _gap_sq(gap)
+            new[n, PIECE], new[n, S0], new[n, S1], new[n, OPEN] = (
+                old[k, PIECE],
+                s0,
+                s1,
+                old[k, OPEN],
+            )
+            child[k, half] = n
+            n += 1
+    return n
+
+
+@inlined
+def _left_out(cells, n, pairs, n_pairs, boxes):
+    """Takes out the cells that no open system needs; returns how many stay."""
+    needed = np.zeros(n, np.int64)
+    for k in range(n):
+        needed[k] = cells[k, OPEN] != 0.0
+    for p in range(n_pairs):
+        needed[pairs[p, 0]], needed[pairs[p, 1]] = 1, 1
+    used = 0
+    for k in range(n):
+        if needed[k]:
+            cells[used] = cells[k]
+            needed[k] = used
+            used += 1
+    for p in range(n_pairs):
+        pairs[p, 0], pairs[p, 1] = needed[pairs[p, 0]], needed[pairs[p, 1]]
+    return used
+
+
+@kernel
+def _leave(pa, pb, lb, i, t0, t1, shift_x, shift_y, state, work):
+    """Bounds an interval whose systems stay open: by its middle and extent, or side by side with B."""
+    t = 0.5 * (t0 + t1)
+    foot = consider(pa, pb, lb, i, t, shift_x, shift_y, 0, state, work)
+    s0, _ = slide_from(pa, pb, i, t0, foot.piece, foot.local, shift_x, shift_y)
+    s1, _ = slide_from(pa, pb, i, t1, foot.piece, foot.local, shift_x, shift_y)
+    bound, _ = upper_bound(pa, pb, i, t0, t1, foot.piece, s0, s1, shift_x, shift_y, work)
+    here, far, points = jet(pa, i, t), 0.0, work[6]
+    for k in range(cut(pa, i, t0, t1, points) + 1):
+        x, y = points[k, 0] / points[k, 2], points[k, 1] / points[k, 2]
+        far = max(far, hypotenuse(x - here.x, y - here.y))
+    state[UPPER] = max(state[UPPER], min(bound, foot.distance + far))
+    state[GIVEN_UP] += 1.0
+
+
+@kernel
+def _pair_is_settled(
+    pa,
+    pb,
+    lb,
+    db,
+    ends_b,
+    i,
+    t0,
+    t1,
+    one,
+    two,
+    boxes_one,
+    boxes_two,
+    a_box,
+    shift_x,
+    shift_y,
+    room,
+    state,
+    work,
+):
+    """Whether system (13) for two cells has no root in T, or one, which is then found; and what that cost.
+
+    The same cell twice stands for two feet in it.
+    """
+    points, union, gap = work[9], room[:4], room[4]
+    if _same_foot(pb, db, one, two, ends_b, a_box, shift_x, shift_y, points, union, gap):
+        return True, 0.0
+    if one[PIECE] == two[PIECE] and one[S0] == two[S0] and one[S1] == two[S1]:
+        return False, 0.0
+    for c in range(0, 4, 2):
+        gap[c] = boxes_two[0, c] - boxes_one[0, c + 1]
+        gap[c + 1] = boxes_two[0, c + 1] - boxes_one[0, c]
+    low, high = dot(gap, a_box[1])
+    if low > 0.0 or high < 0.0:  # the difference of both squares is monotone
+        try_bisector(pa, pb, lb, i, t0, t1, one, two, shift_x, shift_y, state, work)
+        return True, A_ROOT
+    return False, 0.0
+
+
+@kernel
+def _solve_systems(
+    pa,
+    da,
+    pb,
+    lb,
+    db,
+    ends_b,
+    b_parts,
+    part,
+    shift_x,
+    shift_y,
+    budget,
+    state,
+    work,
+    cells,
+    pairs,
+    boxes,
+):
+    """Finds all candidates on one part (piece, t0, t1) of A; see the module.
+
+    `cells` (levels, most, 4) piece, s0, s1, whether its normal is open; `pairs` (levels, most, 2) of cells whose
+    bisector is open. What the budget, the depth or the room leaves open is bounded.
+    """
+    i, points = int(part[0]), work[9]
+    a_box, gap, room = np.empty((4, 4)), np.empty(4), np.empty((5, 4))
+    n_cells, n_pairs = np.zeros(DEEPEST + 2, np.int64), np.zeros(DEEPEST + 2, np.int64)
+    child, ranges = np.empty((cells.shape[1], 2), np.int64), np.empty((cells.shape[1], 2))
+    n = _first_cells(b_parts, ends_b, cells[0])
+    n_cells[0] = n
+    for k in range(n):
+        for m in range(k + 1):
+            if n_pairs[0] < pairs.shape[1]:
+                pairs[0, n_pairs[0], 0], pairs[0, n_pairs[0], 1] = k, m
+                n_pairs[0] += 1
+    too_many = n == 0 or n * (n + 1) // 2 > pairs.shape[1]
     stack = np.empty((2 * DEEPEST + 4, 3))
-    stack[0, 0], stack[0, 1], stack[0, 2] = 0.0, 1.0, 1.0
-    top = 1
-    resolved = True
-    d_low, d_high = np.empty(cells.shape[1]), np.empty(cells.shape[1])
+    stack[0, 0], stack[0, 1], stack[0, 2] = part[1], part[2], 1.0
+    top, spent = 1, 0.0
     while top > 0:
         top -= 1
         t0, t1, level = stack[top, 0], stack[top, 1], int(stack[top, 2])
         state[CUTS] += 1.0
+        if too_many or spent > budget:
+            _leave(pa, pb, lb, i, t0, t1, shift_x, shift_y, state, work)
+            continue
         enclose(pa, da[0], da[1], da[2], i, t0, t1, points, a_box)
-        n = 0
-        for k in range(counts[level - 1]):
-            old = cells[level - 1, k]
-            halves = 1 if old[1] == old[2] or level == 1 else 2
-            for half in range(halves):
-                s0, s1 = old[1], old[2]
-                if halves == 2:
-                    middle = 0.5 * (s0 + s1)
-                    s0, s1 = (s0, middle) if half == 0 else (middle, s1)
-                if n >= cells.shape[1]:
-                    return False
-                enclose(pb, db[0], db[1], db[2], int(old[0]), s0, s1, points, boxes[n])
-                _gap_box(a_box[0], boxes[n, 0], shift_x, shift_y, gap)
-                if s0 != s1:
-                    f0, f1, g0, _, _, _ = _foot_slopes(gap, boxes[n])
-                    # no foot, or only farthest points, in this cell
-                    if f0 > 0.0 or f1 < 0.0 or g0 > 0.0:
-                        continue
-                d_low[n], d_high[n] = _gap_sq(gap)
-                cells[level, n, 0], cells[level, n, 1], cells[level, n, 2] = old[0], s0, s1
-                n += 1
-        counts[level] = n
-        open_here = False
+        old, new, open_pairs = cells[level - 1], cells[level], pairs[level]
+        n = _child_cells(
+            pb, db, old, n_cells[level - 1], level > 1, a_box, shift_x, shift_y, points, new, boxes, child,
+            ranges, gap,
+        )  # fmt: skip
+        spent += 2.0 * n_cells[level - 1]
         for k in range(n):
+            if new[k, OPEN] == 0.0:
+                continue
             _gap_box(a_box[0], boxes[k, 0], shift_x, shift_y, gap)
             low, high = dot(gap, a_box[1])
+            new[k, OPEN] = 0.0
             if low > 0.0 or high < 0.0:
                 continue
-            cell = cells[level, k]
-            if _normal_is_single(gap, a_box, boxes[k], cell[1] == cell[2]):
-                _try_normal(pa, pb, lb, i, t0, t1, cell, shift_x, shift_y, state, work)
+            if _normal_is_single(gap, a_box, boxes[k], new[k, S0] == new[k, S1]):
+                try_normal(pa, pb, lb, i, t0, t1, new[k], shift_x, shift_y, state, work)
+                spent += A_ROOT
             else:
-                open_here = True
-        for k in range(n):
-            for m in range(k):
-                if d_low[k] > d_high[m] or d_low[m] > d_high[k]:
+                new[k, OPEN] = 1.0
+        n_open, fits = 0, n >= 0
+        for p in range(n_pairs[level - 1] if fits else 0):
+            one, two = pairs[level - 1, p, 0], pairs[level - 1, p, 1]
+            for half in range(4):
+                k, m = child[one, half // 2], child[two, half % 2]
+                if k < 0 or m < 0 or (one == two and half == 1):
                     continue
-                one, two = cells[level, m], cells[level, k]
-                if _same_foot(
-                    pb, db, one, two, ends_b, a_box, shift_x, shift_y, points, union, gap_two
-                ):
+                if ranges[k, 0] > ranges[m, 1] or ranges[m, 0] > ranges[k, 1]:
                     continue
-                for c in range(0, 4, 2):
-                    gap_two[c] = boxes[k, 0, c] - boxes[m, 0, c + 1]
-                    gap_two[c + 1] = boxes[k, 0, c + 1] - boxes[m, 0, c]
-                low, high = dot(gap_two, a_box[1])
-                if low > 0.0 or high < 0.0:  # the difference of both squares is monotone
-                    _try_bisector(pa, pb, lb, i, t0, t1, one, two, shift_x, shift_y, state, work)
-                else:
-                    open_here = True
-        if not open_here:
+                settled, cost = _pair_is_settled(
+                    pa, pb, lb, db, ends_b, i, t0, t1, new[m], new[k], boxes[m], boxes[k], a_box, shift_x,
+                    shift_y, room, state, work,
+                )  # fmt: skip
+                spent += 1.0 + cost
+                if not settled and n_open < pairs.shape[1]:
+                    open_pairs[n_open, 0], open_pairs[n_open, 1] = k, m
+                    n_open += 1
+                elif not settled:
+                    fits = False
+        if not fits or level >= DEEPEST:
+            n = _left_out(new, max(n, 0), open_pairs, n_open, boxes)
+            if not fits or n > 0:
+                _leave(pa, pb, lb, i, t0, t1, shift_x, shift_y, state, work)
             continue
-        if level >= DEEPEST or state[CUTS] > budget:
-            state[GIVEN_UP] += 1.0
-            resolved = False
-            if state[CUTS] > budget:
-                return False
+        n_cells[level], n_pairs[level] = _left_out(new, n, open_pairs, n_open, boxes), n_open
+        if n_cells[level] == 0:
             continue
         middle = 0.5 * (t0 + t1)
         stack[top, 0], stack[top, 1], stack[top, 2] = middle, t1, level + 1
         stack[top + 1, 0], stack[top + 1, 1], stack[top + 1, 2] = t0, middle, level + 1
         top += 2
-    return resolved
-
-
-@inlined
-def _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work):
-    """The distance of A's point to one cell of B, and where."""
-    here = jet(pa, i, t)
-    x, y = here.x + shift_x, here.y + shift_y
-    d, _, s = closest_on(pb, int(cell[0]), cell[1], cell[2], x, y, np.inf, work)
-    return d, s
-
-
-@inlined
-def _is_normal(pa, pb, i, t, j, s, shift_x, shift_y):
-    """Whether both equations of (12) hold at (t, s) to rounding: the cosines with both tangents vanish."""
-    a, b = jet(pa, i, t), jet(pb, j, s)
-    ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
-    gap = ex * ex + ey * ey
-    f, g = ex * a.dx + ey * a.dy, ex * b.dx + ey * b.dy
-    fine = f * f <= 1e-20 * gap * (a.dx * a.dx + a.dy * a.dy)
-    return fine and g * g <= 1e-20 * gap * (b.dx * b.dx + b.dy * b.dy)
-
-
-@inlined
-def _slope_at_foot(pa, pb, i, t, cell, shift_x, shift_y, work):
-    """The slope of half the squared distance along A at `t`, from A's foot in one cell of B."""
-    _, s = _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work)
-    a, b = jet(pa, i, t), jet(pb, int(cell[0]), s)
-    return (a.x + shift_x - b.x) * a.dx + (a.y + shift_y - b.y) * a.dy
 
 
 @kernel
-def _bisected_normal(pa, pb, i, t0, t1, cell, shift_x, shift_y, work):
-    """The parameter in [t0, t1] where `_slope_at_foot` changes its sign; nan where it does not: no root."""
-    low, high = t0, t1
-    at_low = _slope_at_foot(pa, pb, i, low, cell, shift_x, shift_y, work)
-    if at_low * _slope_at_foot(pa, pb, i, high, cell, shift_x, shift_y, work) > 0.0:
-        return math.nan
-    for _ in range(60):
-        t = 0.5 * (low + high)
-        if high - low < 2e-16:
-            break
-        if at_low * _slope_at_foot(pa, pb, i, t, cell, shift_x, shift_y, work) > 0.0:
-            low = t
-        else:
-            high = t
-    return 0.5 * (low + high)
+def solve_directed(pa, ends_a, a_parts, pb, lb, ends_b, b_parts, shift_x, shift_y, budget, state):
+    """Raises `state` to the directed distance of the parts (n, 3) piece, t0, t1 of A, feet on those of B.
 
-
-@kernel
-def _try_normal(pa, pb, lb, i, t0, t1, cell, shift_x, shift_y, state, work):
-    """System (12), or (11) against an end of B: the one root in T, by Newton's method from its middle.
-
-    The system's determinant has one sign over T and the cell, so that there is one root at most. Newton's
-    result counts only with a residual of zero inside T and the cell; else the sign of the slope along the
-    foot, monotone here, says whether a root exists, and bisection finds it.
+    `UPPER` bounds the distance of the parts of A to B, `ROOT` is the greatest distance of any root.
     """
-    state[NORMALS if cell[1] != cell[2] else ENDS] += 1.0
-    t, j = 0.5 * (t0 + t1), int(cell[0])
-    if cell[1] != cell[2]:
-        s = 0.5 * (cell[1] + cell[2])
-        t, s = common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y)
-        if not _is_normal(pa, pb, i, t, j, s, shift_x, shift_y) or not cell[1] <= s <= cell[2]:
-            t = _bisected_normal(pa, pb, i, t0, t1, cell, shift_x, shift_y, work)
-            if math.isnan(t):
-                return
-    else:
-        end = jet(pb, j, cell[1])
-        low, high = t0, t1
-        for _ in range(60):
-            t = 0.5 * (low + high)
-            if high - low < 2e-16:
-                break
-            if (
-                _slope_to(pa, i, t0, end, shift_x, shift_y)
-                * _slope_to(pa, i, t, end, shift_x, shift_y)
-                > 0.0
-            ):
-                low = t
-            else:
-                high = t
-    consider(pa, pb, lb, i, t, shift_x, shift_y, 0, state, work)
-
-
-@inlined
-def _slope_to(pa, i, t, end, shift_x, shift_y):
-    here = jet(pa, i, t)
-    return (here.x + shift_x - end.x) * here.dx + (here.y + shift_y - end.y) * here.dy
-
-
-@kernel
-def _try_bisector(pa, pb, lb, i, t0, t1, one, two, shift_x, shift_y, state, work):
-    """System (13): the one point of T that is equally far from two cells, if there is one (regula falsi)."""
-    state[BISECTORS] += 1.0
-    low, high = t0, t1
-    d, _ = _distance_to_cell(pa, pb, i, low, one, shift_x, shift_y, work)
-    e, _ = _distance_to_cell(pa, pb, i, low, two, shift_x, shift_y, work)
-    f_low = d - e
-    d, _ = _distance_to_cell(pa, pb, i, high, one, shift_x, shift_y, work)
-    e, _ = _distance_to_cell(pa, pb, i, high, two, shift_x, shift_y, work)
-    f_high = d - e
-    if f_low * f_high > 0.0 or f_low == f_high:
-        return
-    side, t = 0, low
-    for _ in range(60):
-        t = (low * f_high - high * f_low) / (f_high - f_low)
-        d, _ = _distance_to_cell(pa, pb, i, t, one, shift_x, shift_y, work)
-        e, _ = _distance_to_cell(pa, pb, i, t, two, shift_x, shift_y, work)
-        f = d - e
-        if abs(f) <= 1e-16 * (d + e) or high - low <= 2e-16:
-            break
-        if f * f_high > 0.0:
-            high, f_high = t, f
-            f_low *= 0.5 if side == 1 else 1.0
-            side = 1
-        else:
-            low, f_low = t, f
-            f_high *= 0.5 if side == -1 else 1.0
-            side = -1
-    consider(pa, pb, lb, i, t, shift_x, shift_y, 0, state, work)
-
-
-@kernel
-def solve_directed(pa, ends_a, pb, lb, ends_b, shift_x, shift_y, budget, state, points):
-    """Fills `state` and the witness `points` with the directed distance; returns whether all was resolved."""
-    state[:] = 0.0
-    state[PIECE_A] = -1.0
-    rows = max(96, 4 * max(widest(pa), widest(pb)) + 4)
+    rows = max(98, 4 * max(widest(pa), widest(pb)) + 4)
     work = np.empty((11, rows, 4))
     first = derived(pa)
     second = derived(first)
@@ -354,17 +373,28 @@ def solve_directed(pa, ends_a, pb, lb, ends_b, shift_x, shift_y, budget, state, 
     first = derived(pb)
     second = derived(first)
     db = (first, second, derived(second))
-    most = MOST_CELLS
-    cells, boxes = np.empty((DEEPEST + 2, most, 3)), np.empty((most, 4, 4))
-    resolved = True
-    for i in range(pa.first.shape[0] - 1):
+    cells, boxes = np.empty((DEEPEST + 2, MOST_CELLS, 4)), np.empty((MOST_CELLS, 4, 4))
+    pairs = np.empty((DEEPEST + 2, MOST_PAIRS, 2), np.int64)
+    for k in range(a_parts.shape[0]):
+        i = int(a_parts[k, 0])
         for side in range(2):
-            state[ENDS] += ends_a[i, side]
-            consider(pa, pb, lb, i, float(side), shift_x, shift_y, 0, state, work)
-        if not _solve_systems(
-            pa, da, pb, lb, db, ends_b, i, shift_x, shift_y, budget, state, work, cells, boxes
-        ):
-            resolved = False
-    state[UPPER] = state[1] if not math.isnan(state[1]) else np.inf
+            if ends_a[i, side] and a_parts[k, 1 + side] == side:
+                state[ENDS] += 1.0
+                foot = consider(pa, pb, lb, i, float(side), shift_x, shift_y, 0, state, work)
+                if foot.distance > state[ROOT]:
+                    keep_root(foot.distance, i, float(side), foot.piece, foot.local, state)
+        _solve_systems(
+            pa, da, pb, lb, db, ends_b, b_parts, a_parts[k], shift_x, shift_y, budget / a_parts.shape[0],
+            state, work, cells, pairs, boxes,
+        )  # fmt: skip
+    if state[PIECE_A] < 0.0:  # nothing to solve, and no end: any point for a witness
+        consider(pa, pb, lb, 0, 0.5, shift_x, shift_y, 0, state, work)
+    state[UPPER] = max(state[UPPER], state[DISTANCE])
+
+
+@kernel
+def witness_of(pa, ends_a, pb, ends_b, shift_x, shift_y, state):
+    """The points (5,) that `state` names, as `witness` gives them."""
+    points = np.empty(5)
     witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, points)
-    return resolved
+    return points

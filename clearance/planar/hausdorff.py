@@ -27,7 +27,7 @@ INTERVALS_A_PIECE = 20.0
 """What long curves may use beyond that for each piece of both: seen are up to seven on noisy outlines."""
 
 
-SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE = 1000.0, 2.0
+SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE = 250.0, 0.5
 """Intervals until which a search tries for the last bits; after them the tolerance asked for is enough."""
 
 ASKED = 0.25
@@ -98,26 +98,28 @@ def hausdorff(
 
     Args:
         a, b: curves of any number of contours.
-        method: "trimmed" (the paper's) or "untrimmed" (its systems solved on the whole curves, slow).
+        method: "trimmed" (the default: map, trimming and certificates), "untrimmed" (the systems (11) to (13)
+            solved on the whole curves, slow) or "paper" (as Kim, Oh, Kim publish it: trimming by a page of
+            pixels, the same systems on what is left, the greatest distance of *all* roots, which can be above
+            the true one: `planar/PAPER.md`).
         tolerance: the error to reach, relative to the size of both curves together.
 
-    Exactness: `error_bound` holds whatever happened; it is above `tolerance` only where rounding or the
-        budget of intervals stopped the search.
+    Exactness: `error_bound` holds whatever happened, for every method; by default it is above `tolerance`
+        only where rounding or the budget of intervals stopped the search.
     Ties: the first found; the direction "a_to_b". Where points of different kinds reach the same distance
         (symmetric curves), the methods may name either, and `kind` and the witnesses with it.
-    Raises: UnknownMethod, BadCurve, NotFinite; Unresolved (method "untrimmed" on overlapping curves).
+    Raises: UnknownMethod, BadCurve, NotFinite.
     Source: Kim, Oh, Kim (2010), sections 3 and 4; Elber, Grandine (2008) for the systems.
     """
     tolerance = checked_number(tolerance, "tolerance", least=0.0)
-    if method == "untrimmed":
-        from clearance.planar.systems import untrimmed
+    if method == "trimmed":
+        return greater_of(*_trimmed(a, b, tolerance))
+    if method not in ("paper", "untrimmed"):
+        valid = "'trimmed', 'untrimmed' or 'paper'"
+        raise UnknownMethod(f"{method!r}", where="method", valid=valid)
+    from clearance.planar.systems import paper, untrimmed
 
-        forth, back = untrimmed(a, b)
-    elif method == "trimmed":
-        forth, back = _trimmed(a, b, tolerance)
-    else:
-        raise UnknownMethod(f"{method!r}", where="method", valid="'trimmed' or 'untrimmed'")
-    return greater_of(forth, back)
+    return greater_of(*(paper(a, b) if method == "paper" else untrimmed(a, b)))
 
 
 def within(a: Curve, b: Curve, distance: float) -> bool:

@@ -1,49 +1,168 @@
-"""The Hausdorff distance without trimming: systems (11) to (13) on whole curves, the paper's baseline.
+"""The Hausdorff distance from the systems (11) to (13): on whole curves, and on what the paper's trimming leaves.
 
-Kept as a check of another kind on the trimmed method and to measure what trimming gains. Not for: curves
-that overlap, whose systems have no end of solutions; they are refused.
+Kept to check the default method by another one and to measure what trimming gains. Not for: the default method.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import NamedTuple
+
 import numpy as np
 
-from clearance.errors import BadInput
-from clearance.kernels.hausdorff_state import STATE
-from clearance.kernels.hausdorff_systems import solve_directed
+from clearance.kernels.arc import EPS
+from clearance.kernels.hausdorff_paper import draw_page, greatest_depth, paper_kept
+from clearance.kernels.hausdorff_state import (
+    ARCS,
+    AT_A,
+    AT_B,
+    DISTANCE,
+    KEPT,
+    LOWER,
+    MAP_BOUND,
+    PIECE_A,
+    PIECE_B,
+    PIXELS,
+    ROOT,
+    ROOT_AT_A,
+    ROOT_AT_B,
+    ROOT_PIECE_A,
+    ROOT_PIECE_B,
+    STATE,
+    UPPER,
+)
+from clearance.kernels.hausdorff_systems import solve_directed, witness_of
 from clearance.planar.curve import Curve
 from clearance.planar.directed import Directed, directed_of, placed
 from clearance.tolerance import LAST_BITS
 
-BUDGET = 150_000.0
-"""Intervals of one direction after which the systems count as having no end of solutions."""
+BUDGET = 4e5
+"""Cells, pairs of cells and roots (40 cells each) of one direction after which the rest is left to its bound."""
+
+PAGE = 128
+"""Pixels along the longer side of the paper's page; it names no number."""
 
 
-class Unresolved(BadInput):
-    """Curves whose systems have no end of solutions, or roots too close to tell apart."""
+class _Way(NamedTuple):
+    """One direction: the curve searched, the other, the step between their frames, and whether it is a to b."""
+
+    one: Curve
+    two: Curve
+    shift: np.ndarray
+    margin: float
+    forward: bool
+
+
+def _ways(a: Curve, b: Curve) -> tuple[_Way, _Way]:
+    shift, size = placed(a, b)
+    margin = a.rounding + b.rounding + LAST_BITS * size
+    return _Way(a, b, shift, margin, True), _Way(b, a, -shift, margin, False)
 
 
 def untrimmed(a: Curve, b: Curve) -> tuple[Directed, Directed]:
     """Both directed distances of `a` and `b`, each the greatest distance over all roots of the systems.
 
-    Raises: Unresolved where a root could not be isolated, e.g. on overlapping curves.
+    On overlapping curves, whose systems have no end of solutions, the budget ends the search; the bounds tell.
     """
-    shift, size = placed(a, b)
-    margin = a.rounding + b.rounding + LAST_BITS * size
-    forth = _one_way(a, b, shift, margin, True)
-    return forth, _one_way(b, a, -shift, margin, False)
+    forth, back = (_untrimmed(way) for way in _ways(a, b))
+    return forth, back
 
 
-def _one_way(one: Curve, two: Curve, shift: np.ndarray, margin: float, forward: bool) -> Directed:
-    state, points = np.empty(STATE), np.empty(5)
-    done = solve_directed(
-        one.pieces, one.is_end, two.pieces, two.leaves, two.is_end, shift[0], shift[1], BUDGET, state,
-        points,
+def _untrimmed(way: _Way) -> Directed:
+    state = _solved(way, _whole(way.one), _whole(way.two), _empty())
+    return _directed(way, state)
+
+
+def paper(a: Curve, b: Curve, *, literal: bool = False) -> tuple[Directed, Directed]:
+    """Both directed distances as Kim, Oh, Kim (2010) publish them: the greatest distance of *all* roots.
+
+    That can be above the true distance, by roots that are no nearest points; `lower` and `upper` are proven of
+    the true one. `literal`: the systems have only the trimmed parts of the other curve as well, as the paper's
+    4.3 can be read; its answers can then be too small.
+    """
+    ways = _ways(a, b)
+    trimmed = [_trimmed(way) for way in ways]
+    parts = [_parts(way.one, kept) for way, (_, kept) in zip(ways, trimmed, strict=True)]
+    found = []
+    for k, way in enumerate(ways):
+        other = parts[1 - k] if literal else _whole(way.two)
+        state, kept = trimmed[k]
+        state = _solved(way, parts[k], other, state)
+        if (
+            not kept.all()
+        ):  # what is trimmed is within the reach of (8) to (10) and both biarc errors
+            worst = state[MAP_BOUND] + way.one.leaves.arcs[:, EPS].max()
+            state[UPPER] = max(state[UPPER], worst)
+        found.append(_published(way, state))
+    return found[0], found[1]
+
+
+def _empty() -> np.ndarray:
+    state = np.zeros(STATE)
+    state[PIECE_A] = state[ROOT] = -1.0
+    return state
+
+
+def _whole(curve: Curve) -> np.ndarray:
+    n = np.arange(curve.n_pieces)
+    return np.stack([n, np.zeros(len(n)), np.ones(len(n))], axis=1)
+
+
+def _parts(curve: Curve, kept: np.ndarray) -> np.ndarray:
+    """The arcs kept as parts (n, 3) piece, start, end; neighbours as one."""
+    arcs, owner = curve.leaves.arcs[kept, :2], curve.leaves.piece[kept]
+    if not len(arcs):
+        return np.empty((0, 3))
+    new = np.append(True, (owner[1:] != owner[:-1]) | (arcs[1:, 0] != arcs[:-1, 1]))
+    last = np.append(new[1:], True)
+    return np.stack([owner[new], arcs[new, 0], arcs[last, 1]], axis=1)
+
+
+def _trimmed(way: _Way) -> tuple[np.ndarray, np.ndarray]:
+    """A state with the bound (2), and which arcs of the curve searched are kept (n,)."""
+    one, two, (shift_x, shift_y) = way.one, way.two, way.shift
+    low = np.minimum(one.box[0], two.box[0]) - two.origin
+    span = np.maximum(one.box[1], two.box[1]) - two.origin - low
+    pixel = float(span.max()) / PAGE
+    columns, rows = (int(k) for k in np.ceil(span / pixel) + 1)
+    x0, y0 = low - 0.5 * pixel
+    depth, colour = draw_page(two.leaves, x0, y0, pixel, rows, columns)
+    page = (x0, y0, pixel, depth)
+    deepest = greatest_depth(one.pieces, one.leaves, shift_x, shift_y, *page)
+    bound = max(0.0, deepest - two.leaves.arcs[:, EPS].max() - np.sqrt(2.0) * pixel)
+    kept = paper_kept(one.leaves, two.leaves, shift_x, shift_y, *page, colour, bound)
+    state = _empty()
+    state[ARCS], state[KEPT] = len(kept), kept.sum()
+    state[PIXELS], state[MAP_BOUND] = depth.size, bound
+    return state, kept
+
+
+def _solved(way: _Way, parts: np.ndarray, other: np.ndarray, state: np.ndarray) -> np.ndarray:
+    one, two = way.one, way.two
+    solve_directed(
+        one.pieces, one.is_end, parts, two.pieces, two.leaves, two.is_end, other, way.shift[0], way.shift[1],
+        BUDGET, state,
     )  # fmt: skip
-    if not done:
-        raise Unresolved(
-            "systems with more solutions than can be told apart",
-            where="a, b",
-            valid="curves that do not overlap, or method='trimmed'",
+    return state
+
+
+def _directed(way: _Way, state: np.ndarray) -> Directed:
+    one, two = way.one, way.two
+    points = witness_of(
+        one.pieces, one.is_end, two.pieces, two.is_end, way.shift[0], way.shift[1], state
+    )
+    return directed_of(one, two, state.tolist(), points, way.margin, way.forward)
+
+
+def _published(way: _Way, state: np.ndarray) -> Directed:
+    """The greatest root as the answer, with what is proven of the true distance."""
+    lower, upper = state[LOWER], max(state[UPPER], state[DISTANCE])
+    if state[ROOT] >= 0.0:
+        state[DISTANCE], state[PIECE_A], state[AT_A] = (
+            state[ROOT],
+            state[ROOT_PIECE_A],
+            state[ROOT_AT_A],
         )
-    return directed_of(one, two, state.tolist(), points, margin, forward)
+        state[PIECE_B], state[AT_B] = state[ROOT_PIECE_B], state[ROOT_AT_B]
+    found = _directed(way, state)
+    return replace(found, lower=max(0.0, lower - way.margin), upper=upper + way.margin)

@@ -47,7 +47,7 @@ def test_undecided_is_an_error_of_ours_in_one_line(monkeypatch):
     monkeypatch.setattr(room, "BUDGET", 0.0)
     monkeypatch.setattr(room, "INTERVALS_A_PIECE", 0.0)
     a, b = NEAR[0]
-    with pytest.raises(Undecided, match="a distance between .* against the limit 3e-11") as caught:
+    with pytest.raises(Undecided, match=r"a distance between .* against the limit 3e-11") as caught:
         within(a, b, 3e-11)
     assert isinstance(caught.value, ClearanceError) and "\n" not in str(caught.value)
     assert caught.value.lower <= 3e-11 <= caught.value.upper
@@ -81,6 +81,8 @@ def test_compare_fails_where_the_limit_is_not_decided(tmp_path):
     one.write_text("curves:\n  - line: {start: [0, 0], end: [4, 0]}\n")
     two.write_text("curves:\n  - polyline: {points: [[0, 1], [2, 3], [4, 1]]}\n")
     for limit, code, said in [("2", 1, "beyond"), ("4", 0, "within"), ("3", 1, "undecided")]:
-        out = CliRunner().invoke(command, ["profile", "compare", str(one), str(two), "--limit", limit])
+        out = CliRunner().invoke(
+            command, ["profile", "compare", str(one), str(two), "--limit", limit]
+        )
         assert out.exit_code == code and f"limit {limit}: {said}" in out.output
     assert "which counts as beyond" in out.output

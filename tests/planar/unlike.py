@@ -1,5 +1,6 @@
 """The same curves under unlike parametrisations, made exactly enough to be told from each other's rounding."""
 
+import math
 from fractions import Fraction
 from math import comb
 
@@ -65,3 +66,46 @@ def quintic_circle():
 
 def _times(one, two):
     return np.array(_product(list(one.astype(complex)), list(two.astype(complex))))
+
+
+HALF = np.array([[1, 0], [1, 2], [-1, 2], [-1, 0.0]])
+TURN = 2.0 * math.pi
+
+
+def noise(shape, seed, size):
+    return size * np.random.default_rng(seed).normal(size=shape)
+
+
+def warped(through, size=0.0, seed=0):
+    raised = reparametrised(CUBIC, through)
+    return Curve.bezier(CUBIC), Curve.bezier(raised + noise(raised.shape, seed, size))
+
+
+CASES = {
+    "rational cubic semicircle, arc": lambda: (semicircle(), Curve.arc([0, 0], 1, 0, math.pi)),
+    "circle, periodic cubic of 1000 points": lambda: (
+        Curve.circle([0, 0], 1), periodic_circle(1000),
+    ),
+    "circle, periodic cubic of 100 points": lambda: (
+        Curve.circle([0, 0], 1), periodic_circle(100),
+    ),
+    "circle, rational quintic": lambda: (Curve.circle([0, 0], 1), quintic_circle()),
+    "quadratic q": lambda: warped([0, 0.2, 1]),
+    "cubic q": lambda: warped([0, 0.6, 0.4, 1]),
+    "q = u^2, at rest at its start": lambda: warped([0, 0, 1]),
+    "q = u^3": lambda: warped([0, 0, 0, 1]),
+    "q beyond 1 and back": lambda: warped([0, 1.2, 1]),
+    "weights 1 to 1e3": lambda: (
+        Curve.bezier(CUBIC, [1, 10.0, 100.0, 1000.0]), Curve.bezier(CUBIC),
+    ),
+    "weights 1 to 1e6, quadratic q": lambda: (
+        Curve.bezier(CUBIC, [1, 1e2, 1e4, 1e6]), Curve.bezier(reparametrised(CUBIC, [0, 0.3, 1])),
+    ),
+}  # fmt: skip
+for exponent in range(1, 15):
+    CASES[f"cubic, degree 6 copy 1e-{exponent} off"] = lambda e=exponent: warped(
+        [0, 0.3, 1], 10.0**-e, e
+    )
+    CASES[f"semicircle 1e-{exponent} off, arc"] = lambda e=exponent: (
+        semicircle(HALF + noise(HALF.shape, e, 10.0**-e)), Curve.arc([0, 0], 1, 0, math.pi),
+    )  # fmt: skip
