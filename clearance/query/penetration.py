@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import BadShape
 from clearance.geometry.polytope import Polytope
 
 ROUNDING = 32 * 2.0**-53
@@ -60,6 +61,9 @@ class Penetration:
 def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
     """The shortest translation of `a` that parts it from `b`.
 
+    Raises:
+        BadShape: not two polytopes.
+
     Exactness: `depth` is the support of b - a along `direction`, an upper bound; `at_least` is the least facet
         distance of a polytope inside b - a, a lower bound. They meet to a few roundings of the bodies' size,
         because a face of the difference is reached after finitely many support points.
@@ -67,8 +71,10 @@ def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
     Source: van den Bergen (2001), "Proximity queries and penetration depth computation on 3D game objects"
         (expanding polytope), here with many facets a round and the hulls by Qhull.
     """
-    search = _Search(a, b)
-    return search.run()
+    for given, where in ((a, "a"), (b, "b")):
+        if not isinstance(given, Polytope | Corners):
+            raise BadShape(f"{type(given).__name__} given", where=where, valid="a Polytope; cl.contact takes polyhedra")
+    return _Search(a, b).run()
 
 
 def depths_at_most(a: Sequence[Corners], b: Sequence[Corners]) -> np.ndarray:
