@@ -44,6 +44,12 @@ if TYPE_CHECKING:
     show_default=True,
     help="exact: the true minimum. paper: the first paper's algorithm, without guarantee.",
 )
+@click.option(
+    "--paper-tolerance-mm",
+    "paper_tolerance",
+    type=Millimetres(),
+    help="With --method paper: its rule 1 leaves out polygons this far apart or farther.  [default: none]",
+)
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=click.Path(path_type=Path), help="Write JUnit XML.")
@@ -59,6 +65,7 @@ def check(
     jobs: int | None,
     cross_check: bool,
     method: str,
+    paper_tolerance: float | None,
     motion: str,
     as_json: bool,
     junit: Path | None,
@@ -99,6 +106,7 @@ def check(
                 cross_check=cross_check,
                 progress=progress,
                 kept=kept,
+                paper_tolerance=paper_tolerance,
             )
         _write(run, out, junit)
     _print(run, out, as_json, quiet)

@@ -64,7 +64,7 @@ class Mover:
 def peer_pairs(record: Record) -> tuple[list[Mover], list[PeerPair]]:
     """The links that take part and every pair that the record does not list as unmeasured.
 
-    Links are named as in the record: with their robot's name where there are several, whose links may have the same.
+    Links are named as in the record: with their robot's name where there are several.
     """
     left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
     measured = {(p.i_robot, p.i_body, p.i_obstacle) for p in measured_pairs(record.case)[0]}

@@ -125,5 +125,5 @@ def _checked(method: str, tolerance: float | None = None) -> str:
     if method not in METHODS:
         raise BadInput(f"unknown method {method!r}", valid=f"one of {', '.join(METHODS)}")
     if tolerance is not None and method != "paper":
-        raise BadInput(f"method {method!r} has no tolerance", valid="only method 'paper' has one: it misses nothing")
+        raise BadInput(f"method {method!r} has no tolerance", valid="only method 'paper' has one")
     return method

@@ -73,7 +73,8 @@ def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
     """
     for given, where in ((a, "a"), (b, "b")):
         if not isinstance(given, Polytope | Corners):
-            raise BadShape(f"{type(given).__name__} given", where=where, valid="a Polytope; cl.contact takes polyhedra")
+            remedy = "a Polytope; cl.contact takes polyhedra"
+            raise BadShape(f"a {type(given).__name__} is given", where=where, valid=remedy)
     return _Search(a, b).run()
 
 

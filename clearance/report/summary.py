@@ -33,6 +33,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "verdict": verdict(record),
         "limits": asdict(case.limits),
         "method": record.method,
+        "paper_tolerance": record.paper_tolerance,
         "motion": record.motion_kind,
         "need": record.need,
         "n_steps": record.steps.num_rows,
