@@ -166,6 +166,7 @@ def check(
     jobs: int | None = None,
     progress: Progress | None = None,
     kept: Rows | None = None,
+    paper_tolerance: float | None = None,
 ) -> Run:
     """The least clearance of every step of a case.
 
@@ -191,6 +192,7 @@ def check(
         progress: called with steps done and all steps.
         kept: where the rows are kept; in memory by default. In a spool (`open_spool`) memory does not grow with
             the steps, and the same question asked again goes on where an interrupted run was.
+        paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
 
     Raises:
         BadInput: an unknown method, motion or need, or some that do not go together.
@@ -203,6 +205,7 @@ def check(
     _require(need, NEEDS, "need")
     certify = certify and method == "exact"
     _require(contact, CONTACT, "contact")
+    _require_tolerance(paper_tolerance, method)
     if need != "steps" and method != "exact":
         raise BadInput(f"method {method!r} measures every step", valid="need 'steps', or method 'exact'")
     if need in ("limit", "minimum") and cross_check:
@@ -217,12 +220,13 @@ def check(
     require_within_reach(case, motions)
     kept = kept or Rows()
     if kept.folder is not None:
-        options = (need, method, motion, certify, certify_gap)
+        options = (need, method, motion, certify, certify_gap, paper_tolerance)
         kept.ask(fingerprint(case, motions, pairs, options))
     if method == "paper":
+        from clearance.query.paper import NO_TOLERANCE
         from clearance.simulate.measure_paper import measure_paper
 
-        found = measure_paper(case, motions, pairs, progress)
+        found = measure_paper(case, motions, pairs, progress, paper_tolerance or NO_TOLERANCE)
     else:
         found = measure(case, motions, pairs, need, jobs=jobs, progress=progress, kept=kept)
     certificate = None
@@ -252,6 +256,7 @@ def check(
         unmeasured=(*unmeasured, *cut_throughout(case, pairs, found)),
         tally=found.tally,
         method=method,
+        paper_tolerance=paper_tolerance,
         motion_kind=motion,
         need=need,
         every_pair=every_pair(case, pairs, found),
@@ -332,6 +337,16 @@ def _motions(case: Case, kind: str) -> tuple[Motion, ...]:
         simulated_motion(placed, case.obstacles, contact_response=case.contact_response)
         for placed in case.robots
     )
+
+
+def _require_tolerance(tolerance: float | None, method: str) -> None:
+    if tolerance is None:
+        return
+    if method != "paper":
+        raise BadInput(f"method {method!r} has no tolerance", valid="only method 'paper' has one")
+    from clearance.query.paper import checked_tolerance
+
+    checked_tolerance(tolerance)
 
 
 def _require(given: str, valid: tuple[str, ...], what: str) -> None:

@@ -68,6 +68,12 @@ if TYPE_CHECKING:
     show_default=True,
     help="exact: the true minimum. paper: the first paper's algorithm, without guarantee.",
 )
+@click.option(
+    "--paper-tolerance-mm",
+    "paper_tolerance",
+    type=Millimetres(),
+    help="With --method paper: its rule 1 leaves out polygons this far apart or farther.  [default: none]",
+)
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
@@ -86,6 +92,7 @@ def check(
     jobs: int | None,
     cross_check: bool,
     method: str,
+    paper_tolerance: float | None,
     motion: str,
     as_json: bool,
     junit: Path | None,
@@ -137,6 +144,7 @@ def check(
                 contact=contact,
                 progress=progress,
                 kept=kept,
+                paper_tolerance=paper_tolerance,
             )
             if out is not None or not quiet:
                 run.record.work_out_contacts(progress)

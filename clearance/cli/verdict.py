@@ -171,12 +171,23 @@ def _cross_check(check: CrossCheck) -> list[Text]:
         f"greatest difference {check.greatest_difference:.2e} m, witness points within "
         f"{check.worst_witness_error:.2e} m, tolerance {check.tolerance:.2e} m"
     )
+    if check.n_settled:
+        figures += (
+            f"; it is off by up to {check.greatest_settled:.2e} m at {count(check.n_settled, 'step')}, "
+            "where exact arithmetic settles it for us"
+        )
     if check.agrees:
-        told = f"{check.peer} agrees at all {count(check.n_steps, 'step')}: {figures}"
+        told = f"{check.peer} agrees at {_agreeing(check)}: {figures}"
         return [_row("cross-check", told)]
     n_bad = len(check.disagreements)
     lines = [_row("cross-check", f"{check.peer} DISAGREES at {count(n_bad, 'step')}: {figures}")]
     return lines + [_row("", _told(row)) for row in check.disagreements[:_MOST_DISAGREEMENTS]]
+
+
+def _agreeing(check: CrossCheck) -> str:
+    if not check.n_settled:
+        return f"all {count(check.n_steps, 'step')}"
+    return f"{check.n_steps - check.n_settled} of {count(check.n_steps, 'step')}"
 
 
 def _told(row: Disagreement) -> str:

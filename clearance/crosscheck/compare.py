@@ -13,8 +13,12 @@ import numpy as np
 
 from clearance.crosscheck.fcl_door import peer_name
 from clearance.crosscheck.peer_run import PeerAnswers, PeerRun
+from clearance.crosscheck.settle import peer_is_wrong
 from clearance.simulate.record import CrossCheck, Disagreement, Record
 from clearance.tolerance import CROSS_CHECK
+
+GIVE_UP = 64
+"""Steps that exact arithmetic does not settle, after which the others are not looked at."""
 
 
 def cross_check(record: Record, progress: Callable[[int, int], None] | None = None) -> CrossCheck:
@@ -31,8 +35,11 @@ def cross_check(record: Record, progress: Callable[[int, int], None] | None = No
     answers = run.measure(progress)
     tolerance = CROSS_CHECK * answers.diagonal
     differences = np.abs(record.clearances - answers.clearances)
-    errors = _Witnesses(run).errors()
+    witnesses = _Witnesses(run)
+    errors = witnesses.errors()
     bad = np.flatnonzero(~(differences <= tolerance) | ~(errors <= tolerance))
+    settled = _settled(witnesses, answers, bad[errors[bad] <= tolerance], tolerance)
+    bad = np.setdiff1d(bad, settled)
     return CrossCheck(
         peer=peer_name(),
         n_steps=len(differences),
@@ -44,7 +51,22 @@ def cross_check(record: Record, progress: Callable[[int, int], None] | None = No
             _disagreement(run, answers, int(step), differences[step] <= tolerance, errors[step])
             for step in bad
         ),
+        n_settled=len(settled),
+        greatest_settled=float(differences[settled].max(initial=0.0)),
     )
+
+
+def _settled(
+    witnesses: _Witnesses, answers: PeerAnswers, steps: np.ndarray, tolerance: float
+) -> np.ndarray:
+    """Those of `steps` at which exact arithmetic decides against the peer; gives up after some."""
+    settled: list[int] = []
+    for n_asked, step in enumerate(steps.tolist()):
+        if n_asked - len(settled) >= GIVE_UP:
+            break
+        if witnesses.refute(answers, step, tolerance):
+            settled.append(step)
+    return np.array(settled, dtype=np.int64)
 
 
 def _disagreement(
@@ -101,6 +123,18 @@ class _Witnesses:
                 off = self._off_bodies(start + k, poses[:, k], clearances[start + k] == 0.0)
                 errors[start + k] = max(errors[start + k], off)
         return errors
+
+    def refute(self, answers: PeerAnswers, step: int, tolerance: float) -> bool:
+        """True if exact arithmetic decides for us against the peer at a step."""
+        ours, peers = float(self._run.record.clearances[step]), float(answers.clearances[step])
+        pair, i_peer = self._pairs.get(self._names[step]), int(answers.i_pairs[step])
+        if pair is None or not np.isfinite([ours, peers]).all():
+            return False
+        points = np.array([self._points[side][step] for side in ("link", "obstacle")])
+        poses = self._run.poses(step, step + 1)[:, 0]
+        if peers == 0.0 and self._run.is_nested(step, i_peer):
+            return False
+        return peer_is_wrong(ours, points, pair, peers, self._run.pairs[i_peer], poses, tolerance)
 
     def _off_bodies(self, step: int, poses: np.ndarray, contact: bool) -> float:
         pair = self._pairs.get(self._names[step])

@@ -31,6 +31,7 @@ class PeerBody:
         corners = soup.corners * _MM_PER_M
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         kept = (normals * normals).sum(axis=1) > _LEAST_NORMAL_SQ
+        self._kept = np.flatnonzero(kept)
         self.n_left_out = int((~kept).sum())
         self.greatest_left_out = _greatest_height(corners[~kept], normals[~kept]) / _MM_PER_M
         model = self._fcl.BVHModel()
@@ -51,6 +52,16 @@ class PeerBody:
         """
         answer = self._fcl.distance(self._object, other._object, self._fcl.DistanceRequest())
         return max(0.0, answer) / _MM_PER_M
+
+    def nearest_triangles(self, other: PeerBody) -> tuple[int, int] | None:
+        """The triangles of both bodies that FCL takes for the nearest; None if it names none."""
+        result = self._fcl.DistanceResult()
+        request = self._fcl.DistanceRequest(enable_nearest_points=True)
+        self._fcl.distance(self._object, other._object, request, result)
+        named = (result.b1, self._kept), (result.b2, other._kept)
+        if not all(0 <= i < len(kept) for i, kept in named):
+            return None
+        return tuple(int(kept[i]) for i, kept in named)
 
     def collides(self, other: PeerBody) -> bool:
         """True if FCL's collision test, which shares no code with its distance, finds a contact."""

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
 from clearance.simulate.record import Record
 from clearance.world.body import Body
+from clearance.world.pairs import measured_pairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,20 +62,30 @@ class Mover:
 
 
 def peer_pairs(record: Record) -> tuple[list[Mover], list[PeerPair]]:
-    """The links that take part and every pair that the record does not list as unmeasured."""
+    """The links that take part and every pair that the record does not list as unmeasured.
+
+    Links are named as in the record: with their robot's name where there are several.
+    """
     left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
+    measured = {(p.i_robot, p.i_body, p.i_obstacle) for p in measured_pairs(record.case)[0]}
     obstacles = [(o, peer_side(o.body)) for o in record.case.obstacles]
     movers: list[Mover] = []
     pairs: list[PeerPair] = []
+    several = len(record.motions) > 1
     for i_robot, motion in enumerate(record.motions):
         robot = motion.placed.robot
-        for body in robot.bodies:
-            facing = [(o, side) for o, side in obstacles if (body.name, o.name) not in left_out]
-            if (body.name, "*") in left_out or not facing:
+        prefix = f"{robot.name}/" if several else ""
+        for i_body, body in enumerate(robot.bodies):
+            name = prefix + body.name
+            facing = [
+                (o, side) for k, (o, side) in enumerate(obstacles)
+                if (i_robot, i_body, k) in measured and (name, o.name) not in left_out
+            ]  # fmt: skip
+            if (name, "*") in left_out or not facing:
                 continue
-            link = peer_side(body)
+            link = replace(peer_side(body), name=name)
             pairs += [PeerPair(len(movers), link, side, o.world_from_body) for o, side in facing]
-            movers.append(Mover(i_robot, robot.link_names.index(body.name), body.name))
+            movers.append(Mover(i_robot, robot.link_names.index(body.name), name))
     return movers, pairs
 
 

@@ -79,9 +79,13 @@ class PeerRun:
         step.
         """
         pair = self.pairs[i_pair]
-        pose = self.poses(step, step + 1)[pair.i_mover]
-        pair.link.peer.place(pose[0])
-        return pair.link.peer.collides(pair.obstacle.peer) or bool(nested_steps(pair, pose)[0])
+        pair.link.peer.place(self.poses(step, step + 1)[pair.i_mover][0])
+        return pair.link.peer.collides(pair.obstacle.peer) or self.is_nested(step, i_pair)
+
+    def is_nested(self, step: int, i_pair: int) -> bool:
+        """True if the winding number finds one body of a pair inside the other at one step."""
+        pair = self.pairs[i_pair]
+        return bool(nested_steps(pair, self.poses(step, step + 1)[pair.i_mover])[0])
 
     def _measure_chunk(self, poses: np.ndarray, n_new: int) -> tuple[np.ndarray, np.ndarray]:
         moved = self._displacements(poses)[-n_new:]

@@ -20,6 +20,10 @@ class PointLocator:
         self._centres = self._corners.mean(axis=1)
         self._radii = np.linalg.norm(self._corners - self._centres[:, None], axis=2).max(axis=1)
 
+    def distances(self, point: np.ndarray) -> np.ndarray:
+        """(n,) [m] the distances of a point (3,) in the body frame from every triangle."""
+        return point_triangle_distances(point, self._corners)
+
     def distance(self, point: np.ndarray) -> float:
         """The distance [m] of a point (3,) in the body frame from the surface."""
         to_centres = np.linalg.norm(self._centres - point, axis=1)

@@ -52,8 +52,8 @@ class _Open(NamedTuple):
 
     Attributes:
         ways: (f,) how each face counts; 0 where it is a copy, or its component is closed.
-        component: (h,) of each loop. loops: (n, 3) corners [m] of each. share: (c,) of each component's area and its
-            holes', what its holes have; infinite where it is not asked.
+        component: (h,) of each loop. loops: (n, 3) corners [m] of each.
+        share: (c,) of each component's area and its holes', what its holes have; infinite where it is not asked.
     """
 
     ways: np.ndarray
@@ -114,7 +114,7 @@ def _open_components(shape: Polyhedron) -> _Open:
 def _alike(tails: np.ndarray, heads: np.ndarray, face: np.ndarray, n_faces: int) -> np.ndarray:
     """(f,) 1 or -1: turned so, faces run along each edge that just two share in opposite directions.
 
-    The half-edges run from `tails` to `heads` (n,) of `face` (n,). Of faces that hang together so, the most stay as
+    The half-edges run from `tails` to `heads` (n,) of `face` (n,). Of faces that hang together so, most stay as
     they are; where they cannot all agree (a Moebius strip), all do.
     """
     use = edge_use(tails, heads)
@@ -122,8 +122,9 @@ def _alike(tails: np.ndarray, heads: np.ndarray, face: np.ndarray, n_faces: int)
     one, two = face[use.order[first]], face[use.order[first + 1]]
     apart = (use.forward[first] == use.forward[first + 1]) * n_faces
     other = (two + apart) % (2 * n_faces)
+    opposite = (other + n_faces) % (2 * n_faces)
     labels = joined_labels(
-        2 * n_faces, np.concatenate([one, one + n_faces]), np.concatenate([other, (other + n_faces) % (2 * n_faces)])
+        2 * n_faces, np.concatenate([one, one + n_faces]), np.concatenate([other, opposite])
     )
     kept, turned = labels[:n_faces], labels[n_faces:]
     ways = np.where(kept <= turned, 1, -1)
@@ -136,7 +137,7 @@ def _alike(tails: np.ndarray, heads: np.ndarray, face: np.ndarray, n_faces: int)
 def _rim(
     tails: np.ndarray, heads: np.ndarray, ways: np.ndarray, component: np.ndarray, n_components: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """What closes: (tails, heads, component) of edges, as often as they lack; and how many edges components have."""
+    """What closes: (tails, heads, component) of edges, as often as they lack; how many edges components have."""
     use = edge_use(tails, heads)
     lacking = np.add.reduceat(np.where(use.forward, 1, -1) * ways[use.order], use.starts[:-1])
     first = use.order[use.starts[:-1]]

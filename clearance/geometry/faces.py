@@ -117,6 +117,20 @@ def check_flat_and_convex(vertices: np.ndarray, starts: np.ndarray, flat: np.nda
             )
 
 
+def check_convex(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> None:
+    """Refuses faces that are clearly not convex, seen along their normal; warped ones are the union of their fans.
+
+    Raises:
+        BadPolygon: a corner turns inward by more than `tolerance.FLATNESS`, or the boundary runs round twice or
+            crosses itself.
+    """
+    planes = planes_of(vertices, starts, flat)
+    bad = _bends_inward(vertices, starts, flat, planes)
+    bad |= ~planes.normals.any(axis=1) & (_warp(vertices, starts, flat, planes) > 1.0)
+    if bad.any():
+        raise BadPolygon(f"polygon {int(np.argmax(bad))} is not convex", valid="convex polygons; split it")
+
+
 def split_warped(
     vertices: np.ndarray, faces: Sequence[Sequence[int]] | np.ndarray
 ) -> tuple[list[list[int]], int]:

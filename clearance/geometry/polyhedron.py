@@ -16,7 +16,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from clearance.errors import BadDimension, EmptyMesh, NotFinite
+from clearance.errors import BadDimension, BadShape, EmptyMesh, NotFinite
 from clearance.geometry.coplanar import merge_coplanar
 from clearance.geometry.edges import rings_of
 from clearance.geometry.faces import (
@@ -34,6 +34,20 @@ from clearance.geometry.topology import (
     inside_out_components,
     topology_of,
 )
+
+
+def require_polyhedron(given: object, where: str) -> Polyhedron:
+    """What was given, if it is a `Polyhedron`.
+
+    Raises:
+        BadShape: it is not.
+    """
+    if not isinstance(given, Polyhedron):
+        raise BadShape(f"a {type(given).__name__} is no Polyhedron", where=where, valid=_REMEDIES)
+    return given
+
+
+_REMEDIES = "cl.Polyhedron(vertices, faces), cl.box and its like, or Polyhedron.from_trimesh make one"
 
 
 @dataclass(frozen=True, eq=False, init=False)

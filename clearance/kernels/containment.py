@@ -9,8 +9,8 @@ no ray is a special case. Source: Edelsbrunner & Mücke 1990, simulation of simp
 
 Components that are closed but for a few faults are counted with the caps that close them (`geometry.closing`), so
 that their number is whole and exact, too. The generalized winding number of their faces alone (Jacobson, Kavan &
-Sorkine-Hornung 2013) differs from it by the solid angle of the caps in turns: where that is at most `DOUBTFUL`, the
-number is the same however the holes are closed, as long as that is seen under less than what is left of half a turn.
+Sorkine-Hornung 2013) differs from it by the caps' solid angle in turns. Where that is at most `DOUBTFUL`, no other
+caps give another number unless they are seen from there under three quarters of all directions.
 """
 
 import math
@@ -47,7 +47,7 @@ ROUNDING_OF_ANGLES = 1e-6
 """[turns] More than rounding makes of the solid angles of a cap, given `EDGE_ON`, for each of up to a million."""
 
 EDGE_ON = 1e-9
-"""[-] A triangle whose edge is seen as straight through the point, but for so much, counts as half of all that is seen."""
+"""[-] A triangle with an edge straight through the point, but for so much, counts as half of all directions."""
 
 
 @inlined
@@ -148,7 +148,7 @@ def _solid_angle(a, b, c):
 
 @inlined
 def _turns_of_caps(surface, body, x):
-    """[turns] the solid angle of the body's caps from `x` in its frame, each for itself: no less than theirs together."""
+    """[turns] the solid angles of the body's caps from `x` in its frame, added up whatever way they face."""
     total = 0.0
     first, last = surface.cap_starts[body], surface.cap_starts[body + 1]
     for i in range(first, last, 3):

@@ -45,10 +45,10 @@ def generalized_windings(surface, points, poses, poses_of_points, least, most, t
 
 @inlined
 def _turns_at_most(holes, first, last, low, high, frame, frame_of_box):
-    """[turns] no point of a box from `low` to `high` sees more through some of the holes; infinite if it may be in one."""
+    """[turns] no point of a box from `low` to `high` sees more through some holes; infinite if in one."""
     seen = 0.0
     for k in range(first, last):
-        x = move_back(frame_of_box, move(frame, row(holes, k)))
+        x = move_back(frame_of_box, move(frame, Vec3(holes[k, 0], holes[k, 1], holes[k, 2])))
         dx = max(low[0] - x.x, max(0.0, x.x - high[0]))
         dy = max(low[1] - x.y, max(0.0, x.y - high[1]))
         dz = max(low[2] - x.z, max(0.0, x.z - high[2]))

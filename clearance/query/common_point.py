@@ -7,7 +7,7 @@ distance from its own centroid. Not for: the paper's way (`common_point_paper`),
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,6 +74,8 @@ def checked_bodies(polytopes: Sequence[Polytope]) -> list[Polytope]:
     Raises:
         EmptyMesh: none. BadShape: something else than a `Polytope`.
     """
+    if not isinstance(polytopes, Iterable):
+        raise BadShape(f"a {type(polytopes).__name__} is given", valid="a list of Polytopes")
     bodies = list(polytopes)
     if not bodies:
         raise EmptyMesh("there are no polytopes", valid="one or more")

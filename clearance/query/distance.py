@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, NotFinite
-from clearance.geometry.polyhedron import Polyhedron
+from clearance.errors import BadInput, BadShape, NotFinite, at
+from clearance.geometry.faces import check_convex
+from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.kernel_table import call
+from clearance.kernels.convex import seem_convex
 from clearance.kernels.polygon_pair import Answers, nearest_polygons
 from clearance.query.one_pair import room_for
-from clearance.query.paper import distance_paper, polygon_distance_paper
+from clearance.query.paper import NO_TOLERANCE, distance_paper, polygon_distance_paper
 from clearance.query.result import Nearest
 
 METHODS = ("exact", "paper")
@@ -23,24 +25,29 @@ def distance(
     pose_a: np.ndarray | None = None,
     pose_b: np.ndarray | None = None,
     method: str = "exact",
+    tolerance: float | None = None,
 ) -> Nearest:
     """The global minimum distance of two polyhedra and where it is attained.
 
     Args:
         pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
         method: "exact", or "paper" for the first paper's algorithm as published.
+        tolerance: [m] of the paper's rule 1: polygons whose bounding spheres are as far apart or farther are left
+            out, so that what is farther is not measured. None, as the paper leaves it open, leaves out none.
 
     Raises:
-        BadPose: not a rigid motion. BadInput: unknown method.
+        BadPose: not a rigid motion. BadShape: no `Polyhedron`. BadInput: unknown method, or a tolerance with the
+            exact one. BadDimension: a tolerance that is not above 0.
 
     Exactness: searched in float64, the candidates that can win measured in 106 bits, contact decided by
         exact predicates, for the float vertices and poses as given; `error_bound` holds. Overlap, and a body
         wholly inside a closed one, is contact.
     Ties: the least face indices.
     """
-    if _checked(method) == "paper":
+    if _checked(method, tolerance) == "paper":
+        require_polyhedron(a, "a"), require_polyhedron(b, "b")
         poses = [np.eye(4) if pose is None else validated_pose(pose) for pose in (pose_a, pose_b)]
-        return distance_paper(a, b, *poses)
+        return distance_paper(a, b, *poses, tolerance=NO_TOLERANCE if tolerance is None else tolerance)
     return room_for(a, b).nearest(pose_a, pose_b)
 
 
@@ -48,12 +55,12 @@ def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> 
     """The distance of two convex planar polygons and where it is attained.
 
     Args:
-        p, q: (n, 3), (m, 3) corners in order [m], n, m >= 3.
+        p, q: (n, 3), (m, 3) corners in order [m], n, m >= 3; repeated ones, and all on a line, are allowed.
 
     Raises:
-        BadShape, NotFinite: not as above.
+        BadShape, NotFinite: not as above. BadPolygon: clearly not convex.
     """
-    p, q = _polygons(p, 2), _polygons(q, 2)
+    p, q = _convex(_polygons(p, 2), "p"), _convex(_polygons(q, 2), "q")
     if _checked(method) == "paper":
         return polygon_distance_paper(p, q)
     found = _measured(p[None], q[None])
@@ -70,10 +77,15 @@ def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> 
 
 
 def polygon_distances(ps: np.ndarray, qs: np.ndarray, *, method: str = "exact") -> np.ndarray:
-    """(k,) distances [m] of the polygon pairs `ps[i]`, `qs[i]`; shapes (k, n, 3) and (k, m, 3)."""
+    """(k,) distances [m] of the polygon pairs `ps[i]`, `qs[i]`; shapes (k, n, 3) and (k, m, 3).
+
+    Raises:
+        As `polygon_distance`.
+    """
     ps, qs = _polygons(ps, 3), _polygons(qs, 3)
     if len(ps) != len(qs):
         raise BadShape(f"{len(ps)} polygons against {len(qs)}", valid="as many of each")
+    ps, qs = _convex(ps, "ps"), _convex(qs, "qs")
     if _checked(method) == "paper":
         pairs = zip(ps, qs, strict=True)
         return np.array([polygon_distance_paper(p, q).distance for p, q in pairs])
@@ -98,7 +110,20 @@ def _polygons(points: np.ndarray, n_dimensions: int) -> np.ndarray:
     return array
 
 
-def _checked(method: str) -> str:
+def _convex(polygons: np.ndarray, where: str) -> np.ndarray:
+    """The polygons (…, n, 3), which are convex within `tolerance.FLATNESS`."""
+    n = polygons.shape[-2]
+    if n == 3 or seem_convex(polygons.reshape(-1, n, 3)):
+        return polygons
+    corners = polygons.reshape(-1, 3)
+    with at(where):
+        check_convex(corners, np.arange(0, len(corners) + 1, n), np.arange(len(corners)))
+    return polygons
+
+
+def _checked(method: str, tolerance: float | None = None) -> str:
     if method not in METHODS:
         raise BadInput(f"unknown method {method!r}", valid=f"one of {', '.join(METHODS)}")
+    if tolerance is not None and method != "paper":
+        raise BadInput(f"method {method!r} has no tolerance", valid="only method 'paper' has one")
     return method

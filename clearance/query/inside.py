@@ -1,8 +1,8 @@
 """Whether one solid may be inside another whose surface is too open to tell: where clearance 0 is not known.
 
 The search takes a body for inside where a winding number proves it (`kernels.containment`). Here it is asked what
-that leaves open: parts of a body that reach through a hole of a surface that is closed but for a few faults, or are
-so near one that its place decides; and parts that larger holes leave wholly within a surface. Surfaces with more
+that leaves open: parts that reach through a hole of a surface that is closed but for a few faults, or are so near
+one that its place decides; and parts that larger holes leave wholly within a surface. Surfaces with more
 holes than `closing.SOME` have no inside. Not for: the distance, which none of this changes.
 """
 

@@ -7,7 +7,7 @@ import weakref
 
 import numpy as np
 
-from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
 from clearance.kernel_table import call
@@ -36,6 +36,7 @@ class OnePair:
     """
 
     def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch, *, goes_on: bool) -> None:
+        require_polyhedron(a, "a"), require_polyhedron(b, "b")
         self.held = hold_pair(surface_of(a), surface_of(b), ROOM if goes_on else 0, scratch)
         self.doubt = doubt_of(a, b)
         self._goes_on = goes_on

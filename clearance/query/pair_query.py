@@ -5,7 +5,10 @@ Not for: single questions (`distance`, which gives the same answers).
 
 from __future__ import annotations
 
+import os
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +21,19 @@ from clearance.kernels.pair_query import nearest_at_poses
 from clearance.kernels.scratch import new_scratch
 from clearance.query.one_pair import OnePair, answer_rows
 from clearance.query.result import Nearest
+
+_processes = 0
+"""How many forks lie between the first process and this one. A child has the locks of its parent as they were, and
+what other threads were searching in half done: each query begins anew there."""
+
+
+def _count_process() -> None:
+    global _processes
+    _processes += 1
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_count_process)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +67,20 @@ class Query:
 
     def __init__(self, a: Polyhedron, b: Polyhedron) -> None:
         self.a, self.b = a, b
+        self._begin()
+
+    def _begin(self) -> None:
+        self._process = _processes
         self._lock = threading.Lock()
-        self._pair = OnePair(a, b, new_scratch(), goes_on=True)
+        self._pair = OnePair(self.a, self.b, new_scratch(), goes_on=True)
+
+    @contextmanager
+    def _alone(self) -> Iterator[OnePair]:
+        """The pair, for this thread alone."""
+        if self._process != _processes:
+            self._begin()
+        with self._lock:
+            yield self._pair
 
     def distance(
         self, world_from_a: np.ndarray | None = None, world_from_b: np.ndarray | None = None
@@ -67,8 +95,8 @@ class Query:
 
         Exactness, Ties: as `distance`.
         """
-        with self._lock:
-            return self._pair.nearest(world_from_a, world_from_b)
+        with self._alone() as pair:
+            return pair.nearest(world_from_a, world_from_b)
 
     def distances(
         self, worlds_from_a: np.ndarray | None = None, worlds_from_b: np.ndarray | None = None
@@ -87,24 +115,27 @@ class Query:
         if len(lengths) > 1:
             raise BadShape(f"{len(poses_a)} poses of a and {len(poses_b)} of b", valid="as many of each")
         numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
-        with self._lock:
-            held = self._pair.held
+        with self._alone() as pair:
+            held = pair.held
             if call(nearest_at_poses, held, poses_a, poses_b, False, False, numbers, points, counts) >= 0:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
                 call(nearest_at_poses, held, poses_a, poses_b, True, False, numbers, points, counts)
         distances = numbers[:, 0].copy()
-        undecided = self._undecided(distances, poses_a, poses_b)
+        undecided = _undecided(pair, distances, poses_a, poses_b)
         return NearestAtPoses(distances, points, counts[:, :2].copy(), numbers[:, 1].copy(), undecided)
 
-    def _undecided(self, distances: np.ndarray, poses_a: np.ndarray, poses_b: np.ndarray) -> np.ndarray:
-        """(n,) `NearestAtPoses.undecided`."""
-        found = np.zeros(len(distances), dtype=bool)
-        apart = np.flatnonzero(distances > 0.0)
-        if self._pair.doubt is not None and len(apart):
-            rows = (poses if len(poses) == 1 else poses[apart] for poses in (poses_a, poses_b))
-            found[apart] = self._pair.doubt.at(*(np.resize(poses, (len(apart), 4, 4)) for poses in rows))
-        return found
+
+def _undecided(
+    pair: OnePair, distances: np.ndarray, poses_a: np.ndarray, poses_b: np.ndarray
+) -> np.ndarray:
+    """(n,) `NearestAtPoses.undecided`."""
+    found = np.zeros(len(distances), dtype=bool)
+    apart = np.flatnonzero(distances > 0.0)
+    if pair.doubt is not None and len(apart):
+        rows = (poses if len(poses) == 1 else poses[apart] for poses in (poses_a, poses_b))
+        found[apart] = pair.doubt.at(*(np.resize(poses, (len(apart), 4, 4)) for poses in rows))
+    return found
 
 
 def _poses(given: np.ndarray | None, where: str) -> np.ndarray:

@@ -85,12 +85,11 @@ def distance_paper(
         `cut_by_rule_2`, `measured`, `passes_1` ... `passes_5_or_more`, `not_converged`.
 
     Raises:
-        BadDimension: the tolerance is NaN.
+        BadDimension: the tolerance is not above 0.
 
     Ties: the least face of a, then of b.
     """
-    if math.isnan(tolerance):
-        raise BadDimension(f"tolerance is {tolerance}", where="tolerance", valid="a length [m]")
+    checked_tolerance(tolerance)
     world_from_a = _pose(pose_a)
     found = nearest_bodies_paper(
         _flat(a), _flat(b), world_from_a, _pose(pose_b), float(tolerance), rule_1, rule_2
@@ -106,6 +105,17 @@ def distance_paper(
         error_bound=math.inf,
         tally=_tally(a.n_faces * b.n_faces, found),
     )
+
+
+def checked_tolerance(tolerance: float) -> float:
+    """The tolerance of rule 1 [m], infinite for none.
+
+    Raises:
+        BadDimension: not a length above 0.
+    """
+    if not isinstance(tolerance, int | float) or not tolerance > 0.0:
+        raise BadDimension(f"tolerance is {tolerance!r:.60}", where="tolerance", valid="a length above 0 [m]")
+    return float(tolerance)
 
 
 def _tally(n_pairs: int, found) -> dict[str, int]:

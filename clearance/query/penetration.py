@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.errors import BadShape
 from clearance.geometry.envelope import TWENTY_SIX
 from clearance.geometry.polytope import Polytope
 
@@ -60,6 +61,9 @@ class Penetration:
 def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
     """The shortest translation of `a` that parts it from `b`.
 
+    Raises:
+        BadShape: not two polytopes.
+
     Exactness: `depth` is the support of b - a along `direction`, an upper bound; `at_least` is the least facet
         distance of a polytope inside b - a, a lower bound. They meet to a few roundings of the bodies' size,
         because a face of the difference is reached after finitely many support points.
@@ -67,8 +71,11 @@ def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
     Source: van den Bergen (2001), "Proximity queries and penetration depth computation on 3D game objects"
         (expanding polytope), here with many facets a round and the hulls by Qhull.
     """
-    search = _Search(a, b)
-    return search.run()
+    for given, where in ((a, "a"), (b, "b")):
+        if not isinstance(given, Polytope | Corners):
+            remedy = "a Polytope; cl.contact takes polyhedra"
+            raise BadShape(f"a {type(given).__name__} is given", where=where, valid=remedy)
+    return _Search(a, b).run()
 
 
 def depths_at_most(a: Sequence[Corners], b: Sequence[Corners]) -> np.ndarray:

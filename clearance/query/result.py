@@ -20,8 +20,8 @@ class Nearest:
         error_bound: [m] upper bound on |distance - true distance of the given input|.
         tally: counters: node pairs and polygon pairs tested, and for `method="paper"` those cut by each rule
             and the iterations used.
-        inside: "yes" where one body is wholly inside the other, "undecided" where it may be, and the other's surface
-            is too open to tell: `distance` is then that of the surfaces alone. Else "no".
+        inside: "yes" where one body is wholly inside the other, "undecided" where it may be, and the other's
+            surface is too open to tell: `distance` is then that of the surfaces alone. Else "no".
     """
 
     distance: float

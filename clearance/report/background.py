@@ -19,7 +19,7 @@ def certainty(summary: dict[str, Any]) -> Html:
     notes = [element("li", note) for note in summary["notes"]]
     return section(
         "How sure",
-        element("p", _exactness(summary["method"])),
+        element("p", _exactness(summary["method"], summary["paper_tolerance"])),
         element("p", _tessellation(summary["tessellation_bound"])),
         element("p", *_sampling(summary)),
         *_cross_check(summary["cross_check"]),
@@ -27,11 +27,13 @@ def certainty(summary: dict[str, Any]) -> Html:
     )
 
 
-def _exactness(method: str) -> str:
+def _exactness(method: str, tolerance: float | None) -> str:
     if method == "paper":
+        first = "no tolerance" if tolerance is None else f"a tolerance of {tolerance * 1000:g} mm"
         return (
-            "Method “paper”: the distance as first published, with its tolerance and its second "
-            "rejection rule, which can overlook the nearest faces. For a safe figure use the "
+            f"Method “paper”: the distance as first published, with {first} for its first rejection "
+            "rule, "
+            "and with its second one, which can overlook the nearest faces. For a safe figure use the "
             "method “exact”."
         )
     return (
@@ -81,6 +83,12 @@ def _cross_check(check: dict[str, Any] | None) -> list[Html]:
         f"witness points are off by at most {scientific_mm(check['worst_witness_error'])} mm; "
         f"{scientific_mm(check['tolerance'])} mm counts as agreement."
     )
+    if check["n_settled"]:
+        figures += (
+            f" It is off by up to {scientific_mm(check['greatest_settled'])} mm at "
+            f"{count(check['n_settled'], 'step')}, where exact arithmetic on the faces that it names, "
+            "and on those under our witness points, settles it for us."
+        )
     if check["agrees"]:
         return [element("p", figures)]
     rows = [

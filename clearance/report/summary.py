@@ -36,6 +36,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         **_verdict(verdict),
         "limits": asdict(case.limits),
         "method": record.method,
+        "paper_tolerance": record.paper_tolerance,
         "motion": record.motion_kind,
         "need": record.need,
         "n_steps": record.steps.num_rows,

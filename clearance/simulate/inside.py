@@ -51,9 +51,9 @@ def _poses(motions: Sequence[Motion], robots: set[int], start: int) -> dict[int,
 
 def _text(link: str, obstacle: str, step: int, time: float) -> str:
     return (
-        f"link {link} may be inside obstacle {obstacle}, or round it, at {time:.3f} s (step {step}): the surface has "
-        f"holes, so that inside and outside cannot be told there, and the clearance is that of the surfaces alone; "
-        f"{FEWER}"
+        f"link {link} may be inside obstacle {obstacle}, or round it, at {time:.3f} s (step {step}): the surface "
+        "has holes, so that inside and outside cannot be told there, and the clearance is that of the surfaces "
+        f"alone; {FEWER}"
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from clearance.errors import NothingToMeasure
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.query.paper import distance_paper
+from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
 from clearance.simulate.measure import Measurement, Minima, Progress
 from clearance.world.case import Case
@@ -24,9 +24,16 @@ CHUNK = 64
 
 
 def measure_paper(
-    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], progress: Progress | None = None
+    case: Case,
+    motions: Sequence[Motion],
+    pairs: Sequence[Pair],
+    progress: Progress | None = None,
+    tolerance: float = NO_TOLERANCE,
 ) -> Measurement:
     """The paper's clearances of `pairs` over `motions`; those of pairs that its rules cut are infinite.
+
+    Args:
+        tolerance: [m] of rule 1.
 
     Raises:
         NothingToMeasure: the rules cut every polygon pair of a step.
@@ -42,7 +49,7 @@ def measure_paper(
         if step % CHUNK == 0:
             poses = [motion.poses(step, min(step + CHUNK, n_steps)) for motion in motions]
         for i_pair, pair in enumerate(pairs):
-            near = _measured(case, pair, poses[pair.i_robot][step % CHUNK])
+            near = _measured(case, pair, poses[pair.i_robot][step % CHUNK], tolerance)
             tally.update(near.tally)
             witnesses = (near.point_a, near.point_b)
             if near.distance < clearance[step]:
@@ -50,7 +57,7 @@ def measure_paper(
             if near.distance < minima.clearance[i_pair]:
                 minima.clearance[i_pair], minima.step[i_pair] = near.distance, step
                 minima.points[i_pair] = witnesses
-        _require_measured(clearance, step)
+        _require_measured(clearance, step, tolerance)
         if progress:
             progress(step + 1, n_steps)
     return Measurement(
@@ -64,20 +71,21 @@ def measure_paper(
     )
 
 
-def _require_measured(clearance: np.ndarray, step: int) -> None:
+def _require_measured(clearance: np.ndarray, step: int, tolerance: float) -> None:
     """An infinite answer is no clearance: it says that nothing was measured, which overlap can cause."""
     if np.isinf(clearance[step]):
+        larger = "" if tolerance == NO_TOLERANCE else f"a tolerance above {tolerance:g} m may do; "
         raise NothingToMeasure(
             f"method 'paper' says nothing of step {step}: its rules cut every polygon pair",
-            valid="method 'exact' measures every step",
+            valid=f"{larger}method 'exact' measures every step",
         )
 
 
-def _measured(case: Case, pair: Pair, world_from_link: np.ndarray) -> Nearest:
+def _measured(case: Case, pair: Pair, world_from_link: np.ndarray, tolerance: float) -> Nearest:
     robot = case.robots[pair.i_robot].robot
     link: Polyhedron = robot.bodies[pair.i_body].shape
     obstacle = case.obstacles[pair.i_obstacle]
     i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
     return distance_paper(
-        link, obstacle.body.shape, world_from_link[i_link], obstacle.world_from_body
+        link, obstacle.body.shape, world_from_link[i_link], obstacle.world_from_body, tolerance=tolerance
     )

@@ -85,6 +85,8 @@ class CrossCheck:
         tolerance: [m] what counts as agreement.
         worst_witness_error: [m] greatest | |link point - obstacle point| - clearance |, and distance of a
             witness point from its body as the peer sees it.
+        n_settled: steps at which exact arithmetic refutes the peer's answer and bears out ours; no disagreement.
+        greatest_settled: [m] greatest difference at those.
     """
 
     peer: str
@@ -94,6 +96,8 @@ class CrossCheck:
     tolerance: float
     worst_witness_error: float
     disagreements: tuple[Disagreement, ...] = ()
+    n_settled: int = 0
+    greatest_settled: float = 0.0
 
     @property
     def agrees(self) -> bool:
@@ -238,7 +242,8 @@ class Record:
         contacts: every pair in contact at every step, steps first; what the run works out of them is worked out
             when it is first looked at.
         notices: what a reader of the verdict must know: of the case, and found while measuring.
-        method: "exact" or "paper". motion_kind: "kinematic" or "simulated".
+        method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
+        motion_kind: "kinematic" or "simulated".
         let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
         room: tells a folder on the disk of the report for files on the way there, if there still is one.
     """
@@ -250,6 +255,7 @@ class Record:
     unmeasured: tuple[Unmeasured, ...]
     tally: dict[str, int]
     method: str = "exact"
+    paper_tolerance: float | None = None
     motion_kind: str = "kinematic"
     cross_check: CrossCheck | None = None
     certificate: Certificate | None = None

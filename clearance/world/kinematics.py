@@ -139,12 +139,17 @@ def _column(columns: dict[str, int], name: str) -> int:
 
 def positions_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
     """(n, n_links) the position of the joint above each link; 0 for the root and for fixed joints."""
+    return _by_link(robot, moving, with_offsets=True)
+
+
+def _by_link(robot: Robot, moving: np.ndarray, *, with_offsets: bool) -> np.ndarray:
+    """(n, n_links) what the moving joints' values make of each link; without offsets, what rates make of it."""
     links, columns, mimics = _moving_links(robot)
-    positions = np.zeros((len(moving), len(robot.link_names)))
-    positions[:, links] = moving[:, columns]
+    values = np.zeros((len(moving), len(robot.link_names)))
+    values[:, links] = moving[:, columns]
     for link, column, factor, offset in mimics:
-        positions[:, link] = factor * moving[:, column] + offset
-    return positions
+        values[:, link] = factor * moving[:, column] + (offset if with_offsets else 0.0)
+    return values
 
 
 @lru_cache(maxsize=8)
@@ -168,9 +173,4 @@ def _moving_links(robot: Robot) -> tuple[list[int], list[int], list[tuple[int, i
 
 def velocities_by_link(robot: Robot, moving: np.ndarray) -> np.ndarray:
     """(n, n_links) the velocity of the joint above each link from those of the moving joints."""
-    links, columns, mimics = _moving_links(robot)
-    velocities = np.zeros((len(moving), len(robot.link_names)))
-    velocities[:, links] = moving[:, columns]
-    for link, column, factor, _ in mimics:
-        velocities[:, link] = factor * moving[:, column]
-    return velocities
+    return _by_link(robot, moving, with_offsets=False)

@@ -1,4 +1,4 @@
-"""Bodies inside surfaces that are closed but for a few faults: decided where it is proven, else said to be open."""
+"""Bodies inside surfaces that are closed but for a few faults: decided where it is proven, else open."""
 
 from __future__ import annotations
 

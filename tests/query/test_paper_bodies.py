@@ -189,3 +189,25 @@ def test_two_convex_bodies_of_200_polygons_take_less_than_the_papers_second():
         distance_paper(a, a, None, at)
     assert (time.perf_counter() - start) / 3 < 1.0
     assert found.distance >= true_distance(a, a, None, at) - 1e-14
+
+
+def test_the_example_of_figure_1():
+    """Two faces that look at each other, and two that look away, whose normals are opposite as well: in the text
+    n2 and n3, where n2 . v1 is positive, and n4 and n8, where n4 . v1 is negative.
+    """
+    left, right = box(1, 1, 1), box(1, 1, 1)
+    faces = {side: {tuple(n): i for i, n in enumerate(shape.normals.round().tolist())}
+             for side, shape in (("left", left), ("right", right))}  # fmt: skip
+
+    def one(shape, side, x):
+        return Polyhedron(shape.face(faces[side][x, 0.0, 0.0]), [range(4)])
+
+    n2, n3 = one(left, "left", 1.0), one(right, "right", -1.0)
+    n4, n8 = one(left, "left", -1.0), one(right, "right", 1.0)
+    beside = pose(3.0, 0.0, 0.0)
+    facing, away = distance_paper(n2, n3, None, beside), distance_paper(n4, n8, None, beside)
+    assert (facing.tally["measured"], facing.distance) == (1, 2.0)
+    assert (away.tally["cut_by_rule_2"], away.tally["measured"], away.distance) == (1, 0, math.inf)
+    assert distance_paper(n4, n8, None, beside, rule_2=False).distance == 4.0
+    whole = distance_paper(left, right, None, beside)
+    assert (whole.tally["measured"], whole.tally["cut_by_rule_2"], whole.distance) == (1, 35, 2.0)

@@ -66,13 +66,15 @@ def test_an_end_of_a_segment_is_returned_bit_for_bit():
     assert tuple(found.p) == tuple(b) and tuple(found.q) == tuple(c)
 
 
-def test_squares_over_each_other_stop_in_case_1():
-    """Centres (1, 1) and (1.5, 1.25): one pass slides them above each other, the next sees s =
-    0.
+def test_squares_over_each_other_stop_in_case_2():
+    """Centres (1, 1) and (1.5, 1.25): one pass slides them above each other, on parallel chords, to where
+    one chord ends; so a reference point is on an edge, and the next pass goes along it.
     """
     found = polygon_distance_paper(SQUARE, moved(SQUARE, 0.5, 0.25, 3))
     assert found.distance == 3.0
     assert found.tally == {"passes": 2, "not_converged": 0}
+    assert found.point_a[0] == 2.0 and 0.0 < found.point_a[1] < 2.0  # on an edge of a
+    assert 0.5 < found.point_b[0] < 2.5 and 0.25 <= found.point_b[1] < 2.25
     assert found.error_bound == math.inf and not found.contact
 
 

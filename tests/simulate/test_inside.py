@@ -1,4 +1,4 @@
-"""A robot inside a solid with a fault is in contact or suspect, never quietly clear; open surfaces make no noise."""
+"""A robot inside a solid with a fault is in contact or suspect, never quietly clear; sheets make no noise."""
 
 from __future__ import annotations
 

@@ -1,0 +1,49 @@
+"""Two robots whose links have the same names: the peer knows them apart as the record does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+import clearance as cl
+from clearance.world.case import PlacedRobot
+from tests.made_cases import at, flying
+
+
+def two_robots(**changes) -> cl.Case:
+    positions = np.zeros((12, 6))
+    positions[:, 0] = np.linspace(0.0, 0.5, 12)
+    obstacles = [(cl.box((0.3, 0.3, 0.3)), at(1.2)), (cl.box((0.1, 0.1, 0.1)), at(0.0, 1.0))]
+    case = flying("two", cl.box((0.2, 0.2, 0.2)), obstacles, positions)
+    (one,) = case.robots
+    second = replace(one.robot, name="second")
+    other = PlacedRobot(second, one.trajectory, at(0.0, -0.9, 0.2), **changes)
+    return replace(case, robots=(one, other))
+
+
+def test_every_step_agrees_and_links_have_their_robots_names() -> None:
+    run = cl.check(two_robots(), cross_check=True)
+    assert run.cross_check.agrees and run.cross_check.n_steps == 12
+    assert run.cross_check.worst_witness_error < 1e-12
+    assert set(run.steps["link"].to_pylist()) <= {"flying/l6", "second/l6"}
+
+
+def test_a_link_left_out_of_one_robot_is_asked_of_the_other() -> None:
+    """Both have an l6: that of the first robot is left out, the other's is not."""
+    case = two_robots(exclude_links=("l6",))
+    run = cl.check(case, cross_check=True)
+    assert run.cross_check.agrees
+    first, second = (replace(one, exclude_links=out) for one, out in zip(case.robots, [("l6",), ()], strict=True))
+    swapped = replace(case, robots=(first, second))
+    assert cl.check(swapped, cross_check=True).cross_check.agrees
+
+
+def test_a_wrong_clearance_of_either_robot_is_found() -> None:
+    from clearance.crosscheck import cross_check
+
+    run = cl.check(two_robots())
+    wrong = run.steps.set_column(2, "clearance", [run.steps["clearance"].to_numpy() + 1e-6])
+    check = cross_check(replace(run.record, steps=wrong))
+    assert len(check.disagreements) == 12
+    assert {row.peer_link for row in check.disagreements} <= {"flying/l6", "second/l6"}
