@@ -345,7 +345,7 @@ def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_row
         if look > 0:
             bring(surface, world, bodies, positions[row], look, placed)
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
-        if first >= 0 and _carried(world, first, known) <= 0.0:
+        if first >= 0 and _carried(world, first, known) <= 0.0 and not was_contact(known.answers, first):
             first = _nearest_by_boxes(surface, world, bodies, known, first)
         best, best_pair, lowest = _nearest_of(
             surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, known, pair_rows, tally,
