@@ -28,13 +28,13 @@ from numba.extending import intrinsic
 from clearance.jit import borrowing
 
 REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS, PARTING, FEATURES, FANS = range(10)
-CERTIFY = 10
+CERTIFY, OVERLAP = 10, 11
 """The places of the table."""
 
-TOGETHER = (MEETING, COMMON_POINT)
+TOGETHER = (MEETING, COMMON_POINT, OVERLAP)
 """Who needs one of these mostly needs the others."""
 
-_table = np.zeros((11, 2), dtype=np.int64)  # address, stamp
+_table = np.zeros((12, 2), dtype=np.int64)  # address, stamp
 _apart: dict[int, tuple[Callable, Callable[[], tuple]]] = {}
 _compiling = threading.Lock()
 _listening = threading.Lock()

@@ -52,8 +52,8 @@ def still_holds(answers, pair, moves, gap):
 
 @inlined
 def was_contact(answers, pair):
-    """True if a pair was in contact when it was last measured."""
-    return answers.asked[pair] != NEVER and answers.gaps_sq[pair] == 0.0
+    """True if the surfaces of a pair met when it was last measured."""
+    return answers.asked[pair] != NEVER and answers.gaps_sq[pair] == 0.0 and answers.faces[pair, 0] >= 0
 
 
 @inlined

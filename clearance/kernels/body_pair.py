@@ -27,6 +27,7 @@ from clearance.kernels.front import (
     note_parting,
 )
 from clearance.kernels.hidden import PASSED_OVER
+from clearance.kernels.overlap import Overlap, overlap_of
 from clearance.kernels.parting import NOTHING_PARTED, parting_of
 from clearance.kernels.refine import error_of
 from clearance.kernels.scratch import new_scratch
@@ -47,6 +48,7 @@ class Asked(NamedTuple):
         wanted: [m] points farther apart than this are not wanted; at most `limit`.
         face_a, face_b: faces that were nearest before, or NO_FACE; they change the work, not the answer.
         apart: True if it is known that neither body is inside the other.
+        touches: True if the bodies were in contact just before; it changes the work, not the answer.
         effort: node pairs after which the search is cut short; what it has found is then a distance that occurs,
             but perhaps not the least, and nothing is proven. `TO_THE_END` if that is not wanted.
     """
@@ -57,6 +59,7 @@ class Asked(NamedTuple):
     face_b: int
     apart: bool
     effort: int
+    touches: bool
 
 
 class Measured(NamedTuple):
@@ -86,7 +89,7 @@ def _in_world(frames, x):
 
 @spliced
 def _contact(a, b, frames, found, tally, table):
-    face_a, face_b = found.hit.face_a, found.hit.face_b
+    face_a, face_b = found.face_a, found.face_b
     common = common_point_of(table, a, face_a, b, face_b, frames, found.meeting)
     p, q = _in_world(frames, common.p), _in_world(frames, common.q)
     return Measured(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
@@ -100,7 +103,7 @@ NOTHING_MEASURED = Measured(
 
 
 def _like():
-    asked = Asked(0.0, 0.0, 0, 0, False, 0)
+    asked = Asked(0.0, 0.0, 0, 0, False, 0, False)
     searched = no_fronts(1, 0), 0, 0.0, new_scratch(), table_like()
     return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, asked, *searched
 
@@ -138,25 +141,30 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
+    n_nodes, n_faces, n_exact = 0, 0, 0
+    if asked.touches:
+        over = overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch)
+        n_nodes, n_faces = over.n_nodes, over.n_faces
+        if over.meeting.found:
+            forget(fronts, pair)
+            return _contact(a, b, frames, over, Tally(n_nodes, n_faces, 0), table)
     first = _begin(a, root_a, b, root_b, frames.m, margin, asked)
     best = first.best
     limit = asked.limit + margin
     wanted = asked.wanted
-    resumed = asked.face_a >= 0 or asked.limit < np.inf
-    parting, n_nodes = NOTHING_PARTED, 0
+    parting = NOTHING_PARTED
     if is_worth_parting(fronts, pair):
         parting = parting_of(
             table, lent_a, root_a, lent_b, root_b, frames.m, best, limit, margin, slack, scratch
         )
-        n_nodes = parting.n_nodes
+        n_nodes += parting.n_nodes
         if parting.n_waiting == 0:
             note_parting(fronts, pair, parting.floor > limit, HULLS_TOUCH)
         if parting.floor > limit:
             nothing = nothing_yet(asked.wanted * asked.wanted)
             floor = max(0.0, parting.floor - slack - 2.0 * margin)
             return Measured(nothing, floor, 0.0, parting.face_a, parting.face_b, Tally(n_nodes, 0, 0))
-    n_faces, n_exact = 0, 0
-    for _ in range(3):
+    for _ in range(2):
         found = descend(
             lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, parting,
             fronts, pair, moved, scratch, table,
@@ -170,18 +178,15 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
             if is_all:
                 break
             best, parting = found.hit, NOTHING_PARTED  # the hulls are nearer than the bodies
-            continue
-        if not (found.meeting.found and resumed):
+        else:
             break
-        # which of several contacts is found must not depend on where the search began
-        first = _afresh(a, root_a, b, root_b, frames.m)
-        best = first.best
-        limit = np.inf
-        wanted = np.inf
-        resumed = False
+    if found.meeting.found:  # which of several is told must not depend on where the search began
+        over = overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch)
+        tally = Tally(n_nodes + over.n_nodes, n_faces + over.n_faces, n_exact)
+        if not over.meeting.found:
+            over = Overlap(found.meeting, found.hit.face_a, found.hit.face_b, 0, 0)
+        return _contact(a, b, frames, over, tally, table)
     tally = Tally(n_nodes, n_faces, n_exact)
-    if found.meeting.found:
-        return _contact(a, b, frames, found, tally, table)
     if not (asked.apart or parting.n_waiting > 0):
         inside, x = contained(a, body_a, b, body_b, frames, scratch, table)
         if inside:

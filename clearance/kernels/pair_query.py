@@ -142,10 +142,10 @@ def _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table):
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _travel(a, b, known, pose_a, pose_b, frames)
     known.carried[FLOOR] = -np.inf  # until the search has come to its end
-    asked = Asked(np.inf, np.inf, known.seeds[0], known.seeds[1], True, TO_THE_END)
+    asked = Asked(np.inf, np.inf, known.seeds[0], known.seeds[1], True, TO_THE_END, False)
     if moved == np.inf:
         moved = 0.0
-        asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END)
+        asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
         forget(known.fronts, 0)
     measured = measure_pair(lent_a, 0, lent_b, 0, frames, asked, known.fronts, 0, moved, scratch, table)
     known.carried[MOVED] = moved

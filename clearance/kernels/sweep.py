@@ -192,12 +192,9 @@ def _asked(world, pair, floor, gap, effort, lent, known, tally, table):
     if floor <= 0.0:
         forget(known.fronts, pair)  # where bodies may meet, nearest first from the roots is best
     apart = floor > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
-    face_a, face_b = seeds[pair, 0], seeds[pair, 1]
-    if was_contact(answers, pair):  # which one it is must not depend on seeds: then they save nothing
-        limit, gap, face_a, face_b = np.inf, np.inf, NO_FACE, NO_FACE
     measured = measure_pair(
         lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses),
-        Asked(limit, gap, face_a, face_b, apart, effort),
+        Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, effort, was_contact(answers, pair)),
         known.fronts, pair, moved, known.scratch, table,
     )  # fmt: skip
     note_answer(answers, pair, moves, measured.hit, measured.lower_bound)
@@ -348,7 +345,7 @@ def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_row
         if look > 0:
             bring(surface, world, bodies, positions[row], look, placed)
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
-        if first >= 0 and _carried(world, first, known) <= 0.0:
+        if first >= 0 and _carried(world, first, known) <= 0.0 and not was_contact(known.answers, first):
             first = _nearest_by_boxes(surface, world, bodies, known, first)
         best, best_pair, lowest = _nearest_of(
             surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, known, pair_rows, tally,

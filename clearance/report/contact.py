@@ -101,14 +101,15 @@ def _row(pair: dict[str, Any]) -> Html:
 
 def _meaning(pairs: list[dict[str, Any]]) -> list[str]:
     told = [
-        "The deepest step of each pair. The replay shows the common region in red and the way out of the "
-        "link as an arrow of fixed length. "
+        "Of each pair the deepest of the steps that are worked out: one of every event, its deepest as far as "
+        "hulls or shared volumes tell, unless more was asked for. The replay shows the common region in red and the "
+        "way out of the link as an arrow of fixed length, at these steps. "
     ]
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
         return [*told, "Depth and volume are exact to the rounding of float64."]
     return [
         *told,
-        "Depth and volume that are not exact are upper bounds, with the lower bound beside them: bodies "
-        "that are not convex are judged by convex parts that hold them (see How sure), and a way out of deep "
-        "hollows is confirmed by the bodies' own distance after it.",
+        "Depth and volume that are not exact are upper bounds, with the lower bound beside them: what stands "
+        "for bodies that are not convex is told in How sure, and a way out of closed bodies is confirmed by their "
+        "own distance after it.",
     ]

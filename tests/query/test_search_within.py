@@ -32,7 +32,7 @@ def searches(a, b, poses, limits, wanted, seeds, moved, out, table):
         way += moved[i]
         if seeds[i, 0] != -2:
             face_a, face_b = seeds[i, 0], seeds[i, 1]
-        asked = Asked(limits[i], wanted[i], face_a, face_b, True, TO_THE_END)
+        asked = Asked(limits[i], wanted[i], face_a, face_b, True, TO_THE_END, False)
         frames = frames_of(rigid(np.eye(4)), rigid(poses[i]))
         found = measure_pair(lent_a, 0, lent_b, 0, frames, asked, fronts, 0, way, scratch, table)
         out[i, 0] = np.sqrt(found.hit.gap_sq) if found.hit.face_a != 2**62 else np.inf

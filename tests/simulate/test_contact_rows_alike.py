@@ -1,18 +1,26 @@
-"""A row in contact is the same wherever a sweep starts: the point that it names too."""
+"""A row in contact is the same wherever a sweep starts, and the point that it names."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import clearance as cl
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
+from clearance.world.body import Body, Obstacle
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
+from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.trajectory import Trajectory
+from tests.simulate.test_contact_modes import channel
 
 ROOT = Path(__file__).parents[2]
+FETCH = ROOT.parent / "shared" / "cases" / "fetch_cage_planned" / "case.yaml"
 
 
 def measured(case, motion, steps, need="steps"):
@@ -21,17 +29,47 @@ def measured(case, motion, steps, need="steps"):
     return measure(case, (part,), measured_pairs(case)[0], need, jobs=1)
 
 
-def test_a_row_in_contact_does_not_depend_on_where_the_sweep_starts():
-    case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
+def ball_through_wall():
+    """A faceted ball that slides into a channel, askew, so that many faces meet at once."""
+    joint = Joint("rail", JointKind.PRISMATIC, "ground", "ball", np.eye(4))
+    robot = Robot("cart", ("ground", "ball"), (joint,), (Body("ball", cl.sphere(0.15)),))
+    way = np.linspace(0.3, 1.2, 60)
+    path = Trajectory(way, ("rail",), way[:, None])
+    pose = np.eye(4)
+    pose[:3, :3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]]
+    pose[:3, 3] = [0.7, 0.05, 0.02]
+    return Case("ball", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", channel()), pose),))
+
+
+@pytest.mark.parametrize("need", ["steps", "limit"])
+def test_a_row_in_contact_does_not_depend_on_where_the_sweep_starts(need):
+    case = ball_through_wall()
+    motion = kinematic_motion(case.robots[0])
+    whole = measured(case, motion, np.arange(motion.n_steps), need)
+    touching = np.flatnonzero(whole.clearance == 0.0)
+    assert len(touching) > 20
+    for start in (0, 1, 10, 21):
+        part = measured(case, motion, touching[start:], need)
+        assert (part.clearance[:20] == 0.0).all()
+        assert np.array_equal(part.pair, whole.pair[touching[start:]])
+        assert np.array_equal(part.points, whole.points[touching[start:]])
+
+
+@pytest.mark.skipif(not FETCH.exists(), reason="the shared cases are not beside this checkout")
+def test_rows_of_a_real_robot_are_those_of_sweeps_that_start_there():
+    case = cl.load_case(FETCH)
+    front = next(i for i, obstacle in enumerate(case.obstacles) if obstacle.name == "side_frontA")
+    pose = case.obstacles[front].world_from_body.copy()
+    pose[:3, 3] += [-0.03, -0.01, 0.03]
+    others = list(case.obstacles)
+    others[front] = Obstacle(case.obstacles[front].body, pose)
+    case = replace(case, obstacles=tuple(others))
     motion = kinematic_motion(case.robots[0])
     whole = measured(case, motion, np.arange(motion.n_steps))
     touching = np.flatnonzero(whole.clearance == 0.0)
-    assert len(touching) == 22
-    for start in (0, 1, 10, 21):
-        part = measured(case, motion, touching[start:])
-        assert (part.clearance == 0.0).all()
-        assert np.array_equal(part.pair, whole.pair[touching[start:]])
-        assert np.array_equal(part.points, whole.points[touching[start:]])
+    assert len(touching) > 30
+    for step in touching:
+        assert np.array_equal(measured(case, motion, np.array([step])).points[0], whole.points[step])
 
 
 def test_the_point_of_a_contact_is_that_of_a_single_question():
