@@ -20,7 +20,8 @@ from pathlib import Path
 
 import numba
 
-import clearance.kernels.certify  # noqa: F401 it enters `ALL` into the table, with what it imports
+import clearance.kernels.body_pair  # noqa: F401 these enter `ALL` into the table, with what they import
+import clearance.kernels.certify  # noqa: F401
 from clearance import kernel_table
 from clearance.kernel_cache import cache_root
 from clearance.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
