@@ -17,7 +17,8 @@ from contextlib import suppress
 
 import numba
 
-import clearance.kernels.certify  # noqa: F401 it enters `ALL` into the table, with what it imports
+import clearance.kernels.body_pair
+import clearance.kernels.certify  # noqa: F401 they enter `ALL` into the table
 from clearance import kernel_table
 from clearance.jit import cache_root
 from clearance.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
