@@ -174,7 +174,7 @@ def worst_moment(summary: dict[str, Any]) -> Html:
             ".",
         ),
         *_worst_sample(summary),
-        table(("Joint", ">Position", "In its range"), rows),
+        table(("Joint", ">Position", "In its range"), rows, tall=True),
         table(("Witness point", ">x, mm", ">y, mm", ">z, mm"), points),
     )
 
@@ -228,7 +228,7 @@ def events(summary: dict[str, Any]) -> Html:
         told.append("A step with + is the one before a moment between two steps.")
     notes = [element("p", text, class_="faint") for text in told]
     heads = (">Time", ">Step", "What", ">mm", ">Least, mm", "Between")
-    return section("Events", table(heads, rows, class_="clickable"), *notes)
+    return section("Events", table(heads, rows, class_="clickable", tall=True), *notes)
 
 
 def _event_cells(event: dict[str, Any]) -> tuple[Html, Html, Html]:
@@ -269,7 +269,7 @@ def matrix(summary: dict[str, Any]) -> Html:
     body = element("table", element("thead", head), element("tbody", *rows), class_="matrix")
     return section(
         "Least clearance of every pair, mm",
-        element("div", body, class_="scroll tall"),
+        element("div", body, class_="scroll tall whole"),
         element(
             "p",
             "At the steps, rounded down. A click moves the replay to the step where that pair comes "
