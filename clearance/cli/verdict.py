@@ -83,6 +83,7 @@ def _beside(verdict: Verdict) -> list[Text]:
     """What a reader must know beside the clearance: right below the headline."""
     not_checked = ", ".join(f"{name} not checked" for name in verdict.not_checked)
     lines = [_row("", not_checked)] if not_checked else []
+    lines += [_row("unproven", verdict.unproven)] if verdict.unproven else []
     lines += [_row("suspect", _suspect(one)) for one in verdict.suspects]
     return lines + [_row("warning", text) for text in verdict.warnings]
 

@@ -80,7 +80,9 @@ def _beside(summary: dict[str, Any]) -> Html:
         element("li", f"Suspect {one['kind']}: {one['text']}", class_="text-suspect")
         for one in summary["suspects"]
     ]
-    rows += [element("li", f"Warning: {text}", class_="text-near") for text in summary["warnings"]]
+    doubts = [summary["unproven"]] if summary["unproven"] else []
+    doubts += [f"Warning: {text}" for text in summary["warnings"]]
+    rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
     rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]
     return element("ul", *rows, class_="beside") if rows else Html("")
 
