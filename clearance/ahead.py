@@ -17,8 +17,8 @@ from contextlib import suppress
 
 import numba
 
-import clearance.kernels.body_pair
-import clearance.kernels.certify  # noqa: F401 they enter `ALL` into the table
+import clearance.kernels.body_pair  # noqa: F401 these enter `ALL` into the table, with what they import
+import clearance.kernels.certify  # noqa: F401
 from clearance import kernel_table
 from clearance.jit import cache_root
 from clearance.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
