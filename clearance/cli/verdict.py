@@ -28,6 +28,7 @@ from clearance.report.wording import (
 )
 from clearance.run import Run
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
+from clearance.world.notice import KINDS, Notice
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
 _LEVELS = {"contact": "contact", "below_fail": "below fail", "below_warn": "below warn"}
@@ -82,8 +83,13 @@ def _beside(verdict: Verdict) -> list[Text]:
     """What a reader must know beside the clearance: right below the headline."""
     not_checked = ", ".join(f"{name} not checked" for name in verdict.not_checked)
     lines = [_row("", not_checked)] if not_checked else []
-    lines += [_row("suspect", f"{one.text} (--accept {one.kind})") for one in verdict.suspects]
+    lines += [_row("unproven", verdict.unproven)] if verdict.unproven else []
+    lines += [_row("suspect", _suspect(one)) for one in verdict.suspects]
     return lines + [_row("warning", text) for text in verdict.warnings]
+
+
+def _suspect(notice: Notice) -> str:
+    return f"{notice.text} (--accept {notice.kind})" if notice.kind in KINDS else notice.text
 
 
 def _worst(record: Record) -> list[Text]:

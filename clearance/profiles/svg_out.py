@@ -10,6 +10,9 @@ import numpy as np
 from clearance.profiles.contour import Contour
 from clearance.profiles.profile import Profile
 
+FITTING = "max-width:100vw;max-height:100vh"
+"""A browser shows all of it however many metres it is wide; who draws in millimetres reads width and height."""
+
 
 def svg_text(profile: Profile) -> str:
     """An SVG drawing, 1 unit = 1 mm, y upwards, even-odd filled."""
@@ -21,7 +24,7 @@ def svg_text(profile: Profile) -> str:
     paths = " ".join(svg_path(contour, 1000.0) for contour in profile.contours)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
-        f'viewBox="{low[0]:.9g} {-high[1]:.9g} {width:.9g} {height:.9g}">\n'
+        f'viewBox="{low[0]:.9g} {-high[1]:.9g} {width:.9g} {height:.9g}" style="{FITTING}">\n'
         f"<title>{_escaped(profile.name)}, {_escaped(profile.plane)}</title>\n"
         f"<desc>contains all that is swept; exceeds it by at most {profile.bound * 1000:.4g} mm</desc>\n"
         f'<path transform="scale(1 -1)" d="{paths}" fill="#dbe7f5" fill-rule="evenodd" '

@@ -28,9 +28,11 @@ def section(title: str, *content: Html) -> Html:
     return element("section", element("h2", title), *content)
 
 
-def table(heads: Iterable[str], rows: list[Html], class_: str | None = None) -> Html:
+def table(
+    heads: Iterable[str], rows: list[Html], class_: str | None = None, *, tall: bool = False
+) -> Html:
     """A table that scrolls in a box of its own where it is too wide; a heading that begins with `>` stands over
-    numbers, to the right."""
+    numbers, to the right. One that is `tall` scrolls where it is too high as well."""
     cells = [
         element(
             "th", name.lstrip(">"), scope="col", class_="number" if name.startswith(">") else None
@@ -39,7 +41,7 @@ def table(heads: Iterable[str], rows: list[Html], class_: str | None = None) -> 
     ]
     head = element("tr", *cells)
     body = element("table", element("thead", head), element("tbody", *rows), class_=class_)
-    return element("div", body, class_="scroll")
+    return element("div", body, class_="scroll tall" if tall else "scroll")
 
 
 def step_link(step: int) -> Html:

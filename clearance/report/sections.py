@@ -80,7 +80,9 @@ def _beside(summary: dict[str, Any]) -> Html:
         element("li", f"Suspect {one['kind']}: {one['text']}", class_="text-suspect")
         for one in summary["suspects"]
     ]
-    rows += [element("li", f"Warning: {text}", class_="text-near") for text in summary["warnings"]]
+    doubts = [summary["unproven"]] if summary["unproven"] else []
+    doubts += [f"Warning: {text}" for text in summary["warnings"]]
+    rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
     rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]
     return element("ul", *rows, class_="beside") if rows else Html("")
 
@@ -174,7 +176,7 @@ def worst_moment(summary: dict[str, Any]) -> Html:
             ".",
         ),
         *_worst_sample(summary),
-        table(("Joint", ">Position", "In its range"), rows),
+        table(("Joint", ">Position", "In its range"), rows, tall=True),
         table(("Witness point", ">x, mm", ">y, mm", ">z, mm"), points),
     )
 
@@ -228,7 +230,7 @@ def events(summary: dict[str, Any]) -> Html:
         told.append("A step with + is the one before a moment between two steps.")
     notes = [element("p", text, class_="faint") for text in told]
     heads = (">Time", ">Step", "What", ">mm", ">Least, mm", "Between")
-    return section("Events", table(heads, rows, class_="clickable"), *notes)
+    return section("Events", table(heads, rows, class_="clickable", tall=True), *notes)
 
 
 def _event_cells(event: dict[str, Any]) -> tuple[Html, Html, Html]:
@@ -269,7 +271,7 @@ def matrix(summary: dict[str, Any]) -> Html:
     body = element("table", element("thead", head), element("tbody", *rows), class_="matrix")
     return section(
         "Least clearance of every pair, mm",
-        element("div", body, class_="scroll tall"),
+        element("div", body, class_="scroll tall whole"),
         element(
             "p",
             "At the steps, rounded down. A click moves the replay to the step where that pair comes "

@@ -78,6 +78,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "exit_code": verdict.exit_code,
         "basis": verdict.basis,
         "reasons": list(verdict.reasons),
+        "unproven": verdict.unproven,
         "warnings": list(verdict.warnings),
         "suspects": [{"kind": one.kind, "text": one.text} for one in verdict.suspects],
         "disputed_by": verdict.disputed_by,

@@ -9,10 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from clearance.report.wording import count, gap_text, limit_mm, mm, moment_text, span_text
-from clearance.simulate.record import Certificate, Moment, ProfileAnswer, Record
+from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay_frames import codes_of
 from clearance.simulate.steps import STATUSES, Status
-from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
 
 SUSPECT = "suspect"
@@ -36,6 +35,7 @@ class Verdict:
         measured: the status by what was measured alone.
         basis: "motion" or "samples".
         reasons: why it is not clear, one line each.
+        unproven: the one of them that says that a limit could not be proven though nothing below it occurs.
         suspects: the notices that make it suspect.
         warnings: what a reader must know beside the clearance; suspect input that is accepted is among it.
         disputed_by: the peer that disagrees, if one does.
@@ -46,6 +46,7 @@ class Verdict:
     measured: str
     basis: str
     reasons: tuple[str, ...] = ()
+    unproven: str | None = None
     suspects: tuple[Notice, ...] = ()
     warnings: tuple[str, ...] = ()
     disputed_by: str | None = None
@@ -94,7 +95,8 @@ def verdict_of(record: Record) -> Verdict:
     measured = _measured(record)
     check = record.cross_check
     disputed = check is not None and not check.agrees
-    reasons = [*_clearance_reasons(record)]
+    unproven = _unproven(record)
+    reasons = [reason for reason in (_occurring(record), unproven) if reason is not None]
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
     reasons += [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
     reasons += [f"suspect {one.kind}: {one.text}" for one in open_suspects]
@@ -105,6 +107,7 @@ def verdict_of(record: Record) -> Verdict:
         measured=measured,
         basis=SAMPLES if record.certificate is None else MOTION,
         reasons=tuple(reasons),
+        unproven=unproven,
         suspects=open_suspects,
         warnings=tuple(_warnings(record, notices)),
         disputed_by=check.peer if disputed else None,
@@ -120,22 +123,9 @@ def _measured(record: Record) -> str:
     return str(STATUSES[worst])
 
 
-def _clearance_reasons(record: Record) -> list[str]:
-    """Why the clearance is not clear: what occurs, and what could not be proven."""
+def _occurring(record: Record) -> str | None:
+    """The moment of least clearance, if it is below a limit."""
     worst, limits = record.worst, record.case.limits
-    reason = _occurring(worst, limits)
-    reasons = [] if reason is None else [reason]
-    certificate = record.certificate
-    if certificate is not None:
-        least = float(certificate.lower_bound.min())
-        for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
-            if least < limit <= worst.clearance:
-                reasons.append(_unproven(record, certificate, name, limit))
-                break
-    return reasons
-
-
-def _occurring(worst: Moment, limits: Limits) -> str | None:
     where = f"{worst.link} - {worst.obstacle} at {moment_text(worst)}"
     if worst.clearance <= 0.0:
         return f"contact: {where}"
@@ -145,14 +135,21 @@ def _occurring(worst: Moment, limits: Limits) -> str | None:
     return None
 
 
-def _unproven(record: Record, certificate: Certificate, name: str, limit: float) -> str:
+def _unproven(record: Record) -> str | None:
+    """The limit that the proof does not reach though nothing that was seen is below it."""
+    certificate, limits = record.certificate, record.case.limits
+    if certificate is None:
+        return None
     step = certificate.worst_interval
     least = float(certificate.lower_bound[step])
     times = record.motions[0].times[step : step + 2]
-    return (
-        f"not proven to stay above the {name} limit of {limit_mm(limit)} mm: at least {mm(least)} mm, "
-        f"{span_text(float(times[0]), float(times[-1]))}"
-    )
+    for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
+        if least < limit <= record.worst.clearance:
+            return (
+                f"not proven to stay above the {name} limit of {limit_mm(limit)} mm: at least {mm(least)} mm, "
+                f"{span_text(float(times[0]), float(times[-1]))}; a finer proof takes a smaller --certify-mm"
+            )
+    return None
 
 
 def profile_text(answer: ProfileAnswer) -> str:

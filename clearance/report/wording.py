@@ -124,10 +124,8 @@ def span_text(start: float, end: float) -> str:
 def certified_text(certified: dict) -> str:
     """What is proven of the continuous motion, as one sentence."""
     way = {"linear": "linearly", "cubic": "on cubics through the given velocities"}[certified["joints"]]
+    proven = f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving {way} between steps"
+    if certified["upper_bound"] is None:  # only so much was asked, everywhere
+        return proven
     moment = f"from {seconds(certified['start'])} to {seconds(certified['end'])}"
-    if certified["upper_bound"] is not None:
-        moment += f", where {mm(certified['upper_bound'])} mm occurs"
-    return (
-        f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving {way} between steps; "
-        f"least {moment}"
-    )
+    return f"{proven}; least {moment}, where {mm(certified['upper_bound'])} mm occurs"

@@ -67,8 +67,8 @@ def test_witness_points_realise_the_clearance(run_and_reference):
 def test_pair_minima_hold_the_least_of_all_steps(run_and_reference):
     run, _ = run_and_reference
     least = run.record.pair_minima[0]
-    assert least.clearance == run.worst["clearance"]
-    assert least.step == run.worst["step"]
+    assert least.clearance == run.worst_sample["clearance"]
+    assert least.step == run.worst_sample["step"]
     assert [p.clearance for p in run.record.pair_minima] == sorted(
         p.clearance for p in run.record.pair_minima
     )

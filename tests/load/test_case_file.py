@@ -213,3 +213,12 @@ def test_loading_twice_gives_the_same(tmp_path):
     for a, b in zip(one.robots[0].robot.bodies, two.robots[0].robot.bodies, strict=True):
         assert a.shape.vertices.tobytes() == b.shape.vertices.tobytes()
         assert a.shape.face_vertices.tobytes() == b.shape.face_vertices.tobytes()
+
+
+def test_author_and_revision_arrive_for_the_report(tmp_path):
+    assert load_small(tmp_path).sign_off is None
+    signed = load_small(tmp_path, changed("limits:", "report: {author: J. Doe, revision: B}\nlimits:"))
+    assert (signed.sign_off.author, signed.sign_off.revision) == ("J. Doe", "B")
+    assert load_small(tmp_path, changed("limits:", "report: {revision: B}\nlimits:")).sign_off.author == ""
+    with pytest.raises(UnknownKey, match="authors"):
+        load_small(tmp_path, changed("limits:", "report: {authors: J. Doe}\nlimits:"))

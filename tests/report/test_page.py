@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 
+import numpy as np
 import pytest
 
+from clearance.report import pair_curves as room
 from clearance.report.page import _bands, page_of
+from clearance.report.pair_curves import pair_curves
 from clearance.report.sections import MAX_EVENT_ROWS, events
 from clearance.report.summary import summary_of
+from clearance.simulate.record import EveryPair
 from clearance.simulate.replay import replay_of
+from clearance.world.case import SignOff
 from tests.report.records import disagreeing, record
 
 
@@ -92,3 +98,37 @@ def test_bands_that_no_screen_can_tell_apart_are_one():
     assert _bands(found, 0.1) == [[0.0, 1.0], [1.5, 3.1], [9.0, 9.0]]
     assert _bands(found, 0.0) == [list(span) for span in spans]
     assert _bands([], 0.1) == []
+
+
+def test_author_and_revision_stand_in_the_header_with_fields_to_sign():
+    run = record()
+    signed = dataclasses.replace(run, case=dataclasses.replace(run.case, sign_off=SignOff("J. <Doe>", "B")))
+    text = own_text(page_of(summary_of(signed), replay_of(signed)))
+    assert text.count("J. &lt;Doe&gt;") == 2 and "Revision B" in text
+    for role in ("Author", "Checked", "Approved", "Signature"):
+        assert role in text
+    assert "Sign-off" not in own_text(page_of(summary_of(run), replay_of(run)))
+
+
+def test_pairs_without_a_curve_of_their_own_have_their_line():
+    run = record()
+    page = page_of(summary_of(run), replay_of(run))
+    data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)[1])
+    assert data["curves"] is None and len(data["pairs"]) == len(run.pair_minima)
+    names = [[data["bodies"][i]["name"] for i in pair["bodies"]] for pair in data["pairs"]]
+    assert names == [[one.link, one.obstacle] for one in run.pair_minima]
+
+
+def test_curves_are_never_above_the_clearance_and_few_where_there_are_many_pairs(monkeypatch):
+    clearance = np.random.default_rng(0).uniform(0.0, 1.0, (240, 9))
+    run = record()
+    pairs = [(one.link, one.obstacle) for one in run.pair_minima][::-1]
+    every = EveryPair([a for a, _ in pairs], [b for _, b in pairs], clearance)
+    whole = pair_curves(dataclasses.replace(run, every_pair=every))
+    assert whole.clearances.shape == (9, 240) and (whole.times == run.motions[0].times).all()
+    assert (whole.clearances[::-1].T <= clearance).all()
+    assert np.abs(whole.clearances[::-1].T - clearance).max() < 1e-7
+    monkeypatch.setattr(room, "MOST_NUMBERS", 9 * 20)
+    few = pair_curves(dataclasses.replace(run, every_pair=every))
+    assert few.clearances.shape == (9, 20) and few.times.shape == (20,)
+    assert np.abs(few.clearances[::-1].min(axis=1) - clearance.min(axis=0)).max() < 1e-7

@@ -132,7 +132,7 @@ def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail,
     """0.03495 is above what occurs between the steps (34.98 mm) by no sample, but below what can be proven."""
     run = cl.check(cl.load_case(BOX), need=need, limits=Limits(fail, max(fail, 0.02)))
     assert run.passed == (fail == 0.0 or (fail == 0.03495 and run.certificate.lower_bound.min() >= fail))
-    run.save(tmp_path / "out")
+    assert run.save(str(tmp_path / "out")) == tmp_path / "out"
     write_junit(run.record, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
     failed = {case.get("classname") for case in suite.iter("testcase") if case.find("failure") is not None}
@@ -140,6 +140,20 @@ def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail,
     assert ("certificate" in failed) == (not run.passed)
     assert bool(failed) == (not run.passed)
     assert "at the samples only" not in verdict_of(run.record).text()
+
+
+@pytest.mark.parametrize("name", ["fail", "warn"])
+def test_a_limit_that_is_only_not_proven_says_so_below_the_headline(name):
+    """Nothing is below the limit, by a nanometre at most: a proof to 0.1 mm does not tell."""
+    case = cl.load_case(BOX)
+    limit = float(cl.check(case, certify_gap=1e-9).certificate.lower_bound.min())
+    limits = Limits(limit, limit) if name == "fail" else Limits(0.0, limit)
+    run = cl.check(case, limits=limits)
+    assert run.status == ("violated" if name == "fail" else "near")
+    assert limit <= run.worst["clearance"] and "not proven" in run.verdict.unproven
+    lines = printed(run.record)
+    assert lines[2].startswith("  unproven ") and f"the {name} limit" in lines[2]
+    assert "Not proven" in page_of(summary_of(run.record), replay_of(run.record)).split("<main>")[0]
 
 
 def test_the_certified_minimum_has_a_row_of_its_own():
