@@ -14,7 +14,6 @@ import numpy as np
 from clearance.errors import BadDimension, BadPolygon, EmptyMesh, NotFinite
 from clearance.geometry.edges import distinct_vertices
 
-
 _ODD = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
 """Factors of a hash: odd, with bits all over."""
 

@@ -167,6 +167,8 @@ def yaml_of(path: Path):
     from ruamel.yaml.error import YAMLError
 
     with at(str(path)):
+        if path.exists() and not path.is_file():  # a pipe or a device may never end
+            raise MissingFile("not a regular file", valid="a profile, sketch, curve file or DXF")
         try:
             return YAML(typ="safe").load(path.read_text(encoding="utf-8"))
         except OSError:
