@@ -60,7 +60,7 @@ def _load(path: str):
         raise MissingFile("no such file", valid="a DXF or YAML file of curves")
     try:
         return YAML(typ="safe").load(file.read_text(encoding="utf-8"))
-    except (YAMLError, ValueError, RecursionError) as error:
+    except (YAMLError, ValueError, TypeError, RecursionError) as error:
         raise BadSyntax(
             f"not YAML ({' '.join(str(error).split())})", valid="a mapping `curves: [...]`"
         ) from None

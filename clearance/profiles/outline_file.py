@@ -175,5 +175,5 @@ def yaml_of(path: Path):
             raise MissingFile(
                 "no such file", valid="a profile, sketch, curve file or DXF"
             ) from None
-        except (YAMLError, ValueError, RecursionError) as error:
+        except (YAMLError, ValueError, TypeError, RecursionError) as error:
             raise BadSyntax(f"not YAML ({' '.join(str(error).split())[:120]})") from None

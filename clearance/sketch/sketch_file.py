@@ -65,7 +65,7 @@ def _content(path: Path) -> dict:
         raise MissingFile(
             f"cannot be read ({fault.__class__.__name__})", valid="a sketch file"
         ) from None
-    except (YAMLError, ValueError, RecursionError) as fault:
+    except (YAMLError, ValueError, TypeError, RecursionError) as fault:
         raise BadSyntax(f"is not YAML: {' '.join(str(fault).split())[:200]}") from None
     if not isinstance(content, dict):
         raise BadSyntax("is not a sketch", valid=f"a mapping with {', '.join(_SECTIONS)}")
