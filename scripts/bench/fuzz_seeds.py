@@ -171,10 +171,12 @@ def _collada() -> bytes:
     polygons = " ".join(str(i) for quad in QUADS for i in quad)
     return f"""<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit meter="0.001"/><up_axis>Y_UP</up_axis></asset><library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="pa" count="24">{" ".join(map(str, CUBE.ravel().tolist()))}</float_array><technique_common>
+<source id="p">
+<float_array id="pa" count="24">{" ".join(map(str, CUBE.ravel().tolist()))}</float_array><technique_common>
 <accessor source="#pa" count="8" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
 <param name="Z" type="float"/></accessor></technique_common></source><vertices id="v">
-<input semantic="POSITION" source="#p"/></vertices><polylist count="6"><input semantic="VERTEX" source="#v" offset="0"/>
+<input semantic="POSITION" source="#p"/></vertices><polylist count="6">
+<input semantic="VERTEX" source="#v" offset="0"/>
 <vcount>4 4 4 4 4 4</vcount><p>{polygons}</p></polylist></mesh></geometry></library_geometries><library_nodes>
 <node id="n"><instance_geometry url="#g"/></node></library_nodes><library_visual_scenes><visual_scene id="s"><node>
 <rotate>0 0 1 90</rotate><scale>1 2 3</scale><instance_node url="#n"/><instance_geometry url="#g"/></node>
