@@ -211,7 +211,7 @@ def _dxf() -> bytes:
     """Written by ezdxf, so that it has all the tables that a drawing needs."""
     import ezdxf
 
-    drawing = ezdxf.new("R12")
+    drawing = ezdxf.new("R12", units=0)
     space = drawing.modelspace()
     space.add_line((0, 0), (2, 0))
     space.add_arc((2, 1), 1, -90, 90)
