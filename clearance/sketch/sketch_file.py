@@ -59,6 +59,8 @@ def _content(path: Path) -> dict:
     from ruamel.yaml import YAML
     from ruamel.yaml.error import YAMLError
 
+    if path.exists() and not path.is_file():  # a pipe or a device may never end
+        raise MissingFile("is not a file on disk", valid="a sketch file")
     try:
         content = YAML(typ="safe").load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as fault:

@@ -7,6 +7,8 @@ import pytest
 from clearance.errors import MissingFile
 from clearance.load.case_file import load_case
 from clearance.load.input_files import InputFiles, read_bytes
+from clearance.profiles.outline_file import read_outline, read_profile
+from clearance.sketch import Sketch
 from tests.load.making import PATH, write_case
 
 
@@ -38,3 +40,10 @@ def test_files_and_links_to_them_are_read(tmp_path):
         assert len(file.read()) == n_bytes
     with pytest.raises(MissingFile, match="is a folder"):
         files.read(tmp_path)
+
+
+def test_sketches_and_profiles_from_pipes_are_refused(tmp_path):
+    os.mkfifo(tmp_path / "s.yaml")
+    for read in (Sketch.load, read_outline, read_profile):
+        with pytest.raises(MissingFile, match="file"):
+            read(tmp_path / "s.yaml")
