@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 import importlib.util
 import os
+import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -42,7 +43,7 @@ class InputFiles:
         """The content of a file; a second call gives the same bytes without reading again.
 
         Raises:
-            MissingFile: it is not there, is a folder, or cannot be read.
+            MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
         if path not in self._contents:
@@ -57,14 +58,14 @@ class InputFiles:
         its content is not.
 
         Raises:
-            MissingFile: it is not there, is a folder, or cannot be read.
+            MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
-        with _openable(self.shown(path)), path.open("rb") as file:
+        with _openable(self.shown(path)), _regular(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
             digest = hashlib.file_digest(file, "sha256").hexdigest()
         self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
-        return lambda: path.open("rb"), n_bytes
+        return lambda: _regular(path), n_bytes
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
@@ -79,10 +80,29 @@ def read_bytes(path: Path, shown: str) -> bytes:
     """The content of the file at `path`, called `shown` in the error.
 
     Raises:
-        MissingFile: it is not there, is a folder, or cannot be read.
+        MissingFile: it is not there, is no file on disk, or cannot be read.
     """
-    with _openable(shown):
-        return path.read_bytes()
+    with _openable(shown), _regular(path) as file:
+        return file.read()
+
+
+class _NotRegular(OSError):
+    """A pipe, socket or device."""
+
+
+def _regular(path: Path) -> BinaryIO:
+    """Opens a file on disk; a pipe or a device, which may never end, is not waited for."""
+    descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+    try:
+        mode = os.fstat(descriptor).st_mode
+        if stat.S_ISDIR(mode):
+            raise IsADirectoryError
+        if not stat.S_ISREG(mode):
+            raise _NotRegular
+        return os.fdopen(descriptor, "rb")
+    except OSError:
+        os.close(descriptor)
+        raise
 
 
 @contextmanager
@@ -95,6 +115,10 @@ def _openable(shown: str) -> Iterator[None]:
         ) from None
     except IsADirectoryError:
         raise MissingFile(f"{shown!r} is a folder", valid="a path to a file is needed") from None
+    except _NotRegular:
+        raise MissingFile(
+            f"{shown!r} is a pipe or a device", valid="a path to a file on disk is needed"
+        ) from None
     except OSError as error:
         reason = (error.strerror or "unknown error").lower()
         raise MissingFile(f"{shown!r} cannot be read: {reason}") from None

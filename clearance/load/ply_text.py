@@ -50,7 +50,7 @@ class TextRows:
                     single[item.name] += row[place : place + 1]
                     place += 1
                     continue
-                count = int(row[place]) if place < len(row) and row[place].isdigit() else -1
+                count = _length(row[place]) if place < len(row) else -1
                 flat[item.name] += row[place + 1 : place + 1 + max(count, 0)]
                 counts[item.name].append(count)
                 place = place + 1 + count if count >= 0 else -len(row) - 1
@@ -66,6 +66,11 @@ class TextRows:
         if self.place < len(self.lines):
             n_more = len(self.lines) - self.place
             raise BadSyntax(f"the PLY file has {n_more} lines more than its header says")
+
+
+def _length(word: bytes) -> int:
+    """How long a list is; -1 where that is no number, or one that no line has room for."""
+    return int(word) if word.isdigit() and len(word) < 10 else -1
 
 
 def _column(words: list[bytes], kind: np.dtype) -> np.ndarray:

@@ -17,6 +17,7 @@ from pathlib import Path
 from clearance.errors import (
     BadInput,
     BadSyntax,
+    ClearanceError,
     MissingFile,
     MissingKey,
     UnknownKey,
@@ -60,7 +61,7 @@ def _load(path: str):
         raise MissingFile("no such file", valid="a DXF or YAML file of curves")
     try:
         return YAML(typ="safe").load(file.read_text(encoding="utf-8"))
-    except (YAMLError, UnicodeDecodeError) as error:
+    except (YAMLError, ValueError, TypeError, RecursionError) as error:
         raise BadSyntax(
             f"not YAML ({' '.join(str(error).split())})", valid="a mapping `curves: [...]`"
         ) from None
@@ -106,4 +107,9 @@ def _made(form: str, values) -> Curve:
     for key in values:
         if key not in (*needed, *optional):
             raise UnknownKey(f"{key!r}", valid=nearest_name(str(key), (*needed, *optional)))
-    return make(**values)
+    try:
+        return make(**values)
+    except ClearanceError:
+        raise
+    except (TypeError, ValueError, OverflowError):  # text where numbers belong, lists of unlike lengths
+        raise BadInput(f"{values!r:.60}", valid=f"numbers for {', '.join(needed)}") from None

@@ -1,7 +1,8 @@
 """The one door to ezdxf: a DXF drawing's entities as one curve.
 
-LINE, ARC, CIRCLE, LWPOLYLINE and 2-d POLYLINE with bulges, and SPLINE of the model space,
-in the file's own unit. Entities that meet end to end become one contour. Not for: blocks, layers, writing.
+LINE, ARC, CIRCLE, LWPOLYLINE and 2-d POLYLINE with bulges, and SPLINE of the model space, in metres where the
+header names a unit ($INSUNITS), else as the numbers stand. Entities that meet end to end become one contour.
+Not for: blocks, layers, writing.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, BadSyntax, MissingFile, at
+from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, at
 from clearance.planar.curve import Curve
 from clearance.planar.entries import BadCurve
 from clearance.tolerance import MEETING, PARAMETER
@@ -19,28 +20,46 @@ from clearance.tolerance import MEETING, PARAMETER
 KINDS = "LINE, ARC, CIRCLE, LWPOLYLINE, POLYLINE, SPLINE"
 
 
+_METRES = {
+    0: 1.0, 1: 0.0254, 2: 0.3048, 3: 1609.344, 4: 1e-3, 5: 1e-2, 6: 1.0, 7: 1e3, 8: 2.54e-8, 9: 2.54e-5,
+    10: 0.9144, 11: 1e-10, 12: 1e-9, 13: 1e-6, 14: 0.1, 15: 10.0, 16: 100.0,
+}  # fmt: skip
+"""[m] the units of $INSUNITS in the DXF reference; 0 names none."""
+
+_MOST_DEGREES = 36_000.0
+"""An angle of an arc beyond a hundred turns has few digits left, and is damage."""
+
+
 def read_dxf(path: str) -> Curve:
     """The curve of all entities in the model space of the DXF file at `path`; other kinds are refused.
 
-    Raises: MissingFile, BadSyntax (not DXF, or none of its entities is a curve), BadCurve (an entity of
-        another kind, or one that lies outside the plane z = const).
+    Raises: MissingFile, BadSyntax (not DXF, an unknown unit, or none of its entities is a curve), BadCurve (an
+        entity of another kind, or one that lies outside the plane z = const).
     """
     import ezdxf
 
     file = Path(path)
     if not file.is_file():
         raise MissingFile("no such file", where=str(path), valid="a DXF file")
-    try:
-        drawing = ezdxf.readfile(str(file))
-    except (ezdxf.DXFError, UnicodeDecodeError, OSError) as error:
-        raise BadSyntax(
-            f"not a DXF drawing ({error})", where=str(path), valid="a DXF file"
-        ) from None
     with at(str(path)):
-        parts = [_curve_of(entity) for entity in drawing.modelspace()]
-        if not parts:
-            raise BadSyntax("a model space without entities", valid=f"at least one of {KINDS}")
-        return Curve.contours(_chained(parts))
+        try:
+            return _in_metres(ezdxf.readfile(str(file)))
+        except ClearanceError:
+            raise
+        except Exception as error:  # ezdxf raises whatever its parsing hits, also when an entity is asked
+            raise BadSyntax(f"not a DXF drawing ({error!s:.120})", valid="a DXF file") from None
+
+
+def _in_metres(drawing) -> Curve:
+    unit = drawing.header.get("$INSUNITS", 0)
+    if unit not in _METRES:
+        raise BadSyntax(f"$INSUNITS is {unit!r:.40}", valid="0 to 16")
+    parts = [_curve_of(entity) for entity in drawing.modelspace()]
+    if not parts:
+        raise BadSyntax("a model space without entities", valid=f"at least one of {KINDS}")
+    curve = Curve.contours(_chained(parts))
+    metres = _METRES[unit]
+    return curve if metres == 1.0 else curve.transformed(np.diag([metres, metres, 1.0]))
 
 
 def _curve_of(entity) -> Curve:
@@ -68,7 +87,10 @@ def _line(entity) -> Curve:
 
 
 def _arc(entity) -> Curve:
-    start, end = math.radians(entity.dxf.start_angle), math.radians(entity.dxf.end_angle)
+    angles = (entity.dxf.start_angle, entity.dxf.end_angle)
+    if not max(map(abs, angles)) <= _MOST_DEGREES:
+        raise BadCurve(f"an arc from {angles[0]:g} to {angles[1]:g} degrees", valid="-360 to 360")
+    start, end = map(math.radians, angles)
     while end <= start:
         end += 2.0 * math.pi
     return Curve.arc(tuple(entity.dxf.center)[:2], entity.dxf.radius, start, end)

@@ -167,11 +167,13 @@ def yaml_of(path: Path):
     from ruamel.yaml.error import YAMLError
 
     with at(str(path)):
+        if path.exists() and not path.is_file():  # a pipe or a device may never end
+            raise MissingFile("not a regular file", valid="a profile, sketch, curve file or DXF")
         try:
             return YAML(typ="safe").load(path.read_text(encoding="utf-8"))
         except OSError:
             raise MissingFile(
                 "no such file", valid="a profile, sketch, curve file or DXF"
             ) from None
-        except (YAMLError, UnicodeDecodeError) as error:
+        except (YAMLError, ValueError, TypeError, RecursionError) as error:
             raise BadSyntax(f"not YAML ({' '.join(str(error).split())[:120]})") from None

@@ -16,9 +16,9 @@ def number(value: float, where: str) -> float:
     """
     try:
         out = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise NotFinite(
-            f"{value!r} is not a number", where=where, valid="a finite number"
+            f"{value!r:.60} is not a number", where=where, valid="a finite number"
         ) from None
     if not math.isfinite(out):
         raise NotFinite(f"the value is {out}", where=where, valid="a finite number")

@@ -1,0 +1,219 @@
+"""Every reader on thousands of damaged files: each is read or refused by an error of ours, soon, in little memory.
+
+A valid small file of each kind is damaged in ways that a fixed seed draws: bytes flipped, cut off, doubled, moved,
+numbers replaced. Each kind is read in a process of its own with 1 GB of memory and 5 s of processor time a file.
+
+    python scripts/bench/fuzz_readers.py [--files 5000] [--kinds OBJ,GLB] [--seed 1] [--keep FOLDER]
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import resource
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from clearance.errors import ClearanceError
+from scripts.bench.fuzz_seeds import Reader, readers
+
+MOST_MEMORY = 1 << 30
+"""[bytes] of data that a reading process may have."""
+
+MOST_TIME = 5.0
+"""[s] of processor time for a file."""
+
+_NUMBER = re.compile(rb"-?\d+(?:\.\d+)?(?:e-?\d+)?")
+
+_VALUES = (
+    b"0", b"-0", b"1", b"-1", b"2", b"255", b"65536", b"4294967295", b"-4294967298", b"99999999999999999999",
+    b"1e18", b"1e308", b"1e400", b"1e-320", b"nan", b"inf", b"-inf", b"1_0", b"0x10", b"0,01", b"", b"\xd9\xa1",
+    b"1" * 5000, b"true", b"[]", b"x", b"\x00", b"1e160", b"-1e18", b"0.1",
+)  # fmt: skip
+
+
+def damaged(valid: bytes, seed: int) -> bytes:
+    """The file with one to three kinds of damage that the seed draws."""
+    rng = np.random.default_rng(seed)
+    data = bytearray(valid)
+    for _ in range(rng.integers(1, 4)):
+        if data:
+            data = bytearray(_DAMAGES[rng.integers(len(_DAMAGES))](data, rng))
+    return bytes(data)
+
+
+def _span(data: bytearray, rng: np.random.Generator) -> tuple[int, int]:
+    begin = int(rng.integers(len(data)))
+    return begin, begin + int(rng.integers(1, max(2, min(200, len(data) - begin) + 1)))
+
+
+def _flipped(data: bytearray, rng: np.random.Generator) -> bytes:
+    for _ in range(rng.integers(1, 9)):
+        data[rng.integers(len(data))] ^= 1 << int(rng.integers(8))
+    return bytes(data)
+
+
+def _overwritten(data: bytearray, rng: np.random.Generator) -> bytes:
+    begin = int(rng.integers(len(data)))
+    word = (
+        b"\xff" * 4,
+        b"\0" * 4,
+        b"\xff\xff\xff\x7f",
+        b"\0\0\0\x80",
+        b"\0\0\xc0\x7f",
+        b"\1\0\0\0",
+    )
+    data[begin : begin + 4] = word[rng.integers(len(word))]
+    return bytes(data)
+
+
+def _cut_off(data: bytearray, rng: np.random.Generator) -> bytes:
+    return bytes(data[: rng.integers(len(data))])
+
+
+def _without(data: bytearray, rng: np.random.Generator) -> bytes:
+    begin, end = _span(data, rng)
+    return bytes(data[:begin] + data[end:])
+
+
+def _doubled(data: bytearray, rng: np.random.Generator) -> bytes:
+    begin, end = _span(data, rng)
+    return bytes(data[:end] + data[begin:end] * int(rng.integers(1, 20)) + data[end:])
+
+
+def _moved(data: bytearray, rng: np.random.Generator) -> bytes:
+    begin, end = _span(data, rng)
+    to = int(rng.integers(len(data)))
+    return bytes(data[:to] + data[begin:end] + data[to:])
+
+
+def _renumbered(data: bytearray, rng: np.random.Generator) -> bytes:
+    found = list(_NUMBER.finditer(bytes(data)))
+    if not found:
+        return bytes(data)
+    at = found[rng.integers(len(found))]
+    return bytes(data[: at.start()] + _VALUES[rng.integers(len(_VALUES))] + data[at.end() :])
+
+
+def _swapped(data: bytearray, rng: np.random.Generator) -> bytes:
+    lines = bytes(data).split(b"\n")
+    i, j = rng.integers(len(lines), size=2)
+    lines[i], lines[j] = lines[j], lines[i]
+    return b"\n".join(lines)
+
+
+_DAMAGES = (
+    _flipped, _overwritten, _cut_off, _without, _doubled, _moved, _renumbered, _renumbered, _renumbered, _swapped,
+)  # fmt: skip
+
+
+def outcome(reader: Reader, data: bytes, folder: Path) -> str:
+    """What came of a file: "read", "refused", or the fault: a foreign error, or a message of several lines."""
+    try:
+        reader.read(data, folder)
+    except ClearanceError as error:
+        return "refused" if "\n" not in str(error) else "message of several lines"
+    except MemoryError:
+        return "out of memory"
+    except RecursionError:
+        return "RecursionError"
+    except Exception as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        ours = [f for f in traceback.extract_tb(error.__traceback__) if "clearance" in f.filename]
+        inner = f"{Path(ours[-1].filename).name}:{ours[-1].lineno}" if ours else place.name
+        return f"{type(error).__name__} at {inner}: {error!s:.60}"
+    return "read"
+
+
+def _work(kind: str, first: int, last: int, seed: int) -> None:
+    """Reads the files `first` to `last` of a kind and tells of each; the system ends it where one is too long."""
+    reader = readers()[kind]
+    with tempfile.TemporaryDirectory() as folder:
+        reader.read(reader.valid, Path(folder))  # compiles and imports outside the limits
+        used = Path("/proc/self/statm").read_text().split()[5]
+        limit = MOST_MEMORY + int(used) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))
+        for i in range(first, last):
+            print(i, end=" ", flush=True)
+            signal.setitimer(signal.ITIMER_PROF, MOST_TIME)
+            said = outcome(reader, damaged(reader.valid, seed * 1_000_003 + i), Path(folder))
+            signal.setitimer(signal.ITIMER_PROF, 0)
+            print(" ".join(said.split()), flush=True)
+
+
+def fuzz(
+    kind: str, n_files: int, seed: int, keep: Path | None
+) -> tuple[Counter, dict[str, int], float]:
+    """How often each outcome came, the first file of each fault, and the seconds that all took."""
+    found: Counter = Counter()
+    firsts: dict[str, int] = {}
+    began, first = time.perf_counter(), 0
+    while first < n_files:
+        command = [sys.executable, __file__, "--work", kind, str(first), str(n_files), str(seed)]
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONWARNINGS": "ignore"}
+        done = subprocess.run(command, capture_output=True, text=True, env=environment)
+        lines = [line.partition(" ") for line in done.stdout.splitlines()]
+        for number, _, said in lines:
+            said = said.strip() or f"ended by signal {-done.returncode}"
+            found[said] += 1
+            firsts.setdefault(said, int(number))
+        if not lines:
+            raise SystemExit(f"{kind}: the process did not start: {done.stderr[-2000:]}")
+        first = int(lines[-1][0]) + 1
+    if keep is not None:
+        keep.mkdir(parents=True, exist_ok=True)
+        reader = readers()[kind]
+        for said, i in firsts.items():
+            if said not in ("read", "refused"):
+                (keep / f"{i}_{reader.name}").write_bytes(
+                    damaged(reader.valid, seed * 1_000_003 + i)
+                )
+    return found, firsts, time.perf_counter() - began
+
+
+def main() -> None:
+    """Fuzzes the kinds that are asked for and prints the table; exit status 1 where a reader has a fault."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--files", type=int, default=5000)
+    parser.add_argument("--kinds", default="")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--keep", type=Path, help="writes the first file of each fault here")
+    given = parser.parse_args()
+    n_faults = 0
+    print("| kind | files | read | refused | faults | s |\n|---|---|---|---|---|---|", flush=True)
+    for kind in given.kinds.split(",") if given.kinds else readers():
+        found, firsts, seconds = fuzz(kind, given.files, given.seed, given.keep)
+        faults = {said: n for said, n in found.items() if said not in ("read", "refused")}
+        n_faults += sum(faults.values())
+        row = [
+            kind,
+            given.files,
+            found["read"],
+            found["refused"],
+            sum(faults.values()),
+            round(seconds),
+        ]
+        print("| " + " | ".join(map(str, row)) + " |", flush=True)
+        for said, n in sorted(faults.items(), key=lambda item: -item[1]):
+            print(f"  {n} x {said} (file {firsts[said]})", flush=True)
+    raise SystemExit(n_faults > 0)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--work"]:
+        _work(sys.argv[2], *map(int, sys.argv[3:]))
+    else:
+        main()

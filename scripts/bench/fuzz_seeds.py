@@ -1,0 +1,274 @@
+"""Small valid files of every kind that is read, and what reads each: where `fuzz_readers` starts from."""
+
+from __future__ import annotations
+
+import json
+import struct
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+TRIANGLES = np.array([[q[0], q[i], q[i + 1]] for q in QUADS for i in (1, 2)])
+
+SKETCH = Path(__file__).parents[2] / "scenes" / "sketches" / "d_cell.yaml"
+
+
+class Reader(NamedTuple):
+    """What is read: a valid file, its name, and a function of content and folder that reads it."""
+
+    name: str
+    valid: bytes
+    read: Callable[[bytes, Path], object]
+
+
+def readers() -> dict[str, Reader]:
+    """Every reader by name."""
+    meshes = {
+        "STL binary": ("m.stl", _binary_stl()),
+        "STL text": ("m.stl", _text_stl()),
+        "OBJ": ("m.obj", _obj()),
+        "COLLADA": ("m.dae", _collada()),
+        "PLY text": ("m.ply", _ply_text()),
+        "PLY binary": ("m.ply", _ply_binary()),
+        "OFF": ("m.off", _off()),
+        "GLB": ("m.glb", _glb()),
+    }
+    made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
+    return made | {
+        "DXF": Reader("d.dxf", _dxf(), _file_reader("d.dxf", _read_dxf)),
+        "curves": Reader("c.yaml", _CURVES, _file_reader("c.yaml", _read_curves)),
+        "profile": Reader("p.yaml", _PROFILE, _file_reader("p.yaml", _read_profile)),
+        "sketch": Reader("s.yaml", SKETCH.read_bytes(), _file_reader("s.yaml", _read_sketch)),
+        "URDF": Reader("arm.urdf", _URDF, _case_reader("arm.urdf")),
+        "case": Reader("case.yaml", _CASE, _case_reader("case.yaml")),
+        "trajectory": Reader("path.csv", _PATH, _read_trajectory),
+    }
+
+
+def _mesh_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.mesh import mesh_from_bytes
+
+        return mesh_from_bytes(data, name)
+
+    return read
+
+
+def _file_reader(name: str, read_file: Callable[[Path], object]) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        (folder / name).write_bytes(data)
+        return read_file(folder / name)
+
+    return read
+
+
+def _case_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.case_file import load_case
+
+        valid = {"case.yaml": _CASE, "arm.urdf": _URDF, "path.csv": _PATH, "m.stl": _binary_stl()}
+        for other, content in (valid | {name: data}).items():
+            (folder / other).write_bytes(content)
+        return load_case(folder / "case.yaml")
+
+    return read
+
+
+def _read_dxf(path: Path) -> object:
+    from clearance.planar.dxf import read_dxf
+
+    return read_dxf(str(path))
+
+
+def _read_curves(path: Path) -> object:
+    from clearance.planar.curve_file import read_curve
+
+    return read_curve(str(path))
+
+
+def _read_profile(path: Path) -> object:
+    from clearance.profiles.outline_file import read_profile
+
+    return read_profile(path)
+
+
+def _read_sketch(path: Path) -> object:
+    from clearance.sketch import Sketch
+
+    return Sketch.load(path)
+
+
+def _read_trajectory(data: bytes, folder: Path) -> object:
+    from clearance.load.trajectory_file import parse_trajectory
+
+    return parse_trajectory(data, "path.csv")
+
+
+def _binary_stl() -> bytes:
+    facets = [struct.pack("<12fH", 0, 0, 0, *CUBE[t].ravel(), 0) for t in TRIANGLES]
+    return bytes(80) + struct.pack("<I", len(facets)) + b"".join(facets)
+
+
+def _text_stl() -> bytes:
+    lines = ["solid cube"]
+    for triangle in CUBE[TRIANGLES].tolist():
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex " + " ".join(map(str, point)) for point in triangle]
+        lines += ["endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid cube", ""]).encode()
+
+
+def _rows(rows: np.ndarray | list, before: str = "", one: int = 0) -> str:
+    return "".join(
+        before + " ".join(str(value + one) for value in list(row)) + "\n" for row in rows
+    )
+
+
+def _obj() -> bytes:
+    return (
+        "# cube\no c\n"
+        + _rows(CUBE.tolist(), "v ")
+        + _rows(QUADS[:5], "f ", 1)
+        + "f -7/1 -3 -1 -5\n"
+    ).encode()
+
+
+def _faces() -> str:
+    return _rows([[len(quad), *quad] for quad in QUADS])
+
+
+def _off() -> bytes:
+    return ("OFF\n8 6 0\n" + _rows(CUBE.tolist()) + _faces()).encode()
+
+
+def _ply_head(kind: str) -> str:
+    lines = [
+        "ply",
+        f"format {kind} 1.0",
+        "element vertex 8",
+        *(f"property double {x}" for x in "xyz"),
+    ]
+    return "\n".join(
+        [*lines, "element face 6", "property list uchar int vertex_indices", "end_header", ""]
+    )
+
+
+def _ply_text() -> bytes:
+    return (_ply_head("ascii") + _rows(CUBE.tolist()) + _faces()).encode()
+
+
+def _ply_binary() -> bytes:
+    faces = b"".join(struct.pack("<B4i", 4, *quad) for quad in QUADS)
+    return _ply_head("binary_little_endian").encode() + CUBE.astype("<f8").tobytes() + faces
+
+
+def _collada() -> bytes:
+    polygons = " ".join(str(i) for quad in QUADS for i in quad)
+    return f"""<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="0.001"/><up_axis>Y_UP</up_axis></asset><library_geometries><geometry id="g"><mesh>
+<source id="p">
+<float_array id="pa" count="24">{" ".join(map(str, CUBE.ravel().tolist()))}</float_array><technique_common>
+<accessor source="#pa" count="8" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v">
+<input semantic="POSITION" source="#p"/></vertices><polylist count="6">
+<input semantic="VERTEX" source="#v" offset="0"/>
+<vcount>4 4 4 4 4 4</vcount><p>{polygons}</p></polylist></mesh></geometry></library_geometries><library_nodes>
+<node id="n"><instance_geometry url="#g"/></node></library_nodes><library_visual_scenes><visual_scene id="s"><node>
+<rotate>0 0 1 90</rotate><scale>1 2 3</scale><instance_node url="#n"/><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>""".encode()
+
+
+def _glb() -> bytes:
+    points, indices = CUBE.astype("<f4").tobytes(), TRIANGLES.astype("<u2").tobytes()
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0, "scale": [1, 2, 3]},
+                  {"mesh": 0, "translation": [9, 0, 0], "rotation": [0, 0, 0, 1]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": 4}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}],
+        "buffers": [{"byteLength": 168}],
+    }  # fmt: skip
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    chunks = (
+        struct.pack("<I4s", len(text), b"JSON")
+        + text
+        + struct.pack("<I4s", 168, b"BIN\0")
+        + points
+        + indices
+    )
+    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
+
+
+def _dxf() -> bytes:
+    """Written by ezdxf, so that it has all the tables that a drawing needs."""
+    import ezdxf
+
+    drawing = ezdxf.new("R12", units=0)
+    space = drawing.modelspace()
+    space.add_line((0, 0), (2, 0))
+    space.add_arc((2, 1), 1, -90, 90)
+    space.add_polyline2d([(2, 2, 0), (0, 2, 0.5), (0, 0, 0)], format="xyb")
+    space.add_circle((5, 5), 2)
+    with tempfile.TemporaryDirectory() as folder:
+        drawing.saveas(Path(folder) / "d.dxf")
+        return (Path(folder) / "d.dxf").read_bytes()
+
+
+_CURVES = b"""curves:
+- line: {start: [0, 0], end: [1, 2]}
+- polyline: {points: [[0, 0], [1, 0], [1, 1]], closed: true}
+- bspline: {control: [[0, 0], [1, 2], [3, 1], [4, 0]], degree: 2}
+- arc: {center: [0, 0], radius: 1, start: 0.5, end: 2}
+- circle: {center: [3, 3], radius: 0.5}
+"""
+
+_PROFILE = b"""format: clearance-profile-1
+name: port
+plane: {name: xy, origin: [0, 0, 0.5], axes: [[1, 0, 0], [0, 1, 0]]}
+tolerance: 0.001
+bound: 0.002
+steps: 3
+contours:
+- [[0, 0, 0], [1, 0, 0.5], [1, 1, 0], [0, 1, -0.25]]
+- [[0.2, 0.2, 0], [0.2, 0.4, 0], [0.4, 0.4, 0]]
+notes: [made]
+"""
+
+_URDF = b"""<?xml version="1.0"?>
+<robot name="arm">
+  <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <link name="upper"><collision><origin xyz="0 0 0.5" rpy="0 0.1 0"/><geometry><mesh filename="m.stl"
+    scale="0.1 0.1 1"/></geometry></collision></link>
+  <link name="tip"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
+  <link name="finger"><collision><geometry><cylinder radius="0.01" length="0.1"/></geometry></collision></link>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><origin xyz="0 0 0.1"/>
+    <axis xyz="0 0 2"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="flange" type="fixed"><parent link="upper"/><child link="tip"/><origin xyz="0 0 1.5"/></joint>
+  <joint name="grip" type="prismatic"><parent link="tip"/><child link="finger"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="0.1" effort="1" velocity="1"/>
+    <mimic joint="shoulder" multiplier="0.1" offset="0.01"/></joint>
+</robot>
+"""
+
+_CASE = b"""name: small
+robot: {urdf: arm.urdf, base: {xyz: [0, 0, 0.5], rpy: [0, 0, 1.57]}, exclude_links: [tip]}
+scene:
+  obstacles:
+  - {name: post, pose: {xyz: [2, 0, 0]}, box: {size: [0.1, 0.1, 1]}}
+  - {name: ball, pose: {xyz: [2, 1, 0]}, sphere: {radius: 0.2}}
+  - {name: part, pose: {xyz: [-2, 1, 0]}, mesh: {file: m.stl, scale: 0.5}}
+trajectory: {file: path.csv}
+limits: {fail: 0.005, warn: 0.02}
+allow:
+- [base, post]
+"""
+
+_PATH = b"time,shoulder\n0,0\n0.5,0.25\n1,0.5\n1.5,-0.25\n"

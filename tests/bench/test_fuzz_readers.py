@@ -1,0 +1,38 @@
+"""Some dozens of damaged files of every kind: each is read or refused by an error of ours."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from scripts.bench.fuzz_readers import damaged, outcome
+from scripts.bench.fuzz_seeds import readers
+
+READERS = readers()
+
+
+@pytest.mark.parametrize("kind", READERS)
+def test_damaged_files_are_read_or_refused(kind, tmp_path):
+    reader = READERS[kind]
+    assert outcome(reader, reader.valid, tmp_path) == "read"
+    said = {i: outcome(reader, damaged(reader.valid, 77_000 + i), tmp_path) for i in range(36)}
+    assert {i: found for i, found in said.items() if found not in ("read", "refused")} == {}
+    assert "refused" in said.values()
+
+
+def test_the_same_seed_does_the_same_damage():
+    valid = READERS["OBJ"].valid
+    assert [damaged(valid, i) for i in range(9)] == [damaged(valid, i) for i in range(9)]
+    assert len({damaged(valid, i) for i in range(9)}) > 5
+
+
+def test_a_foreign_error_and_a_message_of_several_lines_are_faults(tmp_path):
+    def fails(data, folder):
+        raise KeyError("x")
+
+    reader = READERS["OBJ"]._replace(read=fails)
+    assert outcome(reader, reader.valid, tmp_path).startswith("KeyError at")
