@@ -43,7 +43,11 @@ def test_a_joint_a_little_beyond_its_limits_is_a_warning(tmp_path):
     case = changed("arm.urdf", "arm.urdf, joints: {lift: 0.13}")
     ((severity, kind, text),) = found(tmp_path, case, urdf=TWO_JOINTS)
     assert (severity, kind) == (Severity.WARNING, "limits")
-    assert "joint 'lift' leaves its limits 0 to 0.1 m by up to 0.03 m" in text
+    assert text == "joint 'lift' leaves its limits 0 to 0.1 m by up to 0.03 m all the time"
+    nobody_says = TWO_JOINTS.replace('lower="0" upper="0.1"', 'lower="0.02" upper="0.1"')
+    ((severity, kind, text),) = found(tmp_path, urdf=nobody_says)
+    assert (severity, kind) == (Severity.WARNING, "limits")
+    assert "joint 'lift' leaves its limits 0.02 to 0.1 m by up to 0.02 m all the time" in text
 
 
 @pytest.mark.parametrize("beyond", [8.0, -2.6])
