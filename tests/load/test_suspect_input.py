@@ -117,7 +117,7 @@ def test_what_stands_or_measures_in_other_units_is_suspect(tmp_path, old, new, s
 def test_a_fence_in_millimetres_without_scale_is_suspect(tmp_path):
     case = with_obstacle("mesh: {file: fence.obj}")
     text = only_suspect(tmp_path, case, fence__obj=FENCE)
-    assert "obstacle 'post' is 3e+03 m long where the robot reaches" in text
+    assert "obstacle 'post' is 3000 m long where the robot reaches" in text
     assert "scale 0.001" in text
     scaled = case.replace("fence.obj", "fence.obj, scale: 0.001")
     assert found(tmp_path, scaled, fence__obj=FENCE) == []
@@ -130,7 +130,7 @@ def test_a_drawing_far_from_its_own_origin_is_suspect(tmp_path):
     """A bracket of 30 mm, 2.5 m from the drawing's origin, read as metres: no side is long enough to tell."""
     bracket = "v 2500 300 0\nv 2530 300 0\nv 2530 330 0\nf 1 2 3\n"
     text = only_suspect(tmp_path, with_obstacle("mesh: {file: b.obj}"), b__obj=bracket)
-    assert "obstacle 'post' stands 2.52e+03 m away" in text
+    assert "obstacle 'post' stands 2520 m away" in text
 
 
 def test_the_usual_is_not_suspect(tmp_path):
