@@ -169,7 +169,8 @@ def _odd_places(case: Case, frames: Sequence[Frame]) -> list[str]:
     base = max(float(np.abs(frame.base).max()) for frame in frames)
     hint = "lengths are in metres, is this millimetres?"
     if len(far) == len(case.obstacles) and base > FAR:
-        return [f"the robot's base stands {_metres(base)} m away, {_metres(far[-1][0])} m from the nearest obstacle; {hint}"]
+        apart = f"{_metres(far[-1][0])} m from the nearest obstacle"
+        return [f"the robot's base stands {_metres(base)} m away, {apart}; {hint}"]
     stand = listed([f"obstacle {name!r} stands {_metres(gap)} m away from the robot's base" for gap, name in far])
     return [f"{stand}; {hint}"]
 
