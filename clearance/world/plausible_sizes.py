@@ -25,6 +25,9 @@ LONG_MESH, SHORT_MESH = 50.0, 0.01
 FAR = 20.0
 """[-] An obstacle farther away than this many times the reach, and than this many metres, is not its own."""
 
+HALL, WALL = 100.0, 5.0
+"""[m] No cell is so large. [-] Within it, what is no farther away than this many times its length is a wall."""
+
 FAR_ORIGIN = 20.0
 """[m] No joint is as far from the one before, and no shape from its link; 20 mm is usual."""
 
@@ -161,7 +164,9 @@ def _odd_places(case: Case, frames: Sequence[Frame]) -> list[str]:
     far = []
     for obstacle in case.obstacles:
         gaps = [_gap(obstacle, frame.base) for frame in frames]
-        if all(gap > FAR * max(1.0, frame.reach) for gap, frame in zip(gaps, frames, strict=True)):
+        if not all(gap > FAR * max(1.0, frame.reach) for gap, frame in zip(gaps, frames, strict=True)):
+            continue
+        if min(gaps) > min(HALL, WALL * _length(obstacle.body)):
             far.append((min(gaps), obstacle.name))
     if not far:
         return []

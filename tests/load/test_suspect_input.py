@@ -139,6 +139,9 @@ def test_the_usual_is_not_suspect(tmp_path):
     case = CASE.replace("trajectory:", floor + pin + "trajectory:")
     turned = case.replace("xyz: [2, 0, 0]", "xyz: [2, 0, 0], rpy: [4.71, 6.2832, -5.1234567]")
     assert found(tmp_path, turned) == []
+    wall = "  - {name: wall, pose: {xyz: [30, 0, 3]}, box: {size: [0.3, 60, 6]}}\n"
+    pillar = "  - {name: pillar, pose: {xyz: [20, 22, 3]}, box: {size: [0.5, 0.5, 6]}}\n"
+    assert found(tmp_path, case.replace("trajectory:", wall + pillar + "trajectory:")) == []
     hall = CASE.replace("xyz: [2, 0, 0]", "xyz: [112, 0, 0]")
     hall = hall.replace("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [110, 0, 0]}")
     assert found(tmp_path, hall) == []
