@@ -13,6 +13,15 @@ from contextlib import contextmanager
 from pathlib import Path
 
 
+def shown(text: str) -> str:
+    """The text with everything escaped that a terminal would not show as it is."""
+    if text.isprintable():
+        return text
+    return "".join(
+        letter if letter.isprintable() else letter.encode("unicode_escape").decode("ascii") for letter in text
+    )
+
+
 class ClearanceError(Exception):
     """Base of all errors that a caller can provoke; its text is always one line.
 
@@ -31,7 +40,7 @@ class ClearanceError(Exception):
     def __str__(self) -> str:
         place = f"{self.where}: " if self.where else ""
         remedy = f"; {self.valid}" if self.valid else ""
-        return " ".join(f"{place}{self.problem}{remedy}".split())
+        return shown(" ".join(f"{place}{self.problem}{remedy}".split()))
 
 
 class BadInput(ClearanceError, ValueError):

@@ -55,9 +55,10 @@ _LEFT = {
 
 _MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf"}
 
-_ROOT = re.compile(rb"<(?:\w+:)?([A-Za-z_][\w.-]*)[\s/>]")
+_ROOT = re.compile(rb"\s*<(?:\w+:)?([A-Za-z_][\w.-]*)[\s/>]")
 
-_WITHOUT = re.compile(rb"<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>", re.DOTALL)
+_BEFORE_ROOT = ((b"<?", b"?>"), (b"<!--", b"-->"), (b"<!", b">"))
+"""How what may stand before the root element begins and ends."""
 
 
 def refuse_foreign(data: bytes, shown: str, wanted: str) -> None:
@@ -97,7 +98,7 @@ def _kind(data: bytes, name: str) -> str | None:
 
 
 def _xml_kind(start: bytes) -> str | None:
-    root = _ROOT.search(_WITHOUT.sub(b"", start))
+    root = _ROOT.match(start, _root_begins(start))
     tag = root[1].decode() if root else ""
     if tag != "robot":
         return {"sdf": "sdf", "mujoco": "mjcf", "COLLADA": "mesh"}.get(tag)
@@ -106,3 +107,18 @@ def _xml_kind(start: bytes) -> str | None:
     groups = re.search(rb"<(disable_collisions|group|virtual_joint|end_effector)\b", start)
     parts = re.search(rb"<(parent|visual|collision|inertial)\b", start)
     return "srdf" if groups and not parts else "urdf"
+
+
+def _root_begins(start: bytes) -> int:
+    """Where the root element begins, behind declarations and comments; at the end if they do not end."""
+    at = 0
+    while True:
+        while at < len(start) and start[at : at + 1].isspace():
+            at += 1
+        ends = next((end for begin, end in _BEFORE_ROOT if start.startswith(begin, at)), None)
+        if ends is None:
+            return at
+        found = start.find(ends, at)
+        if found < 0:
+            return len(start)
+        at = found + len(ends)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from clearance.errors import DuplicateName, UnknownJoint, nearest_name
+from clearance.world.notice import listed
 from clearance.world.robot import JointKind, Robot
 
 
@@ -51,6 +52,4 @@ def note_on_joints_at_zero(robot: Robot, given: Iterable[str]) -> list[str]:
     left = [joint.name for joint in robot.moving_joints if joint.name not in known]
     if not left:
         return []
-    return [
-        f"joints given neither by the trajectory nor by robot.joints stay at 0: {', '.join(left)}"
-    ]
+    return [f"joints given neither by the trajectory nor by robot.joints stay at 0: {listed(left, 8)}"]

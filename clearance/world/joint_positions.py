@@ -31,17 +31,16 @@ class JointCourse(NamedTuple):
 
 
 def joint_courses(placed: PlacedRobot) -> Iterator[JointCourse]:
-    """Where each joint goes that the case gives a value, and where those go that follow one of them."""
+    """Where each joint goes; those that nobody gives a value stay at 0."""
     asked = placed.trajectory
     columns = {name: i for i, name in enumerate(asked.joint_names)}
     for joint, master, factor, offset in followers(placed.robot):
         i = columns.get(master)
         if i is not None:
             yield JointCourse(joint, factor * asked.positions[:, i] + offset, i, factor, offset)
-        elif master in placed.fixed_positions:
-            yield JointCourse(joint, np.array([factor * placed.fixed_positions[master] + offset]))
-        elif joint.mimic is not None:
-            yield JointCourse(joint, np.array([offset]))
+        else:
+            resting = placed.fixed_positions.get(master, 0.0)
+            yield JointCourse(joint, np.array([factor * resting + offset]))
 
 
 def extremes_of(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, np.ndarray] | None:

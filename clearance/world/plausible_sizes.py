@@ -25,6 +25,9 @@ LONG_MESH, SHORT_MESH = 50.0, 0.01
 FAR = 20.0
 """[-] An obstacle farther away than this many times the reach, and than this many metres, is not its own."""
 
+HALL, WALL = 100.0, 5.0
+"""[m] No cell is so large. [-] Within it, what is no farther away than this many times its length is a wall."""
+
 FAR_ORIGIN = 20.0
 """[m] No joint is as far from the one before, and no shape from its link; 20 mm is usual."""
 
@@ -88,7 +91,7 @@ def _odd_origins(placed: PlacedRobot) -> list[str]:
         (float(np.linalg.norm(np.clip(0.0, *body.shape.bounds))), f"the shape of link {body.name!r}")
         for body in placed.robot.bodies
     ]
-    odd = [f"{what} stands {away:.3g} m away" for away, what in _greatest(far) if away > FAR_ORIGIN]
+    odd = [f"{what} stands {_metres(away)} m away" for away, what in _greatest(far) if away > FAR_ORIGIN]
     return [f"{listed(odd)} from its link's frame; lengths are in metres, is this millimetres?"] if odd else []
 
 
@@ -102,7 +105,7 @@ def _odd_links(placed: PlacedRobot) -> list[str]:
     usual = _chain(placed) + sorted(lengths)[(len(lengths) - 1) // 2]
     long, tiny = [], []
     for body, length in zip(bodies, lengths, strict=True):
-        text = f"link {body.name!r} is {length:.3g} m long"
+        text = f"link {body.name!r} is {_metres(length)} m long"
         if length >= RATIO * usual > 0:
             long.append((length, text))
         elif _is_mesh(body) and length * RATIO <= reach:
@@ -114,7 +117,7 @@ def _lengths_told(
     long: list[tuple[float, str]], tiny: list[tuple[float, str]], reach: float
 ) -> list[str]:
     return [
-        f"{listed([text for _, text in _greatest(odd)])} where the robot reaches {reach:.3g} m; {hint}"
+        f"{listed([text for _, text in _greatest(odd)])} where the robot reaches {_metres(reach)} m; {hint}"
         for odd, hint in ((long, _TOO_LARGE), (tiny, _TOO_SMALL))
         if odd
     ]
@@ -130,7 +133,7 @@ def _odd_obstacles(obstacles: Sequence[Obstacle], frames: Sequence[Frame]) -> li
     large, small = [], []
     for i, obstacle in enumerate(obstacles):
         others = lengths[:i] + lengths[i + 1 :]
-        text = f"obstacle {obstacle.name!r} is {lengths[i]:.3g} m long"
+        text = f"obstacle {obstacle.name!r} is {_metres(lengths[i])} m long"
         if _is_large(obstacle.body, lengths[i], others, most):
             large.append((lengths[i], text))
         elif _is_small(obstacle.body, lengths[i], others, least):
@@ -161,7 +164,9 @@ def _odd_places(case: Case, frames: Sequence[Frame]) -> list[str]:
     far = []
     for obstacle in case.obstacles:
         gaps = [_gap(obstacle, frame.base) for frame in frames]
-        if all(gap > FAR * max(1.0, frame.reach) for gap, frame in zip(gaps, frames, strict=True)):
+        if not all(gap > FAR * max(1.0, frame.reach) for gap, frame in zip(gaps, frames, strict=True)):
+            continue
+        if min(gaps) > min(HALL, WALL * _length(obstacle.body)):
             far.append((min(gaps), obstacle.name))
     if not far:
         return []
@@ -169,8 +174,9 @@ def _odd_places(case: Case, frames: Sequence[Frame]) -> list[str]:
     base = max(float(np.abs(frame.base).max()) for frame in frames)
     hint = "lengths are in metres, is this millimetres?"
     if len(far) == len(case.obstacles) and base > FAR:
-        return [f"the robot's base stands {base:g} m away, {far[-1][0]:.3g} m from the nearest obstacle; {hint}"]
-    stand = listed([f"obstacle {name!r} stands {gap:.3g} m away from the robot's base" for gap, name in far])
+        apart = f"{_metres(far[-1][0])} m from the nearest obstacle"
+        return [f"the robot's base stands {_metres(base)} m away, {apart}; {hint}"]
+    stand = listed([f"obstacle {name!r} stands {_metres(gap)} m away from the robot's base" for gap, name in far])
     return [f"{stand}; {hint}"]
 
 
@@ -183,3 +189,8 @@ def _gap(obstacle: Obstacle, point: np.ndarray) -> float:
 
 def _greatest(found: Iterable[tuple[float, str]]) -> list[tuple[float, str]]:
     return sorted(found, key=lambda item: -item[0])
+
+
+def _metres(length: float) -> str:
+    """Three digits, never in powers of ten for what is long."""
+    return f"{length:.3g}" if length < 1000.0 else f"{length:.0f}"

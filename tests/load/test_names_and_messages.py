@@ -9,6 +9,7 @@ from clearance.load.schema import Obstacle
 from clearance.load.schema_errors import validated
 from clearance.load.trajectory_file import parse_trajectory
 from clearance.load.urdf_elements import parse_document
+from clearance.load.yaml_file import parse_yaml
 from clearance.world.pairs import matches
 
 
@@ -60,6 +61,20 @@ def test_a_name_from_any_file_shows_what_it_holds_or_is_refused(name):
         told = str(caught.value)
         assert BAD[name] in told, place
         assert told.isprintable() and "\n" not in told, place
+
+
+@pytest.mark.parametrize("letter", ["\x1b", "\x9b", "\u202e", "\uffff", "\ud800"])
+def test_what_an_error_quotes_is_shown_escaped_wherever_it_comes_from(letter):
+    told = str(BadInput(f"a{letter}b is given", where=f"x{letter}.yaml", valid="c"))
+    assert told.isprintable() and letter not in told
+    assert repr(letter)[1:-1] in told
+    assert str(BadInput("größer ist 机器", valid="x")) == "größer ist 机器; x"
+
+
+def test_a_key_given_twice_is_shown_escaped():
+    with pytest.raises(BadInput) as caught:
+        parse_yaml(b'"a\\x9bCLEAR": 1\n"a\\x9bCLEAR": 2\n', "case.yaml")
+    assert str(caught.value).isprintable()
 
 
 def test_names_in_any_script_are_names():

@@ -43,7 +43,11 @@ def test_a_joint_a_little_beyond_its_limits_is_a_warning(tmp_path):
     case = changed("arm.urdf", "arm.urdf, joints: {lift: 0.13}")
     ((severity, kind, text),) = found(tmp_path, case, urdf=TWO_JOINTS)
     assert (severity, kind) == (Severity.WARNING, "limits")
-    assert "joint 'lift' leaves its limits 0 to 0.1 m by up to 0.03 m" in text
+    assert text == "joint 'lift' leaves its limits 0 to 0.1 m by up to 0.03 m all the time"
+    nobody_says = TWO_JOINTS.replace('lower="0" upper="0.1"', 'lower="0.02" upper="0.1"')
+    ((severity, kind, text),) = found(tmp_path, urdf=nobody_says)
+    assert (severity, kind) == (Severity.WARNING, "limits")
+    assert "joint 'lift' leaves its limits 0.02 to 0.1 m by up to 0.02 m all the time" in text
 
 
 @pytest.mark.parametrize("beyond", [8.0, -2.6])
@@ -113,7 +117,7 @@ def test_what_stands_or_measures_in_other_units_is_suspect(tmp_path, old, new, s
 def test_a_fence_in_millimetres_without_scale_is_suspect(tmp_path):
     case = with_obstacle("mesh: {file: fence.obj}")
     text = only_suspect(tmp_path, case, fence__obj=FENCE)
-    assert "obstacle 'post' is 3e+03 m long where the robot reaches" in text
+    assert "obstacle 'post' is 3000 m long where the robot reaches" in text
     assert "scale 0.001" in text
     scaled = case.replace("fence.obj", "fence.obj, scale: 0.001")
     assert found(tmp_path, scaled, fence__obj=FENCE) == []
@@ -126,7 +130,7 @@ def test_a_drawing_far_from_its_own_origin_is_suspect(tmp_path):
     """A bracket of 30 mm, 2.5 m from the drawing's origin, read as metres: no side is long enough to tell."""
     bracket = "v 2500 300 0\nv 2530 300 0\nv 2530 330 0\nf 1 2 3\n"
     text = only_suspect(tmp_path, with_obstacle("mesh: {file: b.obj}"), b__obj=bracket)
-    assert "obstacle 'post' stands 2.52e+03 m away" in text
+    assert "obstacle 'post' stands 2520 m away" in text
 
 
 def test_the_usual_is_not_suspect(tmp_path):
@@ -135,6 +139,9 @@ def test_the_usual_is_not_suspect(tmp_path):
     case = CASE.replace("trajectory:", floor + pin + "trajectory:")
     turned = case.replace("xyz: [2, 0, 0]", "xyz: [2, 0, 0], rpy: [4.71, 6.2832, -5.1234567]")
     assert found(tmp_path, turned) == []
+    wall = "  - {name: wall, pose: {xyz: [30, 0, 3]}, box: {size: [0.3, 60, 6]}}\n"
+    pillar = "  - {name: pillar, pose: {xyz: [20, 22, 3]}, box: {size: [0.5, 0.5, 6]}}\n"
+    assert found(tmp_path, case.replace("trajectory:", wall + pillar + "trajectory:")) == []
     hall = CASE.replace("xyz: [2, 0, 0]", "xyz: [112, 0, 0]")
     hall = hall.replace("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [110, 0, 0]}")
     assert found(tmp_path, hall) == []
