@@ -172,8 +172,13 @@ def _outputs(out: Path | None, junit: Path | None) -> list[Path]:
 
 def _compile_ahead(quiet: bool) -> None:
     """Begins to compile what this machine has not yet, and says so in a terminal."""
-    from clearance import ahead
+    import warnings
 
+    from clearance import ahead
+    from clearance.kernel_cache import KernelCacheWarning
+
+    if quiet:
+        warnings.simplefilter("ignore", KernelCacheWarning)
     if ahead.start() and not quiet and sys.stderr.isatty():
         click.echo("compiling for this machine, once: about half a minute", err=True)
 

@@ -10,6 +10,7 @@ import errno
 import io
 import os
 import sys
+import warnings
 from contextlib import suppress
 from typing import NoReturn
 
@@ -18,7 +19,8 @@ def make_streams_safe() -> None:
     """Makes sure that nothing else is taken for one of the three, and that no character stops a line.
 
     A file opened later would get the number of one that is closed, and what libraries print would go into it.
-    Output that is closed still cannot be written, and says so; where errors cannot be told, they are not.
+    Output that is closed still cannot be written, and says so; where errors cannot be told, they are not. A
+    warning is told in one line, like an error.
     """
     for number in range(3):
         try:
@@ -32,6 +34,11 @@ def make_streams_safe() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    warnings.formatwarning = _in_one_line
+
+
+def _in_one_line(message: Warning | str, *_: object) -> str:
+    return f"warning: {message}\n"
 
 
 class _Closed(io.TextIOBase):

@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -106,18 +105,28 @@ def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, limit):
     assert "DISAGREES at 1 step" in done.stdout
 
 
+KILLED = """
+import os, signal
+from clearance import cli
+from clearance.simulate import spool
+spool.SAVE_AFTER, note = 0.0, spool._SpooledLog.note
+def killed(log, done, gathered, *, last):
+    note(log, done, gathered, last=last)
+    os.kill(os.getpid(), signal.SIGKILL)
+spool._SpooledLog.note = killed
+cli.main()
+"""
+
+
 def test_a_killed_run_is_resumed_and_leaves_nothing_behind(folder):
     """The command line's own: the same command again, one line on stderr, the bytes of a whole run."""
-    rows = (f"{i},{0.7 * (i % 1000) / 1000}" for i in range(60_000))
+    rows = (f"{i},{0.7 * (i % 1000) / 1000}" for i in range(20_000))
     (folder / "path.csv").write_text("time,rail\n" + "\n".join(rows) + "\n")
-    command = [sys.executable, "-m", "clearance", "check", "case.yaml", "--out", "report"]
-    process = subprocess.Popen(command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)})
+    command = [sys.executable, "-c", KILLED, "check", str(folder / "case.yaml"), "--out", "report"]
+    killed = subprocess.run(command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
+    assert killed.returncode == -signal.SIGKILL
     kept = folder / ".report.unfinished"
-    while process.poll() is None and not list(kept.glob("*.state")):
-        time.sleep(0.01)
-    process.kill()
-    assert process.wait() == -signal.SIGKILL
-    assert not (folder / "report").exists()
+    assert list(kept.glob("*.state")) and not (folder / "report").exists()
     resumed = clearance(folder, "--out", "report")
     assert resumed.returncode == 0, resumed.stderr
     assert resumed.stderr.startswith("resuming: ") and resumed.stderr.count("\n") == 1
@@ -202,22 +211,25 @@ def test_a_full_disk_under_stdout_is_no_verdict(folder):
     assert done.returncode not in (0, 1)
 
 
+INTERRUPTED = """
+import os, signal
+import clearance.crosscheck.compare as compare
+from clearance import cli
+def interrupted(run, progress=None):
+    os.kill(os.getpid(), signal.SIGINT)
+compare.PeerRun.measure = interrupted
+cli.main()
+"""
+
+
 def test_an_interrupted_run_leaves_the_older_report_as_it_was(folder):
     assert clearance(folder, "--out", "report").returncode == 0
     before = files(folder / "report")
-    rows = (f"{i},{0.7 * (i % 1000) / 1000}" for i in range(200_000))
-    (folder / "path.csv").write_text("time,rail\n" + "\n".join(rows) + "\n")
-    command = [sys.executable, "-m", "clearance", "check", "case.yaml", "--cross-check", "--out"]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    process = subprocess.Popen(
-        [*command, "report"], cwd=folder, env=environment, text=True,
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    )  # fmt: skip
-    time.sleep(4.0)
-    assert process.poll() is None, "the run ended before it could be interrupted"
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert (process.returncode, out) == (130, "") and err.count("\n") == 1
-    assert "interrupted" in err
+    (folder / "path.csv").write_text(PATH.replace("0.7", "0.6"))
+    command = [sys.executable, "-c", INTERRUPTED, "check", "case.yaml", "--cross-check", "--out", "report"]
+    done = subprocess.run(
+        command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
     assert files(folder / "report") == before
     assert not list(folder.glob("**/*.partial"))
