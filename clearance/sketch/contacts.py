@@ -37,13 +37,17 @@ class Contacts(NamedTuple):
         return system._replace(code=code, var=var, value=value)
 
 
-def contacts_of(code: np.ndarray, var: np.ndarray, plain: np.ndarray) -> Contacts | None:
+def contacts_of(
+    code: np.ndarray, var: np.ndarray, plain: np.ndarray, sound: np.ndarray
+) -> Contacts | None:
     """The points of contact among equations with codes (m,) and variables (m, 8); None for none.
 
     Args:
         plain: (m,) marks the incidences: equations that never have a value.
+        sound: (m,) marks the equations of parts in which none follows from others: there, another would follow
+        if one of touching were replaced.
     """
-    touching = np.flatnonzero((code == LINE_CIRCLE) | (code == CIRCLE_CIRCLE))
+    touching = np.flatnonzero(((code == LINE_CIRCLE) | (code == CIRCLE_CIRCLE)) & sound)
     if not touching.size:
         return None
     on_line = _points_on(var, (code == POINT_LINE) & plain, (2, 3))
