@@ -1,9 +1,9 @@
 """Points of contact: where a line or circle touches a circle in a point that lies on both.
 
 Such a point is a double root of the equations as they are counted: an error of 1e-13 in the radius moves it by
-4e-7 along the line. The same is said by an equation that is regular there: its radius is perpendicular to the line,
-or the point lies on the line of the centres. Plans and counts keep the equations of touching; whatever is asked or
-mended at a solution takes the regular ones. Not for: contacts in no point of the sketch, which are regular.
+4e-7 along the line. The same is said by an equation that is regular there: its radius is perpendicular to the
+line, or the point lies on the line of the centres. Plans and counts keep the equations of touching; what is
+asked or mended at a solution takes the regular ones. Not for: contacts in no point of the sketch, which are regular.
 """
 
 from __future__ import annotations
@@ -52,7 +52,9 @@ def contacts_of(
         return None
     on_line = _points_on(var, (code == POINT_LINE) & plain, (2, 3))
     on_circle = _points_on(var, (code == POINT_CIRCLE) & plain, (2, 4))
-    found = [(int(row), *_regular(int(code[row]), var[row], on_line, on_circle)) for row in touching]
+    found = [
+        (int(row), *_regular(int(code[row]), var[row], on_line, on_circle)) for row in touching
+    ]
     found = [entry for entry in found if entry[1]]
     if not found:
         return None

@@ -29,9 +29,7 @@ CLEAR = 1e-6
 """[-] Share of a motion below which it does not move an entity: a walk comes back to 1e-8."""
 
 
-def equations_of(
-    problem: Problem, part: int, x: np.ndarray, *, regular: bool = True
-) -> Equations:
+def equations_of(problem: Problem, part: int, x: np.ndarray, *, regular: bool = True) -> Equations:
     """The equations of a part that are edges of the graph; those implied by the count come last.
 
     The regular ones are for freedoms. What follows from what is asked of the equations as they were given: a

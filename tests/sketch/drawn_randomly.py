@@ -100,7 +100,10 @@ class Drawing:
     def freedom_left(self, points, radii):
         """Degrees of freedom at solved points (n, 2) beyond placing the whole, by rank of differences."""
         x, h = np.concatenate([points.ravel(), radii]), 1e-6
-        columns = [(self.equations(x + h * u) - self.equations(x - h * u)) / (2 * h) for u in np.eye(x.size)]
+        columns = [
+            (self.equations(x + h * u) - self.equations(x - h * u)) / (2 * h)
+            for u in np.eye(x.size)
+        ]
         values = np.linalg.svd(np.array(columns).T, compute_uv=False)
         return x.size - int(np.sum(values > 1e-6)) - 3
 
