@@ -1,9 +1,9 @@
 """Points of contact: where a line or circle touches a circle in a point that lies on both.
 
 Such a point is a double root of the equations as they are counted: an error of 1e-13 in the radius moves it by
-4e-7 along the line. The same is said by an equation that is regular there: its radius is perpendicular to the line,
-or the point lies on the line of the centres. Plans and counts keep the equations of touching; whatever is asked or
-mended at a solution takes the regular ones. Not for: contacts in no point of the sketch, which are regular.
+4e-7 along the line. The same is said by an equation that is regular there: its radius is perpendicular to the
+line, or the point lies on the line of the centres. Plans and counts keep the equations of touching; what is
+asked or mended at a solution takes the regular ones. Not for: contacts in no point of the sketch, which are regular.
 """
 
 from __future__ import annotations
@@ -37,18 +37,24 @@ class Contacts(NamedTuple):
         return system._replace(code=code, var=var, value=value)
 
 
-def contacts_of(code: np.ndarray, var: np.ndarray, plain: np.ndarray) -> Contacts | None:
+def contacts_of(
+    code: np.ndarray, var: np.ndarray, plain: np.ndarray, sound: np.ndarray
+) -> Contacts | None:
     """The points of contact among equations with codes (m,) and variables (m, 8); None for none.
 
     Args:
         plain: (m,) marks the incidences: equations that never have a value.
+        sound: (m,) marks the equations of parts in which none follows from others: there, another would follow
+        if one of touching were replaced.
     """
-    touching = np.flatnonzero((code == LINE_CIRCLE) | (code == CIRCLE_CIRCLE))
+    touching = np.flatnonzero(((code == LINE_CIRCLE) | (code == CIRCLE_CIRCLE)) & sound)
     if not touching.size:
         return None
     on_line = _points_on(var, (code == POINT_LINE) & plain, (2, 3))
     on_circle = _points_on(var, (code == POINT_CIRCLE) & plain, (2, 4))
-    found = [(int(row), *_regular(int(code[row]), var[row], on_line, on_circle)) for row in touching]
+    found = [
+        (int(row), *_regular(int(code[row]), var[row], on_line, on_circle)) for row in touching
+    ]
     found = [entry for entry in found if entry[1]]
     if not found:
         return None

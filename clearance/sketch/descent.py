@@ -94,9 +94,7 @@ def descend(
     return place
 
 
-def _step(
-    part: Part, place: Place, damping: float, corrections: int
-) -> tuple[Place, float, bool]:
+def _step(part: Part, place: Place, damping: float, corrections: int) -> tuple[Place, float, bool]:
     """(a place that is lower, damping for the next step, whether this was the last one)."""
     from scipy.sparse import eye_array
 

@@ -116,6 +116,9 @@ def _run_at_unit(
             _numeric_part(problem, p, x, x.copy(), effort)
         x = x[problem.alias]
         residual, broken = _verdict(problem, x)
+    if problem.contacts is not None and broken == -1 and effort == 2:
+        x = _touching(problem, x, active)[problem.alias]
+        residual, broken = _verdict(problem, x)
     outcome = Outcome(x, fates, broken, residual)
     if broken == -1 and sides and not sides_hold(x, sides, size):
         outcome.broken = WRONG_SIDE
@@ -155,14 +158,11 @@ def _solve_parts(
     if effort < 2:
         return fates, x
     x = nearest_roots(problem, x, start, fates)
-    x = _nearest(problem, x, sketch, start, active_part)
-    return fates, _touching(problem, x, active_part)
+    return fates, _nearest(problem, x, sketch, start, active_part)
 
 
 def _touching(problem: Problem, x: np.ndarray, active: np.ndarray) -> np.ndarray:
     """x with the points of contact where they touch to the last digits."""
-    if problem.contacts is None:
-        return x
     parts = np.unique(problem.row_part[problem.contacts.rows])
     for p in parts[parts >= 0]:
         moved = closed(problem, p, x) if active[p] else None

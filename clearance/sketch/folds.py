@@ -1,10 +1,10 @@
 """Ways out of a minimum of the errors: flat triangles folded over, which the drawing may have the wrong way.
 
-A sliver's height is less than the drawing is off, so the sketch cannot tell its side; a descent from the wrong side
-ends where the last errors pull against each other, a stress. A fold moves a point to its mirror image in the line
-through two points that it has distances from. To the first order all of the part gives way except along
-the stress, so what a fold would leave is the stress's share of the errors behind it. Folds that leave less,
-and move little for that, are tried first, each by a descent. Not for: the descent (`descent`).
+A sliver's height is less than the drawing is off, so the sketch cannot tell its side; a descent from the
+wrong side ends where the last errors pull against each other, a stress. A fold moves a point to its mirror
+image in the line through two points that it has distances from. To the first order all of the part gives
+way except along the stress, so what a fold would leave is the stress's share of the errors behind it. Folds
+that leave less, and move little for that, are tried first, each by a descent. Not for: the descent (`descent`).
 """
 
 from __future__ import annotations

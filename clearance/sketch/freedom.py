@@ -29,12 +29,17 @@ CLEAR = 1e-6
 """[-] Share of a motion below which it does not move an entity: a walk comes back to 1e-8."""
 
 
-def equations_of(problem: Problem, part: int, x: np.ndarray) -> Equations:
-    """The equations of a part that are edges of the graph; those implied by the count come last."""
+def equations_of(problem: Problem, part: int, x: np.ndarray, *, regular: bool = True) -> Equations:
+    """The equations of a part that are edges of the graph; those implied by the count come last.
+
+    The regular ones are for freedoms. What follows from what is asked of the equations as they were given: a
+    regular equation says what it says only together with the incidences of its point.
+    """
+    system = problem.regular if regular else problem.system
     chosen = (problem.row_part == part) & (problem.fate == 0)
     last = problem.plan.dependent[chosen[problem.plan.dependent]]
     chosen[last] = False
-    return Equations(problem, part, np.concatenate([np.flatnonzero(chosen), last]), x)
+    return Equations(problem, part, np.concatenate([np.flatnonzero(chosen), last]), x, system)
 
 
 def rigid_motions(
@@ -134,7 +139,7 @@ def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list
 
 def _implied_rows(problem: Problem, part: int, x: np.ndarray) -> list[int]:
     """The equations of a part that follow from its others."""
-    equations = equations_of(problem, part, x)
+    equations = equations_of(problem, part, x, regular=False)
     if equations.rows.size > FACTORED or not equations.n:
         return [int(r) for r in problem.plan.dependent if problem.row_part[r] == part]
     return implied(equations, walk=equations.n <= WALKED)

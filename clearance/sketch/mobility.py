@@ -18,6 +18,7 @@ import numpy as np
 
 from clearance.kernels.sketch_columns import bend, spread, step_by
 from clearance.kernels.sketch_graph import POINT, TURN
+from clearance.kernels.sketch_place import System
 from clearance.sketch.problem import Problem
 
 SINGULAR = 1e-9
@@ -61,14 +62,16 @@ class Equations:
     right. The order of the rows says which are named where some follow from others: the last.
     """
 
-    def __init__(self, problem: Problem, part: int, rows: np.ndarray, x: np.ndarray) -> None:
+    def __init__(
+        self, problem: Problem, part: int, rows: np.ndarray, x: np.ndarray, system: System
+    ) -> None:
         self.problem = problem
         self.part = part
         self.rows = rows
         self.solution = x
         self.vertices = np.flatnonzero(problem.part == part)
         self.first, self.n = numbered(problem, self.vertices)
-        self.system = s = problem.regular
+        self.system = s = system
         self.unit = np.ones(self.n)
         self.unit[self.first[self.vertices[s.kind[self.vertices] == TURN]]] = 1.0 / problem.size
         self.error = np.zeros(rows.size)
@@ -76,7 +79,8 @@ class Equations:
 
     def without(self, row: int) -> Equations:
         """The same without one of them."""
-        return Equations(self.problem, self.part, self.rows[self.rows != row], self.solution)
+        rows = self.rows[self.rows != row]
+        return Equations(self.problem, self.part, rows, self.solution, self.system)
 
     def at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (m,) and derivative (m, n)."""

@@ -35,7 +35,9 @@ def least_movement(problem: Problem, part: int, x, target, weight, start=None) -
         weight: (n,) how much each variable of a point counts.
     """
     best = _best(_Work(problem, part, target, weight), x, start)
-    if best is None and problem.contacts is not None:  # what is regular may lead to a line's other side
+    if (
+        best is None and problem.contacts is not None
+    ):  # what is regular may lead to a line's other side
         plain = replace(problem, contacts=None)
         return _best(_Work(plain, part, target, weight), x, start)
     return best

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.kernels.sketch_core import components
+from clearance.kernels.sketch_equations import CIRCLE_CIRCLE
 from clearance.kernels.sketch_graph import (
     DIRECTION,
     IN_GRAPH,
@@ -180,22 +181,42 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
     parent, scale, shift, fate = merge(
         tables.code, var, tables.coef, value, tables.role, length_scale, DEPENDENT * size
     )
+    coef = inner_and_outer(tables, var, parent, shift)
     same = (
         like is not None
         and np.array_equal(parent, like.system.parent)
         and np.array_equal(fate, like.fate)
     )
     if same:
-        system = like.system._replace(value=value, scale=scale, shift=shift)
+        system = like.system._replace(coef=coef, value=value, scale=scale, shift=shift)
         out = Problem(**{**vars(like), "tables": tables, "system": system})
         out.size, out.length_scale = size, length_scale
         return out
     if tables.together:
         rows = np.flatnonzero((var[:, 0] == var[:, 1]) & (var[:, 0] >= 0) & (tables.code == 6))
         fate[rows] = MERGED
-    return _fresh(
+    out = _fresh(
         tables, alias, weight, repeated, var, value, parent, scale, shift, fate, size, length_scale
     )
+    out.system = out.system._replace(coef=coef)
+    return out
+
+
+def inner_and_outer(tables: Tables, var, parent: np.ndarray, shift: np.ndarray) -> np.ndarray:
+    """(m, 4) the coefficients; of two circles, one within the other, the given radii say which.
+
+    The drawing says it where a radius is not known: how large a circle is drawn is often rough.
+    """
+    coef, n = tables.coef, tables.role.size
+    inside = (tables.code == CIRCLE_CIRCLE) & (coef[:, 0] * coef[:, 1] < 0.0)
+    first, second = var[:, 4], var[:, 5]
+    inside &= (parent[first] == n) & (parent[second] == n) & (shift[first] != shift[second])
+    if not inside.any():
+        return coef
+    larger = np.where(shift[first] > shift[second], 1.0, -1.0)[inside]
+    coef = coef.copy()
+    coef[inside, 0], coef[inside, 1] = larger, -larger
+    return coef
 
 
 def _fresh(
@@ -233,10 +254,12 @@ def _fresh(
         plan = make_plan(kind, ends, ground, theta_of)
     part, n_parts, hold = components(kind, ends, theta_of, ground)
     free = counts(kind, ends, part, n_parts, plan.dependent, FREEDOMS)
+    row_part = row_parts(ends, var, part, vertex_of)
+    plain = (tables.scale == 0.0) & (tables.offset == 0.0)
     return Problem(
         tables, alias, weight, repeated, system, fate, ground, theta_of, plan, part, n_parts, hold,
-        free, row_parts(ends, var, part, vertex_of), length_scale, size,
-        contacts_of(tables.code, var, (tables.scale == 0.0) & (tables.offset == 0.0)),
+        free, row_part, length_scale, size,
+        contacts_of(tables.code, var, plain, ~np.isin(row_part, row_part[plan.dependent])),
     )  # fmt: skip
 
 

@@ -127,7 +127,9 @@ def circles_touch(x, c, d, inside=None):
     apart = span(x, c.center, d.center)
     shared = shared_end(c, d)
     if inside is None and shared is not None:
-        (px, py), *centers = ((x[i], x[i + 1]) for i in (shared.variable, c.center.variable, d.center.variable))
+        (px, py), *centers = (
+            (x[i], x[i + 1]) for i in (shared.variable, c.center.variable, d.center.variable)
+        )
         (ax, ay), (bx, by) = centers
         inside = (ax - px) * (bx - px) + (ay - py) * (by - py) > 0.0
     elif inside is None:

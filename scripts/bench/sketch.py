@@ -20,6 +20,10 @@ from pathlib import Path
 import numpy as np
 
 from clearance.sketch import Sketch
+from tests.sketch.drawn_randomly import drawing, tangencies
+
+ARC_LINE_TANGENT, CURVE_CURVE_TANGENT = 100027, 100032
+"""SolveSpace's numbers of these constraints, which its library for Python does not name."""
 
 SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"
 
@@ -93,6 +97,35 @@ def irreducible(n: int, seed: int) -> tuple[np.ndarray, list[tuple[int, int]]]:
                 degree[[a, b]] += 1
         if len(edges) == 2 * n - 3 and degree.min() >= 3:
             return points, sorted(edges)
+
+
+def delaunay_edges(points: np.ndarray, random) -> list[tuple[int, int]]:
+    """2n - 3 edges of Delaunay triangles taken one beside another, each new point joined to its triangle's
+    other two; slivers on the hull included."""
+    from scipy.spatial import Delaunay
+
+    mesh = Delaunay(points)
+    first = int(random.integers(len(mesh.simplices)))
+    a, b, c = (int(v) for v in mesh.simplices[first])
+    edges, known, seen, front = [(a, b), (b, c), (a, c)], {a, b, c}, {first}, [first]
+    while front:
+        k = front.pop(int(random.integers(len(front))))
+        for m in (int(m) for m in mesh.neighbors[k] if m >= 0 and int(m) not in seen):
+            seen.add(m)
+            front.append(m)
+            corners = [int(v) for v in mesh.simplices[m]]
+            fresh = [v for v in corners if v not in known]
+            edges += [(v, u) for v in fresh for u in corners if u != v]
+            known.update(fresh)
+    return edges
+
+
+def slivered(n: int, off: float, seed: int):
+    """(sketch, true points, edges) of random points, 1 per unit area, drawn `off` (standard deviation) aside."""
+    random = np.random.default_rng(seed)
+    points = random.uniform(0.0, math.sqrt(n), (n, 2))
+    edges = delaunay_edges(points, random)
+    return sketched(points, points + random.normal(0.0, off, points.shape), edges), points, edges
 
 
 def shaken(points: np.ndarray, off: float, seed: int) -> np.ndarray:
@@ -245,6 +278,25 @@ def irreducible_clusters(table: Table, seeds: int, peers: bool) -> None:
         table.add(name, "slvs", "", f"{theirs} of {min(seeds, 10)} solved, {spread(their_times)}")
 
 
+def slivers(table: Table, seeds: int = 20) -> None:
+    """Patches of Delaunay triangles, some of whose slivers are drawn the wrong way round."""
+    for n in (100, 300, 1000):
+        times, worst, solved = [], 0.0, 0
+        for seed in range(seeds):
+            s, points, edges = slivered(n, 0.05, seed)
+            taken, result = clocked(s.solve)
+            times.append(taken)
+            if result.solved:
+                x = np.array([e.position for e in s.entities.values()])
+                a, b = np.array(edges).T
+                apart = np.linalg.norm(x[a] - x[b], axis=1)
+                error = np.abs(apart - np.linalg.norm(points[a] - points[b], axis=1)).max()
+                worst, solved = max(worst, error / np.abs(x).max()), solved + 1
+        name = f"Delaunay triangles, n = {n}, off by 5 %, {seeds} seeds"
+        text = f"{solved} solved, {spread(times)}, error / size {worst:.1e}"
+        table.add(name, "clearance", f"{0.95 * seeds:.0f} solved", text)
+
+
 def midship(table: Table) -> None:
     times, result = timed(lambda: Sketch.load(SKETCHES / "midship_e.yaml"))
     text = f"{spread(times)}, {result.status}, residual / size {relative(result):.1e}"
@@ -326,6 +378,92 @@ def slvs_solve(points: np.ndarray, drawn: np.ndarray, edges):
     return taken, flag == ResultFlag.OKAY, x
 
 
+def drawings(table: Table, peers: bool) -> None:
+    """120 random drawings of lines, arcs, contacts and symmetry, at the origin and far from it."""
+    for sizes in (0.0, 1e4, 1e5, 1e8):
+        solved, theirs, times, their_times, gaps = 0, 0, [], [], []
+        for seed in range(120):
+            d = drawing(seed)
+            drawn = d.shaken(0.03, seed)
+            shift = sizes * np.ptp(drawn, axis=0)
+            s, p, _, _ = d.sketch(drawn, shift)
+            taken, result = clocked(s.solve)
+            times.append(taken)
+            x = np.array([s.numbers(q.variable, 2) for q in p])
+            size = float(np.ptp(x, axis=0).max())
+            radii = [e.radius for e in s.entities.values() if e.what == "circle"]
+            error = np.abs(d.equations(np.concatenate([x.ravel(), radii]))).max()
+            solved += result.solved and error <= 1e-12 * size
+            gaps.append(max(tangencies(d, x), default=0.0) / size)
+            if peers:
+                taken, done = slvs_drawing(d, drawn + shift)
+                theirs += done
+                their_times.append(taken)
+        name = f"120 drawings of arcs and contacts, {sizes:.0e} sizes from the origin"
+        text = f"{solved} solved, {spread(times)}, contacts to {max(gaps):.1e} of size"
+        table.add(name, "clearance", "120, 1e-12", text)
+        if peers:
+            table.add(name, "slvs", "", f"{theirs} solved, {spread(their_times)}")
+
+
+def slvs_drawing(d, drawn: np.ndarray) -> tuple[float, bool]:
+    """([ms], whether solved to 1e-6 of size) of SolveSpace's library on a random drawing."""
+    from python_solvespace import ResultFlag, SolverSystem
+
+    system = SolverSystem()
+    plane = system.create_2d_base()
+    normal = system.add_normal_3d(1.0, 0.0, 0.0, 0.0)
+    p = [system.add_point_2d(float(x), float(y), plane) for x, y in drawn]
+    system.dragged(p[0], plane)
+    e = [system.add_line_2d(p[a], p[b], plane) for a, b in d.segments]
+    arcs = [system.add_arc(normal, p[c], p[i], p[j], plane) for c, i, j in d.arcs]
+    sizes = [system.add_distance(r, plane) for _, r in d.circles]
+    rounds = [
+        system.add_circle(normal, p[k], r, plane)
+        for (k, _), r in zip(d.circles, sizes, strict=True)
+    ]
+    of = {"p": p, "s": e, "a": arcs, "c": rounds}
+    for kind, entities, value in d.constraints:
+        what = [w for w, _ in entities]
+        found = [of[w][k] for w, k in entities]
+        if kind == "distance":
+            system.distance(*found, value, plane)
+        elif kind == "radius":
+            system.diameter(found[0], 2.0 * value)
+        elif kind == "symmetric":
+            system.symmetric(*found, plane)
+        elif what == ["s", "c"]:  # the library has no such contact: its distance from the centre
+            center = d.circles[entities[1][1]][0]
+            radius = next(v for k, on, v in d.constraints if k == "radius" and on == (entities[1],))
+            system.distance(p[center], found[0], radius, plane)
+        else:
+            _slvs_tangent(system, d, what, [k for _, k in entities], found, plane)
+    taken, flag = clocked(system.solve)
+    x = np.array([system.params(q.params) for q in p])
+    radii = [system.params(r.params)[0] for r in sizes]
+    error = np.abs(d.equations(np.concatenate([x.ravel(), radii]))).max()
+    size = float(np.ptp(x, axis=0).max())
+    return taken, flag == ResultFlag.OKAY and error <= 1e-6 * size + 1e-9 * np.abs(x).max()
+
+
+def _slvs_tangent(system, d, what: list[str], index: list[int], found: list, plane) -> None:
+    """A contact of SolveSpace's library at the end that two parts share: it wants to know which end."""
+    from python_solvespace import Entity
+
+    if what == ["s", "a"]:
+        what, index, found = what[::-1], index[::-1], found[::-1]
+    _, start, end = d.arcs[index[0]]
+    ends = d.segments[index[1]] if what[1] == "s" else d.arcs[index[1]][1:]
+    kind, at_end = ARC_LINE_TANGENT, False
+    if what[1] == "a":
+        kind = CURVE_CURVE_TANGENT
+        at_end = ends[1] in (start, end)
+    none = Entity.NONE
+    system.add_constraint(
+        kind, plane, 0.0, none, none, *found, none, none, int(end in ends), int(at_end)
+    )
+
+
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--peers", action="store_true")
@@ -334,6 +472,8 @@ def main() -> None:
     chosen = arguments.parse_args()
     table = Table()
     patches(table, chosen.peers)
+    slivers(table)
+    drawings(table, chosen.peers)
     midship(table)
     bars(table)
     conflict(table)

@@ -63,6 +63,62 @@ class Drawing:
             s.add(kind, *(of[what][k] for what, k in entities), value=value)
         return s, p, e, a
 
+    def equations(self, x):
+        """The residuals of all constraints at points and circles' radii (flat), contacts as they are regular."""
+        n = len(self.points)
+        p, radii = x[: 2 * n].reshape(-1, 2), x[2 * n :]
+        out = [_span(p, i, c) - _span(p, j, c) for c, i, j in self.arcs]
+        for kind, entities, value in self.constraints:
+            what, index = zip(*entities, strict=True)
+            if kind == "distance":
+                out.append(_span(p, *index) - value)
+            elif kind == "radius":
+                arc = what == ("a",)
+                is_now = _span(p, *self.arcs[index[0]][:2]) if arc else radii[index[0]]
+                out.append(is_now - value)
+            elif kind == "symmetric":
+                along, q = _along(p, self.segments[index[2]]), p[index[1]] - p[index[0]]
+                foot = p[self.segments[index[2]][0]]
+                out += [along @ q, _cross(along, 0.5 * (p[index[0]] + p[index[1]]) - foot)]
+            else:
+                out.append(self._touching(p, radii, what, index))
+        return np.array(out)
+
+    def _touching(self, p, radii, what, index):
+        if what == ("a", "a"):
+            (c, *e), (f, *g) = (self.arcs[k] for k in index)
+            return _cross(_along(p, (c, f)), p[next(iter(set(e) & set(g)))] - p[c])
+        segment, k = self.segments[index[0]], index[1]
+        along = _along(p, segment)
+        if what == ("s", "c") or what[0] == "a":
+            if what[0] == "a":
+                return self._touching(p, radii, what[::-1], index[::-1])
+            return abs(_cross(along, p[self.circles[k][0]] - p[segment[0]])) - radii[k]
+        c, *ends = self.arcs[k]
+        return along @ (p[c] - p[next(iter(set(ends) & set(segment)))])
+
+    def freedom_left(self, points, radii):
+        """Degrees of freedom at solved points (n, 2) beyond placing the whole, by rank of differences."""
+        x, h = np.concatenate([points.ravel(), radii]), 1e-6
+        columns = [
+            (self.equations(x + h * u) - self.equations(x - h * u)) / (2 * h)
+            for u in np.eye(x.size)
+        ]
+        values = np.linalg.svd(np.array(columns).T, compute_uv=False)
+        return x.size - int(np.sum(values > 1e-6)) - 3
+
+
+def _span(p, i, j):
+    return float(np.linalg.norm(p[i] - p[j]))
+
+
+def _along(p, ends):
+    return (p[ends[1]] - p[ends[0]]) / _span(p, *ends)
+
+
+def _cross(u, v):
+    return float(u[0] * v[1] - u[1] * v[0])
+
 
 def _turned(v, angle):
     c, s = np.cos(angle), np.sin(angle)
@@ -113,7 +169,7 @@ def touching_chain(random):
     last = None
     for k in range(int(random.integers(3, 7))):
         along = np.array([np.cos(heading), np.sin(heading)])
-        if k % 2 == 0 or (last is not None and last[0] == "s" and random.uniform() < 0.0):
+        if k % 2 == 0:
             if k and random.uniform() < 0.3 and last[0] == "a":
                 last, at, heading = _next_arc(d, random, at, heading, last)
                 continue
@@ -161,7 +217,7 @@ def mirrored_half(random):
             if random.uniform() < 0.9:
                 d.add("distance", ("p", p), ("p", other), value=d.span(p, other))
     for a, b in zip(half, half[1:], strict=False):
-        one, other = d.segment(a, b), d.segment(a + 1, b + 1)
+        one, _ = d.segment(a, b), d.segment(a + 1, b + 1)
         r = random.uniform(0.2, 0.5)
         along = d.points[b] - d.points[a]
         along /= np.linalg.norm(along)
@@ -172,7 +228,6 @@ def mirrored_half(random):
         d.add("tangent", ("s", one), ("c", hole))
         d.add("radius", ("c", hole), value=r)
         d.add("distance", ("p", center), ("p", a), value=d.span(center, a))
-        assert other
     return d
 
 
@@ -184,7 +239,7 @@ def drawing(seed):
     return MAKERS[seed % 3](np.random.default_rng(seed))
 
 
-def tangencies(d, points, arcs):
+def tangencies(d, points):
     """[m] how far the ends that a line shares with an arc lie from where it touches, at solved points (n, 2)."""
     out = []
     for kind, entities, _ in d.constraints:
