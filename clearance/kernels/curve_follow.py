@@ -209,7 +209,7 @@ def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, wo
     for c in range(columns):
         for k in range(n + 1):
             own[c, k] = CHOOSE[n, k] * p[k, c]
-    # each of m levels sums 2 (order + 1) products, the common degree one more run; squares up to `degree`
+    # each of m levels sums 2 (order + 1) products, the common degree one more run
     degree = _gaps(own, n, composed[0], degree, rational, gap)
     rounding = 2.0 * ROUNDOFF * reach * (m * (2 * order + 6) + 2 * degree + 16)
     largest_sq, which = _largest_sq(gap, degree, rational)
@@ -218,7 +218,8 @@ def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, wo
     degree = _squares(gap, degree, rational, work[9])
     most, which = greatest(work[9], degree)
     bound = math.sqrt(most)
-    rounding += math.sqrt(most + 2.0 * ROUNDOFF * (degree + 8) * largest_sq) - bound
+    # half as many terms as the gap's degree in each sum, as many in the weights', and a few operations more
+    rounding += math.sqrt(most + ROUNDOFF * (degree // 2 + 12) * largest_sq) - bound
     return bound, which / degree, rounding
 
 

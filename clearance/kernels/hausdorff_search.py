@@ -67,6 +67,13 @@ def settled_below(aim, state):
 
 
 @inlined
+def is_settled(bound, lost, aim, state):
+    """Whether a bound that may have `lost` digits settles an interval; what is enough is held to all of them."""
+    gap = aim.gap if state[CUTS] <= aim.sharp else aim.wide
+    return bound <= state[DISTANCE] + gap or bound + lost <= aim.enough
+
+
+@inlined
 def _before(heap, i, j):
     """Whether entry `i` comes before `j`: the greater bound, of equals the earlier part of the curve."""
     if heap[i, BOUND] != heap[j, BOUND]:
@@ -236,7 +243,7 @@ def examine(pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_
         other = max(other, foot.distance)
         if other < bound:
             bound, lost = other, 0.0
-    if bound <= settled_below(aim, state):
+    if is_settled(bound, lost, aim, state):
         state[UPPER] = max(state[UPPER], bound + lost)
         return foot.leaf, n_open
     t, s = t0, s0
@@ -250,14 +257,14 @@ def examine(pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_
     else:
         state[ENDS] += 1.0
     seen = consider(pa, pb, lb, i, t, shift_x, shift_y, foot.leaf, state, work)
-    open_still = bound > settled_below(aim, state)
+    open_still = not is_settled(bound, lost, aim, state)
     if open_still and not followed and seen.piece == j and max(d0, d1) <= enough:
         # near an inflection of the feet's map the middle does not tell how far the two drift apart
         bound, share, lost = _follow(
             pair, i, t0, t1, j, s0, foot.local, s1, bound, share, highest, settled_below(aim, state),
             work, composed,
         )  # fmt: skip
-        open_still = bound > settled_below(aim, state)
+        open_still = not is_settled(bound, lost, aim, state)
     if not open_still or t1 - t0 < SMALLEST:
         state[GIVEN_UP] += open_still
         state[UPPER] = max(state[UPPER], bound + lost)

@@ -18,6 +18,7 @@ from clearance.planar.curve import Curve
 from clearance.planar.directed import Directed, Tally, directed_of, placed
 from clearance.planar.entries import checked_number
 from clearance.planar.polylines import solve_polylines
+from clearance.planar.steady import steady
 from clearance.tolerance import LAST_BITS, SHARPER, TIE
 
 BUDGET = 200_000.0
@@ -27,7 +28,7 @@ INTERVALS_A_PIECE = 20.0
 """What long curves may use beyond that for each piece of both: seen are up to seven on noisy outlines."""
 
 
-SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE = 250.0, 0.5
+SHARP_INTERVALS, SHARP_INTERVALS_A_PIECE, MOST_SHARP = 250.0, 0.5, 400.0
 """Intervals until which a search tries for the last bits; after them the tolerance asked for is enough."""
 
 ASKED = 0.25
@@ -112,6 +113,7 @@ def hausdorff(
     Source: Kim, Oh, Kim (2010), sections 3 and 4; Elber, Grandine (2008) for the systems.
     """
     tolerance = checked_number(tolerance, "tolerance", least=0.0)
+    a, b = steady(a), steady(b)
     if method == "trimmed":
         return greater_of(*_trimmed(a, b, tolerance))
     if method not in ("paper", "untrimmed"):
@@ -130,6 +132,7 @@ def within(a: Curve, b: Curve, distance: float) -> bool:
     Raises: Undecided where neither could be proven; BadCurve, NotFinite.
     """
     distance = checked_number(distance, "distance", least=0.0)
+    a, b = steady(a), steady(b)
     shift, size = placed(a, b)
     slack = a.rounding + b.rounding + LAST_BITS * size
     gap = LAST_BITS * size
@@ -190,7 +193,7 @@ def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
 def _trimmed(a: Curve, b: Curve, tolerance: float) -> tuple[Directed, Directed]:
     shift, size = placed(a, b)
     gap = max(tolerance * SHARPER, LAST_BITS) * size
-    sharp = SHARP_INTERVALS + SHARP_INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces)
+    sharp = min(MOST_SHARP, SHARP_INTERVALS + SHARP_INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces))
     wide = max(gap, ASKED * tolerance * size)
     found, points = _solve(a, b, shift, Aim(gap, wide, sharp, 0.0, math.inf, _budget(a, b)))
     margin = a.rounding + b.rounding + LAST_BITS * size
