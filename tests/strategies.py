@@ -156,7 +156,7 @@ def vertex_on_face(random: np.random.Generator, n: int) -> Pairs:
 
 
 def rounded_onto_face(random: np.random.Generator, n: int) -> Pairs:
-    """A corner on a face at any attitude, but for its coordinates' rounding: all of the distance is below an ulp."""
+    """A corner on a face at any attitude, but for its rounding: all of the distance is below an ulp."""
     p, q = placed(random, flat_polygons(random, n, 3)), anywhere(random, n, 3, 3)[1]
     foot = np.einsum("nk,nki->ni", random.dirichlet(np.ones(3), n), p)
     normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])

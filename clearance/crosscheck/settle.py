@@ -1,7 +1,7 @@
 """Who is right where the peer's clearance of a step is not ours, as far as exact arithmetic can say.
 
-A clearance is refuted by two faces that are nearer, and by the faces it names where those are farther. Not for: bodies
-inside others, which no two faces decide.
+A clearance is refuted by two faces that are nearer, and by the faces it names where those are farther. Not for:
+bodies inside others, which no two faces decide.
 """
 
 from __future__ import annotations
