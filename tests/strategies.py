@@ -155,6 +155,17 @@ def vertex_on_face(random: np.random.Generator, n: int) -> Pairs:
     return p, q
 
 
+def rounded_onto_face(random: np.random.Generator, n: int) -> Pairs:
+    """A corner on a face at any attitude, but for its rounding: all of the distance is below an ulp."""
+    p, q = placed(random, flat_polygons(random, n, 3)), anywhere(random, n, 3, 3)[1]
+    foot = np.einsum("nk,nki->ni", random.dirichlet(np.ones(3), n), p)
+    normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    heights = np.einsum("nki,ni->nk", q - q[:, :1], normal)
+    q = q - q[:, :1] + (np.abs(heights) - heights)[..., None] * normal[:, None] + foot[:, None]
+    return p, q
+
+
 def far_away(random: np.random.Generator, n: int) -> Pairs:
     """Both 1 to 1e8 sizes from the origin: squares before differences."""
     p, q = anywhere(random, n, 4, 4)
@@ -214,6 +225,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator, int], Pairs]] = {
         shared_vertex,
         shared_edge,
         vertex_on_face,
+        rounded_onto_face,
         far_away,
         crossing_plates,
         nearly_touching,

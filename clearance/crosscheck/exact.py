@@ -24,6 +24,11 @@ def placed(corners: np.ndarray, world_from_body: np.ndarray) -> list[Point]:
     ]
 
 
+def point_sq(x: Point, triangles: Sequence[Triangle]) -> Fraction:
+    """The squared distance of a point from the nearest of some triangles."""
+    return min(_to_triangle(x, triangle) for triangle in triangles)
+
+
 def triangles_sq(a: Triangle, b: Triangle) -> Fraction:
     """The squared distance of two triangles; they may be without area.
 

@@ -26,9 +26,13 @@ class PointLocator:
 
     def distance(self, point: np.ndarray) -> float:
         """The distance [m] of a point (3,) in the body frame from the surface."""
+        return float(point_triangle_distances(point, self.near(point)).min())
+
+    def near(self, point: np.ndarray) -> np.ndarray:
+        """(k, 3, 3) the triangles of which one is nearest, by the spheres round them."""
         to_centres = np.linalg.norm(self._centres - point, axis=1)
         near = to_centres - self._radii <= (to_centres + self._radii).min() * (1 + 1e-12)
-        return float(point_triangle_distances(point, self._corners[near]).min())
+        return self._corners[near]
 
 
 def point_triangle_distances(point: np.ndarray, corners: np.ndarray) -> np.ndarray:

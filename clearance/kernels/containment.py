@@ -43,8 +43,8 @@ ROUNDING = 512.0 * 2.0**-53
 DOUBTFUL = 0.25
 """[turns] Caps that are seen under more leave it open whether a point is inside."""
 
-ROUNDING_OF_ANGLES = 1e-6
-"""[turns] More than rounding makes of the solid angles of a cap, given `EDGE_ON`, for each of up to a million."""
+ROUNDING_OF_ANGLES = 1e-5
+"""[rad] More than rounding, 2^-48 / `EDGE_ON`, makes of a triangle's solid angle."""
 
 EDGE_ON = 1e-9
 """[-] A triangle with an edge straight through the point, but for so much, counts as half of all directions."""
@@ -153,9 +153,7 @@ def _turns_of_caps(surface, body, x):
     first, last = surface.cap_starts[body], surface.cap_starts[body + 1]
     for i in range(first, last, 3):
         a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
-        total += _solid_angle(sub(a, x), sub(b, x), sub(c, x))
-    if last > first:
-        total += ROUNDING_OF_ANGLES
+        total += _solid_angle(sub(a, x), sub(b, x), sub(c, x)) + ROUNDING_OF_ANGLES
     return total / (4.0 * math.pi)
 
 
