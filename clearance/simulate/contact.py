@@ -86,18 +86,20 @@ class _Finder:
         self, steps: np.ndarray, pairs: np.ndarray, progress: Progress | None
     ) -> Iterator[tuple[int, Contact]]:
         """The rows that the run works out, each with its overlap in the world frame."""
-        work = []
+        if self.work_out == "none":
+            return
         if self.work_out == "every":
-            work = [partial(self._one, int(i), steps, pairs) for i in range(len(steps))]
-        elif self.work_out == "events":
-            budgets: dict[int, Budget] = {}
-            for event in events_of(steps, pairs):
-                budget = budgets.setdefault(event.i_pair, self._budget(event.i_pair))
-                work.append(partial(self._deepest, event, steps, budget))
-        for n_done, ask in enumerate(work, start=1):
-            yield ask()
+            rows = ((i, self.contact(int(steps[i]), int(pairs[i]))) for i in range(len(steps)))
+            n_rows = len(steps)
+        else:
+            events = list(events_of(steps, pairs))
+            budgets = {event.i_pair: self._budget(event.i_pair) for event in events}
+            rows = (self._deepest(event, steps, budgets[event.i_pair]) for event in events)
+            n_rows = len(events)
+        for n_done, row in enumerate(rows, start=1):
+            yield row
             if progress:
-                progress(n_done, len(work))
+                progress(n_done, n_rows)
 
     def notes(self) -> tuple[str, ...]:
         """What stands for the bodies that were in contact, where it is not they themselves."""
@@ -112,9 +114,6 @@ class _Finder:
                 del self._known[next(iter(self._known))]
             self._known[key] = self._asked(i_pair, b_from_a)
         return self._known[key].placed(self._obstacle(i_pair).world_from_body)
-
-    def _one(self, i: int, steps: np.ndarray, pairs: np.ndarray) -> tuple[int, Contact]:
-        return i, self.contact(int(steps[i]), int(pairs[i]))
 
     def _deepest(self, event: Event, steps: np.ndarray, budget: Budget) -> tuple[int, Contact]:
         """The row of an event that is worked out, and its overlap; bounds alone beyond the budget."""

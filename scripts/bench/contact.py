@@ -4,7 +4,7 @@
 
 Cases are the shared ones with the nearest obstacle pushed into the link that it is nearest to, and a torus that a
 block slides through. Milliseconds of CPU, one thread, compiled code warm, least of some runs: `cl.check` with
-`contact="none"`, by default, and what the deepest moments then take when they are looked at. The first of all looks
+`contact="none"`, by default, and what the deepest moments then take when they are looked at. The first look of all
 of a case is told apart: hulls and solids of bodies are made once. "times the fastest peer" is of the verdict alone
 (`trajectory.py`), against all pairs, managers, and pairs sorted by spheres.
 """
