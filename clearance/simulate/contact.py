@@ -27,6 +27,7 @@ from clearance.simulate.parts import blocks
 from clearance.simulate.steps import pair_names
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
+from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -193,7 +194,7 @@ class _Finder:
         motion, robot = self.motions[pair.i_robot], self.case.robots[pair.i_robot].robot
         i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
         from_world = inverse(self._obstacle(i_pair).world_from_body)
-        return np.array([from_world @ motion.poses(int(s), int(s) + 1)[0, i_link] for s in steps])
+        return from_world @ link_poses(motion.placed, motion.positions[steps])[:, i_link]
 
     def _shapes(self, i_pair: int) -> tuple[Polyhedron, Polyhedron]:
         return self._link(i_pair).shape, self._obstacle(i_pair).body.shape
