@@ -56,3 +56,22 @@ def test_without_contact_there_is_no_such_line(folder, capsys):
     (folder / "path.csv").write_text("time,rail\n0,0.5\n1,0.6\n")
     assert run(["check", str(folder / "case.yaml")]) == 0
     assert "deepest" not in capsys.readouterr().out
+
+
+def test_what_is_told_of_contacts_is_asked_for(folder, capsys):
+    case = str(folder / "case.yaml")
+    assert run(["check", case, "--contact", "none"]) == 1
+    assert "deepest" not in capsys.readouterr().out
+    for how, empty in (("none", [True, True]), ("events", [True, False]), ("every", [False, False])):
+        assert run(["check", case, "--contact", how, "--out", str(folder / how), "--quiet"]) == 1
+        with (folder / how / "contacts.csv").open(newline="") as file:
+            assert [row["penetration"] == "" for row in csv.DictReader(file)] == empty
+        with (folder / how / "steps.csv").open(newline="") as file:
+            assert [row["penetration"] == "" for row in csv.DictReader(file)] == [True, *empty, True]
+
+
+def test_the_files_are_the_same_bytes_again(folder):
+    for out in ("one", "two"):
+        assert run(["check", str(folder / "case.yaml"), "--out", str(folder / out), "--quiet"]) == 1
+    for name in ("contacts.csv", "steps.csv", "steps.parquet"):
+        assert (folder / "one" / name).read_bytes() == (folder / "two" / name).read_bytes()
