@@ -129,7 +129,7 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
 
 
 def _clearly_concave(body: Polyhedron, points: np.ndarray, volume: float) -> ConvexParts | None:
-    """A body that is seen to be concave at a glance, without its hull; None if it may be convex or has no solid."""
+    """A body that is concave at a glance, without its hull; None if it may be convex or has no solid."""
     if not is_clearly_concave(body, points):
         return None
     outer = envelope(points)
@@ -139,7 +139,7 @@ def _clearly_concave(body: Polyhedron, points: np.ndarray, volume: float) -> Con
 
 def _uncut(outer: Polytope, solid: Any) -> ConvexParts:
     """A closed concave body between its outer part and its own mesh."""
-    note = f"concave: its depth is bounded by the region shared and by the distance after a way out; {VOLUMES}"
+    note = f"concave: depth is bounded by the region shared and by the distance after a way out; {VOLUMES}"
     return ConvexParts((outer,), (), solid, True, note, rough=True)
 
 
