@@ -110,7 +110,7 @@ def check(
                 progress=progress,
                 kept=kept,
             )
-            if out is not None or not quiet:
+            if out is not None or as_json:
                 run.record.work_out_contacts(progress)
         _write(run, out, junit)
     _print(run, out, as_json, quiet)

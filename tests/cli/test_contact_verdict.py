@@ -8,6 +8,7 @@ import json
 import pytest
 
 from clearance.cli import run
+from clearance.simulate.contact_rows import ContactRows
 
 URDF = """<robot name="cart"><link name="ground"/>
   <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
@@ -75,3 +76,16 @@ def test_the_files_are_the_same_bytes_again(folder):
         assert run(["check", str(folder / "case.yaml"), "--out", str(folder / out), "--quiet"]) == 1
     for name in ("contacts.csv", "steps.csv", "steps.parquet"):
         assert (folder / "one" / name).read_bytes() == (folder / "two" / name).read_bytes()
+
+
+def test_the_verdict_is_printed_before_contacts_are_looked_into(folder, capsys, monkeypatch):
+    told = []
+    real = ContactRows.work_out
+
+    def work_out(*given):
+        told.append(capsys.readouterr().out)
+        real(*given)
+
+    monkeypatch.setattr(ContactRows, "work_out", work_out)
+    assert run(["check", str(folder / "case.yaml")]) == 1
+    assert told[0].startswith("CONTACT") and "deepest" not in told[0] and "contact " in told[0]
