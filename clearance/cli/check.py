@@ -146,7 +146,7 @@ def check(
                 kept=kept,
                 paper_tolerance=paper_tolerance,
             )
-            if out is not None or not quiet:
+            if out is not None or as_json:
                 run.record.work_out_contacts(progress)
         _write(run, out, junit)
     _print(run, out, as_json, quiet)

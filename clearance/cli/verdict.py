@@ -7,13 +7,15 @@ terminal.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from clearance.cli.progress import shown_progress
 from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
 from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.verdict import Verdict, profile_text
@@ -39,11 +41,12 @@ _PLAIN_WIDTH = 160  # columns for tables where the output is not a terminal
 def print_verdict(run: Run, out: Path | None, console: Console | None = None) -> None:
     """Prints the answer on stdout, or on `console`."""
     console = console or _stdout()
-    for line in _lines(run, out):
-        if isinstance(line, Table):
-            console.print(line)
-        else:
-            console.print(line, soft_wrap=True, highlight=False, markup=False)
+    for each in _lines(run, out):
+        for line in each() if callable(each) else [each]:
+            if isinstance(line, Table):
+                console.print(line)
+            else:
+                console.print(line, soft_wrap=True, highlight=False, markup=False)
 
 
 def _stdout() -> Console:
@@ -51,12 +54,14 @@ def _stdout() -> Console:
     return console if console.is_terminal else Console(width=_PLAIN_WIDTH)
 
 
-def _lines(run: Run, out: Path | None) -> list[Text | Table]:
+def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[Text]]]:
+    """The lines; those that look into contacts are made when they are printed, after the verdict."""
     record, verdict = run.record, run.verdict
-    lines: list[Text | Table] = [_headline(record, verdict), *_beside(verdict), *_worst(record)]
+    lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
+    lines += [*_beside(verdict), *_worst(record)]
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
-    lines += _deepest(record)
+    lines.append(partial(_deepest, record))
     nearest = record.pair_minima[:_MOST_PAIRS]
     if nearest:
         lines.append(_pair_table(nearest))
@@ -65,7 +70,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table]:
     lines += _facets(record)
     if run.cross_check is not None:
         lines += _cross_check(run.cross_check)
-    lines += _notes(record)
+    lines.append(partial(_notes, record))
     if out is not None:
         lines.append(_row("report", str(out / "report.html")))
     return lines
@@ -123,7 +128,10 @@ def _facets(record: Record) -> list[Text]:
 
 
 def _deepest(record: Record) -> list[Text]:
-    """The deepest overlap: where, how deep, which way out of the link."""
+    """The deepest overlap: where, how deep, which way out of the link; worked out now, with progress."""
+    if len(record.contacts):
+        with shown_progress(False, ["looking into contacts"]) as progress:
+            record.work_out_contacts(progress)
     if record.deepest is None:
         return []
     told = contact_of(record)["deepest"]

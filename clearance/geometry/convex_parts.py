@@ -104,10 +104,10 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
     is_used[body.face_vertices] = True
     points = body.vertices[is_used]
     volume = body.volume
-    if volume and len(points) > (LITTLE_HULL if rough else MOST_HULL) and is_clearly_concave(body, points):
-        solid, _ = _solid(body)
-        if solid is not None:
-            return _uncut(envelope(points), solid)
+    if volume is not None and len(points) > (LITTLE_HULL if rough else MOST_HULL):
+        made = _clearly_concave(body, points, volume)
+        if made is not None:
+            return made
     hull = Polytope(points) if len(points) <= MOST_HULL else envelope(points)
     if volume is None:
         return _held_by(hull, None, False, "its surface is not closed")
@@ -128,9 +128,18 @@ def _found(body: Polyhedron, rough: bool) -> ConvexParts:
     return _of_concave(body, hull, solid)
 
 
+def _clearly_concave(body: Polyhedron, points: np.ndarray, volume: float) -> ConvexParts | None:
+    """A body that is concave at a glance, without its hull; None if it may be convex or has no solid."""
+    if not is_clearly_concave(body, points):
+        return None
+    outer = envelope(points)
+    solid = _solid(body)[0] if volume > FLAT * outer.volume else None
+    return None if solid is None else _uncut(outer, solid)
+
+
 def _uncut(outer: Polytope, solid: Any) -> ConvexParts:
     """A closed concave body between its outer part and its own mesh."""
-    note = f"concave: its depth is bounded by the region shared and by the distance after a way out; {VOLUMES}"
+    note = f"concave: depth is bounded by the region shared and by the distance after a way out; {VOLUMES}"
     return ConvexParts((outer,), (), solid, True, note, rough=True)
 
 

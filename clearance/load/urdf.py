@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from clearance.errors import NothingToMeasure, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.axis_check import axis_notices
+from clearance.load.collada_file import UpAxis
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles
 from clearance.load.joints import joints_of
@@ -32,19 +33,22 @@ __all__ = ["Geometry", "UrdfRequest", "load_urdf", "read_robot"]
 
 
 def load_urdf(
-    path: str | Path, *, package_dirs: Sequence[str | Path] = (), geometry: Geometry = "collision"
+    path: str | Path,
+    *,
+    package_dirs: Sequence[str | Path] = (),
+    geometry: Geometry = "collision",
+    collada_up_axis: UpAxis = "ros",
 ) -> Robot:
     """The robot in a URDF file, for cases that are made in memory.
 
     Args:
-        package_dirs: where `package://` is looked up.
-        geometry: which elements are the robot's shape.
+        package_dirs, geometry, collada_up_axis: as in `UrdfRequest`.
 
     Raises:
         BadInput: with the file and the element.
     """
     path = Path(path)
-    request = UrdfRequest(path, tuple(Path(folder) for folder in package_dirs), geometry)
+    request = UrdfRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
     return read_robot(request, MeshStore(InputFiles(path.parent)))
 
 

@@ -102,8 +102,8 @@ def _row(pair: dict[str, Any]) -> Html:
 def _meaning(pairs: list[dict[str, Any]]) -> list[str]:
     told = [
         "Of each pair the deepest of the steps that are worked out: one of every event, its deepest as far as "
-        "hulls or shared volumes tell, unless more was asked for. The replay shows the common region in red and the "
-        "way out of the link as an arrow of fixed length, at these steps. "
+        "hulls or shared volumes tell, unless more was asked for. At these the replay shows the common region in "
+        "red and the way out of the link as an arrow of fixed length. "
     ]
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
         return [*told, "Depth and volume are exact to the rounding of float64."]

@@ -27,6 +27,7 @@ from clearance.simulate.parts import blocks
 from clearance.simulate.steps import pair_names
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
+from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -86,18 +87,20 @@ class _Finder:
         self, steps: np.ndarray, pairs: np.ndarray, progress: Progress | None
     ) -> Iterator[tuple[int, Contact]]:
         """The rows that the run works out, each with its overlap in the world frame."""
-        work = []
+        if self.work_out == "none":
+            return
         if self.work_out == "every":
-            work = [partial(self._one, int(i), steps, pairs) for i in range(len(steps))]
-        elif self.work_out == "events":
-            budgets: dict[int, Budget] = {}
-            for event in events_of(steps, pairs):
-                budget = budgets.setdefault(event.i_pair, self._budget(event.i_pair))
-                work.append(partial(self._deepest, event, steps, budget))
-        for n_done, ask in enumerate(work, start=1):
-            yield ask()
+            rows = ((i, self.contact(int(steps[i]), int(pairs[i]))) for i in range(len(steps)))
+            n_rows = len(steps)
+        else:
+            events = list(events_of(steps, pairs))
+            budgets = {event.i_pair: self._budget(event.i_pair) for event in events}
+            rows = (self._deepest(event, steps, budgets[event.i_pair]) for event in events)
+            n_rows = len(events)
+        for n_done, row in enumerate(rows, start=1):
+            yield row
             if progress:
-                progress(n_done, len(work))
+                progress(n_done, n_rows)
 
     def notes(self) -> tuple[str, ...]:
         """What stands for the bodies that were in contact, where it is not they themselves."""
@@ -112,9 +115,6 @@ class _Finder:
                 del self._known[next(iter(self._known))]
             self._known[key] = self._asked(i_pair, b_from_a)
         return self._known[key].placed(self._obstacle(i_pair).world_from_body)
-
-    def _one(self, i: int, steps: np.ndarray, pairs: np.ndarray) -> tuple[int, Contact]:
-        return i, self.contact(int(steps[i]), int(pairs[i]))
 
     def _deepest(self, event: Event, steps: np.ndarray, budget: Budget) -> tuple[int, Contact]:
         """The row of an event that is worked out, and its overlap; bounds alone beyond the budget."""
@@ -194,7 +194,7 @@ class _Finder:
         motion, robot = self.motions[pair.i_robot], self.case.robots[pair.i_robot].robot
         i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
         from_world = inverse(self._obstacle(i_pair).world_from_body)
-        return np.array([from_world @ motion.poses(int(s), int(s) + 1)[0, i_link] for s in steps])
+        return from_world @ link_poses(motion.placed, motion.positions[steps])[:, i_link]
 
     def _shapes(self, i_pair: int) -> tuple[Polyhedron, Polyhedron]:
         return self._link(i_pair).shape, self._obstacle(i_pair).body.shape

@@ -19,6 +19,9 @@ MOST_RATED = 32
 MOST_NORMALS = 32
 """Normals of a body along which hulls are rated."""
 
+MOST_NUMBERS = 2_000_000
+"""Numbers in a table of poses, directions and corners: 16 MB."""
+
 
 class Event(NamedTuple):
     """One pair in contact, without a break; `rows` (k,) are those of `ContactRows`, steps in order."""
@@ -69,9 +72,10 @@ def hull_depths(
     every = max(1, -(-len(normals_b) // MOST_NORMALS))
     directions = np.concatenate([TWENTY_SIX, normals_b[::every]])
     highest = (directions @ corners_b.T).max(axis=1)
-    return np.array([_depth(directions, highest, corners_a, pose) for pose in b_from_a])
-
-
-def _depth(directions: np.ndarray, highest: np.ndarray, corners: np.ndarray, pose: np.ndarray) -> float:
-    lowest = (directions @ pose[:3, :3] @ corners.T).min(axis=1) + directions @ pose[:3, 3]
-    return float((highest - lowest).min())
+    at_once = max(1, MOST_NUMBERS // (len(directions) * len(corners_a)))
+    found = []
+    for i in range(0, len(b_from_a), at_once):
+        turns, shifts = b_from_a[i : i + at_once, :3, :3], b_from_a[i : i + at_once, :3, 3]
+        lowest = (directions @ turns @ corners_a.T).min(axis=2) + shifts @ directions.T
+        found.append((highest - lowest).min(axis=1))
+    return np.concatenate(found)

@@ -65,7 +65,8 @@ class ContactRows(Sequence[StepContact]):
     names: Sequence[tuple[str, str]]
     times: np.ndarray
     finder: Finder
-    _slots: dict[int, int] = field(default_factory=dict)
+    _slots: np.ndarray | None = None
+    _n_known: int = 0
     _rows: np.ndarray = field(default_factory=lambda: np.empty(64, dtype=_ROW))
     _regions: list[ClosedMesh] = field(default_factory=list)
     _notes: dict[tuple[str, ...], int] = field(default_factory=dict)
@@ -88,6 +89,7 @@ class ContactRows(Sequence[StepContact]):
     def work_out(self, progress: Progress | None = None) -> None:
         """Works out what the run asks for, once; `progress` is told how many of how many."""
         if self._told is None:
+            self._slots = np.full(len(self), -1, dtype=np.int64)
             for i, found in self.finder.chosen(*self._touching, progress):
                 self._add(i, found)
             self._told = self.finder.notes()
@@ -102,21 +104,21 @@ class ContactRows(Sequence[StepContact]):
     def worked_out(self) -> Sequence[StepContact]:
         """The rows that the run works out, steps first."""
         self.work_out()
-        return tuple(self._at(i) for i in sorted(self._slots))
+        return _Some(self, np.flatnonzero(self._slots >= 0))
 
     def numbers_between(self, start: int, stop: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """The steps of the rows from a step to before another, their depth and volume; NaN if not worked out."""
         self.work_out()
         low, high = np.searchsorted(self.steps, [start, stop])
         numbers = {name: np.full(high - low, np.nan) for name in ("penetration", "volume")}
-        slots = [(i - low, self._slots[i]) for i in range(low, high) if i in self._slots]
+        slots = self._slots[low:high]
         for name, column in numbers.items():
-            for place, slot in slots:
-                column[place] = self._rows[name][slot]
+            column[slots >= 0] = self._rows[name][slots[slots >= 0]]
         return self.steps[low:high], numbers
 
     def _add(self, i: int, found: Contact) -> None:
-        slot = len(self._slots)
+        slot = self._n_known
+        self._n_known += 1
         if slot == len(self._rows):
             self._rows = np.resize(self._rows, 2 * slot)
         i_notes = self._notes.setdefault(found.notes, len(self._notes))
@@ -140,10 +142,9 @@ class ContactRows(Sequence[StepContact]):
 
     def _at(self, i: int) -> StepContact:
         step, i_pair = int(self.steps[i]), int(self.pairs[i])
-        slot = self._slots.get(i)
-        has_region = slot is not None and slot < len(self._regions)
-        again = None if has_region else lambda: self.finder.contact(step, i_pair)
-        known = None if slot is None else self._known(slot)
+        slot = int(self._slots[i])
+        again = None if 0 <= slot < len(self._regions) else lambda: self.finder.contact(step, i_pair)
+        known = None if slot < 0 else self._known(slot)
         return StepContact(step, float(self.times[step]), *self.names[i_pair], known, again)
 
     def _known(self, slot: int) -> Contact:
@@ -155,3 +156,18 @@ class ContactRows(Sequence[StepContact]):
             exact=tuple(row["exact"].tolist()),
             notes=tuple(self._notes)[row["notes"]],
         )
+
+
+@dataclass(frozen=True, eq=False)
+class _Some(Sequence[StepContact]):
+    """Some of the rows, made when they are looked at."""
+
+    rows: ContactRows
+    which: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.which)
+
+    def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
+        chosen = self.which[index]
+        return tuple(self.rows[int(i)] for i in chosen) if isinstance(index, slice) else self.rows[int(chosen)]

@@ -66,3 +66,12 @@ def test_pictures_are_drawn(tmp_path, name):
     pytest.importorskip("matplotlib")
     ran("error_time.py", "--polygons", 1, "--poses", 0, "--steps", 0, "--seconds", 0.01, "--out", tmp_path)
     assert (tmp_path / name).read_text(encoding="utf-8").startswith("<?xml")
+
+
+def test_contact_tells_what_the_deepest_moments_cost(tmp_path):
+    out = tmp_path / "rows.csv"
+    ran("contact.py", "--cases", "--large", 2000, "--no-peers", "--csv", out)
+    (row,) = rows_of(out)
+    assert row["case"] == "torus_2000" and int(row["events"]) == 1
+    assert 0 < int(row["steps_in_contact"]) == int(row["rows"])
+    assert 0.0 < float(row["deepest_at_least_mm"]) <= float(row["deepest_mm"]) < 500.0

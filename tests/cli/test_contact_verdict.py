@@ -8,6 +8,7 @@ import json
 import pytest
 
 from clearance.cli import run
+from clearance.simulate.contact_rows import ContactRows
 
 URDF = """<robot name="cart"><link name="ground"/>
   <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
@@ -56,3 +57,35 @@ def test_without_contact_there_is_no_such_line(folder, capsys):
     (folder / "path.csv").write_text("time,rail\n0,0.5\n1,0.6\n")
     assert run(["check", str(folder / "case.yaml")]) == 0
     assert "deepest" not in capsys.readouterr().out
+
+
+def test_what_is_told_of_contacts_is_asked_for(folder, capsys):
+    case = str(folder / "case.yaml")
+    assert run(["check", case, "--contact", "none"]) == 1
+    assert "deepest" not in capsys.readouterr().out
+    for how, empty in (("none", [True, True]), ("events", [True, False]), ("every", [False, False])):
+        assert run(["check", case, "--contact", how, "--out", str(folder / how), "--quiet"]) == 1
+        with (folder / how / "contacts.csv").open(newline="") as file:
+            assert [row["penetration"] == "" for row in csv.DictReader(file)] == empty
+        with (folder / how / "steps.csv").open(newline="") as file:
+            assert [row["penetration"] == "" for row in csv.DictReader(file)] == [True, *empty, True]
+
+
+def test_the_files_are_the_same_bytes_again(folder):
+    for out in ("one", "two"):
+        assert run(["check", str(folder / "case.yaml"), "--out", str(folder / out), "--quiet"]) == 1
+    for name in ("contacts.csv", "steps.csv", "steps.parquet"):
+        assert (folder / "one" / name).read_bytes() == (folder / "two" / name).read_bytes()
+
+
+def test_the_verdict_is_printed_before_contacts_are_looked_into(folder, capsys, monkeypatch):
+    told = []
+    real = ContactRows.work_out
+
+    def work_out(*given):
+        told.append(capsys.readouterr().out)
+        real(*given)
+
+    monkeypatch.setattr(ContactRows, "work_out", work_out)
+    assert run(["check", str(folder / "case.yaml")]) == 1
+    assert told[0].startswith("CONTACT") and "deepest" not in told[0] and "contact " in told[0]

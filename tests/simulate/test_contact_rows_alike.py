@@ -33,7 +33,7 @@ def ball_through_wall():
     """A faceted ball that slides into a channel, askew, so that many faces meet at once."""
     joint = Joint("rail", JointKind.PRISMATIC, "ground", "ball", np.eye(4))
     robot = Robot("cart", ("ground", "ball"), (joint,), (Body("ball", cl.sphere(0.15)),))
-    way = np.linspace(0.3, 1.2, 60)
+    way = np.linspace(-0.3, 1.7, 100)
     path = Trajectory(way, ("rail",), way[:, None])
     pose = np.eye(4)
     pose[:3, :3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]]
@@ -53,6 +53,19 @@ def test_a_row_in_contact_does_not_depend_on_where_the_sweep_starts(need):
         assert (part.clearance[:20] == 0.0).all()
         assert np.array_equal(part.pair, whole.pair[touching[start:]])
         assert np.array_equal(part.points, whole.points[touching[start:]])
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs"])
+def test_every_row_before_in_and_after_contact_is_that_of_its_step_alone(need):
+    case = ball_through_wall()
+    motion = kinematic_motion(case.robots[0])
+    whole = measured(case, motion, np.arange(motion.n_steps), need)
+    touching = np.flatnonzero(whole.clearance == 0.0)
+    assert 5 < touching[0] < touching[-1] < motion.n_steps - 5 and len(touching) > 20
+    for step in range(motion.n_steps):
+        alone = measured(case, motion, np.array([step]), need)
+        assert alone.clearance[0] == whole.clearance[step]
+        assert np.array_equal(alone.points[0], whole.points[step])
 
 
 @pytest.mark.skipif(not FETCH.exists(), reason="the shared cases are not beside this checkout")
