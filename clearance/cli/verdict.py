@@ -164,7 +164,7 @@ def _span(part: Interval) -> str:
 
 def _pair_table(nearest: Sequence[PairMinimum]) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 2))
-    table.add_column("  closest pairs: link")
+    table.add_column("  closest at the samples: link")
     table.add_column("obstacle")
     for name in ("clearance mm", "step", "time s"):
         table.add_column(name, justify="right")
