@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import struct
 import tempfile
 from collections.abc import Callable
@@ -211,7 +212,8 @@ def _dxf() -> bytes:
     """Written by ezdxf, so that it has all the tables that a drawing needs."""
     import ezdxf
 
-    drawing = ezdxf.new("R12", units=0)
+    logging.getLogger("ezdxf").setLevel(logging.ERROR)  # R12 has no units, which it would tell each time
+    drawing = ezdxf.new("R12")
     space = drawing.modelspace()
     space.add_line((0, 0), (2, 0))
     space.add_arc((2, 1), 1, -90, 90)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from clearance.errors import BadDimension
 from clearance.geometry.shapes import box, capsule, cylinder, pipe, sphere
+from clearance.geometry.shapes.dimension import sections_for
 from tests.geometry.exact_faces import area_vector, corners, dot, is_flat_and_convex, minus
 
 radii = st.floats(1e-3, 10.0)
@@ -224,3 +225,7 @@ def test_dimensions_that_no_solid_has_are_refused(make, field):
     with pytest.raises(BadDimension) as caught:
         make()
     assert field in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_radius_beside_which_the_tolerance_overflows_has_the_fewest_sides():
+    assert sections_for(1e-320, 1e-4, None) == 8

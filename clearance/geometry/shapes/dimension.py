@@ -68,7 +68,9 @@ def sections_for(radius: float, tolerance: float, sections: int | None) -> int:
                 f"{sections!r:.60} is given", where="sections", valid=f"a whole number, 3 to {MOST_SECTIONS}"
             )
         return int(sections)
-    ratio = 0.999999 * positive(tolerance, "tolerance") / radius  # leaves room for the push by ulps
+    with np.errstate(over="ignore"):
+        ratio = 0.999999 * positive(tolerance, "tolerance") / radius  # leaves room for the push by ulps
+    ratio = min(ratio, 1e300)  # of a radius of 1e-320 it overflows
     # cos(x) = 1 / (1 + ratio), written as sin(x / 2)^2 so that a small ratio keeps its digits
     half_angle = 2.0 * np.arcsin(np.sqrt(0.5 * ratio / (1.0 + ratio)))
     n = max(8, int(np.ceil(np.pi / half_angle)))
