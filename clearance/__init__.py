@@ -35,6 +35,7 @@ _ROOM_OF = {
     "Sketch": "sketch",
     "SketchResult": "sketch",
     "Trajectory": "world.trajectory",
+    "Undecided": "planar.hausdorff",
     "Workspace": "simulate.workspace",
     "biarcs": "planar.biarcs",
     "box": "geometry.shapes",
