@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numba
 
-import clearance.kernels.body_pair  # noqa: F401 these enter `ALL` into the table, with what they import
+import clearance.kernels.body_pair
 import clearance.kernels.certify  # noqa: F401
 from clearance import kernel_table
 from clearance.kernel_cache import cache_root
