@@ -23,6 +23,7 @@ from tests.report.records import disagreeing, record
 
 NO_LIMITS = Limits()
 UNITS = Notice(Severity.SUSPECT, "units", "post.stl: 589 m away; is its scale missing?")
+RULE = Notice(Severity.VIOLATED, "joint limits", "elbow leaves its limits by 0.1 rad")
 WARNING = Notice(Severity.WARNING, "geometry", "links without a collision shape: antenna")
 NOT_KEPT = ProfileAnswer(
     "floor", "xy", None, "outside", 0.02, False, False, -0.003, 1e-4, (0, 0), (0, 0), "fore", 7, ""
@@ -38,9 +39,11 @@ def made(limits=NO_LIMITS, notices=(), accept=(), **changes) -> Record:
     motions = tuple(
         dataclasses.replace(one, times=one.times[:8], positions=one.positions[:8]) for one in whole.motions
     )
-    case = dataclasses.replace(whole.case, notices=tuple(notices), accept=tuple(accept))
+    case = dataclasses.replace(whole.case, accept=tuple(accept))
     minima = tuple(one for one in whole.pair_minima if one.step < 8)
-    return dataclasses.replace(whole, case=case, steps=steps, motions=motions, pair_minima=minima)
+    return dataclasses.replace(
+        whole, case=case, steps=steps, motions=motions, pair_minima=minima, notices=tuple(notices)
+    )
 
 
 CASES = {
@@ -52,6 +55,7 @@ CASES = {
     "suspect and contact": (
         dataclasses.replace(record(), notices=(UNITS,)), "suspect", 2,
     ),
+    "rule": (made(notices=(RULE,)), "violated", 1),
     "accepted": (made(notices=(UNITS,), accept=("units",)), "clear", 0),
     "another accepted": (made(notices=(UNITS,), accept=("limits",)), "suspect", 2),
     "warned": (made(notices=(WARNING,)), "clear", 0),
