@@ -47,11 +47,19 @@ def _told(row: StepContact) -> dict[str, Any]:
     }
 
 
+def _not_worked_out() -> Html:
+    told = (
+        "Depth, volume and way out were not worked out: the run did not ask for them (--contact none), or bodies "
+        "meet between the samples only."
+    )
+    return section("Contact", element("p", told))
+
+
 def contacts(summary: dict[str, Any]) -> Html:
-    """The section on overlaps; nothing where there are none."""
+    """The section on overlaps; nothing where there are none, one line where none was worked out."""
     found = summary["contact"]
     if found is None:
-        return Html("")
+        return _not_worked_out() if summary["status_counts"]["contact"] else Html("")
     deepest = found["deepest"]
     way = ", ".join(f"{value:.4f}" for value in deepest["direction"])
     first = element(

@@ -34,7 +34,14 @@ def test_the_summary_tells_the_deepest_contact_and_each_pair():
 
 def test_without_contact_there_is_no_section():
     summary = summary_of(record())
+    summary["status_counts"]["contact"] = 0
     assert summary["contact"] is None and contacts(summary) == ""
+
+
+def test_contact_that_was_not_worked_out_is_said():
+    summary = summary_of(record())
+    assert summary["contact"] is None and summary["status_counts"]["contact"]
+    assert "were not worked out" in contacts(summary)
 
 
 def test_the_page_says_the_deepest_contact():
