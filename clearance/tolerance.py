@@ -80,7 +80,7 @@ come out to rounding."""
 LAST_BITS = 2.0**-50
 """[-] Relative to the size of two curves: the rounding of a few operations beyond those that bounds count."""
 
-TIE = 2.0**-46
+TIE = 2.0**-44
 """[-] Relative to the size of two curves: how far above a limit, beyond the rounding of points, a proven bound
 of their Hausdorff distance may be that still counts as at the limit: the rounding of the longest bounds."""
 

@@ -127,7 +127,7 @@ def hausdorff(
 def within(a: Curve, b: Curve, distance: float) -> bool:
     """Whether the Hausdorff distance of `a` and `b` is at most `distance`; no search goes on beyond that.
 
-    Exactness: True and False are both proven, up to the rounding of the curves' points (about 1e-14 of their
+    Exactness: True and False are both proven, up to rounding (below 1e-13 of the curves'
         size), within which a distance counts as equal to the limit and so as within.
     Raises: Undecided where neither could be proven; BadCurve, NotFinite.
     """
