@@ -84,14 +84,18 @@ def test_report_and_junit_are_where_they_were_asked_for(folder):
 
 
 DISAGREEING = """
-import clearance.crosscheck.compare as compare
+from dataclasses import replace
+import pyarrow as pa
+import clearance.crosscheck as crosscheck
 from clearance import cli
-measure = compare.PeerRun.measure
-def off_by_a_micrometre(run, progress=None):
-    answers = measure(run, progress)
-    answers.clearances[1] += 1e-6
-    return answers
-compare.PeerRun.measure = off_by_a_micrometre
+ask = crosscheck.cross_check
+def asked_about_a_wrong_answer(record, progress=None):
+    clearances = record.clearances.copy()
+    clearances[1] += 1e-6
+    i_column = record.steps.column_names.index("clearance")
+    wrong = record.steps.set_column(i_column, "clearance", pa.array(clearances))
+    return ask(replace(record, steps=wrong), progress)
+crosscheck.cross_check = asked_about_a_wrong_answer
 cli.main()
 """
 
