@@ -7,7 +7,7 @@ real robots. Not for: motions (`run.check`, which also says what happens between
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,14 +16,16 @@ from clearance.errors import BadInput, BadShape, NotFinite
 from clearance.kernel_table import call
 from clearance.kernels.held_scene import hold_scene, nearest_at_positions
 from clearance.kernels.sweep_rows import PairRows, StepRows
+from clearance.simulate.inside import doubts_of, is_in_doubt
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import SWEEP_COUNTERS
 from clearance.simulate.steps import pair_names
 from clearance.tolerance import REACH
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.kinematics import moving_positions
+from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
+from clearance.world.plausibility import notices_of
 from clearance.world.reach import require_within_reach
 
 Configuration = np.ndarray | Sequence[float] | Mapping[str, float]
@@ -38,6 +40,8 @@ class Clearance:
             other.
         link, obstacle: names of the pair that attains it; links carry their robot's name where there are several.
         point_link, point_obstacle: (3,) witness points [m] in the world frame.
+        undecided: names of the pairs of which it is open whether one body is inside the other, since a surface has
+            holes; the distance is that of their surfaces alone.
     """
 
     distance: float
@@ -45,6 +49,7 @@ class Clearance:
     obstacle: str
     point_link: np.ndarray
     point_obstacle: np.ndarray
+    undecided: tuple[tuple[str, str], ...] = ()
 
     @property
     def contact(self) -> bool:
@@ -58,11 +63,13 @@ class ClearanceOfMany:
 
     Attributes:
         distances: (n,) [m]. pairs: (n,) indices into `Checker.pairs`. points: (n, 2, 3) [m] on link and obstacle.
+        undecided: (n,) True where it is open of a pair whether one body is inside the other.
     """
 
     distances: np.ndarray
     pairs: np.ndarray
     points: np.ndarray
+    undecided: np.ndarray
 
 
 class Checker:
@@ -79,6 +86,7 @@ class Checker:
             without one, all moving joints that the case does not fix. The others are where the case has them,
             or at 0.
         pairs: (link, obstacle) names of what is measured.
+        notices: what is suspect about the case, and warnings; `check` would say them with its verdict.
 
     Raises:
         NothingToMeasure: no pair is left. BadDimension: a body far beyond any place that a robot works at.
@@ -87,8 +95,9 @@ class Checker:
     def __init__(self, case: Case) -> None:
         if not isinstance(case, Case):
             raise BadInput(f"a {type(case).__name__} is given", valid="a Case, as `load_case` gives it")
-        self.case = case
+        self.case, self.notices = case, notices_of(case)
         pairs, _ = measured_pairs(case)
+        self._doubts = [(pairs[i], i, doubt) for i, doubt in doubts_of(case, pairs).items()]
         require_within_reach(case, [_at_rest(placed) for placed in case.robots])
         self.pairs = list(zip(*pair_names(case, pairs), strict=True))
         self._names = [placed.joints_given for placed in case.robots]
@@ -116,8 +125,9 @@ class Checker:
         with self._lock:
             call(nearest_at_positions, self._held, positions, self._row, self._counts)
             link, obstacle = self.pairs[self._row.pair[0]]
-            points = self._row.points[0].copy()
-            return Clearance(float(self._row.clearance[0]), link, obstacle, points[0], points[1])
+            distance, points = float(self._row.clearance[0]), self._row.points[0].copy()
+        undecided = tuple(self.pairs[i] for i, open_at in self._in_doubt(positions) if open_at[0])
+        return Clearance(distance, link, obstacle, points[0], points[1], undecided)
 
     def distances(self, configurations: np.ndarray) -> ClearanceOfMany:
         """The least clearance at each of n configurations (n, k), in one compiled call.
@@ -129,7 +139,20 @@ class Checker:
         rows = _rows(len(positions))
         with self._lock:
             call(nearest_at_positions, self._held, positions, rows, self._counts)
-        return ClearanceOfMany(rows.clearance, rows.pair, rows.points)
+        undecided = np.zeros(len(positions), dtype=bool)
+        for _, open_at in self._in_doubt(positions):
+            undecided |= open_at
+        return ClearanceOfMany(rows.clearance, rows.pair, rows.points, undecided)
+
+    def _in_doubt(self, positions: np.ndarray) -> Iterator[tuple[int, np.ndarray]]:
+        """Of each pair that can be in doubt, whether it is at each of n positions of all moving joints."""
+        if not self._doubts:
+            return
+        counts = [len(placed.robot.moving_joints) for placed in self.case.robots]
+        columns = np.split(positions, np.cumsum(counts)[:-1], axis=1)
+        poses = [link_poses(*each) for each in zip(self.case.robots, columns, strict=True)]
+        for pair, i_pair, doubt in self._doubts:
+            yield i_pair, is_in_doubt(self.case, pair, doubt, poses[pair.i_robot])
 
     def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
         """The configuration, (k,) or (n, k), as the joints are named."""

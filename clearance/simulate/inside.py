@@ -6,7 +6,7 @@ pairs where a winding number decides (`kernels.containment`); those are in conta
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -28,8 +28,7 @@ FEWER = "close the mesh's holes, or accept: [inside] in the case if it is hollow
 def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tuple[Notice, ...]:
     """One notice for each pair of which it is open at some step whether one body is inside the other."""
     names = pair_names(case, pairs)
-    doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
-    waiting = {i: doubt for i, doubt in doubts.items() if doubt is not None}
+    waiting = doubts_of(case, pairs)
     found: dict[int, int] = {}
     for start in range(0, motions[0].n_steps if waiting else 0, AT_ONCE):
         poses = _poses(motions, {pairs[i].i_robot for i in waiting}, start)
@@ -42,6 +41,20 @@ def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tup
         Notice(Severity.SUSPECT, "inside", _text(names[0][i], names[1][i], step, motions[0].times[step]))
         for i, step in sorted(found.items())
     )
+
+
+def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
+    """What can be in doubt, by the pairs of which something can be."""
+    doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
+    return {i: doubt for i, doubt in doubts.items() if doubt is not None}
+
+
+def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> np.ndarray:
+    """(n,) whether a pair is in doubt and not in contact with its robot at `poses` (n, n_links, 4, 4) [m]."""
+    found = np.zeros(len(poses), dtype=bool)
+    for k in _in_doubt(case, pair, doubt, poses):
+        found[k] = True
+    return found
 
 
 def _poses(motions: Sequence[Motion], robots: set[int], start: int) -> dict[int, np.ndarray]:
@@ -64,6 +77,10 @@ def _shapes(case: Case, pair: Pair) -> tuple[Polyhedron, Polyhedron]:
 
 def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> int | None:
     """The first of the steps with `poses` (n, n_links, 4, 4) at which a pair is in doubt and not in contact."""
+    return next(_in_doubt(case, pair, doubt, poses), None)
+
+
+def _in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> Iterator[int]:
     link, obstacle = _shapes(case, pair)
     world_from_obstacle = case.obstacles[pair.i_obstacle].world_from_body
     robot = case.robots[pair.i_robot].robot
@@ -71,5 +88,4 @@ def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> 
     standing = np.broadcast_to(world_from_obstacle, mine.shape).copy()
     for k in np.flatnonzero(doubt.at(mine, standing)):
         if not distance(link, obstacle, pose_a=mine[k], pose_b=world_from_obstacle).contact:
-            return int(k)
-    return None
+            yield int(k)

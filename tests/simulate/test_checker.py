@@ -8,7 +8,8 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput, BadShape, NotFinite, NothingToMeasure
-from tests.made_cases import arm, at
+from clearance.world.plausibility import notices_of
+from tests.made_cases import arm, at, ball, faces_of, flying
 
 CASES = [f"scenes/{name}/case.yaml" for name in ("box_box", "hot_cell", "panda_shelf")]
 
@@ -76,6 +77,25 @@ def test_without_a_trajectory_all_joints_that_are_not_fixed_are_given():
     assert checker.joint_names == tuple(names[1:])
     whole = cl.Checker(case)
     assert checker.distance([0.5]).distance == whole.distance([0.25, 0.5]).distance
+
+
+def test_what_cannot_be_told_is_said():
+    """A box that passes through the hole of a ball: apart, then where the hole decides."""
+    ball_faces, whole = faces_of(ball(2.0, 2)), ball(2.0, 2)
+    outer = cl.Polyhedron(whole.vertices, ball_faces[1:])
+    way = np.zeros((21, 6))
+    way[:, :3] = np.linspace(3.0, 1.0, 21)[:, None] * whole.face(0).mean(axis=0)
+    case = flying("inside", cl.box((0.05, 0.05, 0.05)), [(outer, np.eye(4))], way)
+    checker = cl.Checker(case)
+    found = checker.distances(way)
+    assert found.undecided.any() and not found.undecided[0]
+    for row, undecided in zip(way, found.undecided, strict=True):
+        assert checker.distance(row).undecided == (tuple(checker.pairs) if undecided else ())
+
+
+def test_what_is_suspect_about_the_case_is_at_hand():
+    case = swaying()
+    assert cl.Checker(case).notices == notices_of(case)
 
 
 def test_threads_may_share_a_checker():
