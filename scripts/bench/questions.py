@@ -75,7 +75,10 @@ def fan(name: str, corners: np.ndarray, stands: bool = False) -> Solid:
     """A polygon as the peers take it; `shape` is missing, since ours takes the corners."""
     k = np.arange(1, len(corners) - 1)
     triangles = np.stack([np.zeros_like(k), k, k + 1], axis=1)
-    return Solid(name, None, TriangleSoup(np.ascontiguousarray(corners), triangles), None, stands)
+    open_soup = TriangleSoup(
+        np.ascontiguousarray(corners), triangles, np.zeros(len(triangles)), np.empty((0, 3, 3))
+    )
+    return Solid(name, None, open_soup, None, stands)
 
 
 def body_questions(n: int) -> list[Question]:

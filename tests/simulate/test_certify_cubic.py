@@ -33,7 +33,8 @@ def one_joint_case(kind, shape, obstacle, pose, velocities):
     n_steps = len(velocities)
     speeds = np.array(velocities, dtype=float)[:, None]
     asked = Trajectory(np.arange(n_steps, dtype=float), ("joint",), np.zeros((n_steps, 1)), speeds)
-    return Case("crossing", (PlacedRobot(robot, asked),), (Obstacle(Body("post", obstacle), pose),))
+    standing = (Obstacle(Body("post", obstacle), pose),)
+    return Case("crossing", (PlacedRobot(robot, asked),), standing, accept=("units",))  # velocities by intent
 
 
 def linear(case):
