@@ -18,11 +18,11 @@ from clearance.kernels.pair_order import fill_order, sort_all
 from clearance.kernels.placed import bring, put_all
 from clearance.kernels.sweep import (
     Goal,
-    _carried,
-    _nearest_by_boxes,
-    _nearest_of,
-    _nothing_known,
     box_bound,
+    carried,
+    nearest_by_boxes,
+    nearest_of,
+    nothing_known,
 )
 from clearance.kernels.sweep_rows import write_step
 
@@ -74,7 +74,7 @@ if not numba.config.DISABLE_JIT:
 def hold_scene(surface, world, pair_rows, n_columns):
     """A scene of which nothing is known yet; `n_columns` of joint positions."""
     goal = Goal(np.full(len(world.pairs), np.inf), False, False)
-    known = _nothing_known(world, n_columns, goal.within.copy())
+    known = nothing_known(world, n_columns, goal.within.copy())
     return HeldScene(surface, world, goal, pair_rows, known, np.zeros(2, dtype=np.int64))
 
 
@@ -89,7 +89,7 @@ def nearest_at_positions(held, positions, rows, tally, table):
         tally[i] = 0
     for row in range(len(positions)):
         if held.at[LOOK] == 0 or held.at[LOOK] >= AFRESH:
-            held.known = _nothing_known(held.world, n_columns, held.goal.within.copy())
+            held.known = nothing_known(held.world, n_columns, held.goal.within.copy())
             held.at[LOOK] = 0
         _look(
             held.surface, held.world, held.goal, held.pair_rows, held.known, held.at, positions[row], row, rows,
@@ -113,9 +113,9 @@ def _look(surface, world, goal, pair_rows, known, at, positions, row, rows, tall
     else:
         bring(surface, world, bodies, positions, look, known.placed)
     first = at[WINNER]
-    if _carried(world, first, known) <= 0.0:
-        first = _nearest_by_boxes(surface, world, bodies, known, first)
-    best, best_pair, lowest = _nearest_of(
+    if carried(world, first, known) <= 0.0:
+        first = nearest_by_boxes(surface, world, bodies, known, first)
+    best, best_pair, lowest = nearest_of(
         surface, world, bodies, first, row, row, np.inf, goal, TO_THE_END, lend(surface), known, pair_rows, tally,
         table,
     )  # fmt: skip

@@ -139,7 +139,7 @@ class Known(NamedTuple):
 
 
 @merged
-def _carried(world, pair, known):
+def carried(world, pair, known):
     """[m] what is left of the bound of a pair: only its first body moves."""
     return known.floors[pair] - known.placed.travel[world.pairs[pair, 0]]
 
@@ -147,20 +147,20 @@ def _carried(world, pair, known):
 @merged
 def _spare(world, pair, known, goal):
     """[m] the same, less how near the pair must come where that is another distance for each."""
-    return _carried(world, pair, known) - (known.within[pair] if goal.each else 0.0)
+    return carried(world, pair, known) - (known.within[pair] if goal.each else 0.0)
 
 
 @merged
 def _bounded_again(surface, world, pair, known, enough):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
     by_boxes = box_bound(surface, world, pair, known.placed, known.boxes, enough)
-    floor = max(_carried(world, pair, known), by_boxes)
+    floor = max(carried(world, pair, known), by_boxes)
     known.floors[pair] = (floor + known.placed.travel[world.pairs[pair, 0]]) * KEPT_DOWN
     return floor
 
 
 @merged
-def _nearest_by_boxes(surface, world, bodies, known, winner):
+def nearest_by_boxes(surface, world, bodies, known, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
     order = known.order
     nearest = np.inf
@@ -168,7 +168,7 @@ def _nearest_by_boxes(surface, world, bodies, known, winner):
         place = order.starts[body]
         while place < order.starts[body + 1]:
             pair = order.pairs[place]
-            if _carried(world, pair, known) >= nearest:
+            if carried(world, pair, known) >= nearest:
                 break
             floor = _bounded_again(surface, world, pair, known, nearest)
             if floor < nearest:
@@ -224,7 +224,7 @@ def _next_look(world, positions, row, look, within, due, rows, tally):
 
 
 @spliced
-def _nearest_of(
+def nearest_of(
     surface, world, bodies, first, row, step, lowest, goal, effort, lent, known, pair_rows, tally, table
 ):  # fmt: skip
     """The nearest pair of some bodies at a row, one of which is asked before all others unless it is -1.
@@ -248,7 +248,7 @@ def _nearest_of(
             place += 1
             if turn >= 0 and pair == first:
                 continue
-            floor = _carried(world, pair, known)
+            floor = carried(world, pair, known)
             if best.gap_sq == 0.0 and pair > best_pair and not goal.each:  # no nearer, and not the least pair
                 nearest = min(nearest, floor)
                 continue
@@ -286,7 +286,7 @@ def _nearest_of(
 
 
 @shared
-def _nothing_known(world, n_columns, within):
+def nothing_known(world, n_columns, within):
     n_pairs, n_bodies = len(world.pairs), len(world.frames)
     return Known(
         within, np.empty(n_pairs), room_for_order(n_bodies, n_pairs), np.full((n_pairs, 2), NO_FACE),
@@ -315,9 +315,9 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
         for i in range(len(few)):
             for column in range(n_columns):
                 few[i, column] = positions[first.rows[i], column]
-        known = _nothing_known(world, n_columns, within)
+        known = nothing_known(world, n_columns, within)
         _sweep(surface, world, few, first.rows, goal, first.effort, known, rows, pair_rows, tally, table)
-    known = _nothing_known(world, n_columns, within)
+    known = nothing_known(world, n_columns, within)
     _sweep(surface, world, positions, steps, goal, TO_THE_END, known, rows, pair_rows, tally, table)
 
 
@@ -345,9 +345,9 @@ def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_row
         if look > 0:
             bring(surface, world, bodies, positions[row], look, placed)
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
-        if first >= 0 and _carried(world, first, known) <= 0.0 and not was_contact(known.answers, first):
-            first = _nearest_by_boxes(surface, world, bodies, known, first)
-        best, best_pair, lowest = _nearest_of(
+        if first >= 0 and carried(world, first, known) <= 0.0 and not was_contact(known.answers, first):
+            first = nearest_by_boxes(surface, world, bodies, known, first)
+        best, best_pair, lowest = nearest_of(
             surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, known, pair_rows, tally,
             table,
         )  # fmt: skip
