@@ -210,9 +210,11 @@ def check(
         raise BadInput(f"method {method!r} measures every step", valid="need 'steps', or method 'exact'")
     if need in ("limit", "minimum") and cross_check:
         raise BadInput(f"cross-check needs every step, not {need!r}", valid="need 'steps' or 'pairs'")
-    if jobs is not None and jobs < 1:
+    if jobs is not None and (not isinstance(jobs, int) or jobs < 1):
         raise BadInput(f"{jobs} jobs", valid="1 or more")
     if limits is not None:
+        if not isinstance(limits, Limits):
+            raise BadInput(f"limits are {limits!r:.60}", valid="a Limits, as Limits(fail=0.005, warn=0.02)")
         case = replace(case, limits=limits)
     case = replace(case, notices=notices_of(case))
     pairs, unmeasured = measured_pairs(case)

@@ -16,6 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from clearance.cli.progress import shown_progress
+from clearance.errors import shown
 from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
 from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.verdict import Verdict, profile_text
@@ -72,7 +73,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
         lines += _cross_check(run.cross_check)
     lines.append(partial(_notes, record))
     if out is not None:
-        lines.append(_row("report", str(out / "report.html")))
+        lines.append(_row("report", shown(str(out / "report.html"))))
     return lines
 
 
@@ -88,6 +89,7 @@ def _beside(verdict: Verdict) -> list[Text]:
     """What a reader must know beside the clearance: right below the headline."""
     not_checked = ", ".join(f"{name} not checked" for name in verdict.not_checked)
     lines = [_row("", not_checked)] if not_checked else []
+    lines += [_row("violated", text) for text in verdict.broken]
     lines += [_row("unproven", verdict.unproven)] if verdict.unproven else []
     lines += [_row("suspect", _suspect(one)) for one in verdict.suspects]
     return lines + [_row("warning", text) for text in verdict.warnings]

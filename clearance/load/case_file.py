@@ -21,7 +21,6 @@ from clearance.load.motion_names import (
     check_not_given_twice,
     note_on_joints_at_zero,
 )
-from clearance.load.names import checked_name
 from clearance.load.plausibility import angle_notices, obstacle_notices, odd_angles, scale_notices
 from clearance.load.reserved import reserved_spaces
 from clearance.load.scene_file import make_obstacles
@@ -30,6 +29,7 @@ from clearance.load.trajectory_file import read_trajectory
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
 from clearance.world.case import Case, Limits, PlacedRobot, SignOff
+from clearance.world.names import checked_name
 from clearance.world.notice import Notice
 from clearance.world.pairs import measured_pairs
 from clearance.world.reach import require_few_turns

@@ -15,7 +15,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validat
 
 from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
-from clearance.load.names import checked_name
+from clearance.world.names import checked_name
 from clearance.world.notice import KINDS
 
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]

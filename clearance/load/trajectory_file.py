@@ -29,7 +29,7 @@ from clearance.errors import (
     at,
     nearest_name,
 )
-from clearance.load.names import checked_name
+from clearance.world.names import checked_name
 from clearance.world.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ import numpy as np
 
 from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite, at
 from clearance.geometry.pose import pose_from_rpy
-from clearance.load.names import checked_name
 from clearance.load.plausibility import odd_angles
+from clearance.world.names import checked_name
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element

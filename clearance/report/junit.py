@@ -25,8 +25,9 @@ def write_junit(record: Record, path: str | Path) -> None:
     """Writes one test case for the verdict, and one for each that can fail by itself: measured pairs, the
     certificate, profiles, the cross-check, suspect input and warnings. Pairs that are left out are skipped.
 
-    A pair fails where its least clearance is below the fail limit or it touches, at a step or between. The case of
-    the verdict fails exactly where the run is not passed.
+    A pair fails where its least clearance at the samples is below the fail limit or it touches, or where the
+    certificate has seen it so between two; of the pairs of such an interval it names the one it saw nearest. The
+    case of the certificate fails where any does, that of the verdict exactly where the run is not passed.
 
     Raises:
         Unwritable: the file cannot be written; an older one is left as it was.
@@ -109,7 +110,7 @@ def _pair(
     suite: ElementTree.Element, limits: Limits, minimum: PairMinimum, between: str | None
 ) -> None:
     case = _case(suite, minimum.link, f"{minimum.link} - {minimum.obstacle}")
-    text = f"{mm(minimum.clearance)} mm at step {minimum.step}, {seconds(minimum.time)}"
+    text = f"at the samples {mm(minimum.clearance)} mm at step {minimum.step}, {seconds(minimum.time)}"
     below = minimum.clearance < limits.fail or minimum.clearance <= 0.0
     if below or between is not None:
         told = text if between is None else f"{between}; {text}"

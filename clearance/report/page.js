@@ -146,7 +146,9 @@
   function limitLabel(name, metres, colour) {
     const {fail, warn} = data.limits, pixels = Math.max(100, curve.clientHeight - 54) / (zoomed() ? near : greatest);
     const close = fail > 0 && toPlot(warn - fail) * pixels < 14, up = name === "warn";
-    return {xref: "paper", x: 1, xanchor: "left", xshift: 4, y: toPlot(metres), yanchor: close ? (up ? "bottom" : "top") : "middle", yshift: 0, showarrow: false,
+    const beside = {xanchor: "left", xshift: 4, yanchor: close ? (up ? "bottom" : "top") : "middle"};
+    const within = {xanchor: "right", xshift: -4, yanchor: close && !up ? "top" : "bottom"};
+    return {xref: "paper", x: 1, y: toPlot(metres), yshift: 0, showarrow: false, ...(isNarrow() ? within : beside),
       text: limitText(name, metres), font: {color: colour, size: 11}};
   }
 
@@ -154,7 +156,12 @@
     return `${name} ${Number((metres * 1000).toPrecision(6))} mm`;
   }
 
+  function isNarrow() { // no room for labels beside the plot
+    return curve.clientWidth < 560;
+  }
+
   function roomForLimits() { // px, right of the plot
+    if (isNarrow()) return 12;
     const ruler = document.createElement("span");
     ruler.style.cssText = "position: absolute; visibility: hidden; white-space: nowrap; font-size: 11px";
     document.body.append(ruler);

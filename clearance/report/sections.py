@@ -80,6 +80,7 @@ def _beside(summary: dict[str, Any]) -> Html:
         element("li", f"Suspect {one['kind']}: {one['text']}", class_="text-suspect")
         for one in summary["suspects"]
     ]
+    rows += [element("li", f"Violated: {text}", class_="text-violated") for text in summary["broken"]]
     doubts = [summary["unproven"]] if summary["unproven"] else []
     doubts += [f"Warning: {text}" for text in summary["warnings"]]
     rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]

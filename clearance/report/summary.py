@@ -79,6 +79,7 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "basis": verdict.basis,
         "reasons": list(verdict.reasons),
         "unproven": verdict.unproven,
+        "broken": list(verdict.broken),
         "warnings": list(verdict.warnings),
         "suspects": [{"kind": one.kind, "text": one.text} for one in verdict.suspects],
         "disputed_by": verdict.disputed_by,

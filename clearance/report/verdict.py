@@ -23,6 +23,9 @@ MOTION, SAMPLES = "motion", "samples"
 NOT_CHECKED = ("self-collision",)
 """What no run measures yet."""
 
+BETWEEN_ROBOTS = ("robot against robot",)
+"""What is not measured either where a case has several."""
+
 _PASSING = (Status.CLEAR, Status.NEAR)
 
 
@@ -40,6 +43,7 @@ class Verdict:
         warnings: what a reader must know beside the clearance; suspect input that is accepted is among it.
         disputed_by: the peer that disagrees, if one does.
         not_checked: what was not looked at.
+        broken: rules of the case that are broken, beside its limits of clearance.
     """
 
     status: str
@@ -51,6 +55,7 @@ class Verdict:
     warnings: tuple[str, ...] = ()
     disputed_by: str | None = None
     not_checked: tuple[str, ...] = NOT_CHECKED
+    broken: tuple[str, ...] = ()
 
     @property
     def exit_code(self) -> int:
@@ -98,7 +103,8 @@ def verdict_of(record: Record) -> Verdict:
     unproven = _unproven(record)
     reasons = [reason for reason in (_occurring(record), unproven) if reason is not None]
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
-    reasons += [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
+    broken = [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
+    reasons += broken
     reasons += [f"suspect {one.kind}: {one.text}" for one in open_suspects]
     if disputed:
         reasons.append(f"{check.peer} disagrees at {count(len(check.disagreements), 'step')}")
@@ -111,6 +117,8 @@ def verdict_of(record: Record) -> Verdict:
         suspects=open_suspects,
         warnings=tuple(_warnings(record, notices)),
         disputed_by=check.peer if disputed else None,
+        not_checked=NOT_CHECKED + (BETWEEN_ROBOTS if len(record.case.robots) > 1 else ()),
+        broken=tuple(broken),
     )
 
 

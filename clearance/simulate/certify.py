@@ -63,8 +63,9 @@ def certify_motion(
     Raises:
         BadDimension: `gap` is not a positive length.
     """
-    if not 0.0 < gap < np.inf:
-        raise BadDimension(f"a gap of {gap} m", where="certify", valid="a length above 0")
+    if not (isinstance(gap, int | float | np.number) and 0.0 < gap < np.inf):
+        raise BadDimension(f"a gap of {gap!r:.60} m", where="certify", valid="a length above 0")
+    gap = float(gap)
     gap, notices = _no_finer_than_rounding(case, motions, gap)
     kept, tally, bounds = kept or Rows(), _no_counts(), []
     question = _Question.of(found, case.limits, need, gap)

@@ -10,6 +10,9 @@ import numpy as np
 
 from clearance.errors import (
     BadDimension,
+    BadTime,
+    DuplicateName,
+    NothingToMeasure,
     NoTrajectory,
     UnknownJoint,
     UnknownRobot,
@@ -18,6 +21,7 @@ from clearance.errors import (
 )
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
+from clearance.world.names import checked_name
 from clearance.world.notice import Notice
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
@@ -46,13 +50,22 @@ class Limits:
         if self.warn is None:
             object.__setattr__(self, "warn", self.fail)
         for name in ("fail", "warn"):
-            if not 0.0 <= getattr(self, name) < np.inf:
-                raise BadDimension(f"limit {name} is {getattr(self, name)} m", valid="0 or more")
+            object.__setattr__(self, name, _level(getattr(self, name), name))
         if self.warn < self.fail:
             raise BadDimension(
                 f"the warn limit {self.warn:g} m is below the fail limit {self.fail:g} m",
                 valid="warn at or above fail",
             )
+
+
+def _level(given: float, name: str) -> float:
+    try:
+        level = float(given)
+    except (TypeError, ValueError):
+        raise BadDimension(f"limit {name} is {given!r:.60}", valid="a number of metres") from None
+    if not 0.0 <= level < np.inf:
+        raise BadDimension(f"limit {name} is {level} m", valid="0 or more")
+    return level
 
 
 @dataclass(frozen=True)
@@ -101,6 +114,9 @@ class PlacedRobot:
     def __post_init__(self) -> None:
         with at("world_from_base"):
             object.__setattr__(self, "world_from_base", validated_pose(self.world_from_base))
+        if self.trajectory is not None:
+            with at(f"robot {self.robot.name!r}: trajectory"):
+                _require_joints(self.robot, self.trajectory.joint_names)
 
     @property
     def joints_given(self) -> tuple[str, ...]:
@@ -184,6 +200,16 @@ class Case:
     accept: tuple[str, ...] = ()
     sign_off: SignOff | None = None
 
+    def __post_init__(self) -> None:
+        if not self.robots:
+            raise NothingToMeasure(f"case {self.name!r} has no robot", valid="at least one")
+        checked_name(self.name)
+        _require_own_names("robot", [placed.robot.name for placed in self.robots])
+        _require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
+        for placed in self.robots:
+            _require_own_names("link", list(placed.robot.link_names))
+        _require_same_times(self.robots)
+
     def with_trajectory(
         self,
         times: np.ndarray,
@@ -225,3 +251,23 @@ def _require_joints(robot: Robot, names: Sequence[str]) -> None:
     for name in names:
         if name not in moving:
             raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, moving))
+
+
+def _require_own_names(kind: str, names: Sequence[str]) -> None:
+    """Refuses two of one kind with one name, which no table could tell apart, and names that no line can show."""
+    for i, name in enumerate(names):
+        with at(kind):
+            checked_name(name)
+        if name in names[:i]:
+            raise DuplicateName(f"two {kind}s have the name {name!r}", valid="each name once")
+
+
+def _require_same_times(robots: Sequence[PlacedRobot]) -> None:
+    """Refuses robots that are not sampled at the same times: their steps would be of different moments."""
+    moving = [placed for placed in robots if placed.trajectory is not None]
+    for other in moving[1:]:
+        if not np.array_equal(moving[0].trajectory.times, other.trajectory.times):
+            raise BadTime(
+                f"robots {moving[0].robot.name!r} and {other.robot.name!r} have other times",
+                valid="the trajectories of all robots sampled at the same times",
+            )

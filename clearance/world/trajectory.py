@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadShape, BadTime, NotFinite
+from clearance.errors import BadDimension, BadShape, BadTime, DuplicateName, NotFinite
 from clearance.tolerance import LARGEST
 
 
@@ -47,6 +47,9 @@ class Trajectory:
 
     def _refuse_bad_samples(self) -> None:
         wanted = (len(np.atleast_1d(self.times)), len(self.joint_names))
+        for i, name in enumerate(self.joint_names):
+            if name in self.joint_names[:i]:
+                raise DuplicateName(f"joint {name!r} is there twice", valid="each joint once")
         if self.times.ndim != 1 or not len(self.times):
             raise BadShape(f"times have shape {self.times.shape}", valid="(n,) with n >= 1")
         if self.positions.shape != wanted:

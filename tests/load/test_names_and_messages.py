@@ -4,12 +4,12 @@ import pytest
 
 from clearance.errors import BadInput, BadPose
 from clearance.geometry.pose import pose_from_quaternion
-from clearance.load.names import checked_name
 from clearance.load.schema import Obstacle
 from clearance.load.schema_errors import validated
 from clearance.load.trajectory_file import parse_trajectory
 from clearance.load.urdf_elements import parse_document
 from clearance.load.yaml_file import parse_yaml
+from clearance.world.names import checked_name
 from clearance.world.pairs import matches
 
 

@@ -1,5 +1,7 @@
 """Cases that are made in Python: the same answers as from files, and the same care about bad input."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import trimesh
@@ -10,7 +12,9 @@ from clearance.errors import (
     BadPose,
     BadShape,
     BadTime,
+    DuplicateName,
     NotFinite,
+    NothingToMeasure,
     NoTrajectory,
     UnknownJoint,
     UnknownRobot,
@@ -107,3 +111,57 @@ def test_limits_are_in_order():
     for bad in (-0.001, float("nan"), float("inf")):
         with pytest.raises(BadDimension):
             cl.Limits(fail=bad, warn=1.0)
+
+
+def posts(*names):
+    return tuple(cl.Obstacle(cl.Body(name, cl.box((0.1, 0.1, 1.0)))) for name in names)
+
+
+def still(name, times=(0.0, 1.0)):
+    robot = kuka()
+    names = [joint.name for joint in robot.moving_joints]
+    asked = cl.Trajectory(np.array(times), tuple(names), np.zeros((len(times), len(names))))
+    return cl.PlacedRobot(dataclasses.replace(robot, name=name), asked)
+
+
+def test_a_case_that_no_table_could_tell_apart_is_refused():
+    with pytest.raises(NothingToMeasure, match="no robot"):
+        cl.Case("empty", (), posts("post"))
+    with pytest.raises(DuplicateName, match="two robots have the name 'left'"):
+        cl.Case("twins", (still("left"), still("left")), posts("post"))
+    with pytest.raises(DuplicateName, match="two obstacles have the name 'post'"):
+        cl.Case("posts", (still("left"),), posts("post", "post"))
+    with pytest.raises(BadTime, match="'left' and 'right' have other times"):
+        cl.Case("clocks", (still("left"), still("right", (10.0, 20.0))), posts("post"))
+
+
+@pytest.mark.parametrize("name", ["post\x1b[31m", "post\nCLEAR", "post\uffff"])
+def test_names_that_no_line_can_show_are_refused(name):
+    with pytest.raises(cl.BadInput):
+        cl.Case("case", (still("left"),), posts(name))
+    with pytest.raises(cl.BadInput):
+        cl.Case(name, (still("left"),), posts("post"))
+
+
+def test_a_trajectory_is_held_against_its_robot():
+    asked = cl.Trajectory(np.zeros(1), ("nobody",), np.zeros((1, 1)))
+    with pytest.raises(UnknownJoint, match="nobody"):
+        cl.PlacedRobot(kuka(), asked)
+    with pytest.raises(DuplicateName, match="joint 'a' is there twice"):
+        cl.Trajectory(np.zeros(1), ("a", "a"), np.zeros((1, 2)))
+
+
+def test_two_robots_are_not_measured_against_each_other_and_the_verdict_says_so():
+    run = cl.check(cl.Case("two", (still("left"), still("right")), posts("post")))
+    assert run.verdict.not_checked == ("self-collision", "robot against robot")
+
+
+def test_limits_are_numbers_of_metres():
+    assert cl.Limits(0, 1) == cl.Limits(0.0, 1.0) and type(cl.Limits(0, 1).warn) is float
+    case = dataclasses.replace(cl.load_case("scenes/box_box/case.yaml"), limits=cl.Limits(0, 1))
+    assert cl.check(case).status == "suspect"  # a limit of a metre
+    with pytest.raises(BadDimension, match="'a'"):
+        cl.Limits(fail="a")
+    for wrong in ({"limits": (0.1, 0.2)}, {"certify_gap": "a"}, {"jobs": "2"}):
+        with pytest.raises(cl.BadInput):
+            cl.check(case, **wrong)
