@@ -144,10 +144,12 @@ class Run:
         """Writes steps.parquet, steps.csv, summary.json and report.html into `folder`; returns it.
 
         Raises:
-            Unwritable: nothing is left half-written.
+            BadInput: no path. Unwritable: nothing is left half-written.
         """
         from clearance.report import write
 
+        if not isinstance(folder, str | PathLike) or not str(folder):
+            raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")
         write(self.record, folder)
         return Path(folder)
 

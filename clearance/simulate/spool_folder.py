@@ -120,7 +120,7 @@ def _is_like(place: Path, like: os.stat_result) -> bool:
     if not stat.S_ISDIR(found.st_mode):
         raise _foreign(place, "a file is there")
     if (found.st_uid, stat.S_IMODE(found.st_mode)) != (like.st_uid, stat.S_IMODE(like.st_mode)):
-        raise _foreign(place, "a folder that others can write or own is there")
+        raise _foreign(place, "a folder that is not as one of ours (another owner, or open to others) is there")
     return True
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.errors import at
+from clearance.errors import BadShape, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 
@@ -43,6 +43,10 @@ class Obstacle:
     world_from_body: np.ndarray = field(default_factory=lambda: np.eye(4))
 
     def __post_init__(self) -> None:
+        if not isinstance(self.body, Body):
+            raise BadShape(
+                f"an obstacle of a {type(self.body).__name__}", valid="Obstacle(Body(name, shape), pose)"
+            )
         with at(f"obstacle {self.name!r}"):
             object.__setattr__(self, "world_from_body", validated_pose(self.world_from_body))
 

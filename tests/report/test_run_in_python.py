@@ -58,3 +58,9 @@ def test_summary_and_events_are_those_of_the_report(run, tmp_path):
 def test_the_certificate_is_at_hand(run):
     assert run.certificate.lower_bound.min() <= run.worst["clearance"]
     assert cl.check(CASE, certify=False).certificate is None
+
+
+@pytest.mark.parametrize("folder", ["", None, 3])
+def test_what_is_no_folder_is_refused(run, folder):
+    with pytest.raises(BadInput, match="a path of a folder is needed"):
+        run.save(folder)

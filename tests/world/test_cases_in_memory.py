@@ -94,6 +94,8 @@ def test_meshes_of_trimesh_are_bodies():
     assert cl.Body("ball", mesh).shape.volume == pytest.approx(body.shape.volume)
     with pytest.raises(cl.BadInput, match="body 'word'"):
         cl.Body("word", "a word")
+    with pytest.raises(cl.BadInput, match="an obstacle of a"):
+        cl.Obstacle(mesh)
 
 
 def test_places_are_rigid_motions():
