@@ -204,7 +204,13 @@
   function drawCurve() {
     const traces = allTraces(), layout = plotted();
     Plotly.newPlot(curve, traces, layout, {responsive: true, displaylogo: false, displayModeBar: false, doubleClick: "reset"});
-    new ResizeObserver(() => { if (curve.clientHeight > 0) Plotly.Plots.resize(curve); }).observe(curve); // hidden in print
+    let wasNarrow = isNarrow();
+    new ResizeObserver(() => {
+      if (curve.clientHeight === 0) return; // hidden in print
+      if (isNarrow() !== wasNarrow) redraw();
+      wasNarrow = isNarrow();
+      Plotly.Plots.resize(curve);
+    }).observe(curve);
     const cursor = document.createElement("div");
     cursor.id = "cursor";
     curve.append(cursor);
