@@ -69,9 +69,7 @@ def closing_of(shape: Polyhedron, least: float = -1.0, most: float = FEW) -> Clo
     """How the components close whose holes have a share above `least` and up to `most`; None if there are none."""
     if shape.component_closed.all():
         return None
-    if shape not in _found:
-        _found[shape] = _open_components(shape)
-    found = _found[shape]
+    found = _open_of(shape)
     taken = (found.share > least) & (found.share <= most)
     if not taken.any():
         return None
@@ -82,6 +80,36 @@ def closing_of(shape: Polyhedron, least: float = -1.0, most: float = FEW) -> Clo
         np.concatenate(caps),
         np.cumsum([len(cap) for cap in caps]),
     )
+
+
+def loose_triangles(shape: Polyhedron) -> np.ndarray:
+    """(k, 3, 3) [m] the components that hold nothing and do not close by `SOME`, each face once, turned alike.
+
+    Together they may yet have an inside: patches that meet with a crack, or faces that are there for each side.
+    """
+    loose = ~shape.component_closed
+    if loose.any():
+        loose &= ~(_open_of(shape).share <= SOME)
+    back_to_back = shape.component_closed & (np.bincount(shape.face_component) == 2)
+    loose |= shape.component_two_sided | back_to_back
+    if not loose.any():
+        return np.empty((0, 3, 3))
+    starts = shape.face_starts
+    corners, ring = distinct_vertices(shape.vertices)[1][shape.face_vertices], rings_of(starts)
+    ways = each_once(corners, starts, shape.face_component, loose, also_two_sided=True)
+    used = np.flatnonzero((ways[ring.face] != 0) & (corners != corners[ring.ahead]))
+    if len(used):
+        ways = ways * _alike(corners[used], corners[ring.ahead][used], ring.face[used], shape.n_faces)
+    way = ways[shape.triangle_faces]
+    triangles = shape.triangles()
+    triangles = np.where(way[:, None] < 0, triangles[:, ::-1], triangles)
+    return np.ascontiguousarray(shape.vertices[triangles[way != 0]])
+
+
+def _open_of(shape: Polyhedron) -> _Open:
+    if shape not in _found:
+        _found[shape] = _open_components(shape)
+    return _found[shape]
 
 
 def _open_components(shape: Polyhedron) -> _Open:

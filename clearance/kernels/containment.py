@@ -133,7 +133,7 @@ def _crossings(surface, face, side, x, exact):
 
 
 @inlined
-def _solid_angle(a, b, c):
+def solid_angle(a, b, c):
     """[rad] between 0 and 2 pi, of the triangle with corners at `a`, `b`, `c` from the origin.
 
     Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.
@@ -153,7 +153,7 @@ def _turns_of_caps(surface, body, x):
     first, last = surface.cap_starts[body], surface.cap_starts[body + 1]
     for i in range(first, last, 3):
         a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
-        total += _solid_angle(sub(a, x), sub(b, x), sub(c, x)) + ROUNDING_OF_ANGLES
+        total += solid_angle(sub(a, x), sub(b, x), sub(c, x)) + ROUNDING_OF_ANGLES
     return total / (4.0 * math.pi)
 
 
@@ -164,7 +164,7 @@ def signed_turns_of_caps(surface, body, x):
     for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
         a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
         a, b, c = sub(a, x), sub(b, x), sub(c, x)
-        angle = _solid_angle(a, b, c)
+        angle = solid_angle(a, b, c)
         total += angle if dot(a, cross(b, c)) > 0.0 else -angle
     return total / (4.0 * math.pi)
 

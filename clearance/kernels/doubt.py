@@ -9,10 +9,13 @@ import numpy as np
 
 from clearance.jit import inlined, kernel
 from clearance.kernel_table import WINDING_NUMBER, at_address
-from clearance.kernels.containment import DOUBTFUL, in_box, signed_turns_of_caps
+from clearance.kernels.containment import DOUBTFUL, in_box, signed_turns_of_caps, solid_angle
 from clearance.kernels.double_double import frames_of, size
 from clearance.kernels.scratch import new_scratch
-from clearance.kernels.vec3 import Vec3, move, move_back, relative, rigid, row, sub
+from clearance.kernels.vec3 import Vec3, cross, dot, move, move_back, relative, rigid, row, sub
+
+WOUND = 0.98
+"""[turns] Loose faces that go round a point by as much may be a solid with cracks, seen under 2 % at most."""
 
 
 @kernel
@@ -109,3 +112,62 @@ def near_holes(holes, bounds, low, high, poses, poses_of_box, found):
             and not _is_beside(low, high, bounds[0], bounds[1], other, frame)
             and _turns_at_most(holes, 1, len(holes), low, high, frame, other) > few
         )
+
+
+@inlined
+def _turns_of(triangles, x):
+    """[turns] the magnitude of the solid angle of triangles (k, 3, 3) from `x`."""
+    total = 0.0
+    for i in range(len(triangles)):
+        a, b, c = sub(row(triangles[i], 0), x), sub(row(triangles[i], 1), x), sub(row(triangles[i], 2), x)
+        angle = solid_angle(a, b, c)
+        total += angle if dot(a, cross(b, c)) > 0.0 else -angle
+    return abs(total) / (4.0 * math.pi)
+
+
+@inlined
+def _all_wound(triangles, points, frame, frame_of_points):
+    for k in range(len(points)):
+        if not _turns_of(triangles, move_back(frame, move(frame_of_points, row(points, k)))) >= WOUND:
+            return False
+    return True
+
+
+@inlined
+def _all_within(bounds, points, frame, frame_of_points):
+    for k in range(len(points)):
+        x = move_back(frame, move(frame_of_points, row(points, k)))
+        if not (bounds[0, 0] <= x.x <= bounds[1, 0] and bounds[0, 1] <= x.y <= bounds[1, 1]):
+            return False
+        if not bounds[0, 2] <= x.z <= bounds[1, 2]:
+            return False
+    return True
+
+
+@kernel
+def wound_by_loose(triangles, bounds, points, poses, poses_of_points, stride, found):
+    """Sets `found` (n,) where triangles go round all of some points, within their bounds, by `WOUND`.
+
+    Of poses in a row at which the points are within the bounds, the first and the last are asked, and each at
+    which the first point is more than `stride` [m] from where it was asked last; others have the last answer.
+
+    Args:
+        triangles: (k, 3, 3) [m]. bounds: (2, 3) [m] of their body.
+        points: (m, 3) [m] in a frame of their own.
+        poses, poses_of_points: (n, 4, 4) [m] of the body and of the points.
+        stride: negative to ask at each pose.
+    """
+    n = len(poses)
+    within = np.zeros(n + 1, dtype=np.bool_)
+    for i in range(n):
+        within[i] = _all_within(bounds, points, rigid(poses[i]), rigid(poses_of_points[i]))
+    answer, last = False, Vec3(0.0, 0.0, 0.0)
+    for i in range(n):
+        if not within[i]:
+            continue
+        frame, other = rigid(poses[i]), rigid(poses_of_points[i])
+        x = move_back(frame, move(other, row(points, 0)))
+        d = sub(x, last)
+        if i == 0 or not within[i - 1] or not within[i + 1] or np.sqrt(dot(d, d)) > stride:
+            answer, last = _all_wound(triangles, points, frame, other), x
+        found[i] = found[i] or answer

@@ -2,8 +2,9 @@
 
 The search takes a body for inside where a winding number proves it (`kernels.containment`). Here it is asked what
 that leaves open: parts that reach through a hole of a surface that is closed but for a few faults, or are so near
-one that its place decides; and parts that larger holes leave wholly within a surface. Surfaces with more
-holes than `closing.SOME` have no inside. Not for: the distance, which none of this changes.
+one that its place decides; parts that larger holes leave wholly within a surface; and parts that loose faces go
+round on nearly all sides, as those of a solid with cracks do. Other surfaces with more holes than `closing.SOME`
+have no inside. Not for: the distance, which none of this changes.
 """
 
 from __future__ import annotations
@@ -13,16 +14,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.geometry.closing import FEW, SOME, Closing, closing_of
+from clearance.geometry.closing import FEW, SOME, Closing, closing_of, loose_triangles
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernel_table import call
 from clearance.kernels.containment import DOUBTFUL
-from clearance.kernels.doubt import generalized_windings, near_holes
+from clearance.kernels.doubt import generalized_windings, near_holes, wound_by_loose
 from clearance.kernels.surface import Surface
 
 MOSTLY = 0.5
 """[turns] A part whose outermost corners are all wound round by more, past large holes, may be inside."""
+
+PIECES = 16
+"""Components of a body that loose faces may go round one by one; of more, only the body as a whole."""
+
+STRIDE = 1.0 / 16.0
+"""[-] Of the diagonal of the bounds of loose faces, how far a part moves in them before it is asked for again."""
 
 
 class Shell(NamedTuple):
@@ -39,6 +46,19 @@ class Shell(NamedTuple):
     few: bool
     bounds: np.ndarray
     holes: np.ndarray
+
+
+class Loose(NamedTuple):
+    """The components of a body that would not close one by one.
+
+    Attributes:
+        triangles: (k, 3, 3) [m] turned alike where they hang together.
+        bounds: (2, 3) [m] of the body. stride: [m] `STRIDE` of its diagonal.
+    """
+
+    triangles: np.ndarray
+    bounds: np.ndarray
+    stride: float
 
 
 class Part(NamedTuple):
@@ -58,6 +78,9 @@ class Part(NamedTuple):
 _shells: weakref.WeakKeyDictionary[Polyhedron, tuple[Shell, ...]] = weakref.WeakKeyDictionary()
 _parts: weakref.WeakKeyDictionary[Polyhedron, tuple[Part, ...]] = weakref.WeakKeyDictionary()
 
+_loose: weakref.WeakKeyDictionary[Polyhedron, tuple[Loose, ...]] = weakref.WeakKeyDictionary()
+_pieces: weakref.WeakKeyDictionary[Polyhedron, tuple[Part, ...]] = weakref.WeakKeyDictionary()
+
 
 class Doubt:
     """What of one of two bodies may be inside the other; it does not keep the bodies alive."""
@@ -65,13 +88,24 @@ class Doubt:
     def __init__(self, of_a: tuple, of_b: tuple) -> None:
         self._of_a, self._of_b = of_a, of_b
 
-    def at(self, worlds_from_a: np.ndarray, worlds_from_b: np.ndarray) -> np.ndarray:
-        """(n,) True at the poses (n, 4, 4) where it is open whether a body is inside, or where they touch."""
+    def at(
+        self, worlds_from_a: np.ndarray, worlds_from_b: np.ndarray, along_a_way: bool = False
+    ) -> np.ndarray:
+        """(n,) True at the poses (n, 4, 4) where it is open whether a body is inside, or where they touch.
+
+        Where these are steps of a motion, loose faces are asked for now and then (`kernels.doubt.wound_by_loose`).
+        """
         found = np.zeros(len(worlds_from_a), dtype=bool)
-        for shell, part in self._of_a:
-            _look(shell, part, worlds_from_a, worlds_from_b, found)
-        for shell, part in self._of_b:
-            _look(shell, part, worlds_from_b, worlds_from_a, found)
+        ways = (self._of_a, worlds_from_a, worlds_from_b), (self._of_b, worlds_from_b, worlds_from_a)
+        for sides, outer, inner in ways:
+            for shell, part in sides:
+                if isinstance(shell, Loose):
+                    stride = shell.stride if along_a_way else -1.0
+                    wound_by_loose(
+                        shell.triangles, shell.bounds, part.outermost, outer, inner, stride, found
+                    )
+                else:
+                    _look(shell, part, outer, inner, found)
         return found
 
 
@@ -81,15 +115,15 @@ def doubt_of(a: Polyhedron, b: Polyhedron) -> Doubt | None:
     return Doubt(*sides) if any(sides) else None
 
 
-def _sides(outer: Polyhedron, inner: Polyhedron) -> tuple[tuple[Shell, Part], ...]:
-    shells = _kept(_shells, outer, _shells_of)
-    if not shells:
-        return ()
-    parts = _kept(_parts, inner, _parts_of)
-    return tuple((shell, part) for shell in shells for part in parts if shell.few or _may_hold(shell, part))
+def _sides(outer: Polyhedron, inner: Polyhedron) -> tuple[tuple[Shell | Loose, Part], ...]:
+    shells, loose = _kept(_shells, outer, _shells_of), _kept(_loose, outer, _loose_of)
+    parts = _kept(_parts, inner, _parts_of) if shells else ()
+    pieces = _kept(_pieces, inner, _pieces_of) if loose else ()
+    of_shells = ((shell, part) for shell in shells for part in parts if shell.few or _may_hold(shell, part))
+    return (*of_shells, *((shell, part) for shell in loose for part in pieces if _may_hold(shell, part)))
 
 
-def _may_hold(shell: Shell, part: Part) -> bool:
+def _may_hold(shell: Shell | Loose, part: Part) -> bool:
     """False if two corners of the part are farther apart than any two points within the shell's bounds."""
     breadth = np.linalg.norm(part.outermost[::2] - part.outermost[1::2], axis=1).max()
     return bool(breadth <= np.linalg.norm(shell.bounds[1] - shell.bounds[0]))
@@ -129,6 +163,12 @@ def _shells_of(shape: Polyhedron) -> tuple[Shell, ...]:
     return tuple(found)
 
 
+def _loose_of(shape: Polyhedron) -> tuple[Loose, ...]:
+    triangles = loose_triangles(shape)
+    stride = STRIDE * float(np.linalg.norm(shape.bounds[1] - shape.bounds[0]))
+    return (Loose(triangles, shape.bounds, stride),) if len(triangles) > 3 else ()
+
+
 def _shell(shape: Polyhedron, closing: Closing, few: bool) -> Shell:
     surface = surface_of(shape)
     if not few:
@@ -154,6 +194,12 @@ def _parts_of(shape: Polyhedron) -> tuple[Part, ...]:
     order = np.argsort(of_corner, kind="stable")
     ends = np.flatnonzero(np.diff(of_corner[order])) + 1
     return tuple(_part(shape.vertices[np.unique(rows)]) for rows in np.split(shape.face_vertices[order], ends))
+
+
+def _pieces_of(shape: Polyhedron) -> tuple[Part, ...]:
+    if len(shape.component_closed) <= PIECES:
+        return _kept(_parts, shape, _parts_of)
+    return (_part(shape.vertices[np.unique(shape.face_vertices)]),)
 
 
 def _part(points: np.ndarray) -> Part:

@@ -22,7 +22,7 @@ from clearance.world.pairs import Pair
 AT_ONCE = 1024
 """Steps whose poses are looked at together."""
 
-FEWER = "close the mesh's holes, or accept: [inside] in the case if it is hollow"
+FEWER = "close the mesh, or accept: [inside] in the case if it is hollow"
 
 
 def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tuple[Notice, ...]:
@@ -65,8 +65,8 @@ def _poses(motions: Sequence[Motion], robots: set[int], start: int) -> dict[int,
 def _text(link: str, obstacle: str, step: int, time: float) -> str:
     return (
         f"link {link} may be inside obstacle {obstacle}, or round it, at {time:.3f} s (step {step}): the surface "
-        "has holes, so that inside and outside cannot be told there, and the clearance is that of the surfaces "
-        f"alone; {FEWER}"
+        "has holes, cracks or two sides, so that inside and outside cannot be told there, and the clearance is "
+        f"that of the surfaces alone; {FEWER}"
     )
 
 
@@ -77,15 +77,17 @@ def _shapes(case: Case, pair: Pair) -> tuple[Polyhedron, Polyhedron]:
 
 def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> int | None:
     """The first of the steps with `poses` (n, n_links, 4, 4) at which a pair is in doubt and not in contact."""
-    return next(_in_doubt(case, pair, doubt, poses), None)
+    return next(_in_doubt(case, pair, doubt, poses, along_a_way=True), None)
 
 
-def _in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> Iterator[int]:
+def _in_doubt(
+    case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray, along_a_way: bool = False
+) -> Iterator[int]:
     link, obstacle = _shapes(case, pair)
     world_from_obstacle = case.obstacles[pair.i_obstacle].world_from_body
     robot = case.robots[pair.i_robot].robot
     mine = np.ascontiguousarray(poses[:, robot.link_names.index(robot.bodies[pair.i_body].name)])
     standing = np.broadcast_to(world_from_obstacle, mine.shape).copy()
-    for k in np.flatnonzero(doubt.at(mine, standing)):
+    for k in np.flatnonzero(doubt.at(mine, standing, along_a_way)):
         if not distance(link, obstacle, pose_a=mine[k], pose_b=world_from_obstacle).contact:
             yield int(k)

@@ -127,3 +127,19 @@ def test_caps_close_what_they_are_said_to_close() -> None:
 def test_depth_and_volume_are_found_of_what_is_almost_closed() -> None:
     deep = contact(faulty(BALL, "missing", 37), CUBE, pose_b=at(0.2, 0.0, 0.0))
     assert deep.penetration > 0.5 and deep.volume >= 0.999e-3
+
+
+def test_solids_of_patches_that_do_not_meet_and_two_sided_ones_are_undecided_by_name() -> None:
+    faces = faces_of(BALL)
+    patches = Polyhedron.merged(
+        [Polyhedron(BALL.vertices, faces[::2]), Polyhedron(np.nextafter(BALL.vertices, 9.0), faces[1::2])]
+    )
+    sided = Polyhedron(BALL.vertices, [*faces, *(face[::-1] for face in faces)])
+    for outer in (patches, sided):
+        for shift, inside in ((0.2, "undecided"), (0.6, "undecided"), (1.1, "no")):
+            place = at(*(shift * np.array([0.6, 0.64, 0.48])))
+            near = distance(outer, CUBE, pose_b=place)
+            assert (near.contact, near.inside) == (False, inside)
+            assert distance(CUBE, outer, pose_a=place).inside == inside
+            many = Query(outer, CUBE).distances(None, [place, place])
+            assert many.undecided.tolist() == [inside == "undecided"] * 2
