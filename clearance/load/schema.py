@@ -8,6 +8,7 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -114,6 +115,14 @@ class Pipe(Strict):
         return self
 
 
+def _is_double(number: int | float) -> bool:
+    """True for a finite number that doubles can hold; whole numbers in a file may be longer."""
+    try:
+        return math.isfinite(number)
+    except OverflowError:
+        return False
+
+
 class Mesh(Strict):
     """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
 
@@ -125,7 +134,7 @@ class Mesh(Strict):
     def _number_or_three(cls, scale: Any) -> Any:
         factors = scale if isinstance(scale, list) else [scale]
         numbers = all(isinstance(f, int | float) and not isinstance(f, bool) for f in factors)
-        if not numbers or len(factors) not in (1, 3) or not np.isfinite(factors).all():
+        if not numbers or len(factors) not in (1, 3) or not all(_is_double(f) for f in factors):
             raise BadDimension(
                 f"{scale!r:.60} is given", valid="a finite number, or three, is needed"
             )

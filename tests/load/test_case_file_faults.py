@@ -20,6 +20,7 @@ from clearance.errors import (
     UnknownLink,
     UnknownObstacle,
 )
+from clearance.load import schema
 from tests.load.making import ARM, CASE
 from tests.load.making_case import TWO_JOINTS, changed, load_small, with_obstacle
 
@@ -281,3 +282,9 @@ def test_faults_of_the_trajectory_name_case_field_and_file(tmp_path, trajectory,
         load_small(tmp_path, trajectory=trajectory, urdf=urdf)
     assert str(caught.value).startswith("case.yaml: trajectory.file: path.csv: ")
     assert says in str(caught.value)
+
+
+def test_a_scale_beyond_doubles_is_refused():
+    for scale in (10**400, [1.0, 1.0, -(10**400)]):
+        with pytest.raises(BadDimension, match="a finite number, or three"):
+            schema.Mesh._number_or_three(scale)
