@@ -13,9 +13,7 @@ from __future__ import annotations
 
 import functools
 import gc
-import hashlib
 import os
-import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -25,10 +23,8 @@ from numba.core.dispatcher import Dispatcher
 from numba.core.targetconfig import ConfigStack
 from numba.extending import register_jitable
 
+from clearance.import_closure import digest_of, import_closure
 from clearance.kernel_cache import KernelCache
-
-_PACKAGE = Path(__file__).parent
-_KERNEL_IMPORT = re.compile(r"^\s*from clearance\.(kernels(?:\.\w+)+|kernel_table) import", re.MULTILINE)
 
 if "NUMBA_OPT" not in os.environ:
     # LLVM's level 1 takes 40 % off the first run and 10 to 18 % off every later one (sweep, four scenes, three
@@ -163,21 +159,5 @@ def shared(function: Callable) -> Callable:
 
 @functools.cache
 def _source_key(path: Path) -> str:
-    digest = hashlib.sha256()
-    for source in (Path(__file__), _PACKAGE / "kernel_cache.py", *sorted(_closure(path))):
-        digest.update(source.name.encode() + source.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-def _closure(path: Path) -> set[Path]:
-    """`path` and every kernel file that it imports, directly or not."""
-    found: set[Path] = set()
-    waiting = [path]
-    while waiting:
-        source = waiting.pop()
-        if source in found:
-            continue
-        found.add(source)
-        for module in _KERNEL_IMPORT.findall(source.read_text(encoding="utf-8")):
-            waiting.append(_PACKAGE.joinpath(*module.split(".")).with_suffix(".py"))
-    return found
+    """Names the sources of what is compiled from a file: its own, this room's and all that the file imports."""
+    return digest_of(import_closure([path, Path(__file__)]))[:16]
