@@ -20,6 +20,8 @@ from pathlib import Path
 
 import numba
 
+import clearance.kernels.motion.certify
+import clearance.kernels.search.body_pair  # noqa: F401
 from clearance.compile import kernel_table
 from clearance.compile.kernel_cache import cache_root
 from clearance.compile.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
