@@ -63,7 +63,7 @@ from clearance.kernels.search import body_pair
 from clearance.kernels.features import common_point
 from clearance.kernels.features import meeting
 do = f"""import sys; sys.path[:] = {sys.path!r}
-from clearance.kernels import body_pair; from clearance import kernel_table as t; t.compile_kernel(t.MEETING)"""
+from clearance.kernels.search import body_pair; from clearance.compile import kernel_table as t; t.compile_kernel(t.MEETING)"""
 process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
 kernel_table.await_from(process, kernel_table.TOGETHER)
 kernel_table.compile_kernel(kernel_table.MEETING)
