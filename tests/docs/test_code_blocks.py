@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import shutil
@@ -14,7 +15,7 @@ import click
 import pytest
 from ruamel.yaml import YAML
 
-from clearance.cli.commands import main
+from clearance.cli.commands import clearance
 from clearance.load.schema import Case
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
@@ -75,8 +76,6 @@ def run(command: str, folder: Path) -> None:
 
 
 def environment() -> dict[str, str]:
-    import os
-
     return {**os.environ, "PYTHONPATH": str(ROOT)}
 
 
@@ -90,7 +89,7 @@ def require_valid(words: list[str]) -> None:
     """Fails where a command, option or file that is ours is not there."""
     program, *arguments = words
     if program == "clearance":
-        require_parses(main, "clearance", arguments)
+        require_parses(clearance, "clearance", arguments)
     elif program.startswith("scripts/"):
         assert (ROOT / program).stat().st_mode & 0o100, f"{program} cannot be run"
         require_paths(argument for argument in arguments if argument.startswith("tests/"))
