@@ -1,4 +1,4 @@
-"""The guide's pages that are made of the repository: pictures, design notes, and the reference of all public names.
+"""The guide's pages that are made of the repository: pictures, design notes, reference of all public names.
 
 A hook of mkdocs. Not for: pages that somebody writes; they lie beside this folder.
 """
@@ -31,8 +31,14 @@ LIBRARY_ORDER = ("run", "simulate", "world", "load", "query", "geometry", "plana
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Adds the generated pages to the navigation."""
     config.nav.append({"Python reference": list(_reference_pages())})
-    config.nav.append({"Design notes": list(_design_notes())})
+    config.nav.append({"Design notes": [{_title(page): page} for page in _design_notes()]})
     return config
+
+
+def _title(page: str) -> str:
+    """What a design note is called in the navigation: its room, and its file unless that is NOTES."""
+    _, *rooms, file = page.removesuffix(".md").split("/")
+    return "/".join(rooms) + ("" if file == "NOTES" else f": {file.lower().replace('_', ' ')}")
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
@@ -69,5 +75,7 @@ def _reference_page(room: str, names: list[str]) -> str:
 
 def _design_notes() -> dict[str, Path]:
     """The notes of each room, NOTES first."""
-    found = sorted((ROOT / "clearance").rglob("*.md"), key=lambda path: (path.parent, path.name != "NOTES.md", path))
-    return {f"design/{path.relative_to(ROOT / 'clearance')}": path for path in found if path.name != "CHANGELOG.md"}
+    package = ROOT / "clearance"
+    notes = [path for path in package.rglob("*.md") if path.name != "CHANGELOG.md"]
+    notes.sort(key=lambda path: (path.parent, path.name != "NOTES.md", path))
+    return {f"design/{path.relative_to(package)}": path for path in notes}
