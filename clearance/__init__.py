@@ -8,7 +8,7 @@ from typing import Any
 
 from clearance.geometry.file_reader import attach_file_reader
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _ROOM_OF = {
     "BadInput": "errors",
