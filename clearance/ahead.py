@@ -20,11 +20,9 @@ from pathlib import Path
 
 import numba
 
-import clearance.kernels.body_pair
-import clearance.kernels.certify  # noqa: F401
-from clearance import kernel_table
-from clearance.kernel_cache import cache_root
-from clearance.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
+from clearance.compile import kernel_table
+from clearance.compile.kernel_cache import cache_root
+from clearance.compile.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 """Set in the environment of the second process, so that no other one follows whatever it comes to run."""

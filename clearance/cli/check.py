@@ -192,7 +192,7 @@ def _compile_ahead(quiet: bool) -> None:
     import warnings
 
     from clearance import ahead
-    from clearance.kernel_cache import KernelCacheWarning
+    from clearance.compile.kernel_cache import KernelCacheWarning
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)

@@ -13,13 +13,15 @@ from pathlib import Path
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.import_closure import PACKAGE, digest_of, import_closure
 from clearance.world.case import Case
 from clearance.world.kinematics import chain_arrays
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
-_PACKAGE = Path(__file__).parents[1]
-_ROOMS = ("kernels", "geometry", "query", "world", "simulate")
+_ENTRY = PACKAGE / "run.py"
+_BEFORE_AND_AFTER = ("load", "profiles", "crosscheck", "report", "view")
+"""Rooms that `run` uses and that decide no row: what is loaded is hashed itself, the others come later."""
 
 
 def fingerprint(
@@ -50,6 +52,11 @@ def fingerprint(
     return digest.hexdigest()
 
 
+def sources() -> list[Path]:
+    """The files of this package that decide a run's rows."""
+    return import_closure([_ENTRY], leave_out=_BEFORE_AND_AFTER)
+
+
 def _add_shape(digest: hashlib._Hash, shape: Polyhedron) -> None:
     _add(digest, shape.vertices, shape.face_starts, shape.face_vertices)
 
@@ -65,9 +72,6 @@ def _program() -> str:
     import llvmlite.binding
     import numba
 
-    digest = hashlib.sha256()
-    sources = [path for room in _ROOMS for path in (_PACKAGE / room).glob("*.py")]
-    for path in sorted([*sources, _PACKAGE / "tolerance.py", _PACKAGE / "jit.py"]):
-        digest.update(path.name.encode() + path.read_bytes())
+    digest = digest_of(sources())
     versions = (np.__version__, numba.__version__, platform.python_version(), platform.machine())
-    return f"{digest.hexdigest()} {versions} {llvmlite.binding.get_host_cpu_name()}"
+    return f"{digest} {versions} {llvmlite.binding.get_host_cpu_name()}"

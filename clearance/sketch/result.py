@@ -86,7 +86,7 @@ class SketchResult:
     @cached_property
     def movement(self) -> float:
         """[m] how far the points moved: root of the summed squares."""
-        from clearance.kernels.sketch_graph import X, Y
+        from clearance.kernels.sketch.graph.graph import X, Y
 
         role = self._problem.tables.role
         shift = (self._outcome.x - self._before)[(role == X) | (role == Y)]

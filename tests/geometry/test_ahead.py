@@ -20,7 +20,9 @@ pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is com
 FROM_A_SECOND_PROCESS = """
 import json
 from clearance import ahead, kernel_table
-from clearance.kernels import body_pair, parting, refine
+from clearance.kernels.search import body_pair
+from clearance.kernels.search import separating_planes as parting
+from clearance.kernels.features import refine
 told = {"kept": [kernel_table.is_kept(place) for place in ahead.FIRST], "first": ahead.start()}
 for place in ahead.FIRST:
     kernel_table.compile_kernel(place)
@@ -32,8 +34,8 @@ print(json.dumps(told))
 
 FROM_ONE_THAT_ENDS = """
 import json, subprocess, sys
-from clearance import kernel_table
-from clearance.kernels import containment
+from clearance.compile import kernel_table
+from clearance.kernels.search import containment
 process = subprocess.Popen([sys.executable, "-c", ""], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
 kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
@@ -42,8 +44,9 @@ print(json.dumps(sum(containment.winding_number.stats.cache_misses.values())))
 
 FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER = """
 import json, subprocess, sys
-from clearance import kernel_table
-from clearance.kernels import body_pair, containment
+from clearance.compile import kernel_table
+from clearance.kernels.search import body_pair
+from clearance.kernels.search import containment
 process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.SEARCH, kernel_table.WINDING_NUMBER])
 kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
@@ -54,8 +57,10 @@ print(json.dumps([sum(containment.winding_number.stats.cache_misses.values()), r
 
 WHAT_GOES_TOGETHER = '''
 import json, subprocess, sys
-from clearance import kernel_table
-from clearance.kernels import body_pair, common_point, meeting
+from clearance.compile import kernel_table
+from clearance.kernels.search import body_pair
+from clearance.kernels.features import common_point
+from clearance.kernels.features import meeting
 do = f"""import sys; sys.path[:] = {sys.path!r}
 from clearance.kernels import body_pair; from clearance import kernel_table as t; t.compile_kernel(t.MEETING)"""
 process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
@@ -67,8 +72,8 @@ print(json.dumps([made, sum(meeting.meeting.stats.cache_hits.values())]))
 
 ONE_THAT_TAKES_LONG = """
 import json, subprocess, sys
-from clearance import kernel_table
-from clearance.kernels import containment
+from clearance.compile import kernel_table
+from clearance.kernels.search import containment
 process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
 listened = []

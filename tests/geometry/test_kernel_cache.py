@@ -14,9 +14,9 @@ from pathlib import Path
 import numba
 import pytest
 
-from clearance import kernel_cache
-from clearance.jit import kernel
-from clearance.kernel_cache import KernelCacheWarning, cache_root
+from clearance.compile import kernel_cache
+from clearance.compile.jit import kernel
+from clearance.compile.kernel_cache import KernelCacheWarning, cache_root
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled here")
 

@@ -9,10 +9,10 @@ import numba
 import numpy as np
 import pytest
 
-from clearance import kernel_table
-from clearance.jit import borrowing, inlined, kernel
-from clearance.kernel_table import MEETING, at_address, call
-from clearance.kernels import meeting
+from clearance.compile import kernel_table
+from clearance.compile.jit import borrowing, inlined, kernel
+from clearance.compile.kernel_table import MEETING, at_address, call
+from clearance.kernels.features import meeting
 from tests.reached import reached
 
 ROOT = Path(__file__).parents[2]
@@ -21,7 +21,7 @@ compiled_only = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is 
 
 AFTER_A_QUESTION = """
 import numpy as np, clearance
-from clearance import kernel_table
+from clearance.compile import kernel_table
 away = np.eye(4)
 away[:3, 3] = {shift}
 box = clearance.box((1.0, 1.0, 1.0))
@@ -64,7 +64,7 @@ def test_a_caller_with_other_types_is_refused():
 
 @compiled_only
 def test_what_only_kernels_can_call_is_refused_to_python():
-    from clearance.kernels.vec3 import rigid
+    from clearance.kernels.arithmetic.vec3 import rigid
 
     with pytest.raises(TypeError, match=r"vec3\.rigid can be called by kernels only"):
         rigid(np.eye(4))

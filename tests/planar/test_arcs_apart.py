@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.kernels.arc import RADIUS, WIDTH, set_arc, set_segment
-from clearance.kernels.curve_arcs import arcs_apart
+from clearance.kernels.curve.arc import RADIUS, WIDTH, set_arc, set_segment
+from clearance.kernels.curve.arcs import arcs_apart
 from tests.reached import reached
 
 
