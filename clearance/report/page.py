@@ -11,13 +11,13 @@ import base64
 import json
 import re
 from dataclasses import asdict
-from html import escape
 from importlib.util import find_spec
 from pathlib import Path
 from string import Template
 from typing import Any
 
 import numpy as np
+from markupsafe import escape
 
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
