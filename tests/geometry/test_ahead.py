@@ -19,7 +19,8 @@ pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is com
 
 FROM_A_SECOND_PROCESS = """
 import json
-from clearance import ahead, kernel_table
+from clearance import ahead
+from clearance.compile import kernel_table
 from clearance.kernels.search import body_pair
 from clearance.kernels.search import separating_planes as parting
 from clearance.kernels.features import refine
@@ -62,7 +63,7 @@ from clearance.kernels.search import body_pair
 from clearance.kernels.features import common_point
 from clearance.kernels.features import meeting
 do = f"""import sys; sys.path[:] = {sys.path!r}
-from clearance.kernels import body_pair; from clearance import kernel_table as t; t.compile_kernel(t.MEETING)"""
+from clearance.kernels.search import body_pair; from clearance.compile import kernel_table as t; t.compile_kernel(t.MEETING)"""
 process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
 kernel_table.await_from(process, kernel_table.TOGETHER)
 kernel_table.compile_kernel(kernel_table.MEETING)
@@ -101,7 +102,8 @@ os.kill(os.getpid(), signal.SIGKILL)
 
 WHERE_NO_PROCESS_STARTS = """
 import json, sys
-from clearance import ahead, kernel_table
+from clearance import ahead
+from clearance.compile import kernel_table
 sys.executable = "/nowhere/python"
 print(json.dumps([ahead.start(), len(kernel_table._elsewhere)]))
 """
