@@ -49,7 +49,7 @@ def write(record: Record, folder: str | Path, kept: Rows = IN_MEMORY) -> None:
         Unwritable: `folder` cannot be written.
     """
     summary, replay = summary_of(record), replay_of(record, rows=kept)
-    pictures = {answer.name: answer.picture for answer in record.profiles}
+    pictures = {answer.name: answer.picture() for answer in record.profiles}
     page = page_of(summary, replay, pictures, pair_curves(record, kept))
 
     def fill(place: Path) -> None:

@@ -14,12 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.ahead import usable_cores
 from clearance.compile.kernel_table import call
 from clearance.kernels.motion.sweep import NOT_LESS, FirstLook, Goal, sweep
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.simulate.layout import Layout, lay_out, positions_at
-from clearance.simulate.parts import blocks, in_order, parts
+from clearance.simulate.parts import blocks, in_order, parts, usable_cores
 from clearance.simulate.resumable_rows import Rows
 from clearance.world.case import Case
 from clearance.world.motion import Motion
