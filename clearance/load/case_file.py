@@ -128,7 +128,7 @@ def _placed_robot(given: schema.Case, folder: Path, meshes: MeshStore) -> Placed
         robot = read_robot(request, meshes)
     trajectory = _trajectory(resolved(given.trajectory.file, folder), robot, meshes)
     with at("robot.joints"):
-        require_moving_joints(given.robot.joints, robot)
+        require_moving_joints(robot, given.robot.joints)
         check_not_given_twice(given.robot.joints, trajectory.joint_names)
     with at("robot.exclude_links"):
         exclude_links = checked_links(given.robot.exclude_links, robot.link_names)
@@ -161,7 +161,7 @@ def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
                 refuse_foreign(file.read(65536), shown, "a trajectory")
             raise
         with at(shown):
-            require_moving_joints(trajectory.joint_names, robot)
+            require_moving_joints(robot, trajectory.joint_names)
             require_few_turns(robot, trajectory.joint_names, trajectory)
     return trajectory
 

@@ -8,7 +8,7 @@ from clearance.errors import UnknownJoint, nearest_name
 from clearance.world.robot import JointKind, Robot
 
 
-def require_moving_joints(given: Iterable[str], robot: Robot) -> None:
+def require_moving_joints(robot: Robot, names: Iterable[str]) -> None:
     """Nothing, if all are names of joints that can be set.
 
     Raises:
@@ -16,7 +16,7 @@ def require_moving_joints(given: Iterable[str], robot: Robot) -> None:
     """
     by_name = {joint.name: joint for joint in robot.joints}
     moving = [joint.name for joint in robot.moving_joints]
-    for name in given:
+    for name in names:
         if name not in by_name:
             raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, moving))
         joint = by_name[name]
