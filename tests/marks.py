@@ -91,7 +91,7 @@ def _marks_of_value(value: object) -> Iterator[str]:
         yield from _marks_of_module(value if isinstance(value, str) else value.__name__)
     elif isinstance(value, str) and value in COLD_NAMES:
         yield "cold"
-    elif isinstance(value, tuple) and "cross_check" in value:
+    elif isinstance(value, tuple) and any(isinstance(x, str) and x == "cross_check" for x in value):
         yield "peer"
     elif isinstance(value, FunctionType | type):
         yield from _marks_of_module(value.__module__)
