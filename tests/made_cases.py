@@ -13,9 +13,9 @@ import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box
-from clearance.kernels.facing import CONE_ROWS, NO_CONE
-from clearance.kernels.lanes import WIDTH
-from clearance.kernels.surface import Surface
+from clearance.kernels.arithmetic.lanes import WIDTH
+from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
+from clearance.kernels.mesh.surface import Surface
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.robot import Joint, JointKind, Mimic, Robot

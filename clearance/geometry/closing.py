@@ -3,7 +3,7 @@
 Faces that are there twice count once, faces that run the other way round than their neighbours are turned in
 thought; what is then left open are loops of edges, each closed by triangles between its corners. Faces and caps
 together are closed, so that their winding numbers are whole; how little the caps matter is for the asker to prove
-(`kernels.containment`). Not for: mending what is measured; distances never see any of this.
+(`kernels.search.containment`). Not for: mending what is measured; distances never see any of this.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from clearance.geometry.copies import each_once
 from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.topology import joined_labels
+from clearance.kernels.arithmetic.union_find import joined_labels
 
 FEW = 1.0 / 100.0
 """[-] Of a component's area, what its holes may have for it to have an inside: a hundredth. Of 1 - cos(t) / 2 of

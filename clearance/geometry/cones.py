@@ -1,6 +1,7 @@
 """Normal cones of a tree's nodes: which way the faces look that could hold the nearest point to another body.
 
-What a cone must hold, and why, is said in `kernels.facing`. Not for: how two cones are told apart (there).
+What a cone must hold, and why, is said in `kernels.mesh.normal_cones`.
+Not for: how two cones are told apart (there).
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.edges import Ring
-from clearance.kernels.facing import CONE_ROWS, MARGIN, NO_CONE, WIDEST
-from clearance.kernels.lanes import WIDTH
+from clearance.kernels.arithmetic.lanes import WIDTH
+from clearance.kernels.mesh.normal_cones import CONE_ROWS, MARGIN, NO_CONE, WIDEST
 
 LEAST_TURN = 1e-12
 """Sine of an angle that rounding does not turn into its opposite."""

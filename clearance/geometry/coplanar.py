@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.geometry.edges import distinct_vertices, edge_keys, edge_use, rings_of, twins
-from clearance.kernels import coplanar as kernels
-from clearance.kernels.topology import joined_labels
+from clearance.kernels.arithmetic.union_find import joined_labels
+from clearance.kernels.mesh import coplanar as kernels
 
 _EXACT_RANGE = 2.0**300
 """Coordinates between the inverse of this and this, in magnitude, keep the predicates free of underflow."""

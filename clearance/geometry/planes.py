@@ -1,6 +1,6 @@
 """The plane, centre and radius of each face, free of scale and of distance from the origin.
 
-Not for: whether points lie on a plane exactly (`kernels.expansion`).
+Not for: whether points lie on a plane exactly (`kernels.arithmetic.expansion`).
 """
 
 from __future__ import annotations

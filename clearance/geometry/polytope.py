@@ -28,7 +28,7 @@ from clearance.geometry.polytope_hull import (
     corners_of_half_spaces,
     hull_faces,
 )
-from clearance.kernels.polytope_surface import face_areas, ring_moments
+from clearance.kernels.polytope.faces import face_areas, ring_moments
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -222,7 +222,7 @@ class Polytope:
 
     @cached_property
     def packed_at(self) -> tuple[int, int, int, int]:
-        """Where `packed` lies in memory (`kernels.polytope_bodies`), for as long as this body is held."""
+        """Where `packed` lies in memory (`kernels.polytope.bodies`), for as long as this body is held."""
         numbers, indices = self.packed
         return numbers.ctypes.data, len(numbers), indices.ctypes.data, len(indices)
 

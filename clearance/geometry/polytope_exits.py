@@ -1,6 +1,6 @@
 """A convex body packed for the kernels: planes, neighbours and the map of directions in two flat arrays.
 
-Made once a body; the layout is told in `kernels.polytope_exits`. Not for: users.
+Made once a body; the layout is told in `kernels.polytope.exits`. Not for: users.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels import polytope_exits as kernels
+from clearance.kernels.polytope import exits as kernels
 
 FACES_PER_CELL = 0.5
 

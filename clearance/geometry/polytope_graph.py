@@ -14,7 +14,7 @@ from clearance.geometry.edges import rings_of
 
 
 class Trivalent(NamedTuple):
-    """A polytope in which each vertex lies on three planes; see `kernels.polytope_cut`.
+    """A polytope in which each vertex lies on three planes; see `kernels.polytope.cut`.
 
     Attributes:
         corner: (t,) which corner each vertex is at. planes, across: (t, 3). mesh: (t, 8) int32, both as the

@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.geometry.copies import two_sided
 from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
-from clearance.kernels.topology import joined_labels
+from clearance.kernels.arithmetic.union_find import joined_labels
 
 
 class Topology(NamedTuple):

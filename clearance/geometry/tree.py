@@ -1,7 +1,7 @@
 """Polyhedra in the form that kernels search: owned features, plane data and the bounding tree.
 
 Built once a polyhedron and kept with it; `join` lays several behind one another so that one compiled call
-can serve a whole robot and scene. Not for: the search itself (`kernels.descent`).
+can serve a whole robot and scene. Not for: the search itself (`kernels.search.descent`).
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from clearance.geometry.cones import face_cones, node_cones
 from clearance.geometry.copies import Copies, copies_of
 from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.face_planes import face_planes
-from clearance.kernels.lanes import WIDTH
-from clearance.kernels.surface import ANYTHING, LISTED, Surface
-from clearance.kernels.tree_build import build_tree, most_groups
+from clearance.kernels.arithmetic.lanes import WIDTH
+from clearance.kernels.mesh.face_planes import face_planes
+from clearance.kernels.mesh.surface import ANYTHING, LISTED, Surface
+from clearance.kernels.mesh.tree_build import build_tree, most_groups
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
 _joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Surface]]
@@ -114,9 +114,6 @@ def _joined_children(
 
 
 def _build(shape: Polyhedron) -> Surface:
-    from clearance import ahead  # here, since who only makes polyhedra need not load the search
-
-    ahead.start()
     vertices, weld = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
     corners = weld.reshape(-1)[shape.face_vertices].astype(np.int64)
     starts = shape.face_starts.copy()

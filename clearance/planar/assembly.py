@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.curve_bezier import Pieces, piece_spans
+from clearance.kernels.curve.bezier import Pieces, piece_spans
 from clearance.planar.entries import BadCurve
 from clearance.tolerance import CURVE_SIZES
 

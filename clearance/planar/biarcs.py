@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.kernels.arc import CX, EPS, RADIUS, S0, SENSE, X0, X1, distances_to_arcs
-from clearance.kernels.arc_fit import fit_leaves
+from clearance.kernels.curve.arc import CX, EPS, RADIUS, S0, SENSE, X0, X1, distances_to_arcs
+from clearance.kernels.curve.arc_fit import fit_leaves
 from clearance.planar.curve import Curve
 from clearance.planar.entries import BadCurve, checked_number
 from clearance.tolerance import FINEST_BIARC

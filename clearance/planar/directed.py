@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.kernels.hausdorff_state import (
+from clearance.kernels.hausdorff.state import (
     ARCS,
     AT_A,
     AT_B,

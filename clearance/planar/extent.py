@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.curve_bezier import Pieces
+from clearance.kernels.curve.bezier import Pieces
 from clearance.tolerance import LAST_BITS
 
 HALVINGS = 60

@@ -1,6 +1,6 @@
 """The exact Hausdorff distance between two planar curves, with a proven error and its witnesses.
 
-`hausdorff` measures, `within` only decides. The work is done in `clearance.kernels.hausdorff`; here its
+`hausdorff` measures, `within` only decides. The work is done in `kernels.hausdorff.both_directions`; here its
 numbers get names. Not for: profiles along a curve (`deviation`), the least distance (`minimum`).
 """
 
@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadInput, ClearanceError
-from clearance.kernels.hausdorff import both_directions
-from clearance.kernels.hausdorff_state import LOWER, UPPER, Aim
+from clearance.kernels.hausdorff.both_directions import both_directions
+from clearance.kernels.hausdorff.state import LOWER, UPPER, Aim
 from clearance.planar.curve import Curve
 from clearance.planar.directed import Directed, Tally, directed_of, placed
 from clearance.planar.entries import checked_number

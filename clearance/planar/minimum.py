@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.kernels.curve_gap import least_distance
+from clearance.kernels.hausdorff.gap import least_distance
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.tolerance import LEAST_GAP

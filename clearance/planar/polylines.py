@@ -10,14 +10,22 @@ import math
 
 import numpy as np
 
-from clearance.kernels.hausdorff_polyline import directed_polyline
-from clearance.kernels.hausdorff_state import AT_A, AT_B, LOWER, PIECE_A, PIECE_B, STATE, Aim
+from clearance.kernels.hausdorff.polyline import directed_polyline
+from clearance.kernels.hausdorff.state import (
+    AT_A,
+    AT_B,
+    LOWER,
+    PIECE_A,
+    PIECE_B,
+    STATE,
+    Aim,
+)
 from clearance.planar.curve import Curve
 from clearance.tolerance import MEETING, NORMAL, PARAMETER, TANGENT
 
 
 def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
-    """Both directed searches, (2, STATE) numbers and witnesses (2, 5), as `kernels.hausdorff` gives them."""
+    """Both directed searches, (2, STATE) numbers and witnesses (2, 5), as those of other curves."""
     state, points = np.empty((2, STATE)), np.empty((2, 5))
     for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):
         directed_polyline(

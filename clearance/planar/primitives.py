@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from clearance.kernels.curve_bezier import HIGHEST_DEGREE, Pieces, pieces_of_spline
+from clearance.kernels.curve.bezier import HIGHEST_DEGREE, Pieces, pieces_of_spline
 from clearance.planar.assembly import Assembled, assembled, checked_size, origin_of
 from clearance.planar.entries import (
     BadCurve,

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.arc import EPS
-from clearance.kernels.hausdorff_paper import draw_page, greatest_depth, paper_kept
-from clearance.kernels.hausdorff_state import (
+from clearance.kernels.curve.arc import EPS
+from clearance.kernels.hausdorff.paper import draw_page, greatest_depth, paper_kept
+from clearance.kernels.hausdorff.state import (
     ARCS,
     AT_A,
     AT_B,
@@ -31,7 +31,7 @@ from clearance.kernels.hausdorff_state import (
     STATE,
     UPPER,
 )
-from clearance.kernels.hausdorff_systems import solve_directed, witness_of
+from clearance.kernels.hausdorff.systems import solve_directed, witness_of
 from clearance.planar.curve import Curve
 from clearance.planar.directed import Directed, directed_of, placed
 from clearance.tolerance import LAST_BITS

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.hausdorff_trim import field, kept_arcs
+from clearance.kernels.hausdorff.trim import field, kept_arcs
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 

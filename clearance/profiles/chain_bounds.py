@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.kinematics import SLIDING, TURNING
+from clearance.kernels.motion.kinematics import SLIDING, TURNING
 from clearance.profiles.course import Course, course_of, positions_at
 from clearance.profiles.plane import Plane
 from clearance.world.body import Body

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadDimension
-from clearance.kernels.outline_arcs import arcs_of_ring
+from clearance.kernels.profile.outline_arcs import arcs_of_ring
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
 from clearance.profiles.contour import Contour, joined

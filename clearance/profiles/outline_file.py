@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import BadShape, BadSyntax, MissingFile, at
-from clearance.kernels.arc import RADIUS
+from clearance.kernels.curve.arc import RADIUS
 from clearance.planar.curve import Curve
 from clearance.planar.curve_file import read_curve
 from clearance.profiles.profile import Profile

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.kernels.outline_feet import RUN, FlatPieces, nearest_places, places_of
+from clearance.kernels.profile.outline_feet import RUN, FlatPieces, nearest_places, places_of
 from clearance.planar.biarcs import biarcs
 from clearance.planar.curve import Curve
 from clearance.profiles.contour import Contour

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from clearance.kernels.swept_cover import Raster
+from clearance.kernels.profile.swept_cover import Raster
 
 Region = shapely.Geometry
 """A polygon or several, possibly empty."""

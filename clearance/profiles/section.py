@@ -11,8 +11,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.swept_cover import Raster
-from clearance.kernels.swept_cut import add_cut_cover, cut_hulls, cut_segments
+from clearance.kernels.profile.swept_cover import Raster
+from clearance.kernels.profile.swept_cut import add_cut_cover, cut_hulls, cut_segments
 from clearance.profiles.chords import Knots
 from clearance.profiles.plane import Plane
 from clearance.profiles.silhouette import CHUNK, Hulls

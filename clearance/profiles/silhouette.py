@@ -16,8 +16,8 @@ import numpy as np
 
 from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.swept_cover import Raster, add_cover
-from clearance.kernels.swept_hulls import edge_hulls, triangle_hulls
+from clearance.kernels.profile.swept_cover import Raster, add_cover
+from clearance.kernels.profile.swept_hulls import edge_hulls, triangle_hulls
 from clearance.profiles.chords import Knots
 from clearance.profiles.plane import Plane
 

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from clearance.errors import BadDimension, NothingToMeasure
-from clearance.kernels.swept_cover import Raster, row_sums
+from clearance.kernels.profile.swept_cover import Raster, row_sums
 from clearance.profiles.collected import Collected
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane

@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_depth import COLD, N_ROWS, ON, POINT, SHARE, WARM, deepen_two
+from clearance.kernels.polytope.depth import COLD, N_ROWS, ON, POINT, SHARE, WARM, deepen_two
 
 ROUNDING = 16 * 2.0**-53
 """[-] What counts as touching, relative to the bodies' size: a few roundings of the planes' offsets."""

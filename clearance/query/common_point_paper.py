@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_gjk import COMMON, gjk
+from clearance.kernels.polytope.gjk import COMMON, gjk
 from clearance.query.common_point import ROUNDING, Certificate, CommonPoint
 
 

@@ -1,4 +1,4 @@
-"""One polytope cut by others: the working state of `kernels.polytope_cut`.
+"""One polytope cut by others: the working state of `kernels.polytope.cut`.
 
 Coordinates are taken about a common inner point before anything is computed, so that thin regions keep
 their digits. Not for: deciding whether there is a region (`common_point`).
@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_clip import cut_by_bodies, rooms_about
-from clearance.kernels.polytope_cut import (
+from clearance.kernels.polytope.clip import cut_by_bodies, rooms_about
+from clearance.kernels.polytope.cut import (
     BROKEN,
     CUT,
     FREE,
@@ -25,8 +25,8 @@ from clearance.kernels.polytope_cut import (
     begin,
     cut_by_planes,
 )
-from clearance.kernels.polytope_patch import lay_patch, mark_patch
-from clearance.kernels.polytope_surface import face_rings, trivalent_moments
+from clearance.kernels.polytope.faces import face_rings, trivalent_moments
+from clearance.kernels.polytope.patch import lay_patch, mark_patch
 
 ON_PLANE = 8 * 2.0**-53
 """[-] How far from a plane counts as on it, relative to the greatest coordinate about the inner point."""
@@ -84,7 +84,7 @@ class Task:
 
     @cached_property
     def rows(self) -> np.ndarray:
-        """(m, 4) where the bodies' arrays are, for kernels that take them all (`kernels.polytope_bodies`)."""
+        """(m, 4) where the bodies' arrays are, for kernels that take them all (`kernels.polytope.bodies`)."""
         return np.array([body.packed_at for body in self.bodies])
 
     @property

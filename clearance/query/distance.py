@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from clearance.compile.kernel_table import call
 from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.geometry.faces import check_convex
 from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
-from clearance.kernel_table import call
-from clearance.kernels.convex import seem_convex
-from clearance.kernels.polygon_pair import Answers, nearest_polygons
+from clearance.kernels.mesh.convex import seem_convex
+from clearance.kernels.search.polygon_pair import Answers, nearest_polygons
 from clearance.query.one_pair import room_for
 from clearance.query.paper import NO_TOLERANCE, distance_paper, polygon_distance_paper
 from clearance.query.result import Nearest
@@ -80,7 +80,7 @@ def polygon_distances(ps: np.ndarray, qs: np.ndarray, *, method: str = "exact") 
     """(k,) distances [m] of the polygon pairs `ps[i]`, `qs[i]`; shapes (k, n, 3) and (k, m, 3).
 
     Raises:
-        As `polygon_distance`.
+        BadShape, NotFinite, BadPolygon: as `polygon_distance`.
     """
     ps, qs = _polygons(ps, 3), _polygons(qs, 3)
     if len(ps) != len(qs):

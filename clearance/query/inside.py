@@ -1,6 +1,6 @@
 """Whether one solid may be inside another whose surface is too open to tell: where clearance 0 is not known.
 
-The search takes a body for inside where a winding number proves it (`kernels.containment`). Here it is asked what
+The search takes a body for inside where a winding number proves it (`search.containment`). Here it is asked what
 that leaves open: parts that reach through a hole of a surface that is closed but for a few faults, or are so near
 one that its place decides; parts that larger holes leave wholly within a surface; and parts that loose faces go
 round on nearly all sides, as those of a solid with cracks do. Other surfaces with more holes than `closing.SOME`
@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.compile.kernel_table import call
 from clearance.geometry.closing import FEW, SOME, Closing, closing_of, loose_triangles
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
-from clearance.kernel_table import call
-from clearance.kernels.containment import DOUBTFUL
-from clearance.kernels.doubt import generalized_windings, near_holes, wound_by_loose
-from clearance.kernels.surface import Surface
+from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.search.containment import DOUBTFUL
+from clearance.kernels.search.doubt import generalized_windings, near_holes, wound_by_loose
 
 MOSTLY = 0.5
 """[turns] A part whose outermost corners are all wound round by more, past large holes, may be inside."""
@@ -93,7 +93,7 @@ class Doubt:
     ) -> np.ndarray:
         """(n,) True at the poses (n, 4, 4) where it is open whether a body is inside, or where they touch.
 
-        Where these are steps of a motion, loose faces are asked for now and then (`kernels.doubt.wound_by_loose`).
+        Where these are steps of a motion, loose faces are asked for now and then (`doubt.wound_by_loose`).
         """
         found = np.zeros(len(worlds_from_a), dtype=bool)
         ways = (self._of_a, worlds_from_a, worlds_from_b), (self._of_b, worlds_from_b, worlds_from_a)

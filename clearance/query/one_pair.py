@@ -7,13 +7,13 @@ import weakref
 
 import numpy as np
 
+from clearance.compile.kernel_table import call
 from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
-from clearance.kernel_table import call
-from clearance.kernels.body_pair import NO_FACE
-from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
-from clearance.kernels.scratch import Scratch, new_scratch
+from clearance.kernels.search.body_pair import NO_FACE
+from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.scratch import Scratch, new_scratch
 from clearance.query.inside import doubt_of
 from clearance.query.result import Nearest
 

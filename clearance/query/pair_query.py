@@ -13,12 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.compile.kernel_table import call
 from clearance.errors import BadShape, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
-from clearance.kernel_table import call
-from clearance.kernels.pair_query import nearest_at_poses
-from clearance.kernels.scratch import new_scratch
+from clearance.kernels.search.pair_query import nearest_at_poses
+from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import OnePair, answer_rows
 from clearance.query.result import Nearest
 

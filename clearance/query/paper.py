@@ -21,8 +21,8 @@ import numpy as np
 from clearance.errors import BadDimension, BadPolygon
 from clearance.geometry.planes import planes_of
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.paper_bodies import PaperBody, nearest_bodies_paper
-from clearance.kernels.paper_polygons import nearest_polygons_paper
+from clearance.kernels.paper.bodies import PaperBody, nearest_bodies_paper
+from clearance.kernels.paper.polygons import nearest_polygons_paper
 from clearance.query.result import Nearest
 
 NO_TOLERANCE = math.inf

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.edges import rings_of
-from clearance.kernels.polytope_surface import ring_moments
+from clearance.kernels.polytope.faces import ring_moments
 from clearance.query.cutting import Cutting, Task, cut_down
 
 

@@ -12,9 +12,9 @@ import functools
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_cut import CUT, N_ROWS, cut_by_planes
-from clearance.kernels.polytope_surface import face_rings
-from clearance.kernels.polytope_thin import stretched_planes, supporting_triples
+from clearance.kernels.polytope.cut import CUT, N_ROWS, cut_by_planes
+from clearance.kernels.polytope.faces import face_rings
+from clearance.kernels.polytope.thin import stretched_planes, supporting_triples
 from clearance.query.cutting import ON_PLANE, Task, by_edges
 from clearance.query.region import Region
 

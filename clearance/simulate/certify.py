@@ -10,20 +10,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.ahead import usable_cores
+from clearance.compile.kernel_table import call
 from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
-from clearance.kernel_table import call
-from clearance.kernels.certify import Aim, Asked, Bounds, certify
-from clearance.kernels.drift import Chain
-from clearance.kernels.joint_path import JointPath
-from clearance.kernels.surface import ANYTHING, Surface
+from clearance.kernels.mesh.surface import ANYTHING, Surface
+from clearance.kernels.motion.certify import Aim, Asked, Bounds, certify
+from clearance.kernels.motion.joint_motion_bound import Chain
+from clearance.kernels.motion.joint_path import JointPath
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
 from clearance.simulate.moment import Moment, Moments
-from clearance.simulate.parts import blocks, in_order, parts
+from clearance.simulate.parts import blocks, in_order, parts, usable_cores
 from clearance.simulate.record import Certificate
-from clearance.simulate.spool import Rows
+from clearance.simulate.resumable_rows import Rows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link

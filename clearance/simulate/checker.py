@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from clearance.compile.kernel_table import call
 from clearance.errors import BadInput, BadShape, NotFinite
-from clearance.kernel_table import call
-from clearance.kernels.held_scene import hold_scene, nearest_at_positions
-from clearance.kernels.sweep_rows import PairRows, StepRows
+from clearance.kernels.motion.held_scene import hold_scene, nearest_at_positions
+from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.simulate.inside import doubts_of, is_in_doubt
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import SWEEP_COUNTERS

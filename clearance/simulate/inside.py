@@ -1,7 +1,7 @@
 """Notices of links that may be inside an obstacle, or round one, whose surface is too open to tell.
 
 The clearance of such a pair is that of its surfaces: it may be that of a robot that runs inside a solid. Not for:
-pairs where a winding number decides (`kernels.containment`); those are in contact in the rows themselves.
+pairs where a winding number decides (`kernels.search.containment`); those are in contact in the rows themselves.
 """
 
 from __future__ import annotations

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.tree import join
-from clearance.kernels.surface import Surface
-from clearance.kernels.sweep import World
+from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.motion.sweep import World
 from clearance.world.case import Case
 from clearance.world.kinematics import joined_links
 from clearance.world.motion import Motion

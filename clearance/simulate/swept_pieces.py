@@ -18,7 +18,7 @@ import numpy as np
 from clearance.geometry.convex_parts import convex_parts
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.kinematics import SLIDING, TURNING
+from clearance.kernels.motion.kinematics import SLIDING, TURNING
 from clearance.world.cubic import cubics_of, extremes_between
 from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link
 from clearance.world.motion import Motion

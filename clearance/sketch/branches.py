@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import (
+from clearance.kernels.sketch.equations import (
     ACROSS,
     LENGTHS,
     LINE_CIRCLE,
@@ -18,8 +18,8 @@ from clearance.kernels.sketch_equations import (
     MIDDLE_ON,
     POINT_LINE,
 )
-from clearance.kernels.sketch_execute import FAILED
-from clearance.kernels.sketch_graph import POINT, TURN
+from clearance.kernels.sketch.graph.graph import POINT, TURN
+from clearance.kernels.sketch.solve.execute import FAILED
 from clearance.sketch.execution import WRONG_SIDE, Outcome, run
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.roots import other_solutions

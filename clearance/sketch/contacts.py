@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import (
+from clearance.kernels.sketch.equations import (
     ACROSS,
     CIRCLE_CIRCLE,
     IN_LINE,
@@ -21,7 +21,7 @@ from clearance.kernels.sketch_equations import (
     POINT_CIRCLE,
     POINT_LINE,
 )
-from clearance.kernels.sketch_place import System
+from clearance.kernels.sketch.solve.place import System
 
 
 class Contacts(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch_graph import RADIUS
+from clearance.kernels.sketch.graph.graph import RADIUS
 from clearance.sketch.faults import DegenerateSketch
 from clearance.sketch.problem import RESIDUAL, Problem
 

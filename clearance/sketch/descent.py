@@ -1,7 +1,7 @@
 """A whole part solved from the drawing: least squares with exact second derivatives, sparse, any size.
 
 The sum of squared errors goes down by Newton's method in a trust region. Two things set it apart from the damped
-descent of numeric clusters (`clearance.kernels.sketch_damped`): the second derivatives of the equations, which
+descent of numeric clusters (`kernels.sketch.solve.damped`): the second derivatives of the equations, which
 lead away from where slivers lie flat, and corrections of second order, which follow the curved valleys that
 slivers make, with the factors that are at hand. Not for: the other minima that it may end in (`folds`).
 Sources: Conn, Gould, Toint 2000 (trust regions); Transtrum, Sethna 2012 (corrections of second order).
@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch_columns import bend, spread, step_by
+from clearance.kernels.sketch.solve.columns import bend, spread, step_by
 from clearance.sketch.mobility import numbered
 from clearance.sketch.problem import Problem
 from clearance.sketch.steps import FLOOR

@@ -14,9 +14,9 @@ from functools import cached_property
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import POINT_POINT, residuals
-from clearance.kernels.sketch_graph import CONTRADICTED, MERGED
-from clearance.kernels.sketch_search import BANDED
+from clearance.kernels.sketch.equations import POINT_POINT, residuals
+from clearance.kernels.sketch.graph.graph import CONTRADICTED, MERGED
+from clearance.kernels.sketch.solve.search import BANDED
 from clearance.sketch.branches import exhausted
 from clearance.sketch.problem import DEPENDENT, Problem
 from clearance.sketch.repairs import Repair, repairs_of

@@ -11,12 +11,12 @@ import math
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import LENGTHS, RATIO
-from clearance.kernels.sketch_execute import FAILED, KEPT
-from clearance.kernels.sketch_fit import set_down
-from clearance.kernels.sketch_graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
-from clearance.kernels.sketch_search import BANDED, RESTARTS, solve_block
-from clearance.kernels.sketch_start import unsettled
+from clearance.kernels.sketch.equations import LENGTHS, RATIO
+from clearance.kernels.sketch.graph.graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
+from clearance.kernels.sketch.solve.execute import FAILED, KEPT
+from clearance.kernels.sketch.solve.fit import set_down
+from clearance.kernels.sketch.solve.search import BANDED, RESTARTS, solve_block
+from clearance.kernels.sketch.solve.start import unsettled
 from clearance.sketch.folds import solve_from
 from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import POINT_POINT
-from clearance.kernels.sketch_graph import RADIUS
+from clearance.kernels.sketch.equations import POINT_POINT
+from clearance.kernels.sketch.graph.graph import RADIUS
 from clearance.sketch.descent import CORRECTIONS, Part, Place, descend
 from clearance.sketch.problem import Problem
 

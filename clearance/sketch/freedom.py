@@ -11,9 +11,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from clearance.kernels.sketch_columns import spread
-from clearance.kernels.sketch_graph import POINT, SLIDE, TURN
-from clearance.kernels.sketch_rank import singular_steps
+from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
+from clearance.kernels.sketch.graph.rank import singular_steps
+from clearance.kernels.sketch.solve.columns import spread
 from clearance.sketch.execution import at_unit
 from clearance.sketch.mobility import SINGULAR, Equations, implied, motions_of, numbered, rank_of
 from clearance.sketch.problem import Problem

@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.kernels.sketch_columns import bend, spread, step_by
-from clearance.kernels.sketch_graph import POINT, TURN
-from clearance.kernels.sketch_place import System
+from clearance.kernels.sketch.graph.graph import POINT, TURN
+from clearance.kernels.sketch.solve.columns import bend, spread, step_by
+from clearance.kernels.sketch.solve.place import System
 from clearance.sketch.problem import Problem
 
 SINGULAR = 1e-9

@@ -13,9 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from clearance.kernels.sketch_columns import bend, spread, step_by
-from clearance.kernels.sketch_graph import POINT, SIZE, SLIDE, TURN
-from clearance.kernels.sketch_place import System
+from clearance.kernels.sketch.graph.graph import POINT, SIZE, SLIDE, TURN
+from clearance.kernels.sketch.solve.columns import bend, spread, step_by
+from clearance.kernels.sketch.solve.place import System
 from clearance.sketch.problem import RESIDUAL, Problem
 
 DENSE = 160

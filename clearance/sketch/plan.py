@@ -4,7 +4,7 @@ Clusters: (a) three entities, an initial cluster; (b) an entity on a cluster by 
 bodies by three edges; (d) three bodies; extended, four or more; and the same with edges missing,
 whose assumptions are counted: Fig. 13 (a) and (b) lack one edge, (c) is two bodies that lack two,
 (d) two bodies that lack one. Not for: making the plan
-(`clearance.kernels.sketch_plan`).
+(`clearance.kernels.sketch.graph.plan`).
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.kernels.sketch_graph import GROUND, POINT, SIZE, SLIDE, TURN
+from clearance.kernels.sketch.graph.graph import GROUND, POINT, SIZE, SLIDE, TURN
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Step:
 
 
 OUTCOMES = ("done", "failed", "failed", "kept")
-"""By the fates of `clearance.kernels.sketch_execute`."""
+"""By the fates of `clearance.kernels.sketch.solve.execute`."""
 
 
 class _Names:

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.kernels.sketch_core import components
-from clearance.kernels.sketch_equations import CIRCLE_CIRCLE
-from clearance.kernels.sketch_graph import (
+from clearance.kernels.sketch.equations import CIRCLE_CIRCLE
+from clearance.kernels.sketch.graph.core import components
+from clearance.kernels.sketch.graph.graph import (
     DIRECTION,
     IN_GRAPH,
     MERGED,
@@ -25,9 +25,9 @@ from clearance.kernels.sketch_graph import (
     merge,
     vertices,
 )
-from clearance.kernels.sketch_place import System
-from clearance.kernels.sketch_plan import Plan, make_plan, peeled_plan
-from clearance.kernels.sketch_start import counts, row_parts
+from clearance.kernels.sketch.graph.plan import Plan, make_plan, peeled_plan
+from clearance.kernels.sketch.solve.place import System
+from clearance.kernels.sketch.solve.start import counts, row_parts
 from clearance.sketch.contacts import Contacts, contacts_of
 
 RESIDUAL = 1e-12

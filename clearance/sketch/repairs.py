@@ -63,7 +63,7 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     """The least change of all dimensions at once, the other constraints kept; None if not found."""
     from scipy.optimize import least_squares
 
-    from clearance.kernels.sketch_equations import residuals
+    from clearance.kernels.sketch.equations import residuals
 
     tables = _smallest(trial, conflict)
     if tables is None:

@@ -20,8 +20,7 @@ class SketchResult:
     """The outcome of `Sketch.solve` or `Sketch.drag`.
 
     Attributes:
-        residual: [m] the largest equation error that is left (directions as arcs at the sketch's
-        size).
+        residual: [m] the largest equation error that is left (directions as arcs at the sketch's size).
         movement: [m] root of the summed squares of the points' shifts.
     """
 
@@ -86,7 +85,7 @@ class SketchResult:
     @cached_property
     def movement(self) -> float:
         """[m] how far the points moved: root of the summed squares."""
-        from clearance.kernels.sketch_graph import X, Y
+        from clearance.kernels.sketch.graph.graph import X, Y
 
         role = self._problem.tables.role
         shift = (self._outcome.x - self._before)[(role == X) | (role == Y)]

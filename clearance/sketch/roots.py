@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch_execute import DONE
-from clearance.kernels.sketch_graph import POINT
-from clearance.kernels.sketch_roots import cluster_roots
+from clearance.kernels.sketch.graph.graph import POINT
+from clearance.kernels.sketch.solve.execute import DONE
+from clearance.kernels.sketch.solve.roots import cluster_roots
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.start import Sides, sides_hold
 from clearance.sketch.steps import limits_of, residual_of, run_after

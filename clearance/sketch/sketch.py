@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadShape
-from clearance.kernels.sketch_graph import DIRECTION, OFFSET, RADIUS, X, Y
+from clearance.kernels.sketch.graph.graph import DIRECTION, OFFSET, RADIUS, X, Y
 from clearance.sketch.checked import number, two
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
 from clearance.sketch.faults import DegenerateSketch

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch_start import agree
+from clearance.kernels.sketch.solve.start import agree
 from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
 
 Sides = list[tuple[int, int, int]]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch_equations import worst
-from clearance.kernels.sketch_execute import (
+from clearance.kernels.sketch.equations import worst
+from clearance.kernels.sketch.solve.execute import (
     DONE,
     FAILED,
     TOO_LARGE,
@@ -13,7 +13,7 @@ from clearance.kernels.sketch_execute import (
     place_closed,
     solve_numeric,
 )
-from clearance.kernels.sketch_search import RESTARTS
+from clearance.kernels.sketch.solve.search import RESTARTS
 from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
 
 LARGEST_BLOCK = 6000
@@ -39,7 +39,7 @@ def execute(problem: Problem, x, sketch, turned, active, limits: Limits, plan=No
     """Runs the steps of a plan in place on x (n,); the fate (s,) of each.
 
     Numeric steps are compiled apart: most sketches need none. For `turned` and `active` see
-    `clearance.kernels.sketch_execute.place_closed`.
+    `clearance.kernels.sketch.solve.execute.place_closed`.
     """
     plan = problem.plan if plan is None else plan
     fate = np.full(plan.vertex.shape[0], DONE)

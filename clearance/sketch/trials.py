@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.kernels.sketch_graph import IN_GRAPH, RADIUS, REPEATED
-from clearance.kernels.sketch_search import solve_block
+from clearance.kernels.sketch.graph.graph import IN_GRAPH, RADIUS, REPEATED
+from clearance.kernels.sketch.solve.search import solve_block
 from clearance.sketch.branches import run_with_sides
 from clearance.sketch.problem import RESIDUAL, Problem, Tables, problem_of
 from clearance.sketch.start import sides_hold

@@ -2,7 +2,7 @@
 
 In units of the interval, with D the step and e0, e1 what the velocities exceed the mean velocity by,
 q(s) = q0 + s D + s (1 - s) ((1 - s) e0 - s e1). Source: cubic Hermite interpolation, as ROS's joint trajectory
-controller does it where positions and velocities are given. Not for: proofs (`kernels.joint_path`).
+controller does it where positions and velocities are given. Not for: proofs (`kernels.motion.joint_path`).
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from clearance.errors import UnknownJoint, nearest_name
-from clearance.kernels.kinematics import (
+from clearance.kernels.motion.kinematics import (
     FIXED,
     NO_COLUMN,
     NO_PARENT,
@@ -52,7 +52,7 @@ def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
 
 @lru_cache(maxsize=8)  # asked for again for every part of a motion
 def chain_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Parents, kinds, parent_from_joint and axes of all links, as `kernels.kinematics.forward` takes them."""
+    """Parents, kinds, parent_from_joint and axes of all links, as `motion.kinematics.forward` takes them."""
     n_links = len(robot.link_names)
     index = {name: i for i, name in enumerate(robot.link_names)}
     parents = np.zeros(n_links, dtype=np.int64)

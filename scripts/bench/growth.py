@@ -27,7 +27,7 @@ from rows import write_csv
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
-from clearance.kernels.surface import Surface
+from clearance.kernels.mesh.surface import Surface
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import measure
 from tests.made_cases import arm_among_obstacles

@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.jit import borrowing, kernel
-from clearance.kernels.bounds import SLACK
-from clearance.kernels.descent import nothing_yet
-from clearance.kernels.double_double import FRAMES_AT_REST
-from clearance.kernels.face_pair import nearest_of_faces
-from clearance.kernels.polygon_pair import (
+from clearance.compile.jit import kernel
+from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
+from clearance.kernels.features.bounds import SLACK
+from clearance.kernels.features.face_pair import nearest_of_faces
+from clearance.kernels.search.descent import nothing_yet
+from clearance.kernels.search.polygon_pair import (
     Answers,
     _comes_first,
     _empty_surface,
@@ -40,7 +40,7 @@ def plain(ps, qs, answers):
     _plain_each(ps, qs, _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1]), answers)
 
 
-@borrowing
+@kernel(reference_counts=False)
 def _plain_each(ps, qs, a_p, b_q, answers):
     frames = FRAMES_AT_REST
     for k in range(ps.shape[0]):

@@ -8,8 +8,8 @@ import pytest
 from clearance import distance
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
-from clearance.kernels.facing import CONE_ROWS, NO_CONE
-from clearance.kernels.lanes import WIDTH
+from clearance.kernels.arithmetic.lanes import WIDTH
+from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
 from tests.made_cases import at, ball, faces_below, faces_of, with_copies
 from tests.strategies import rotations
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import join, surface_of
-from clearance.kernels.lanes import WIDTH
+from clearance.kernels.arithmetic.lanes import WIDTH
 
 
 def test_the_same_bodies_are_laid_out_once() -> None:

@@ -11,7 +11,7 @@ from clearance.errors import BadPolygon, BadShape, ClearanceError, EmptyMesh, No
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid, Unbounded
-from clearance.kernels.polytope_exits import cell_of, exit_in
+from clearance.kernels.polytope.exits import cell_of, exit_in
 from tests.oracle.polytope_volumes import half_spaces, shared_volume
 from tests.reached import reached
 

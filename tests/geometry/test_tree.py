@@ -7,7 +7,7 @@ import pytest
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
-from clearance.kernels.lanes import WIDTH
+from clearance.kernels.arithmetic.lanes import WIDTH
 from tests.made_cases import ball, torus
 
 

@@ -29,7 +29,7 @@ def least_clearance_sq(case: Case, step: int) -> tuple[Fraction, list[list[str]]
     found: dict[tuple[str, str], Fraction] = {}
     for bound, link, obstacle in _by_bound(case, links, obstacles):
         least = min(found.values(), default=None)
-        if least is not None and (least == 0 or bound > 0 and bound * bound > least):
+        if least is not None and (least == 0 or (bound > 0 and bound * bound > least)):
             break
         found[link, obstacle] = _distance_sq(*links[link], *obstacles[obstacle])
     least = min(found.values())

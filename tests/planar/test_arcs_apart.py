@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.kernels.arc import RADIUS, WIDTH, set_arc, set_segment
-from clearance.kernels.curve_arcs import arcs_apart
+from clearance.kernels.curve.arc import RADIUS, WIDTH, set_arc, set_segment
+from clearance.kernels.curve.arcs import arcs_apart
 from tests.examples import examples
 from tests.reached import reached
 

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff_state import CUTS, Aim
+from clearance.kernels.hausdorff.state import CUTS, Aim
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import _solve, hausdorff, within
@@ -170,7 +170,7 @@ def test_1e9_apart_splines():
 
 
 def hausdorff_point(curve, point):
-    from clearance.kernels.curve_gap import feet
+    from clearance.kernels.hausdorff.gap import feet
 
     out = np.empty((1, 4))
     feet(curve.pieces, curve.leaves, (point - curve.origin)[None], out)

@@ -6,7 +6,7 @@ from click.testing import CliRunner
 
 from clearance.cli.commands import clearance as command
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff_state import CUTS, Aim
+from clearance.kernels.hausdorff.state import CUTS, Aim
 from clearance.planar import hausdorff as room
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed

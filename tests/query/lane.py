@@ -51,7 +51,7 @@ def body_answers(n):
 
 def answers_without_rules(n):
     """For each rule, the answers without it, and how many pairs of faces more were looked at."""
-    from clearance.kernels import body_pair, descent, node_pairs
+    from clearance.kernels.search import body_pair, descent, node_pairs
 
     def nothing_known(p, q, *_):
         """Of boxes alone or in lanes."""
@@ -79,12 +79,12 @@ def answers_without_rules(n):
 
 def meetings(n):
     """Which faces of two boxes meet, straight from the kernels: planes, tree and predicates."""
+    from clearance.compile.kernel_table import lend
     from clearance.geometry.tree import surface_of
-    from clearance.kernel_table import lend
-    from clearance.kernels.double_double import frames_of
-    from clearance.kernels.meeting import meeting
-    from clearance.kernels.predicates import room_for_exact
-    from clearance.kernels.vec3 import rigid
+    from clearance.kernels.arithmetic.double_double import frames_of
+    from clearance.kernels.arithmetic.predicates import room_for_exact
+    from clearance.kernels.arithmetic.vec3 import rigid
+    from clearance.kernels.features.meeting import meeting
 
     @numba.njit(error_model="numpy")
     def meet(one, i, two, j, frames, exact):
@@ -103,7 +103,7 @@ def meetings(n):
 
 def n_compiled():
     """How many forms of the kernel of `meetings` were compiled in this process, none of them from a cache."""
-    from clearance.kernels.meeting import meeting
+    from clearance.kernels.features.meeting import meeting
 
     return sum(meeting.stats.cache_misses.values()) - sum(meeting.stats.cache_hits.values())
 

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_gjk import LIMIT, gjk, support
+from clearance.kernels.polytope.gjk import LIMIT, gjk, support
 from clearance.query.common_point import common_point
 from clearance.query.common_point_paper import common_point_paper
 

@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron, distance
+from clearance.compile.jit import kernel
+from clearance.compile.kernel_table import call
 from clearance.geometry.tree import surface_of
-from clearance.jit import kernel
-from clearance.kernel_table import call
-from clearance.kernels.containment import contained
-from clearance.kernels.double_double import frames_of
-from clearance.kernels.scratch import new_scratch
-from clearance.kernels.vec3 import rigid
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.search.containment import contained
+from clearance.kernels.search.scratch import new_scratch
 from tests import oracle
 from tests.examples import examples
 from tests.made_cases import torus

@@ -9,23 +9,23 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 import clearance as cl
+from clearance.compile.jit import kernel
+from clearance.compile.kernel_table import call
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
-from clearance.jit import kernel
-from clearance.kernel_table import call
-from clearance.kernels.bounds import rounding_slack, sight_along
-from clearance.kernels.double_double import frames_of
-from clearance.kernels.facing import CONE_ROWS, NO_CONE
-from clearance.kernels.lanes import ALL, WIDTH, lane
-from clearance.kernels.node_pairs import (
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
+from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.features.bounds import rounding_slack, sight_along
+from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
+from clearance.kernels.search.node_pairs import (
     bounds_of_group,
     turned_away,
     turned_away_while,
     views_along,
 )
-from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
-from clearance.kernels.scratch import new_scratch
-from clearance.kernels.vec3 import Vec3, rigid
+from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import answer_rows
 from tests import oracle
 from tests.examples import examples

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron
+from clearance.compile.kernel_table import call
 from clearance.geometry.shapes import box, cylinder, pipe, sphere
 from clearance.geometry.tree import surface_of
-from clearance.kernel_table import call
-from clearance.kernels.pair_query import ROOM, hold_pair, nearest_at_poses
-from clearance.kernels.scratch import new_scratch
-from clearance.kernels.surface import ANYTHING, LISTED
+from clearance.kernels.mesh.surface import ANYTHING, LISTED
+from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.scratch import new_scratch
 from tests.examples import examples
 from tests.made_cases import torus, without_cones
 from tests.strategies import rotations

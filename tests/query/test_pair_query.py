@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadPose, BadShape, NotFinite
-from clearance.kernels.pair_query import nearest_at_poses
+from clearance.kernels.search.pair_query import nearest_at_poses
 from tests.examples import examples
 from tests.strategies import boxes, poses, rotations
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadPolygon
-from clearance.kernels.paper_segments import lumelsky
-from clearance.kernels.vec3 import Vec3
+from clearance.kernels.arithmetic.vec3 import Vec3
+from clearance.kernels.paper.segments import lumelsky
 from clearance.query.paper import polygon_distance_paper
 from tests import oracle
 from tests.reached import reached

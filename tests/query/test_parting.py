@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.compile.jit import kernel
+from clearance.compile.kernel_table import call, lend
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder, pipe
 from clearance.geometry.tree import surface_of
-from clearance.jit import kernel
-from clearance.kernel_table import call, lend
-from clearance.kernels.bounds import rounding_slack
-from clearance.kernels.descent import margin_of
-from clearance.kernels.double_double import frames_of
-from clearance.kernels.face_pair import Hit
-from clearance.kernels.front import forget, is_worth_parting, no_fronts, note_parting
-from clearance.kernels.parting import parting_of
-from clearance.kernels.scratch import new_scratch
-from clearance.kernels.support import high_corner, top_of
-from clearance.kernels.vec3 import Vec3, rigid
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.features.bounds import rounding_slack
+from clearance.kernels.features.face_pair import Hit
+from clearance.kernels.search.descent import margin_of
+from clearance.kernels.search.front import forget, is_worth_parting, no_fronts, note_parting
+from clearance.kernels.search.scratch import new_scratch
+from clearance.kernels.search.separating_planes import parting_of
+from clearance.kernels.search.support import high_corner, top_of
 from tests import oracle
 from tests.made_cases import SOLIDS, at, ball, faces_of, torus
 from tests.strategies import rotations

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope_exits import HEAD, ROW, cell_of, is_in_ball
+from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, is_in_ball
 from clearance.query import cutting, intersection
 from clearance.query.common_point import common_point
 from clearance.query.cutting import Cutting, Task, cut_down
@@ -26,7 +26,7 @@ def cluster(m: int, n: int, seed: int, spread: float = 0.2) -> list[Polytope]:
 @pytest.mark.parametrize("n", [4, 9, 300])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
-    """But for what the corners of so slender a body stand out of its own planes, relatively (`polytope_exits`)."""
+    """But for what the corners of so slender a body stand out of its own planes, relatively (`polytope.exits`)."""
     rng = np.random.default_rng(n)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     body = Polytope(rng.normal(size=(n, 3)) * shape @ turn)

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.compile.jit import kernel
+from clearance.compile.kernel_table import call, lend
 from clearance.geometry.shapes import cylinder
 from clearance.geometry.tree import surface_of
-from clearance.jit import kernel
-from clearance.kernel_table import call, lend
-from clearance.kernels.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
-from clearance.kernels.double_double import frames_of
-from clearance.kernels.front import POOL, no_fronts
-from clearance.kernels.scratch import new_scratch
-from clearance.kernels.vec3 import rigid
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
+from clearance.kernels.search.front import POOL, no_fronts
+from clearance.kernels.search.scratch import new_scratch
 from tests.made_cases import SOLIDS, at
 from tests.strategies import rotations
 

@@ -5,12 +5,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from clearance.compile.jit import kernel
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
-from clearance.jit import kernel
-from clearance.kernels.drift import Chain, drift_of, drift_of_box, drift_of_box_along
-from clearance.kernels.surface import box_of
-from clearance.kernels.vec3 import Vec3, rigid
+from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.joint_motion_bound import (
+    Chain,
+    drift_of,
+    drift_of_box,
+    drift_of_box_along,
+)
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import chain_arrays, link_poses, positions_by_link
 from clearance.world.robot import Joint, JointKind, Robot

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from clearance.jit import kernel
-from clearance.kernels.joint_path import OUTWARD, JointPath, part_of
+from clearance.compile.jit import kernel
+from clearance.kernels.motion.joint_path import OUTWARD, JointPath, part_of
 from tests.examples import examples
 
 SIZES = st.sampled_from([0.0, 1e-6, 0.3, 7.0, 1e5])

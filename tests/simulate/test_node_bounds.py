@@ -12,11 +12,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 import clearance as cl
+from clearance.compile.jit import kernel
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import join, surface_of
-from clearance.jit import kernel
-from clearance.kernels.body_boxes import room_for_boxes
-from clearance.kernels.bounds import (
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
+from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.features.bounds import (
     displacement,
     lower_bound_boxes,
     lower_bound_boxes_in_sight,
@@ -25,14 +27,12 @@ from clearance.kernels.bounds import (
     rounding_slack,
     sight_along,
 )
-from clearance.kernels.double_double import frames_of
-from clearance.kernels.kinematics import Links
-from clearance.kernels.lanes import ALL, WIDTH, lane
-from clearance.kernels.node_pairs import bounds_of_group, views_along
-from clearance.kernels.placed import put_all, room_for_bodies
-from clearance.kernels.surface import box_of, group_of
-from clearance.kernels.sweep import World, box_bound
-from clearance.kernels.vec3 import Vec3, rigid
+from clearance.kernels.mesh.surface import box_of, group_of
+from clearance.kernels.motion.body_boxes import room_for_boxes
+from clearance.kernels.motion.kinematics import Links
+from clearance.kernels.motion.placed import put_all, room_for_bodies
+from clearance.kernels.motion.sweep import World, box_bound
+from clearance.kernels.search.node_pairs import bounds_of_group, views_along
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
 from clearance.world.case import Limits

@@ -3,8 +3,14 @@
 import numpy as np
 import pytest
 
-from clearance.jit import kernel
-from clearance.kernels.pair_order import fill_order, room_for_order, sort_all, sort_first, sort_one
+from clearance.compile.jit import kernel
+from clearance.kernels.motion.pair_order import (
+    fill_order,
+    room_for_order,
+    sort_all,
+    sort_first,
+    sort_one,
+)
 
 
 @kernel

@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
+from clearance.compile.jit import kernel
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
-from clearance.jit import kernel
-from clearance.kernels.stride import fill_reach, stride_of
+from clearance.kernels.motion.interval_motion_bound import fill_reach, stride_of
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import joined_links, link_poses
 from clearance.world.robot import Joint, JointKind, Robot

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from clearance.kernels import sketch_damped
-from clearance.kernels.sketch_search import BANDED, solve_block
+from clearance.kernels.sketch.solve import damped as sketch_damped
+from clearance.kernels.sketch.solve.search import BANDED, solve_block
 from clearance.sketch.problem import problem_of, tables_of
 from tests.reached import reached
 from tests.sketch.patterns import distances, irreducible, prism, shaken

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from clearance.kernels.sketch_graph import DIRECTION
+from clearance.kernels.sketch.graph.graph import DIRECTION
 from clearance.sketch import Sketch
 from scripts.bench.sketch import flipped, patch
 from tests.sketch.patterns import distances, irreducible, prism, shaken, truth

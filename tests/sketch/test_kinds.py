@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from clearance.kernels.sketch_columns import bend, spread, step_by
-from clearance.kernels.sketch_equations import gradients, residuals
+from clearance.kernels.sketch.equations import gradients, residuals
+from clearance.kernels.sketch.solve.columns import bend, spread, step_by
 from clearance.sketch import Sketch
 from clearance.sketch.constraints import KINDS, measured
 from clearance.sketch.mobility import numbered

@@ -124,7 +124,7 @@ def test_rule_b_begins_bodies_in_cycles_without_one():
 
 
 def test_rule_b_takes_the_cycle_of_least_freedom_and_most_vertices():
-    from clearance.kernels.sketch_rules import merge_order
+    from clearance.kernels.sketch.graph.rules import merge_order
 
     ring = [(0, 1), (1, 2), (2, 3), (3, 4), (4, 0), (4, 5), (5, 6), (6, 4)]
     rows = np.full((len(ring), 5), -1)
@@ -140,7 +140,7 @@ def test_rule_b_takes_the_cycle_of_least_freedom_and_most_vertices():
 
 
 def test_rule_a_takes_in_a_tree_from_one_body():
-    from clearance.kernels.sketch_rules import merge_order
+    from clearance.kernels.sketch.graph.rules import merge_order
 
     tree = [(0, 1), (1, 2), (1, 3), (3, 4)]
     rows = np.full((len(tree), 5), -1)

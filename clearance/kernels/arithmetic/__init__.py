@@ -1,0 +1,1 @@
+"""Exact and vectorised numbers: points, lanes, wide numbers, expansions, exact signs, union-find."""

@@ -1,0 +1,1 @@
+"""Planar curves: arcs, Bezier pieces, biarcs, nearest points."""

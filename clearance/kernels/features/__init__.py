@@ -1,0 +1,1 @@
+"""Two faces: bounds on their distance, the nearest features, whether they meet."""

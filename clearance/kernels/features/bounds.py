@@ -1,0 +1,271 @@
+"""Lower bounds: each pruning rule is a function that never exceeds the distance it bounds.
+
+Where a box is taken, four boxes in lanes may stand in its place (`surface.group_at`); the bound is then of each.
+"""
+
+import math
+from typing import NamedTuple
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.lanes import larger, square_root, where_positive
+from clearance.kernels.arithmetic.vec3 import (
+    Rigid,
+    Vec3,
+    along,
+    cross,
+    dot,
+    inverse,
+    move,
+    rigid,
+    row,
+    sub,
+    turn,
+    turn_back,
+)
+from clearance.kernels.mesh.surface import box_of
+
+SLACK = 128.0 * 2.0**-53
+"""Rounding of a box bound, relative to the sum of the coordinates' magnitudes: 40 operations, doubled."""
+
+NO_REACH = 1e300
+"""[m] Less than nothing is known of boxes whose centres coincide."""
+
+LEAN = 2.0**-20
+"""Four times what rounding to single precision can turn the axes of a box, relative to 1."""
+
+
+CROSSED = 64
+"""Pairs of edges that are worth crossing."""
+
+
+@inline(force=True)
+def _axis_gap(centre, half_a, half_b, slack):
+    return larger(abs(centre) - half_a - half_b - slack, 0.0)
+
+
+@inline(force=True)
+def between_boxes(p, u, v, w, d):
+    """The motion between two boxes: from the axes u, v, w of one to those of p; d is from centre to centre."""
+    x, y, z = p.x, p.y, p.z
+    return Rigid(
+        dot(x, u), dot(x, v), dot(x, w),
+        dot(y, u), dot(y, v), dot(y, w),
+        dot(z, u), dot(z, v), dot(z, w),
+        Vec3(dot(x, d), dot(y, d), dot(z, d)),
+    )  # fmt: skip
+
+
+@inline(force=True)
+def lower_bound_boxes(p, q, m, slack):
+    """[m] a lower bound on the distance of two boxes, p in the frame of a and q in that of b.
+
+    The greatest of three: in the frame of either box the other one fits in an axis-parallel box of half
+    sizes |R| h, and the distance of two axis-parallel boxes is known; along the line of the centres both
+    boxes reach no farther than the sum of their half sizes' shares. The axes are orthonormal to `LEAN` / 4
+    only, which each of the three can lengthen by that share of the centres' distance. Where the boxes overlap
+    it is the last one, and the less the more they do.
+    """
+    d = sub(turn(m, q.centre), sub(p.centre, m.t))
+    n = between_boxes(p, turn(m, q.x), turn(m, q.y), turn(m, q.z), d)
+    return lower_bound_between(p.half, q.half, n, slack)
+
+
+@inline(force=True)
+def lower_bound_between(h, k, n, slack):
+    """[m] `lower_bound_boxes` from the half sizes of both boxes and the motion `between_boxes`."""
+    d = n.t
+    slack = slack + LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
+    x = _axis_gap(d.x, h.x, abs(n.xx) * k.x + abs(n.xy) * k.y + abs(n.xz) * k.z, slack)
+    y = _axis_gap(d.y, h.y, abs(n.yx) * k.x + abs(n.yy) * k.y + abs(n.yz) * k.z, slack)
+    z = _axis_gap(d.z, h.z, abs(n.zx) * k.x + abs(n.zy) * k.y + abs(n.zz) * k.z, slack)
+    in_p = x * x + y * y + z * z
+    e = turn_back(n, d)
+    x = _axis_gap(e.x, k.x, abs(n.xx) * h.x + abs(n.yx) * h.y + abs(n.zx) * h.z, slack)
+    y = _axis_gap(e.y, k.y, abs(n.xy) * h.x + abs(n.yy) * h.y + abs(n.zy) * h.z, slack)
+    z = _axis_gap(e.z, k.z, abs(n.xz) * h.x + abs(n.yz) * h.y + abs(n.zz) * h.z, slack)
+    in_q = x * x + y * y + z * z
+    gap_sq = dot(d, d)
+    reach = abs(d.x) * h.x + abs(d.y) * h.y + abs(d.z) * h.z
+    reach = reach + abs(e.x) * k.x + abs(e.y) * k.y + abs(e.z) * k.z
+    between_centres = larger((gap_sq - reach) / square_root(gap_sq) - slack, -NO_REACH)  # NaN where they coincide
+    outside = square_root(larger(in_p, in_q))
+    return where_positive(outside, larger(outside, between_centres), between_centres)
+
+
+class Sight(NamedTuple):
+    """A direction in which two bodies are seen apart: along `u` in the frame of a, `v` in that of b, from a to b.
+
+    Any unit vector gives a valid bound; that of the best witness points gives a tight one.
+    """
+
+    u: Vec3
+    v: Vec3
+    offset: float  # [m] u . t of `a_from_b`
+
+
+@inline(force=True)
+def sight_along(p, q, m):
+    """The sight from `p` to `q` (frame of a); one of zero length bounds nothing."""
+    d = sub(q, p)
+    length = math.sqrt(dot(d, d))
+    if length > 0.0:
+        d = Vec3(d.x / length, d.y / length, d.z / length)
+    return Sight(d, turn_back(m, d), dot(d, m.t))
+
+
+@inline(force=True)
+def _back(sight):
+    """The other way along the same line."""
+    u, v = sight.u, sight.v
+    return Sight(Vec3(-u.x, -u.y, -u.z), Vec3(-v.x, -v.y, -v.z), -sight.offset)
+
+
+@inline(force=True)
+def opposite(sight):
+    """The same sight with a and b exchanged."""
+    u, v = sight.u, sight.v
+    return Sight(Vec3(-v.x, -v.y, -v.z), Vec3(-u.x, -u.y, -u.z), sight.offset)
+
+
+@inline(force=True)
+def box_reach(box, direction):
+    """[m] how far a box reaches from its centre along a direction."""
+    h = box.half
+    return (
+        h.x * abs(dot(box.x, direction)) + h.y * abs(dot(box.y, direction)) + h.z * abs(dot(box.z, direction))
+    )
+
+
+@inline(force=True)
+def lower_bound_boxes_in_sight(p, q, sight):
+    """[m] a lower bound on the distance of two boxes, without their rounding slack; may be negative."""
+    far_of_a = dot(sight.u, p.centre) + box_reach(p, sight.u)
+    near_of_b = dot(sight.v, q.centre) - box_reach(q, sight.v)
+    return near_of_b + sight.offset - far_of_a
+
+
+@inline(force=True)
+def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
+    """[m] a lower bound on the distance of two faces, without rounding slack; may be negative."""
+    far_of_a = -math.inf
+    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
+        far_of_a = max(far_of_a, dot(sight.u, row(a.vertices, a.face_vertices[c])))
+    near_of_b = math.inf
+    for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
+        near_of_b = min(near_of_b, dot(sight.v, row(b.vertices, b.face_vertices[c])))
+    return near_of_b + sight.offset - far_of_a
+
+
+@inline(force=True)
+def _beside(surface, face, other, face_other, m):
+    """(squared distance, where to) of what lies beyond the plane and one edge of a face, seen from its body.
+
+    Args:
+        m: from the frame of the other body to its own.
+    """
+    first, last = other.face_starts[face_other], other.face_starts[face_other + 1]
+    normal = row(surface.normals, face)
+    v = turn_back(m, normal)
+    least, most = math.inf, -math.inf
+    for c in range(first, last):
+        h = dot(v, row(other.vertices, other.face_vertices[c]))
+        least, most = min(least, h), max(most, h)
+    start = surface.face_starts[face]
+    offset = dot(normal, sub(m.t, row(surface.vertices, surface.face_vertices[start])))
+    height = max(0.0, least + offset) + min(0.0, most + offset)
+    farthest, outward = 0.0, normal
+    for e in range(start, surface.face_starts[face + 1]):
+        u = row(surface.corner_normals, e)
+        v = turn_back(m, u)
+        least = math.inf
+        for c in range(first, last):
+            least = min(least, dot(v, row(other.vertices, other.face_vertices[c])))
+        least += dot(u, sub(m.t, row(surface.vertices, surface.face_vertices[e])))
+        if least > farthest:
+            farthest, outward = least, u
+    to = along(Vec3(farthest * outward.x, farthest * outward.y, farthest * outward.z), height, normal)
+    return height * height + farthest * farthest, to
+
+
+@inline(force=True)
+def sight_beside(a, face_a, b, face_b, from_a, from_b):
+    """A sight in which two faces are probably apart: up from the plane of one and away from its nearest edge.
+
+    Args:
+        from_a, from_b: `a_from_b` and the inverse.
+    """
+    of_a, d = _beside(a, face_a, b, face_b, from_a)
+    of_b, e = _beside(b, face_b, a, face_a, from_b)
+    if of_b > of_a:
+        d = turn(from_a, Vec3(-e.x, -e.y, -e.z))
+    return sight_along(Vec3(0.0, 0.0, 0.0), d, from_a)
+
+
+@inline(force=True)
+def lower_bound_faces_beside(a, face_a, b, face_b, m):
+    """[m] a lower bound on the distance of two faces but for rounding, `sight_beside`."""
+    return lower_bound_faces_in_sight(a, face_a, b, face_b, sight_beside(a, face_a, b, face_b, m, inverse(m)))
+
+
+@inline(force=True)
+def lower_bound_faces_across(a, face_a, b, face_b, m):
+    """[m] the same, across an edge of each: the greatest of all pairs; 0 where none parts the faces."""
+    most = 0.0
+    first_a, last_a = a.face_starts[face_a], a.face_starts[face_a + 1]
+    first_b, last_b = b.face_starts[face_b], b.face_starts[face_b + 1]
+    if (last_a - first_a) * (last_b - first_b) > CROSSED:
+        return most
+    p = row(a.vertices, a.face_vertices[last_a - 1])
+    for c in range(first_a, last_a):
+        before, p = p, row(a.vertices, a.face_vertices[c])
+        u = sub(p, before)
+        q = row(b.vertices, b.face_vertices[last_b - 1])
+        for k in range(first_b, last_b):
+            behind, q = q, row(b.vertices, b.face_vertices[k])
+            sight = sight_along(Vec3(0.0, 0.0, 0.0), cross(u, turn(m, sub(q, behind))), m)
+            most = max(most, lower_bound_faces_in_sight(a, face_a, b, face_b, sight))
+            most = max(most, lower_bound_faces_in_sight(a, face_a, b, face_b, _back(sight)))
+    return most
+
+
+@inline(force=True)
+def _reach(surface, root):
+    """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
+    box = box_of(surface, root)
+    c, h = box.centre, box.half
+    return abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
+
+
+@inline(force=True)
+def rounding_slack(a, root_a, b, root_b, frames):
+    """[m] how much rounding, and rotations that are not quite orthonormal, can raise a box bound."""
+    t = frames.m.t
+    apart = abs(t.x) + abs(t.y) + abs(t.z)
+    return (SLACK + 8.0 * frames.defect) * (apart + _reach(a, root_a) + _reach(b, root_b))
+
+
+@inline(force=True)
+def displacement(surface, root, before, after):
+    """[m] an upper bound on how far a motion of the body from one pose to another moves any of its points.
+
+    The displacement is the norm of an affine map, hence convex: its maximum over the body's box is
+    attained at a corner. `before` and `after` are (4, 4) poses.
+    """
+    box = box_of(surface, root)
+    a, b = rigid(after), rigid(before)
+    way = Rigid(
+        a.xx - b.xx, a.xy - b.xy, a.xz - b.xz,
+        a.yx - b.yx, a.yy - b.yy, a.yz - b.yz,
+        a.zx - b.zx, a.zy - b.zy, a.zz - b.zz,
+        sub(a.t, b.t),
+    )  # fmt: skip
+    centre = move(way, box.centre)
+    x, y, z = turn(way, box.x), turn(way, box.y), turn(way, box.z)
+    most_sq = 0.0
+    for corner in range(4):  # and the opposite one
+        out = along(Vec3(0.0, 0.0, 0.0), box.half.x, x)
+        out = along(out, box.half.y if corner & 1 else -box.half.y, y)
+        out = along(out, box.half.z if corner & 2 else -box.half.z, z)
+        most_sq = max(most_sq, dot(out, out) + 2.0 * abs(dot(centre, out)))
+    most_sq += dot(centre, centre)
+    return math.sqrt(most_sq) * (1.0 + SLACK)

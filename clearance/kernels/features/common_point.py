@@ -1,0 +1,82 @@
+"""Where two faces that have a point in common come nearest to coinciding in wide numbers: witness points.
+
+Not for: whether they meet (`predicates`).
+"""
+
+from typing import NamedTuple
+
+from clearance.compile.jit import inline, kernel
+from clearance.compile.kernel_table import COMMON_POINT, apart, at_address
+from clearance.kernels.arithmetic.double_double import (
+    FRAMES_AT_REST,
+    ZERO3,
+    Wide3,
+    along3,
+    cross3,
+    dot3,
+    less,
+    minus,
+    minus3,
+    over,
+    point_of_a,
+    point_of_b,
+)
+from clearance.kernels.arithmetic.vec3 import row
+from clearance.kernels.features.meeting import NO_MEETING
+from clearance.kernels.features.wide_features import point_and_triangle, two_segments
+from clearance.kernels.mesh.surface import surface_like
+
+
+class Common(NamedTuple):
+    """A point of each of two faces, in the orientation of the world, from the origin of a."""
+
+    p: Wide3
+    q: Wide3
+
+
+@kernel
+def _of_edge_and_triangle(p, q, x, y, z):
+    """The points of an edge p q and a triangle x y z nearest to coinciding."""
+    n = cross3(minus3(y, x), minus3(z, x))
+    h = dot3(n, minus3(p, x))
+    way = minus(h, dot3(n, minus3(q, x)))
+    t = p
+    if way.hi != 0.0:
+        s = over(h, way)
+        if 0.0 < s.hi <= 1.0:
+            t = along3(p, s, minus3(q, p))
+    best = point_and_triangle(t, x, y, z)
+    for _ in range(3):
+        found = two_segments(p, q, x, y)
+        if less(found.gap_sq, best.gap_sq):
+            best = found
+        x, y, z = y, z, x
+    return Common(best.p, best.q)
+
+
+@apart(COMMON_POINT, lambda: (surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, NO_MEETING))
+def common_point(a, face_a, b, face_b, frames, found):
+    """The points of two faces nearest to coinciding, where an edge was found to meet a triangle."""
+    if found.edge_of_a:
+        p = point_of_a(frames, row(a.exact, a.face_vertices[found.p]))
+        q = point_of_a(frames, row(a.exact, a.face_vertices[found.q]))
+        x = point_of_b(frames, row(b.exact, b.face_vertices[b.face_starts[face_b]]))
+        y = point_of_b(frames, row(b.exact, b.face_vertices[found.k]))
+        z = point_of_b(frames, row(b.exact, b.face_vertices[found.k + 1]))
+        return _of_edge_and_triangle(p, q, x, y, z)
+    p = point_of_b(frames, row(b.exact, b.face_vertices[found.p]))
+    q = point_of_b(frames, row(b.exact, b.face_vertices[found.q]))
+    x = point_of_a(frames, row(a.exact, a.face_vertices[a.face_starts[face_a]]))
+    y = point_of_a(frames, row(a.exact, a.face_vertices[found.k]))
+    z = point_of_a(frames, row(a.exact, a.face_vertices[found.k + 1]))
+    common = _of_edge_and_triangle(p, q, x, y, z)
+    return Common(common.q, common.p)
+
+
+_NOWHERE = Common(ZERO3, ZERO3)
+
+
+@inline(one_caller=True)
+def common_point_of(table, a, face_a, b, face_b, frames, found):
+    """The same by address."""
+    return at_address(table, COMMON_POINT, _NOWHERE, (a, face_a, b, face_b, frames, found))

@@ -1,0 +1,154 @@
+"""All feature pairs of two faces that could be the nearest, in wide numbers: where the first guess is not proven.
+
+Doubles leave out what is farther than a limit or has its feet clearly outside; the rest is measured. Not for:
+the usual case, in which one feature pair and its floor suffice (`refine`).
+"""
+
+import math
+from typing import NamedTuple
+
+from clearance.compile.jit import inline, kernel
+from clearance.kernels.arithmetic.double_double import Wide, less, lesser, minus, wide
+from clearance.kernels.arithmetic.vec3 import Vec3, dot, gap_sq, move, move_back, row, sub
+from clearance.kernels.features.face_pair import has_plane, height, may_be_over
+from clearance.kernels.features.feature import Feature, n_segments, segment, simplex
+from clearance.kernels.features.segments import (
+    may_be_inside,
+    may_be_inside_both,
+    nearest_on_segment,
+)
+from clearance.kernels.features.wide_features import Simplex, sized_of
+
+
+class Ask(NamedTuple):
+    """What features have to be measured.
+
+    Attributes:
+        limit, margin: [m] as in `face_pair`.
+    """
+
+    limit: float
+    margin: float
+
+
+class Chosen(NamedTuple):
+    """The nearest feature pair so far, its squared distance [m^2], and what all measured ones are beyond [m]."""
+
+    gap_sq: Wide
+    feature: Feature
+    sure: Wide
+
+
+@inline
+def _take(frames, one, two, feature, best, table):
+    """`best`, or a feature pair that is nearer."""
+    sized = sized_of(table, frames, one, two)
+    found_sq = sized.pair.gap_sq
+    if found_sq.hi == math.inf:
+        return best
+    sure = lesser(best.sure, minus(sized.length, sized.off))
+    if less(found_sq, best.gap_sq):
+        return Chosen(found_sq, feature, sure)
+    return Chosen(best.gap_sq, best.feature, sure)
+
+
+@inline
+def _corner_to_face(one, at, two, face, frames, is_a, ask, best, table):
+    """`best` with a vertex of one body against the triangles of the fan of a face of the other."""
+    v = row(one.vertices, at)
+    y = move_back(frames.m, v) if is_a else move(frames.m, v)
+    if has_plane(two, face):
+        if abs(height(two, face, y)) > ask.limit or not may_be_over(two, face, y, ask.margin):
+            return best
+    x = row(one.exact, at)
+    corner = Simplex(1, x, x, x)
+    for k in range(two.face_starts[face] + 1, two.face_starts[face + 1] - 1):
+        other = simplex(two, face, 3, k)
+        if is_a:
+            best = _take(frames, corner, other, Feature(1, at, 3, k), best, table)
+        else:
+            best = _take(frames, other, corner, Feature(3, k, 1, at), best, table)
+    return best
+
+
+@inline
+def _corner_to_segments(one, at, two, face, frames, is_a, ask, best, table):
+    """`best` with a vertex of one body against the segments of a face of the other."""
+    v = row(one.vertices, at)
+    y = move_back(frames.m, v) if is_a else move(frames.m, v)
+    x = row(one.exact, at)
+    corner = Simplex(1, x, x, x)
+    for s in range(n_segments(two, face)):
+        i0, i1 = segment(two, face, s)
+        start, end = row(two.vertices, i0), row(two.vertices, i1)
+        if not may_be_inside(y, start, end, ask.margin):
+            continue
+        if gap_sq(y, nearest_on_segment(y, start, end)) > ask.limit * ask.limit:
+            continue
+        other = simplex(two, face, 2, s)
+        if is_a:
+            best = _take(frames, corner, other, Feature(1, at, 2, s), best, table)
+        else:
+            best = _take(frames, other, corner, Feature(2, s, 1, at), best, table)
+    return best
+
+
+@inline
+def _far_apart(p0, p1, q0, q1, limit):
+    """True if two segments are clearly farther apart than a limit, by the plane between their middles."""
+    u, v = sub(p1, p0), sub(q1, q0)
+    w = Vec3(
+        0.5 * ((q0.x + q1.x) - (p0.x + p1.x)),
+        0.5 * ((q0.y + q1.y) - (p0.y + p1.y)),
+        0.5 * ((q0.z + q1.z) - (p0.z + p1.z)),
+    )
+    length_sq = dot(w, w)
+    spare = length_sq - 0.5 * (abs(dot(w, u)) + abs(dot(w, v)))
+    return spare > 0.0 and spare * spare > limit * limit * length_sq * (1.0 + 1e-9)
+
+
+@inline
+def _between_corners(a, face_a, b, face_b, frames, ask, best, table):
+    """`best` with corners against corners."""
+    for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        j = b.owned_vertices[n]
+        y = move(frames.m, row(b.vertices, j))
+        for o in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[o]
+            if gap_sq(row(a.vertices, i), y) <= ask.limit * ask.limit:
+                one, two = simplex(a, face_a, 1, i), simplex(b, face_b, 1, j)
+                best = _take(frames, one, two, Feature(1, i, 1, j), best, table)
+    return best
+
+
+@inline
+def _between_segments(a, face_a, b, face_b, frames, ask, best, table):
+    """`best` with the insides of the segments of both faces."""
+    for j in range(n_segments(b, face_b)):
+        j0, j1 = segment(b, face_b, j)
+        q0, q1 = move(frames.m, row(b.vertices, j0)), move(frames.m, row(b.vertices, j1))
+        for i in range(n_segments(a, face_a)):
+            i0, i1 = segment(a, face_a, i)
+            p0, p1 = row(a.vertices, i0), row(a.vertices, i1)
+            if _far_apart(p0, p1, q0, q1, ask.limit):
+                continue
+            if may_be_inside_both(p0, p1, q0, q1, ask.margin):
+                one, two = simplex(a, face_a, 2, i), simplex(b, face_b, 2, j)
+                best = _take(frames, one, two, Feature(2, i, 2, j), best, table)
+    return best
+
+
+@kernel
+def nearest_of_every(a, face_a, b, face_b, frames, ask, table):
+    """The nearest feature pair of two faces among those within the limit; infinitely far if there is none."""
+    best = Chosen(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))
+    one, face_one, two, face_two = a, face_a, b, face_b
+    for side in range(2):
+        is_a = side == 0
+        for n in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
+            at = one.owned_vertices[n]
+            best = _corner_to_face(one, at, two, face_two, frames, is_a, ask, best, table)
+            best = _corner_to_segments(one, at, two, face_two, frames, is_a, ask, best, table)
+        one, face_one, two, face_two = b, face_b, a, face_a
+    best = _between_corners(a, face_a, b, face_b, frames, ask, best, table)
+    return _between_segments(a, face_a, b, face_b, frames, ask, best, table)

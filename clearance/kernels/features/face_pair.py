@@ -1,0 +1,312 @@
+"""The nearest features of two faces in doubles: a filter that leaves out nothing that could be the minimum.
+
+The minimum of two polygons is attained by a vertex and a face, a vertex and an edge, or two edges inside
+both; each is a candidate here, over the features that the two faces own. Not for: the answer itself
+(`refine`), contact (`predicates`), and which face pairs to ask (`descent`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
+from clearance.kernels.features.bounds import lower_bound_faces_beside
+from clearance.kernels.features.segments import LOOSE, common_perpendicular, foot_inside
+from clearance.kernels.mesh.surface import ANYTHING, LISTED
+
+ROUGH = 2.0**-44
+"""Relative error of a height over a face whose corners are all blunt; it grows as 1 / angle^2: the normal is
+off by 16 u / angle, and a foot next to a corner by that over the angle."""
+
+LEANING = 2.0**-6
+"""Difference of two unit vectors, within which a face pair is known to be nearest at features of others."""
+
+OWN_SIGHT = 0.5 * LEANING * LEANING
+"""Share of the least distance that the bound of a face pair may be short of it for that."""
+
+CLEARLY = 1.0 + 2.0**-26
+"""Where rounding makes a distance more uncertain than that, all faces are measured: what else they own may be as
+near, and `error_bound` would depend on whether it was seen."""
+
+
+class Hit(NamedTuple):
+    """A pair of points, both in the frame of body a until it is the answer, which is in the world.
+
+    Attributes:
+        gap_sq: [m^2] an upper bound on the squared distance but for the margin of rounding; in an answer
+            the square of the distance.
+    """
+
+    gap_sq: float
+    face_a: int
+    face_b: int
+    p: Vec3
+    q: Vec3
+
+
+@inline
+def write_points(hit, points):
+    """Fills `points` (2, 3) with those of a hit."""
+    for axis in range(3):
+        points[0, axis], points[1, axis] = hit.p[axis], hit.q[axis]
+
+
+CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES, UNSEEN = range(7)
+"""Kinds of feature pairs, that of a first; none that was seen."""
+
+
+class Seen(NamedTuple):
+    """The nearest features seen of a face pair that could be the minimum.
+
+    Attributes:
+        near_sq: [m^2] their squared distance.
+        kind, i, j: what they are: indices of vertices or of owned edges; not used for a face.
+    """
+
+    near_sq: float
+    kind: int
+    i: int
+    j: int
+
+
+NOTHING_SEEN = Seen(math.inf, UNSEEN, 0, 0)
+
+
+class Near(NamedTuple):
+    """The best pair so far, and what was seen of the face pair at hand."""
+
+    best: Hit
+    seen: Seen
+
+
+@inline(force=True)
+def limit_of(a, face_a, b, face_b, best_gap, margin):
+    """[m] the greatest distance in doubles that a feature pair of two faces may have and still win."""
+    blunt_a, blunt_b = a.blunt[face_a], b.blunt[face_b]
+    rough = ROUGH * (blunt_a * blunt_a + blunt_b * blunt_b)
+    return (
+        best_gap * (1.0 + rough)
+        + margin * (2.0 + blunt_a + blunt_b)
+        + 2.0 * (a.width[face_a] + b.width[face_b])
+    )
+
+
+@inline(force=True)
+def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
+    """`near` with one more candidate, which is within the limit."""
+    best = near.best
+    if upper_sq < best.gap_sq:
+        best = Hit(upper_sq, face_a, face_b, p, q)
+    if found_sq < near.seen.near_sq:
+        return Near(best, Seen(found_sq, kind, i, j))
+    return Near(best, near.seen)
+
+
+@inline(force=True)
+def is_over(surface, face, x):
+    """True if the foot of `x` on the plane of `face` lies in the face (body frame)."""
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        outward = row(surface.corner_normals, c)
+        if dot(outward, sub(x, row(surface.vertices, surface.face_vertices[c]))) > 0.0:
+            return False
+    return True
+
+
+@inline(force=True)
+def may_be_over(surface, face, x, margin):
+    """True unless the foot of `x` is outside the face by more than rounding."""
+    room = margin * surface.blunt[face] + surface.width[face]
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        outward = row(surface.corner_normals, c)
+        d = sub(x, row(surface.vertices, surface.face_vertices[c]))
+        if dot(outward, d) > LOOSE * (abs(d.x) + abs(d.y) + abs(d.z)) + room:
+            return False
+    return True
+
+
+@inline(force=True)
+def height(surface, face, x):
+    """The signed height of `x` over the plane of `face` (body frame)."""
+    first = row(surface.vertices, surface.face_vertices[surface.face_starts[face]])
+    return dot(row(surface.normals, face), sub(x, first))
+
+
+@inline(force=True)
+def has_plane(surface, face):
+    """True if the face has a normal that is more than rounding."""
+    n = row(surface.normals, face)
+    return n.x != 0.0 or n.y != 0.0 or n.z != 0.0
+
+
+@inline(force=True)
+def _upper_sq(surface, face, h, margin):
+    """An upper bound on the squared distance of a point at height `h` over the face."""
+    blunt = surface.blunt[face]
+    upper = abs(h) * (1.0 + ROUGH * blunt * blunt) + margin * blunt + surface.width[face]
+    return upper * upper
+
+
+@inline(one_caller=True)
+def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
+    """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
+    if has_plane(b, face_b):
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
+            x = move_back(m, p)
+            h = height(b, face_b, x)
+            if h * h <= limit_sq and is_over(b, face_b, x):
+                q = move(m, along(x, -h, row(b.normals, face_b)))
+                upper_sq = _upper_sq(b, face_b, h, margin)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q, CORNER_FACE, i, 0)
+    return near
+
+
+@inline(one_caller=True)
+def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
+    """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
+    flat = has_plane(a, face_a)
+    for k in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        j = b.owned_vertices[k]
+        q = move(m, row(b.vertices, j))
+        if flat:
+            h = height(a, face_a, q)
+            if h * h <= limit_sq and is_over(a, face_a, q):
+                p = along(q, -h, row(a.normals, face_a))
+                upper_sq = _upper_sq(a, face_a, h, margin)
+                near = take(near, h * h, upper_sq, face_a, face_b, p, q, FACE_CORNER, 0, j)
+        for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
+            p0 = row(a.vertices, a.owned_edges[e, 0])
+            p1 = row(a.vertices, a.owned_edges[e, 1])
+            inside, p = foot_inside(q, p0, p1)
+            if inside:
+                found_sq = gap_sq(p, q)
+                if found_sq <= limit_sq:
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGE_CORNER, e, j)
+    return near
+
+
+@inline(one_caller=True)
+def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
+    """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`.
+
+    Edges that the direction `d` of the best points so far tells apart are not measured: of faces with many corners
+    most. Without such points it is zero, which tells nothing.
+    """
+    d = sub(near.best.q, near.best.p)
+    reach = (math.sqrt(min(limit_sq, near.seen.near_sq)) + margin) * math.sqrt(dot(d, d))
+    top = -math.inf
+    for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
+        top = max(top, dot(d, row(a.vertices, a.face_vertices[c])))
+    for e in range(b.edge_starts[face_b], b.edge_starts[face_b + 1]):
+        q0 = move(m, row(b.vertices, b.owned_edges[e, 0]))
+        q1 = move(m, row(b.vertices, b.owned_edges[e, 1]))
+        near_end = min(dot(d, q0), dot(d, q1)) - reach
+        if near_end > top:
+            continue
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
+            inside, q = foot_inside(p, q0, q1)
+            if inside:
+                found_sq = gap_sq(p, q)
+                if found_sq <= limit_sq:
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNER_EDGE, i, e)
+        for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
+            p0 = row(a.vertices, a.owned_edges[i, 0])
+            p1 = row(a.vertices, a.owned_edges[i, 1])
+            if near_end > max(dot(d, p0), dot(d, p1)):
+                continue
+            inside, p, q = common_perpendicular(p0, p1, q0, q1, margin)
+            if inside:
+                found_sq = gap_sq(p, q)
+                if found_sq <= limit_sq:
+                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGES, i, e)
+    return near
+
+
+@inline(one_caller=True)
+def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
+    """`near` with owned vertices against owned vertices."""
+    for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
+        j = b.owned_vertices[n]
+        q = move(m, row(b.vertices, j))
+        for k in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
+            i = a.owned_vertices[k]
+            p = row(a.vertices, i)
+            found_sq = gap_sq(p, q)
+            if found_sq <= limit_sq:
+                near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNERS, i, j)
+    return near
+
+
+@inline(force=True)
+def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
+    """The best pair of points, and the nearest that two faces come if it could be the minimum, else infinity.
+
+    Args:
+        m: `a_from_b`.
+        margin: [m] rounding of a distance between two points of the bodies.
+    """
+    limit = limit_of(a, face_a, b, face_b, math.sqrt(best.gap_sq), margin)
+    limit_sq = limit * limit
+    near = Near(best, NOTHING_SEEN)
+    near = vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near)
+    near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
+    near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)
+    return edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near)
+
+
+@inline(force=True)
+def _may_own_farthest(surface, face, u, depth):
+    """False if nothing that a face owns is its farthest along any direction within `LEANING` of `u`.
+
+    A corner, an edge or the face is farthest; all its corners are as high as the highest, but for the leaning, and
+    `depth` [m] of rounding.
+    """
+    owns = np.int64(surface.owns[face])
+    if owns == ANYTHING:
+        return True
+    first, end = surface.face_starts[face], surface.face_starts[face + 1]
+    height_of_top = -math.inf
+    top = u
+    for c in range(first, end):
+        x = row(surface.vertices, surface.face_vertices[c])
+        h = dot(u, x)
+        if h > height_of_top:
+            top, height_of_top = x, h
+    high = 0
+    for c in range(first, end):
+        below = sub(top, row(surface.vertices, surface.face_vertices[c]))
+        if dot(u, below) <= LEANING * (abs(below.x) + abs(below.y) + abs(below.z)) + depth:
+            high |= 1 << (c - first)
+    edges = high & (high >> 1 | high << (end - first - 1))
+    if (owns & high) | (owns >> LISTED & edges):
+        return True
+    but_one = high & (high - 1)
+    return but_one != 0 and (edges == 0 or but_one & (but_one - 1) != 0)
+
+
+@inline(force=True)
+def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
+    """False if two faces, should they be the nearest of all, are nearest at features that are other faces' own.
+
+    Args:
+        in_sight: [m] the bound of the faces along the sight. Where it is within `OWN_SIGHT` of the least distance,
+            the direction of their nearest points is within `LEANING` of the sight.
+    """
+    limit = limit_of(a, face_a, b, face_b, best_gap, margin)
+    if in_sight < (1.0 - OWN_SIGHT) * limit or limit > CLEARLY * best_gap:
+        return True
+    v = sight.v
+    return _may_own_farthest(a, face_a, sight.u, limit - in_sight) and _may_own_farthest(
+        b, face_b, Vec3(-v.x, -v.y, -v.z), limit - in_sight
+    )
+
+
+@inline(force=True)
+def may_meet(a, face_a, b, face_b, m, margin):
+    """False only if two faces are clearly apart, seen up from the plane of one and away from its nearest edge."""
+    return lower_bound_faces_beside(a, face_a, b, face_b, m) <= margin

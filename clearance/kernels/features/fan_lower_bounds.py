@@ -1,0 +1,86 @@
+"""The lower bound of two bent faces, triangle by triangle of their fans: slow, and rarely needed.
+
+Where two faces bent by rounding lie parallel over each other, no one direction shows all of their triangles
+apart. Each pair of triangles is convex and has one that does: that between its own nearest features.
+"""
+
+from clearance.compile.jit import inline, kernel
+from clearance.compile.kernel_table import FANS, Lent, apart, at_address, borrow
+from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, less, lesser
+from clearance.kernels.features.face_lower_bounds import Part, corners_of, floor_along
+from clearance.kernels.features.feature import simplex
+from clearance.kernels.features.wide_features import NOTHING_SIZED, Simplex, wide_feature
+from clearance.kernels.mesh.surface import surface_like
+
+MOST = 64
+"""Triangle pairs that are worth it; faces of more keep the bound of their convex hulls."""
+
+
+@inline(force=True)
+def _turned(triangle, i):
+    """The triangle read from corner `i`."""
+    if i == 0:
+        return triangle
+    if i == 1:
+        return Simplex(3, triangle.v, triangle.w, triangle.u)
+    return Simplex(3, triangle.w, triangle.u, triangle.v)
+
+
+@inline(force=True)
+def _start(n, triangle):
+    """The first `n` corners of a triangle as a simplex of its own."""
+    return Simplex(n, triangle.u, triangle.u if n == 1 else triangle.v, triangle.w)
+
+
+@kernel
+def _nearest_of_triangles(frames, one, two):
+    """The nearest pair of points of two triangles that do not meet, and so its direction."""
+    best = wide_feature(frames, _start(1, one), _start(1, two))
+    for kind in range(6):
+        n_one = 3 if kind == 4 else (2 if kind in (1, 3) else 1)
+        n_two = 3 if kind == 5 else (2 if kind in (2, 3) else 1)
+        for i in range(1 if n_one == 3 else 3):
+            for j in range(1 if n_two == 3 else 3):
+                found = wide_feature(frames, _start(n_one, _turned(one, i)), _start(n_two, _turned(two, j)))
+                if less(found.gap_sq, best.gap_sq):
+                    best = found
+    return best
+
+
+def _like():
+    far = NOTHING_SIZED.length
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, NOTHING_SIZED.pair, far, far
+
+
+@apart(FANS, _like)
+def floor_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
+    """[m] `floor`, or a greater lower bound on the distance of two faces.
+
+    Args:
+        least: (`Wide`) the floor that is enough: triangles that have it along `pair` are not looked at.
+    """
+    a, b = borrow(lent_a), borrow(lent_b)
+    start_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
+    start_b, end_b = b.face_starts[face_b], b.face_starts[face_b + 1]
+    if (end_a - start_a - 2) * (end_b - start_b - 2) > MOST:
+        return floor
+    least_floor = least
+    for i in range(start_a + 1, end_a - 1):
+        for j in range(start_b + 1, end_b - 1):
+            part_a = corners_of(a, face_a, Part(i, i + 2))
+            part_b = corners_of(b, face_b, Part(j, j + 2))
+            direction = pair
+            for attempt in range(2):
+                own = floor_along(frames, part_a, part_b, direction)
+                if not less(own, least) or attempt == 1:
+                    break
+                one, two = simplex(a, face_a, 3, i), simplex(b, face_b, 3, j)
+                direction = _nearest_of_triangles(frames, one, two)
+            least_floor = lesser(own, least_floor)
+    return floor if less(least_floor, floor) else least_floor
+
+
+@inline
+def fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
+    """The same by address."""
+    return at_address(table, FANS, floor, (lent_a, face_a, lent_b, face_b, frames, pair, least, floor))

@@ -1,0 +1,233 @@
+"""The face pairs that could be the minimum, measured again in wide numbers.
+
+Vertices and poses are taken exactly as given. The search (`descent`) names the face pairs; here the feature
+pair that doubles found the nearest is measured to some 30 digits, and a lower bound along its direction
+mostly proves that it is. Only where it does not are all features within the limit measured. The least
+wins, ties go to the least faces, and the lower bound tells how far the answer can be above the truth.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.compile.kernel_table import (
+    REFINE,
+    REFINE_EVERY,
+    Lent,
+    apart,
+    at_address,
+    borrow,
+    table_like,
+)
+from clearance.kernels.arithmetic.double_double import (
+    FAR,
+    FRAMES_AT_REST,
+    NOISE,
+    ZERO3,
+    Wide,
+    Wide3,
+    less,
+    lesser,
+    minus,
+    root,
+    wide,
+)
+from clearance.kernels.features.bounds import lower_bound_faces_in_sight
+from clearance.kernels.features.every_feature import Ask, nearest_of_every
+from clearance.kernels.features.face_lower_bounds import SURE, UNSURE, floor_of
+from clearance.kernels.features.face_pair import NOTHING_SEEN, UNSEEN, Seen, limit_of
+from clearance.kernels.features.fan_lower_bounds import fans_floor_of
+from clearance.kernels.features.feature import nearest_feature, simplex, simplex_here
+from clearance.kernels.features.rounding_guard import may_hide
+from clearance.kernels.features.wide_features import sized_of, too_far, wide_feature_here
+from clearance.kernels.mesh.surface import surface_like
+
+N_WAITING = 64
+"""Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
+
+
+class Refined(NamedTuple):
+    """The best pair of points so far, in the orientation of the world, from the origin of a.
+
+    Attributes:
+        length: [m] their distance, the root of `gap_sq`.
+        floor: [m] a lower bound on the distance of its two faces.
+        sure: [m] a lower bound on the distances of all feature pairs that were measured, whichever won.
+    """
+
+    gap_sq: Wide
+    length: Wide
+    face_a: int
+    face_b: int
+    p: Wide3
+    q: Wide3
+    floor: Wide
+    sure: Wide
+
+
+NOTHING_REFINED = Refined(FAR, FAR, 2**62, 2**62, ZERO3, ZERO3, FAR, FAR)
+"""What any pair of points beats."""
+
+
+@inline
+def _wins(found_sq, face_a, face_b, best):
+    """True where a new pair is nearer, or as near with lesser faces."""
+    if less(best.gap_sq, found_sq):
+        return False
+    if less(found_sq, best.gap_sq):
+        return True
+    return face_a < best.face_a or (face_a == best.face_a and face_b < best.face_b)
+
+
+@inline
+def _enough(length, margin):
+    """[m] the floor that proves a distance."""
+    return minus(length, wide(SURE * length.hi + UNSURE * margin))
+
+
+@inline
+def _better(best, pair, length, face_a, face_b, floor, sure):
+    """`best` after a face pair. The floor of one that does not win may be low: it is nearest at others' own."""
+    sure = lesser(best.sure, sure)
+    if _wins(pair.gap_sq, face_a, face_b, best):
+        return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor, sure)
+    return Refined(best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, best.floor, sure)
+
+
+def _two_faces_like():
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST
+
+
+@apart(REFINE_EVERY, lambda: (*_two_faces_like(), Ask(0.0, 0.0), NOTHING_REFINED, table_like()))
+def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best, table):
+    """`best`, or better: all features of two faces within the limit."""
+    a, b = borrow(lent_a), borrow(lent_b)
+    chosen = nearest_of_every(a, face_a, b, face_b, frames, ask, table)
+    if chosen.gap_sq.hi == math.inf:
+        return best
+    feature = chosen.feature
+    one = simplex(a, face_a, feature.n_a, feature.i)
+    two = simplex(b, face_b, feature.n_b, feature.j)
+    sized = sized_of(table, frames, one, two)
+    pair, length = sized.pair, sized.length
+    floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
+    enough = _enough(length, ask.margin)
+    if less(floor, enough) and (a.bent[face_a] or b.bent[face_b]):
+        floor = fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, enough, floor)
+    return _better(best, pair, length, face_a, face_b, minus(floor, sized.off), chosen.sure)
+
+
+@apart(
+    REFINE,
+    lambda: (*_two_faces_like(), NOTHING_SEEN, Ask(0.0, 0.0), NOTHING_REFINED, table_like()),
+)
+def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
+    """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
+    a, b = borrow(lent_a), borrow(lent_b)
+    if seen.kind != UNSEEN:
+        feature = nearest_feature(a, face_a, b, face_b, frames.m, seen)
+        one = simplex_here(a, face_a, feature.n_a, feature.i)
+        two = simplex_here(b, face_b, feature.n_b, feature.j)
+        pair = wide_feature_here(frames, one, two)
+        if pair.gap_sq.hi < math.inf:
+            floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
+            length = root(pair.gap_sq)
+            if not less(floor, _enough(length, ask.margin)):
+                off = too_far(frames, one, two, pair, length)
+                return _better(best, pair, length, face_a, face_b, minus(floor, off), minus(length, off))
+    return at_address(
+        table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best, table)
+    )
+
+
+@inline(one_caller=True)
+def refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best):
+    """The same by address."""
+    return at_address(
+        table, REFINE, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table)
+    )
+
+
+class Waiting(NamedTuple):
+    """Face pairs that wait to be refined, as a `Seen` each.
+
+    Attributes:
+        faces: (n, 2) int64. near_sq: (n,) [m^2]. features: (n, 3) int64 kind, i, j.
+        least_sq: (n,) [m^2] a face pair whose features are no nearer needs not be refined: near_sq, or less.
+    """
+
+    faces: np.ndarray
+    near_sq: np.ndarray
+    features: np.ndarray
+    least_sq: np.ndarray
+
+
+@shared
+def room_for_waiting():
+    """Room for `N_WAITING` face pairs."""
+    return Waiting(
+        np.empty((N_WAITING, 2), dtype=np.int64),
+        np.empty(N_WAITING),
+        np.empty((N_WAITING, 3), dtype=np.int64),
+        np.empty(N_WAITING),
+    )
+
+
+@inline(force=True)
+def put(waiting, at, face_a, face_b, seen, least_sq):
+    """Lets a face pair wait at a place."""
+    waiting.faces[at, 0], waiting.faces[at, 1] = face_a, face_b
+    waiting.near_sq[at], waiting.least_sq[at] = seen.near_sq, least_sq
+    features = waiting.features
+    features[at, 0], features[at, 1], features[at, 2] = seen.kind, seen.i, seen.j
+
+
+@inline(force=True)
+def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table):
+    """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
+
+    Args:
+        sight: the best one so far. slack: [m] its rounding.
+        least: [m] no two faces are nearer but for what rounding hides.
+    """
+    a, b = borrow(lent_a), borrow(lent_b)
+    for i in range(n_waiting):
+        face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
+        limit = limit_of(a, face_a, b, face_b, best_gap, margin)
+        near_sq = waiting.near_sq[i]
+        if waiting.least_sq[i] > limit * limit:
+            continue
+        if near_sq > limit * limit:
+            in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
+            if in_sight > limit or not may_hide(a, face_a, b, face_b, frames.m, margin, limit, least):
+                continue
+        features = waiting.features
+        seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
+        best = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, Ask(limit, margin), best)
+    return best
+
+
+@inline(force=True)
+def shed(a, b, best_gap, margin, waiting, n_waiting):
+    """Drops the waiting face pairs that cannot win any more; how many are left."""
+    kept = 0
+    for i in range(n_waiting):
+        limit = limit_of(a, waiting.faces[i, 0], b, waiting.faces[i, 1], best_gap, margin)
+        if waiting.least_sq[i] <= limit * limit:
+            waiting.near_sq[kept], waiting.least_sq[kept] = waiting.near_sq[i], waiting.least_sq[i]
+            for k in range(2):
+                waiting.faces[kept, k] = waiting.faces[i, k]
+            for k in range(3):
+                waiting.features[kept, k] = waiting.features[i, k]
+            kept += 1
+    return kept
+
+
+@inline
+def error_of(refined, distance):
+    """[m] a bound on |distance - true distance|, `distance` being the refined one rounded."""
+    short = minus(refined.length, lesser(refined.sure, refined.floor))
+    below = abs(distance - refined.length.hi) + abs(refined.length.lo)
+    return (below + max(0.0, short.hi)) * (1.0 + 2.0**-50) + NOISE * distance

@@ -1,0 +1,1 @@
+"""Two curves: Hausdorff distance and least distance, certified."""

@@ -1,0 +1,190 @@
+"""Compiled trimming of one curve against the offset of another: equations (3) to (10) of Kim, Oh, Kim (2010).
+
+An arc of the one curve that lies wholly within the lower bound of an arc of the other cannot hold the
+Hausdorff distance. Three control points decide. Two differences from the paper, both on the safe side: the
+biarc errors of both curves are taken off (the paper takes one), and a straight piece of the other curve is
+tested by its whole stadium, which is convex.
+"""
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+from clearance.kernels.curve.arc import (
+    COSINE,
+    CX,
+    CY,
+    EPS,
+    RADIUS,
+    SENSE,
+    X0,
+    X1,
+    Y0,
+    Y1,
+    arc_distance,
+    arc_middle,
+    segment_distance,
+)
+from clearance.kernels.curve.arc_fit import BUCKET
+from clearance.kernels.curve.bezier import hypotenuse
+from clearance.kernels.curve.distance_map import draw, nearest_arc
+
+
+@inline
+def _within_segment(points, row, reach):
+    for k in range(3):
+        x, y = points[k, 0], points[k, 1]
+        if not segment_distance(x, y, row[X0], row[Y0], row[X1], row[Y1]) < reach:
+            return False
+    return True
+
+
+@inline
+def _within_circle(points, x, y, reach):
+    """Equations (9) and (10): all three control points within `reach` of one end of the arc."""
+    for k in range(3):
+        if not hypotenuse(points[k, 0] - x, points[k, 1] - y) < reach:
+            return False
+    return True
+
+
+@inline
+def _side(row, x, y):
+    """0 where (x, y) is between the two rays from the arc's centre, -1 before the first, 1 past the second."""
+    ox, oy = x - row[CX], y - row[CY]
+    if ((row[X0] - row[CX]) * oy - (row[Y0] - row[CY]) * ox) * row[SENSE] < 0.0:
+        return -1
+    if (ox * (row[Y1] - row[CY]) - oy * (row[X1] - row[CX])) * row[SENSE] < 0.0:
+        return 1
+    return 0
+
+
+@inline
+def arc_covers(points, row, reach):
+    """Whether the triangle of three control points lies within `reach` of the arc `row`, proven.
+
+    Equation (8) with (4): between the rays, the inner offset circle bulges into the triangle by at most its
+    own sagitta, epsilon' = epsilon OA' / OA; a chord at radius OA' + epsilon' / cos(theta) stays outside it.
+    """
+    if row[RADIUS] == 0.0:
+        return _within_segment(points, row, reach)
+    for k in range(3):
+        side = _side(row, points[k, 0], points[k, 1])
+        if side < 0:
+            return _within_circle(points, row[X0], row[Y0], reach)
+        if side > 0:
+            return _within_circle(points, row[X1], row[Y1], reach)
+    inner = max(0.0, row[RADIUS] - reach)
+    concave = inner * (1.0 - row[COSINE]) / row[COSINE]
+    for k in range(3):
+        radius = hypotenuse(points[k, 0] - row[CX], points[k, 1] - row[CY])
+        if not abs(radius - row[RADIUS]) < reach - concave:
+            return False
+    return True
+
+
+@inline
+def _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack):
+    """Whether all curve in a node's box lies within `reach` of one arc of the other curve; and that arc.
+
+    The distance to an arc grows by at most what a point moves, so that the box's centre decides.
+    """
+    x0, y0, x1, y1 = boxes[node, 0], boxes[node, 1], boxes[node, 2], boxes[node, 3]
+    enough = reach - 0.5 * hypotenuse(x1 - x0, y1 - y0) * (1.0 + 1e-15)
+    if not enough > 0.0:
+        return False, hint
+    x, y = 0.5 * (x0 + x1) + shift_x, 0.5 * (y0 + y1) + shift_y
+    distance, hint = nearest_arc(other, x, y, hint, enough, stack)
+    return distance <= enough, hint
+
+
+@kernel
+def trim_nodes(leaves, other, drawn, shift_x, shift_y, lower_bound, kept, stack):
+    """Clears `kept` for whole nodes of the tree that lie within the lower bound of one arc of the other.
+
+    What trimming arc by arc does, for runs of arcs that are short beside the lower bound.
+    """
+    boxes = leaves.boxes
+    size, n_arcs = boxes.shape[0] // 2, leaves.arcs.shape[0]
+    epsilon = 0.0
+    for k in range(other.arcs.shape[0]):
+        epsilon = max(epsilon, other.arcs[k, EPS])
+    reach = lower_bound * (1.0 - 1e-14) - epsilon
+    nodes = np.empty(128, np.int64)
+    nodes[0], top, hint = 1, 1, drawn.arc[0]
+    while top > 0:
+        top -= 1
+        node = nodes[top]
+        if boxes[node, 0] > boxes[node, 2]:
+            continue
+        covered, hint = _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack)
+        if not covered and node < size:
+            nodes[top], nodes[top + 1] = 2 * node + 1, 2 * node
+            top += 2
+        elif covered:
+            depth = 0
+            while node < size:
+                node, depth = 2 * node, depth + 1
+            first = (node - size) * BUCKET
+            for k in range(first, min(n_arcs, first + (BUCKET << depth))):
+                kept[k] = False
+
+
+@kernel
+def trim(leaves, other, drawn, shift_x, shift_y, lower_bound, kept):
+    """Clears in `kept` (n_leaves,) the arcs that cannot hold the Hausdorff distance; returns how many stay.
+
+    The candidates for an arc are the other curve's arcs that the map shows at its start, middle and end,
+    and the two beside that in the middle.
+    """
+    points = np.empty((3, 2))
+    n_kept = 0
+    for k in range(leaves.arcs.shape[0]):
+        if not kept[k]:
+            continue
+        row = leaves.arcs[k]
+        mx, my = arc_middle(row)
+        points[0, 0], points[0, 1] = row[X0] + shift_x, row[Y0] + shift_y
+        points[1, 0], points[1, 1] = mx + shift_x, my + shift_y
+        points[2, 0], points[2, 1] = row[X1] + shift_x, row[Y1] + shift_y
+        start, end = drawn.first[k], drawn.first[k + 1]
+        covered = False
+        for j in range(5):
+            if start == end and 0 < j < 3:
+                continue
+            seen = drawn.arc[start + (end - start) * (j if j < 3 else 1) // 2]
+            seen = min(other.arcs.shape[0] - 1, max(0, seen + (0, 0, 0, 1, -1)[j]))
+            facing = other.arcs[seen]
+            reach = lower_bound * (1.0 - 1e-14) - row[EPS] - facing[EPS]
+            if reach > 0.0 and arc_covers(points, facing, reach):
+                covered = True
+                break
+        kept[k] = not covered
+        n_kept += kept[k]
+    return n_kept
+
+
+@kernel
+def kept_arcs(pa, la, lb, shift_x, shift_y, lower_bound, pixel):
+    """Which arcs of A trimming leaves at a given lower bound (n,), for pictures and for tests."""
+    stack = np.empty((96, 2))
+    drawn = draw(pa, la, lb, shift_x, shift_y, pixel, stack)
+    kept = np.ones(la.arcs.shape[0], np.bool_)
+    trim(la, lb, drawn, shift_x, shift_y, lower_bound, kept)
+    return kept
+
+
+@kernel
+def field(leaves, xs, ys, depth, which):
+    """Fills `depth` and `which` (len(ys), len(xs)) with the distance map of a curve over a whole page."""
+    stack = np.empty((96, 2))
+    hint = leaves.arcs.shape[0] // 2
+    for r in range(ys.shape[0]):
+        for c in range(xs.shape[0]):
+            depth[r, c], hint = nearest_arc(leaves, xs[c], ys[r], hint, -1.0, stack)
+            # where the common end of two arcs is nearest both are; the earlier one, or rounding would decide
+            enough = depth[r, c] * (1.0 + 1e-12)
+            while hint > 0 and arc_distance(leaves.arcs[hint - 1], xs[c], ys[r]) <= enough:
+                hint -= 1
+            if arc_distance(leaves.arcs[0], xs[c], ys[r]) <= enough:
+                hint = 0
+            which[r, c] = hint

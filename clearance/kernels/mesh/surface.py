@@ -1,0 +1,165 @@
+"""The flat form in which kernels see polyhedra: faces, the features each face answers for, and the tree.
+
+Every vertex and edge is owned by the face of least index that holds it, so that a search over face pairs
+meets each pair of features once (Curtis, Tamstorf & Manocha 2008, representative triangles) and ties fall
+to the least index by themselves. Several bodies lie behind one another in one `Surface`, with `roots`.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.lanes import WIDTH, lanes_at, number_at
+from clearance.kernels.arithmetic.vec3 import Vec3, along
+
+LISTED = 8
+"""Corners that a face may have for `Surface.owns` to tell them from one another."""
+
+ANYTHING = (1 << 2 * LISTED) - 1
+"""All bits of `Surface.owns`."""
+
+
+class Surface(NamedTuple):
+    """Bodies as flat arrays; all indices are into these arrays.
+
+    Attributes:
+        vertices: (v, 3) [m], each in the frame of its body, ordered by coordinates.
+        exact: (v, 3) [m] the vertices as given, where `vertices` are rounded differences; else the same.
+        face_starts, face_vertices: (f + 1,), (c,) corners of the faces in order.
+        normals: (f, 3) unit outward, zeros where a face is so slender that rounding decides them.
+        blunt: (f,) the reciprocal of a lower bound on the sharpest corner's angle; 1 without a normal.
+        width: (f,) [m] how far the fan of the face may be from its plane, or from its edges without one; where it
+            bends inward, also how far beside it what is over it may seem.
+        bent: (f,) True where the corners are not exactly in one plane or the boundary turns the wrong way.
+        corner_normals: (c, 3) in-plane unit normals of the edges that start at the corners, outward.
+        vertex_starts, owned_vertices: (f + 1,), the vertices that each face owns.
+        edge_starts, owned_edges: (f + 1,), (e, 2) the edges that each face owns, a bent one then its diagonals.
+        owns: (f,) the same by bits: k of corner k, `LISTED` + k of the edge that starts there; all are set where a
+            face has more than `LISTED` corners or is bent.
+        centres: (3 g, 4) [m] of the boxes of the tree's nodes, in the body frame. Node n is lane n % 4 of group
+            n // 4; lanes without a node repeat the first.
+        boxes: (12 g, 4) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
+        cones: (6 g, 4) in single precision: axis, cosine and sine of the half angle of each node's normal cone
+            (`facing`; its `NO_CONE` for the sine where there is none), and the radius of a ball about its box [m].
+        children: (4 g, 2) of node n: a group and how many nodes of it, or for a leaf (face, 0). Of faces with the
+            same corners, either way round, only the least has a leaf.
+        roots: (bodies,) root nodes, each alone in its group.
+        probe_starts, probes: (bodies + 1,), a vertex of each connected component of each body.
+        turns: (f,) how often a face counts in a winding number: once for each copy that runs the same way, less
+            those that run the other way; 0 in components that are neither closed and consistently oriented nor so
+            but for a few faults.
+        cap_starts, caps: (bodies + 1,), (3 k, 3) [m] the corners of the triangles that close those that are so but
+            for a few faults, in the body frame. They count once in a winding number, and nowhere else.
+    """
+
+    vertices: np.ndarray
+    exact: np.ndarray
+    face_starts: np.ndarray
+    face_vertices: np.ndarray
+    normals: np.ndarray
+    blunt: np.ndarray
+    width: np.ndarray
+    bent: np.ndarray
+    corner_normals: np.ndarray
+    vertex_starts: np.ndarray
+    owned_vertices: np.ndarray
+    edge_starts: np.ndarray
+    owned_edges: np.ndarray
+    owns: np.ndarray
+    centres: np.ndarray
+    boxes: np.ndarray
+    cones: np.ndarray
+    children: np.ndarray
+    roots: np.ndarray
+    probe_starts: np.ndarray
+    probes: np.ndarray
+    turns: np.ndarray
+    cap_starts: np.ndarray
+    caps: np.ndarray
+
+
+def surface_like():
+    """A surface of nothing, by its types."""
+    points, numbers = np.empty((0, 3)), np.empty(0)
+    indices, pairs = np.empty(0, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
+    singles = np.empty((0, 4), dtype=np.float32)
+    return Surface(
+        points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
+        indices, indices, indices, pairs, np.empty(0, dtype=np.uint16),
+        np.empty((0, 4)), singles, singles, np.empty((0, 2), dtype=np.int32),
+        indices, indices, indices, np.empty(0, dtype=np.int32), indices, points,
+    )  # fmt: skip
+
+
+class Box(NamedTuple):
+    """All points centre + r x + s y + t z, |r|, |s|, |t| at most the half sizes; x, y, z almost orthonormal."""
+
+    x: Vec3
+    y: Vec3
+    z: Vec3
+    centre: Vec3
+    half: Vec3
+
+
+@inline(force=True)
+def _point_at(numbers, first, k):
+    return Vec3(number_at(numbers, first, k), number_at(numbers, first + 1, k), number_at(numbers, first + 2, k))
+
+
+@inline(force=True)
+def box_at(boxes, centres, node):
+    """The box of a node."""
+    group, k = node // WIDTH, node % WIDTH
+    first = 12 * group
+    return Box(
+        _point_at(boxes, first, k),
+        _point_at(boxes, first + 3, k),
+        _point_at(boxes, first + 6, k),
+        _point_at(centres, 3 * group, k),
+        _point_at(boxes, first + 9, k),
+    )
+
+
+@inline(force=True)
+def box_of(surface, node):
+    """The box of a node of the tree."""
+    return box_at(surface.boxes, surface.centres, node)
+
+
+@inline(force=True)
+def _points_at(numbers, first):
+    return Vec3(lanes_at(numbers, first), lanes_at(numbers, first + 1), lanes_at(numbers, first + 2))
+
+
+@inline(force=True)
+def group_at(boxes, centres, group):
+    """The boxes of the nodes of a group, in lanes."""
+    first = 12 * group
+    return Box(
+        _points_at(boxes, first),
+        _points_at(boxes, first + 3),
+        _points_at(boxes, first + 6),
+        _points_at(centres, 3 * group),
+        _points_at(boxes, first + 9),
+    )
+
+
+@inline(force=True)
+def group_of(surface, group):
+    """The boxes of a group of the tree, in lanes."""
+    return group_at(surface.boxes, surface.centres, group)
+
+
+@inline(force=True)
+def is_leaf(surface, node):
+    """True if the node is of one face, which is `children[node, 0]`."""
+    return surface.children[node, 1] == 0
+
+
+@inline(force=True)
+def corner_of(box, i):
+    """Corner `i` (0 to 7) of a box."""
+    x = along(box.centre, box.half.x if i & 1 else -box.half.x, box.x)
+    x = along(x, box.half.y if i & 2 else -box.half.y, box.y)
+    return along(x, box.half.z if i & 4 else -box.half.z, box.z)

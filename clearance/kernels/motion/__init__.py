@@ -1,0 +1,1 @@
+"""Bodies that move: kinematics, clearance of every step, a proven bound between the steps."""

@@ -1,0 +1,76 @@
+"""What each pair was last found to be: it holds for as long as neither of its bodies has moved.
+
+A base on its stand, an arm that waits for another, a joint that a program leaves alone: their pairs are measured
+once. Not for: bounds on what has moved (`sweep`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.kernels.arithmetic.vec3 import row
+from clearance.kernels.features.face_pair import Hit, write_points
+
+NEVER = -1
+
+
+class Answers(NamedTuple):
+    """The last answers.
+
+    Attributes:
+        asked: (p,) how often both bodies had moved when the pair was measured, or `NEVER` if nothing was found.
+        gaps_sq, floors: (p,) [m^2] the squared distance, [m] the proven bound.
+        faces: (p, 2). points: (p, 2, 3) in the world [m].
+    """
+
+    asked: np.ndarray
+    gaps_sq: np.ndarray
+    floors: np.ndarray
+    faces: np.ndarray
+    points: np.ndarray
+
+
+@shared
+def no_answers(n_pairs):
+    """Nothing is known yet."""
+    return Answers(
+        np.full(n_pairs, NEVER), np.empty(n_pairs), np.empty(n_pairs),
+        np.empty((n_pairs, 2), dtype=np.int64), np.empty((n_pairs, 2, 3)),
+    )  # fmt: skip
+
+
+@inline(force=True)
+def still_holds(answers, pair, moves, gap):
+    """True if a pair need not be measured to know whether it is within `gap` [m], and how near.
+
+    Args:
+        moves: how often both bodies have moved so far.
+    """
+    return answers.asked[pair] == moves and answers.gaps_sq[pair] <= gap * gap
+
+
+@inline
+def was_contact(answers, pair):
+    """True if the surfaces of a pair met when it was last measured."""
+    return answers.asked[pair] != NEVER and answers.gaps_sq[pair] == 0.0 and answers.faces[pair, 0] >= 0
+
+
+@inline
+def answer_of(answers, pair):
+    """(the hit, the proven bound [m]) of a pair."""
+    face_a, face_b = answers.faces[pair]
+    p, q = row(answers.points[pair], 0), row(answers.points[pair], 1)
+    return Hit(answers.gaps_sq[pair], face_a, face_b, p, q), answers.floors[pair]
+
+
+@inline
+def note_answer(answers, pair, moves, hit, floor):
+    """Keeps what a pair was found to be; `hit.face_a` is 2**62 if nothing was found. `moves` as above."""
+    answers.asked[pair] = NEVER
+    if hit.face_a == 2**62:
+        return
+    answers.asked[pair] = moves
+    answers.gaps_sq[pair], answers.floors[pair] = hit.gap_sq, floor
+    answers.faces[pair, 0], answers.faces[pair, 1] = hit.face_a, hit.face_b
+    write_points(hit, answers.points[pair])

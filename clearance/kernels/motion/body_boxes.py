@@ -1,0 +1,92 @@
+"""How far apart whole bodies are by their boxes alone: what is known of a pair before any search.
+
+The box of a body is placed in the world once for all its pairs, and a ball about it tells most of them apart for a
+third of what two boxes take. Not for: nodes of trees (`bounds`, `node_pairs`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.kernels.arithmetic.double_double import defect_of
+from clearance.kernels.arithmetic.vec3 import dot, move, row, sub, turn
+from clearance.kernels.features.bounds import LEAN, SLACK, between_boxes, lower_bound_between
+from clearance.kernels.mesh.surface import Box, box_of
+
+OUTWARD = 1.0 + 2.0**-20
+"""Covers, in the radius of a ball, the rounding of a box's axes to single precision."""
+
+
+class BodyBoxes(NamedTuple):
+    """The boxes of all bodies where they are, and balls about them.
+
+    Attributes:
+        axes: (bodies, 3, 3) of each box, a row an axis. centres, halves: (bodies, 3) [m], in the world.
+        radii: (bodies,) [m] of the balls about the centres.
+        slacks: (bodies,) [m] what rounding, and a rotation that is not quite orthonormal, can raise a bound.
+        moves: (bodies,) how often each body had moved when its box was placed, or -1.
+    """
+
+    axes: np.ndarray
+    centres: np.ndarray
+    halves: np.ndarray
+    radii: np.ndarray
+    slacks: np.ndarray
+    moves: np.ndarray
+
+
+@shared
+def room_for_boxes(n_bodies):
+    """Boxes of which none is placed yet."""
+    return BodyBoxes(
+        np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3)), np.empty((n_bodies, 3)), np.empty(n_bodies),
+        np.empty(n_bodies), np.full(n_bodies, -1),
+    )  # fmt: skip
+
+
+@inline
+def place_box(surface, body, pose, boxes):
+    """Puts the box of a body to where the body is, at a `Rigid`."""
+    box = box_of(surface, surface.roots[body])
+    centre, x, y, z = move(pose, box.centre), turn(pose, box.x), turn(pose, box.y), turn(pose, box.z)
+    for k in range(3):
+        boxes.axes[body, 0, k], boxes.axes[body, 1, k], boxes.axes[body, 2, k] = x[k], y[k], z[k]
+        boxes.centres[body, k], boxes.halves[body, k] = centre[k], box.half[k]
+    c, h, t = box.centre, box.half, pose.t
+    reach = abs(t.x) + abs(t.y) + abs(t.z) + abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
+    boxes.slacks[body] = (SLACK + 8.0 * defect_of(pose)) * reach
+    boxes.radii[body] = math.sqrt(dot(h, h)) * OUTWARD
+
+
+@inline(force=True)
+def _box(boxes, body):
+    axes = boxes.axes[body]
+    return Box(row(axes, 0), row(axes, 1), row(axes, 2), row(boxes.centres, body), row(boxes.halves, body))
+
+
+@inline(force=True)
+def _beyond(box, d, slack):
+    """[m] a lower bound on the distance of a box from what lies `d` from its centre."""
+    x = max(0.0, abs(dot(box.x, d)) - box.half.x - slack)
+    y = max(0.0, abs(dot(box.y, d)) - box.half.y - slack)
+    z = max(0.0, abs(dot(box.z, d)) - box.half.z - slack)
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@inline(force=True)
+def bound_of_bodies(boxes, a, b, enough):
+    """[m] a lower bound on the distance of two bodies; one above `enough` is not made tighter.
+
+    The box of each against the ball about the other's; where that is not enough, both boxes.
+    """
+    p, q = _box(boxes, a), _box(boxes, b)
+    d = sub(q.centre, p.centre)
+    slack = boxes.slacks[a] + boxes.slacks[b]
+    lean = slack + LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
+    by_balls = max(_beyond(p, d, lean) - boxes.radii[b], _beyond(q, d, lean) - boxes.radii[a]) - 2.0 * slack
+    if by_balls > enough:
+        return by_balls
+    by_boxes = lower_bound_between(p.half, q.half, between_boxes(p, q.x, q.y, q.z, d), slack) - slack
+    return max(0.0, max(by_balls, by_boxes))

@@ -1,0 +1,312 @@
+"""A proven lower bound on the clearance of the continuous motion between two steps.
+
+In the middle of an interval the trees are descended as for a distance, but each bound is lowered by how far
+the link can move in the interval: along the direction of the nearest points where two faces or boxes are
+seen apart, so that sliding past costs nothing in the first order. Nodes that are turned away in all of the
+interval are passed over (`facing`): at its first instant the distance is above 0, or nothing is asked. What does
+not stay above the target is halved, the earlier half first; after `most_parts` of them the target of a pair is
+lowered until it can be proven, so that all ends. A bound on a pair holds for later intervals less what its link
+moves in them: pairs that it keeps above the target are not asked.
+
+Not for: one pair over one interval (`hold`), the steps themselves (`sweep`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+from clearance.compile.kernel_table import (
+    CERTIFY,
+    Lent,
+    apart,
+    at_address,
+    borrow,
+    lend,
+    table_like,
+)
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.mesh.surface import box_of, surface_like
+from clearance.kernels.motion.certify_pair import allowed_gap, hold
+from clearance.kernels.motion.joint_motion_bound import Chain, Drift, drift_of, drift_of_box
+from clearance.kernels.motion.joint_path import JointPath, part_of
+from clearance.kernels.motion.kinematics import forward
+from clearance.kernels.motion.placed import GROWTH
+from clearance.kernels.search.front import KEPT_DOWN
+from clearance.kernels.search.scratch import Scratch, new_scratch
+
+DEPTH = 64
+"""Parts of an interval that can wait, one a halving; after 52 the ends cannot be told apart."""
+
+WIDER = 4.0
+"""Times as wide is the gap of a pair in an interval that has come to its most parts."""
+
+ROUNDED_DOWN = 1.0 - 2.0**-50
+"""Covers the rounding of the steps' clearances, which are right to the last place."""
+
+
+class Asked(NamedTuple):
+    """Which pairs are certified: their bodies in the surface, the links of the first, poses of the second.
+
+    Attributes:
+        bodies: (p, 2) moving body, standing body.
+        links: (p,) link of the moving body.
+        standing: (bodies, 4, 4) poses of the standing bodies [m].
+    """
+
+    bodies: np.ndarray
+    links: np.ndarray
+    standing: np.ndarray
+
+
+class Aim(NamedTuple):
+    """What is to be proven.
+
+    Attributes:
+        gap: [m] how far `lower` may be below `upper`, which takes the least distance seen between.
+        fail: [m] the limit that is to be decided, if need be with a smaller gap.
+        most_parts: of one interval and pair, after which the gap is widened fourfold, and so on.
+    """
+
+    gap: float
+    fail: float
+    most_parts: int
+
+
+class Bounds(NamedTuple):
+    """What is found of each interval.
+
+    Attributes:
+        lower, upper: (n,) [m] proven, and the least distance asked about or seen.
+        share: (n,) where in the interval `upper` was seen, 0 to 1; -1 where nothing less than was asked about was.
+        pair: (n,) which pair was seen there, or -1.
+    """
+
+    lower: np.ndarray
+    upper: np.ndarray
+    share: np.ndarray
+    pair: np.ndarray
+
+
+class Over(NamedTuple):
+    """What is known of a pair over an interval: bound and least distance [m], and where that was seen, or -1."""
+
+    floor: float
+    least: float
+    share: float
+
+
+class Middle(NamedTuple):
+    """The state in the middle of an interval or of a part of it."""
+
+    positions: np.ndarray  # (1, n_links)
+    swing: np.ndarray  # (n_links,)
+    bend: np.ndarray  # (n_links,)
+    poses: np.ndarray  # (1, n_links, 4, 4)
+
+
+class Known(NamedTuple):
+    """What is carried from interval to interval, and room.
+
+    Attributes:
+        whole, part: the middle of the interval, and of a part of it.
+        links: (bodies,) the link of each body that moves, else -1.
+        drifts: (bodies, 8) numbers of the `Drift` of each in the interval.
+        travel: (bodies,) [m] how far each can have moved in all.
+        floors: (p,) [m] a bound on each pair's distance over an interval, plus the travel at its end.
+        seeds: (p, 2) the faces that were nearest, or -1.
+        waiting: (DEPTH, 2) parts of an interval.
+    """
+
+    whole: Middle
+    part: Middle
+    links: np.ndarray
+    drifts: np.ndarray
+    travel: np.ndarray
+    floors: np.ndarray
+    seeds: np.ndarray
+    waiting: np.ndarray
+    scratch: Scratch
+
+
+@inline
+def _go_to(chain, path, step, low, high, middle):
+    """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
+    for link in range(path.positions.shape[1]):
+        part = part_of(path, step, link, low, high)
+        middle.positions[0, link] = part.middle
+        middle.swing[link] = part.swing
+        middle.bend[link] = part.bend
+    forward(
+        chain.world_from_base, chain.parents, chain.kinds, chain.parent_from_joint, chain.axes,
+        middle.positions, middle.poses,
+    )  # fmt: skip
+
+
+@inline
+def _new_middle(n_links):
+    return Middle(np.empty((1, n_links)), np.empty(n_links), np.empty(n_links), np.empty((1, n_links, 4, 4)))
+
+
+@inline
+def _drift_in(surface, chain, body, link, middle):
+    """The drift of a body about `middle`."""
+    pose = rigid(middle.poses[0, link])
+    root = surface.roots[body]
+    return drift_of(surface, root, chain, link, middle.poses[0], middle.swing, middle.bend, pose)
+
+
+@inline
+def _drift_at(drifts, body):
+    d = drifts[body]
+    return Drift(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
+
+
+@inline
+def _go_on(surface, chain, path, step, known):
+    """Goes to the interval after `step`: its middle, how each body drifts about it, and the travel at its end."""
+    _go_to(chain, path, step, 0.0, 1.0, known.whole)
+    for body in range(len(known.links)):
+        link = known.links[body]
+        if link < 0:
+            continue
+        drift = _drift_in(surface, chain, body, link, known.whole)
+        numbers = known.drifts[body]
+        numbers[0], numbers[1], numbers[2] = drift.velocity.x, drift.velocity.y, drift.velocity.z
+        numbers[3], numbers[4], numbers[5] = drift.spin.x, drift.spin.y, drift.spin.z
+        numbers[6], numbers[7] = drift.rest, drift.turn
+        known.travel[body] += 2.0 * GROWTH * drift_of_box(box_of(surface, surface.roots[body]), drift)
+
+
+@inline
+def _hold_pair(surface, asked, pair, middle, drift, least, gap, aim, known, tally, table):
+    """`hold` of a pair at the state in `middle`."""
+    body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
+    frames = frames_of(rigid(middle.poses[0, asked.links[pair]]), rigid(asked.standing[body_b]))
+    tally[1] += 1
+    seeds = known.seeds
+    held = hold(
+        surface, body_a, surface, body_b, frames, drift, least, gap, aim.fail,
+        seeds[pair, 0], seeds[pair, 1], known.scratch, tally, table,
+    )  # fmt: skip
+    seeds[pair, 0], seeds[pair, 1] = held.face_a, held.face_b
+    return held
+
+
+@kernel
+def certify(surface, chain, asked, path, order, first, last, clearance, aim, bounds, tally, table):
+    """Fills `bounds` for the motion between the steps `first` to `last`.
+
+    Args:
+        surface: every face owns all its features.
+        path: how the joint of each link moves from step to step, a `JointPath`.
+        order: (n,) the pair to look at first in each interval.
+        clearance: (n,) [m] of the steps over these pairs, proven to within rounding; or any distance, where it is
+            enough to know whether the motion stays that far, less the gap.
+    """
+    n_links, n_pairs, n_bodies = path.positions.shape[1], len(asked.bodies), len(surface.roots)
+    known = Known(
+        _new_middle(n_links), _new_middle(n_links), np.full(n_bodies, -1), np.empty((n_bodies, 8)),
+        np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
+        new_scratch(),
+    )  # fmt: skip
+    for pair in range(n_pairs):
+        known.links[asked.bodies[pair, 0]] = asked.links[pair]
+    at_address(
+        table,
+        CERTIFY,
+        0,
+        (lend(surface), chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table),
+    )
+
+
+def _like():
+    numbers, places, rows = np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 0))
+    pairs, poses = np.empty((0, 2), dtype=np.int64), np.empty((0, 0, 0))
+    chain = Chain(rows, places, places, poses, rows)
+    middle = Middle(rows, numbers, numbers, np.empty((0, 0, 0, 0)))
+    known = Known(middle, middle, places, rows, numbers, numbers, pairs, rows, new_scratch())
+    asked, path = Asked(pairs, places, poses), JointPath(numbers, rows, rows)
+    aim, bounds = Aim(0.0, 0.0, 0), Bounds(numbers, numbers, numbers, places)
+    return (
+        Lent(surface_like()), chain, asked, path, places, 0, 0, numbers, aim, bounds, places, known, table_like()
+    )  # fmt: skip
+
+
+@apart(CERTIFY, _like)
+def _certify(lent, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table):
+    """`certify`, with room for what is known."""
+    surface = borrow(lent)
+    n_pairs = len(asked.bodies)
+    travel, floors = known.travel, known.floors
+    for i in range(len(tally)):
+        tally[i] = 0
+    for step in range(first, last):
+        least = min(clearance[step], clearance[step + 1])
+        floor = least  # 0 for a contact: then nothing is left to prove
+        share, seen = -1.0, np.int64(-1)
+        _go_on(surface, chain, path, step, known)
+        for turn in range(-1, n_pairs):
+            pair = order[step] if turn < 0 else turn
+            if turn == order[step] or least <= 0.0:
+                continue
+            moved = travel[asked.bodies[pair, 0]]
+            carried = floors[pair] - moved
+            if carried >= least - allowed_gap(least, aim.gap, aim.fail):
+                floor = min(floor, carried)
+                tally[0] += 1
+                continue
+            over = _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, tally, table)
+            floors[pair] = (over.floor + moved) * KEPT_DOWN
+            if over.share >= 0.0:
+                least, share, seen = over.least, over.share, pair
+            floor = min(floor, over.floor)
+        bounds.lower[step] = max(0.0, min(floor, least) * ROUNDED_DOWN)
+        bounds.upper[step] = least
+        bounds.share[step] = share
+        bounds.pair[step] = seen
+    return 0
+
+
+@inline
+def _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, tally, table):
+    """`hold` of a pair over the whole interval after `step`, halved until that is done."""
+    body = asked.bodies[pair, 0]
+    drift = _drift_at(known.drifts, body)
+    gap = aim.gap
+    held = _hold_pair(surface, asked, pair, known.whole, drift, least, gap, aim, known, tally, table)
+    share = 0.5 if held.least < least else -1.0
+    if held.completed or held.least <= 0.0:
+        return Over(held.floor, held.least, share)
+    least = held.least
+    floor = math.inf
+    waiting = known.waiting
+    waiting[0, 0], waiting[0, 1] = 0.5, 1.0
+    waiting[1, 0], waiting[1, 1] = 0.0, 0.5
+    n_waiting = 2
+    n_parts = 0
+    while n_waiting > 0:
+        n_waiting -= 1
+        n_parts += 1
+        low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
+        if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
+            gap *= WIDER
+        _go_to(chain, path, step, low, high, known.part)
+        drift = _drift_in(surface, chain, body, asked.links[pair], known.part)
+        held = _hold_pair(surface, asked, pair, known.part, drift, least, gap, aim, known, tally, table)
+        if held.least < least:
+            least, share = held.least, 0.5 * (low + high)
+        if least <= 0.0:
+            return Over(0.0, least, share)
+        if held.completed:
+            floor = min(floor, held.floor)
+        elif n_waiting + 2 > DEPTH:
+            floor = 0.0
+        else:
+            at = 0.5 * (low + high)
+            waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
+            waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
+            n_waiting += 2
+    return Over(floor, least, share)

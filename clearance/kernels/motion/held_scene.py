@@ -1,0 +1,117 @@
+"""A scene asked about at one configuration after another: what a look has found is held for the next one.
+
+Surfaces, bodies and all that is known lie in one structure on the heap, of which a call from Python hands over the
+address, as in `pair_query`. Not for: many steps that are known beforehand (`sweep`, whose answers these are).
+"""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from clearance.compile.jit import kernel
+from clearance.compile.kernel_table import lend
+from clearance.compile.numba_private import HeapHandle, HeapType, lay_on_heap
+from clearance.kernels.motion.pair_order import fill_order, sort_all
+from clearance.kernels.motion.placed import bring, put_all
+from clearance.kernels.motion.schedule import all_due
+from clearance.kernels.motion.sweep import (
+    Goal,
+    box_bound,
+    carried,
+    nearest_by_boxes,
+    nearest_of,
+    nothing_known,
+)
+from clearance.kernels.motion.sweep_rows import write_step
+from clearance.kernels.search.body_pair import TO_THE_END
+
+LOOK, WINNER = 0, 1
+
+AFRESH = 2**21
+"""Looks after which nothing is carried on: sums of travel are bounded for twice as many (`placed.GROWTH`)."""
+
+_FIELDS = ("surface", "world", "goal", "pair_rows", "known", "at")
+
+
+class HeldScene(NamedTuple):
+    """A scene and what is known of it.
+
+    Attributes:
+        surface, world: all bodies, and what moves them.
+        goal, pair_rows: of `sweep`: the nearest pair of all, at any distance; no rows for pairs.
+        known: what is carried from look to look.
+        at: (2,) looks that came to their end since all was begun afresh, and the pair that was nearest.
+    """
+
+    surface: object
+    world: object
+    goal: object
+    pair_rows: object
+    known: object
+    at: np.ndarray
+
+
+if not numba.config.DISABLE_JIT:
+
+    class HeldSceneType(HeapType):
+        """The compiler's type of a `HeldScene` that lies on the heap."""
+
+    class HeldScene(HeapHandle):
+        """The handle that Python has of a scene on the heap; fields as above."""
+
+    lay_on_heap(HeldSceneType, HeldScene, _FIELDS)
+
+
+@kernel
+def hold_scene(surface, world, pair_rows, n_columns):
+    """A scene of which nothing is known yet; `n_columns` of joint positions."""
+    goal = Goal(np.full(len(world.pairs), np.inf), False, False)
+    known = nothing_known(world, n_columns, goal.within.copy())
+    return HeldScene(surface, world, goal, pair_rows, known, np.zeros(2, dtype=np.int64))
+
+
+@kernel
+def nearest_at_positions(held, positions, rows, tally, table):
+    """Fills `rows` for the joints at `positions` (k, columns) [rad or m]; `tally` as in `sweep`.
+
+    A call that did not come to its end leaves nothing to carry on: the next one begins afresh.
+    """
+    n_columns = positions.shape[1]
+    for i in range(len(tally)):
+        tally[i] = 0
+    for row in range(len(positions)):
+        if held.at[LOOK] == 0 or held.at[LOOK] >= AFRESH:
+            held.known = nothing_known(held.world, n_columns, held.goal.within.copy())
+            held.at[LOOK] = 0
+        _look(
+            held.surface, held.world, held.goal, held.pair_rows, held.known, held.at, positions[row], row, rows,
+            tally, table,
+        )  # fmt: skip
+
+
+@kernel(reference_counts=False)
+def _look(surface, world, goal, pair_rows, known, at, positions, row, rows, tally, table):
+    """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step."""
+    look = at[LOOK]
+    at[LOOK] = 0
+    bodies = known.due.bodies[: all_due(world.frames, known.due)]
+    if look == 0:
+        put_all(world, positions, known.placed)
+        for pair in range(len(world.pairs)):
+            known.floors[pair] = box_bound(surface, world, pair, known.placed, known.boxes, np.inf)
+        at[WINNER] = np.argmin(known.floors)
+        fill_order(world.pairs, known.order)
+        sort_all(known.floors, known.order)
+    else:
+        bring(surface, world, bodies, positions, look, known.placed)
+    first = at[WINNER]
+    if carried(world, first, known) <= 0.0:
+        first = nearest_by_boxes(surface, world, bodies, known, first)
+    best, best_pair, lowest = nearest_of(
+        surface, world, bodies, first, row, row, np.inf, goal, TO_THE_END, lend(surface), known, pair_rows, tally,
+        table,
+    )  # fmt: skip
+    at[WINNER] = best_pair
+    at[LOOK] = look + 1
+    write_step(row, best_pair, best, lowest, rows)

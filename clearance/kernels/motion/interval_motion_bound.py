@@ -1,0 +1,123 @@
+"""Which steps need not be looked at: how far bodies can have moved, by the positions of their joints alone.
+
+A joint that turns by an angle w moves no point farther than w times its distance from the axis, one that slides by
+w no farther than w; a change of several joints is made one after another. So between any two steps
+
+    |x' - x| <= sum over the joints k above the link of |q_k' - q_k| reach_k,
+
+with reach_k the farthest that a point of the body gets from joint k in any pose. No pose needs to be made for it.
+Not for: the motion between the steps (`drift`).
+"""
+
+import math
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.double_double import defect_of
+from clearance.kernels.arithmetic.vec3 import cross, dot, rigid, row
+from clearance.kernels.mesh.surface import box_of, corner_of
+from clearance.kernels.motion.kinematics import NO_COLUMN, NO_PARENT, SLIDING, TURNING
+
+OUTWARD = 1.0 + 2.0**-16
+"""Covers the rounding of the sums here and of what the rotations of a chain stretch."""
+
+POSE_ROUNDING = 2.0**-36
+"""Rounding of the poses of a chain of up to a thousand links, relative to how far from the origin it reaches."""
+
+ANGLE_ROUNDING = 2.0**-50
+"""Rounding of the position of a joint that follows another, relative to the magnitudes of what is added."""
+
+
+@inline
+def _radius(box):
+    """[m] how far a body gets from the origin of its frame."""
+    far_sq = 0.0
+    for corner in range(8):
+        x = corner_of(box, corner)
+        far_sq = max(far_sq, dot(x, x))
+    return math.sqrt(far_sq)
+
+
+@inline
+def _radius_about(box, axis):
+    """[m] how far a body gets from a unit axis through the origin of its frame."""
+    far_sq = 0.0
+    for corner in range(8):
+        away = cross(corner_of(box, corner), axis)
+        far_sq = max(far_sq, dot(away, away))
+    return math.sqrt(far_sq)
+
+
+@inline
+def _length(pose):
+    """[m] of the shift of a pose."""
+    return math.sqrt(pose[0, 3] * pose[0, 3] + pose[1, 3] * pose[1, 3] + pose[2, 3] * pose[2, 3])
+
+
+@inline
+def _farthest_slide(links, link, positions):
+    """[m] how far the joint above a link slides at most."""
+    column = links.columns[link]
+    most = 0.0
+    for i in range(0 if column == NO_COLUMN else len(positions)):
+        most = max(most, abs(links.factors[link] * positions[i, column] + links.offsets[link]))
+    return most
+
+
+@inline
+def _reach_of_body(box, links, link, positions, reach):
+    """Fills `reach` (columns,) of one body, and returns what rounding can move it [m]."""
+    radius = _radius(box)
+    beyond = 0.0  # [m] from the origin of the link that is looked at to the body's own
+    own = True  # nothing moves between that link and the body
+    stretch = OUTWARD  # by rotations that are off orthonormal
+    noise = 0.0
+    while links.parents[link] != NO_PARENT:
+        column = links.columns[link]
+        if links.kinds[link] == SLIDING:
+            beyond += _farthest_slide(links, link, positions)
+        if column != NO_COLUMN:
+            arm = 1.0
+            if links.kinds[link] == TURNING:
+                arm = _radius_about(box, row(links.axes, link)) if own else radius + beyond
+            reach[column] += abs(links.factors[link]) * arm
+            noise += abs(links.offsets[link]) * arm * ANGLE_ROUNDING
+        beyond += _length(links.parent_from_joint[link])
+        stretch *= 1.0 + defect_of(rigid(links.parent_from_joint[link]))
+        own = False
+        link = links.parents[link]
+    stretch *= 1.0 + defect_of(rigid(links.parent_from_joint[link]))
+    for column in range(len(reach)):
+        reach[column] *= stretch
+    return stretch * (noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link])))
+
+
+@inline
+def fill_reach(surface, frames, links, positions, reach, noise):
+    """Fills, for each body, how far the unit of each column of `positions` can move it, and what rounding can.
+
+    Args:
+        frames: (bodies,) the link that carries each, or -1.
+        positions: (k, columns) of all steps that are spoken of [rad or m].
+        reach: (bodies, columns) [m per rad or m]. noise: (bodies,) [m].
+    """
+    for body in range(len(frames)):
+        noise[body] = 0.0
+        for column in range(reach.shape[1]):
+            reach[body, column] = 0.0
+        if frames[body] >= 0:
+            box = box_of(surface, surface.roots[body])
+            noise[body] = _reach_of_body(box, links, frames[body], positions, reach[body])
+
+
+@inline(force=True)
+def stride_of(positions, last, step, reach, noise):
+    """[m] no less than what a body moves from one step to another.
+
+    Args:
+        positions: as in `fill_reach`; last, step: rows of it. reach: (columns,), noise: of the body.
+    """
+    way = noise
+    for column in range(len(reach)):
+        before, after = positions[last, column], positions[step, column]
+        way += reach[column] * (abs(after - before) + ANGLE_ROUNDING * (abs(after) + abs(before)))
+    return way

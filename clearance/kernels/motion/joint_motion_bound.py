@@ -1,0 +1,151 @@
+"""How far the points of a link can move while its joints move: first order exactly, the rest bounded.
+
+About the middle of an interval, where joint k moves by s swing_k + b_k with |s| <= 1 and |b_k| <= bend_k, a point
+x moves by s v(x) + r: v is the link's twist by the swings, an affine map of x. |r| is at most half the greatest
+second derivative over all joint motions of |swing_k| + bend_k, and what the bends do in the first order.
+Source: the product of exponentials differentiated twice; joints nearer to the link come first, since only they
+move the link about an axis.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.lanes import square_root
+from clearance.kernels.arithmetic.vec3 import Vec3, add, along, cross, dot, row, sub, turn_back
+from clearance.kernels.features.bounds import LEAN, box_reach
+from clearance.kernels.mesh.surface import box_of, corner_of
+from clearance.kernels.motion.kinematics import SLIDING, TURNING
+
+
+class Chain(NamedTuple):
+    """A robot's tree of links as `kinematics.forward` takes it."""
+
+    world_from_base: np.ndarray
+    parents: np.ndarray
+    kinds: np.ndarray
+    parent_from_joint: np.ndarray
+    axes: np.ndarray
+
+
+class Drift(NamedTuple):
+    """The motion of a body over half an interval, to either side, in the body's frame in the middle.
+
+    Attributes:
+        velocity, spin: a point x moves by s (velocity + spin x x) + r, |s| <= 1 [m], [rad].
+        rest: [m] a bound on |r| over the body.
+        turn: [rad] a bound on the angle that the body turns by.
+    """
+
+    velocity: Vec3
+    spin: Vec3
+    rest: float
+    turn: float
+
+
+@inline
+def _farthest_from_axis(surface, root, pose, origin, axis):
+    """[m] an upper bound on the distance of the body's points from a line, by the corners of its box."""
+    far_sq = 0.0
+    box = box_of(surface, root)
+    for corner in range(8):
+        x = corner_of(box, corner)
+        world = Vec3(
+            pose[0, 0] * x.x + pose[0, 1] * x.y + pose[0, 2] * x.z + pose[0, 3],
+            pose[1, 0] * x.x + pose[1, 1] * x.y + pose[1, 2] * x.z + pose[1, 3],
+            pose[2, 0] * x.x + pose[2, 1] * x.y + pose[2, 2] * x.z + pose[2, 3],
+        )
+        away = cross(sub(world, origin), axis)
+        far_sq = max(far_sq, dot(away, away))
+    return math.sqrt(far_sq)
+
+
+@inline
+def _world_axis(chain, poses, link):
+    pose = poses[link]
+    x, y, z = chain.axes[link, 0], chain.axes[link, 1], chain.axes[link, 2]
+    return Vec3(
+        pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z,
+        pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z,
+        pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z,
+    )
+
+
+@inline
+def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
+    """The drift of a body that is fixed to `link`.
+
+    Args:
+        poses: (n_links, 4, 4) in the middle of the interval.
+        swing: (n_links,) [rad or m] half of what the joint of each link moves in the interval, to first order.
+        bend: (n_links,) [rad or m] how far from that it can be; 0 for linear motion.
+        world_from_body: the pose of the link as `Rigid`.
+    """
+    shallower = 0.0  # sum of the motions of the turning joints between here and the base
+    i = link
+    while i != 0:
+        if chain.kinds[i] == TURNING:
+            shallower += abs(swing[i]) + bend[i]
+        i = chain.parents[i]
+    turn = shallower
+    spin, velocity = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
+    rest = 0.0
+    moved = 0.0  # how far the joints up to here move any point of the body
+    i = link
+    while i != 0:
+        size = abs(swing[i]) + bend[i]
+        if size > 0.0 and chain.kinds[i] == TURNING:
+            shallower = max(0.0, shallower - size)
+            axis = _world_axis(chain, poses, i)
+            origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
+            arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
+            rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * arm
+            moved += size * arm
+            spin = along(spin, swing[i], axis)
+            velocity = along(velocity, swing[i], cross(origin, axis))
+        elif size > 0.0 and chain.kinds[i] == SLIDING:
+            rest += size * shallower + bend[i]
+            moved += size
+            velocity = along(velocity, swing[i], _world_axis(chain, poses, i))
+        i = chain.parents[i]
+    at_origin = add(velocity, cross(spin, world_from_body.t))
+    return Drift(
+        turn_back(world_from_body, at_origin),
+        turn_back(world_from_body, spin),
+        rest * (1.0 + 1e-12),
+        turn,
+    )
+
+
+@inline
+def velocity_at(drift, x):
+    """How a point of the body moves in the first order over half the interval [m]."""
+    return add(drift.velocity, cross(drift.spin, x))
+
+
+@inline
+def drift_of_box(box, drift):
+    """[m] an upper bound on how far any point of a box moves from the middle."""
+    v = velocity_at(drift, box.centre)
+    radius = square_root(dot(box.half, box.half)) * (1.0 + LEAN)
+    turning = math.sqrt(dot(drift.spin, drift.spin)) * radius
+    return square_root(dot(v, v)) + turning + drift.rest
+
+
+@inline
+def drift_of_box_along(box, direction, drift):
+    """[m] an upper bound on how far any point of a box moves along a unit direction, either way."""
+    first = abs(dot(direction, velocity_at(drift, box.centre)))
+    return first + box_reach(box, cross(direction, drift.spin)) + drift.rest
+
+
+@inline
+def drift_of_face_along(surface, face, direction, drift):
+    """[m] an upper bound on how far any point of a face moves along a unit direction, either way."""
+    first = 0.0
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        x = row(surface.vertices, surface.face_vertices[c])
+        first = max(first, abs(dot(direction, velocity_at(drift, x))))
+    return first + drift.rest

@@ -1,0 +1,129 @@
+"""Forward kinematics of trees of links: of one step, or of many at once."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+from clearance.kernels.arithmetic.vec3 import Rigid, Vec3, move, rigid
+
+FIXED, TURNING, SLIDING = 0, 1, 2
+
+NO_PARENT, NO_COLUMN = -1, -1
+
+
+class Links(NamedTuple):
+    """The links of all robots behind one another, parents before children, and what moves them.
+
+    Attributes:
+        parents: (links,) or `NO_PARENT` for a root, which stands.
+        kinds: (links,) of the joint above each link. axes: (links, 3) its unit axis.
+        parent_from_joint: (links, 4, 4) its fixed part [m]; of a root its pose in the world.
+        columns: (links,) of the positions that the joint follows, or `NO_COLUMN`.
+        factors, offsets: (links,) its position is factor times that, plus offset [rad or m].
+    """
+
+    parents: np.ndarray
+    kinds: np.ndarray
+    axes: np.ndarray
+    parent_from_joint: np.ndarray
+    columns: np.ndarray
+    factors: np.ndarray
+    offsets: np.ndarray
+
+
+@inline(force=True)
+def _then(a, b):
+    """The motion `b` and then `a`."""
+    return Rigid(
+        a.xx * b.xx + a.xy * b.yx + a.xz * b.zx,
+        a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
+        a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
+        a.yx * b.xx + a.yy * b.yx + a.yz * b.zx,
+        a.yx * b.xy + a.yy * b.yy + a.yz * b.zy,
+        a.yx * b.xz + a.yy * b.yz + a.yz * b.zz,
+        a.zx * b.xx + a.zy * b.yx + a.zz * b.zx,
+        a.zx * b.xy + a.zy * b.yy + a.zz * b.zy,
+        a.zx * b.xz + a.zy * b.yz + a.zz * b.zz,
+        move(a, b.t),
+    )  # fmt: skip
+
+
+@inline(force=True)
+def _turned(m, axis, position):
+    """The motion `m` after a turn about a unit axis."""
+    s = math.sin(position)
+    v = 2.0 * math.sin(0.5 * position) ** 2  # 1 - cos without cancellation
+    x, y, z = axis[0], axis[1], axis[2]
+    turn = Rigid(
+        1.0 - v * (y * y + z * z), v * x * y - s * z, v * x * z + s * y,
+        v * x * y + s * z, 1.0 - v * (x * x + z * z), v * y * z - s * x,
+        v * x * z - s * y, v * y * z + s * x, 1.0 - v * (x * x + y * y),
+        Vec3(0.0, 0.0, 0.0),
+    )  # fmt: skip
+    return _then(m, turn)
+
+
+@inline(force=True)
+def _slid(m, axis, position):
+    """The motion `m` after a slide along an axis."""
+    way = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
+    return Rigid(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
+
+
+@inline(force=True)
+def _write(m, out):
+    """Writes a motion as a (4, 4) pose."""
+    out[0, 0], out[0, 1], out[0, 2], out[0, 3] = m.xx, m.xy, m.xz, m.t.x
+    out[1, 0], out[1, 1], out[1, 2], out[1, 3] = m.yx, m.yy, m.yz, m.t.y
+    out[2, 0], out[2, 1], out[2, 2], out[2, 3] = m.zx, m.zy, m.zz, m.t.z
+    out[3, 0], out[3, 1], out[3, 2], out[3, 3] = 0.0, 0.0, 0.0, 1.0
+
+
+@inline(force=True)
+def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out):
+    """Writes the pose of a link whose joint is at `position`."""
+    at = _then(rigid(world_from_parent), rigid(parent_from_joint))
+    if kind == TURNING:
+        at = _turned(at, axis, position)
+    elif kind == SLIDING:
+        at = _slid(at, axis, position)
+    _write(at, out)
+
+
+@inline(force=True)
+def place_links(links, positions, poses, wanted, look):
+    """Fills `poses` (links, 4, 4) of the links whose `wanted` (links,) is `look`, the joints at `positions`.
+
+    With a link all above it must be wanted. Poses [m]; positions (columns,) [rad or m].
+    """
+    for link in range(len(links.parents)):
+        if wanted[link] != look:
+            continue
+        parent = links.parents[link]
+        if parent == NO_PARENT:
+            _write(rigid(links.parent_from_joint[link]), poses[link])
+            continue
+        column = links.columns[link]
+        position = 0.0 if column == NO_COLUMN else links.factors[link] * positions[column] + links.offsets[link]
+        _place_link(
+            poses[parent], links.parent_from_joint[link], links.kinds[link], links.axes[link],
+            position, poses[link],
+        )  # fmt: skip
+
+
+@kernel
+def forward(world_from_base, parents, kinds, parent_from_joint, axes, positions, poses):
+    """Fills `poses` (n, n_links, 4, 4) from joint `positions` (n, n_links) in link order.
+
+    Link 0 is the root; link i > 0 hangs on link `parents[i]` < i by a joint of kind `kinds[i]` with the
+    fixed part `parent_from_joint[i]` (4, 4) and the unit axis `axes[i]`.
+    """
+    for step in range(poses.shape[0]):
+        _write(rigid(world_from_base), poses[step, 0])
+        for link in range(1, poses.shape[1]):
+            _place_link(
+                poses[step, parents[link]], parent_from_joint[link], kinds[link], axes[link],
+                positions[step, link], poses[step, link],
+            )  # fmt: skip

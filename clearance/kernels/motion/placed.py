@@ -1,0 +1,95 @@
+"""Where the bodies are, each at the last step at which it was looked at, and how far it has come by then.
+
+Not for: which of them need a look (`due`), and where bodies are between the steps (`drift`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, shared
+from clearance.kernels.features.bounds import displacement
+from clearance.kernels.motion.kinematics import NO_PARENT, place_links
+
+GROWTH = 1.0 + 1e-9
+"""Covers the rounding of a sum of up to four million displacements."""
+
+
+class Placed(NamedTuple):
+    """Where each body was seen last.
+
+    Attributes:
+        links: (links, 4, 4) `world_from_link` [m] of those that were wanted at the last look.
+        wanted: (links,) the last look at which each was wanted, or -1.
+        poses: (bodies, 4, 4) `world_from_body` [m].
+        travel: (bodies,) [m] no less than what each has moved in all, from look to look.
+        moves: (bodies,) how often it was found elsewhere than before.
+        looks: (bodies,) how often it was looked at after the first time.
+    """
+
+    links: np.ndarray
+    wanted: np.ndarray
+    poses: np.ndarray
+    travel: np.ndarray
+    moves: np.ndarray
+    looks: np.ndarray
+
+
+@shared
+def room_for_bodies(n_links, n_bodies):
+    """Bodies that are nowhere yet."""
+    return Placed(
+        np.empty((n_links, 4, 4)), np.full(n_links, -1), np.empty((n_bodies, 4, 4)), np.zeros(n_bodies),
+        np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
+    )  # fmt: skip
+
+
+@inline(force=True)
+def _want(links, link, look, wanted):
+    """Marks a link and all above it."""
+    while link != NO_PARENT and wanted[link] != look:
+        wanted[link] = look
+        link = links.parents[link]
+
+
+@inline(force=True)
+def _has_moved(before, after):
+    """True if two (4, 4) poses are not the same to the last bit of each number."""
+    for i in range(3):
+        for k in range(4):
+            if before[i, k] != after[i, k]:
+                return True
+    return False
+
+
+@inline(force=True)
+def _put(pose, placed, body):
+    for i in range(4):
+        for k in range(4):
+            placed.poses[body, i, k] = pose[i, k]
+
+
+@inline
+def put_all(world, positions, placed):
+    """Puts every body where it is with the joints at `positions` (columns,); this is look 0."""
+    for body in range(len(world.frames)):
+        _want(world.links, world.frames[body], 0, placed.wanted)
+    place_links(world.links, positions, placed.links, placed.wanted, 0)
+    for body in range(len(world.frames)):
+        frame = world.frames[body]
+        _put(placed.links[frame] if frame >= 0 else world.standing[body], placed, body)
+
+
+@inline(force=True)
+def bring(surface, world, bodies, positions, look, placed):
+    """Brings those of `bodies` that links carry to where they are with the joints at `positions` (columns,)."""
+    for body in bodies:
+        _want(world.links, world.frames[body], look, placed.wanted)
+    place_links(world.links, positions, placed.links, placed.wanted, look)
+    for body in bodies:
+        before, after = placed.poses[body], placed.links[world.frames[body]]
+        placed.looks[body] += 1
+        if _has_moved(before, after):
+            placed.moves[body] += 1
+            placed.travel[body] += displacement(surface, surface.roots[body], before, after) * GROWTH
+            _put(after, placed, body)

@@ -1,0 +1,72 @@
+"""What a sweep finds: a row a step, and what is least of each pair."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.features.face_pair import write_points
+from clearance.kernels.search.descent import nothing_yet
+
+
+class StepRows(NamedTuple):
+    """Results, one row a step.
+
+    Attributes:
+        clearance: (k,) [m] of the nearest pair, infinite where none is within what was asked.
+        floor: (k,) [m] a proven lower bound on the distance of all pairs.
+        pair: (k,) the nearest pair, or -1.
+        faces: (k, 2) joined face indices. points: (k, 2, 3) witness points in the world [m].
+    """
+
+    clearance: np.ndarray
+    floor: np.ndarray
+    pair: np.ndarray
+    faces: np.ndarray
+    points: np.ndarray
+
+
+class PairRows(NamedTuple):
+    """Results of every pair, where each has its own best.
+
+    Attributes:
+        every: (k, p) [m] clearance at each step, or (0, p) if only the least are wanted.
+        clearance, step, points: (p,), (p,), (p, 2, 3) the least of each pair, infinite and -1 if there is
+            none, and the first step that has it.
+    """
+
+    every: np.ndarray
+    clearance: np.ndarray
+    step: np.ndarray
+    points: np.ndarray
+
+
+@inline
+def write_step(row, pair, hit, floor, rows):
+    """Writes the nearest pair of a step and its points, -1 if none is known; `floor` [m] bounds all pairs."""
+    rows.pair[row] = pair
+    rows.clearance[row] = np.sqrt(hit.gap_sq) if pair >= 0 else np.inf
+    rows.floor[row] = min(floor, rows.clearance[row])
+    rows.faces[row, 0] = hit.face_a
+    rows.faces[row, 1] = hit.face_b
+    write_points(hit, rows.points[row])
+
+
+@inline
+def write_pair(row, step, pair, hit, pair_rows):
+    """Writes what a pair was found to be at a step, where that is asked for, and its least."""
+    gap = np.sqrt(hit.gap_sq)
+    if len(pair_rows.every) > 0:
+        pair_rows.every[row, pair] = gap
+    if gap < pair_rows.clearance[pair]:
+        pair_rows.clearance[pair] = gap
+        pair_rows.step[pair] = step
+        write_points(hit, pair_rows.points[pair])
+
+
+@inline(force=True)
+def pass_over(n_pairs, row, floor, rows, tally):
+    """Writes a row at which nothing needs a look: none of so many pairs is nearer than `floor` [m]."""
+    write_step(row, -1, nothing_yet(np.inf), floor, rows)
+    tally[0] += n_pairs
+    tally[4] += 1

@@ -1,0 +1,1 @@
+"""Convex polytopes: cutting, common parts, depth, volume."""

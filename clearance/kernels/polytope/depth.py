@@ -1,0 +1,216 @@
+"""The deepest common point of convex bodies, by the simplex method with faces brought in on demand.
+
+Each body k is {x: n_i.(x - c_k) <= w_i} with w_i > 0, c_k inside it. Sought are x and the greatest t with
+n_i.x + w_i t <= n_i.c_k + w_i for all faces of all bodies: t > 0 is strictly inside all, t < 0 proves that
+at most four faces have nothing in common (Helly). The dual simplex basis has four faces; the entering face
+is the one through which the ray from c_k to x leaves the body, from its map of directions: none is missed.
+Not for: the region itself.
+
+The basis is one (15, 4) array: rows 0-3 the faces' (n, w), 4 their bounds, 5-8 the inverse, 9 the solution
+(x, t), 10 the multipliers, 11-14 scratch; and four names, (body << 32) + face, below 0 for the walls of the
+start. All x are about a common origin.
+"""
+
+from __future__ import annotations
+
+import math
+
+from clearance.compile.jit import inline, kernel
+from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, exit_in
+
+TURN = 4
+"""Faces of one body at a time: settling one body fully before the next takes 5 times as long for 5000 corners."""
+
+BOUND, INVERSE, POINT, SHARE, SCRATCH = 4, 5, 9, 10, 11
+N_ROWS = 15
+LEVEL = 12
+"""Rounds in which the depth does not fall before the method is said to turn in a circle."""
+COLD, WARM, ON = 0, 1, 2
+
+
+@inline(one_caller=True)
+def invert(basis):
+    """True if the faces' matrix could be inverted, by Gauss-Jordan with row pivoting."""
+    a = basis[SCRATCH : SCRATCH + 4]
+    for i in range(4):
+        for j in range(4):
+            a[i, j] = basis[i, j]
+            basis[INVERSE + i, j] = 1.0 if i == j else 0.0
+    for c in range(4):
+        p = c
+        for r in range(c + 1, 4):
+            if abs(a[r, c]) > abs(a[p, c]):
+                p = r
+        if a[p, c] == 0.0:
+            return False
+        scale = 1.0 / a[p, c]
+        for j in range(4):
+            low = a[c, j]
+            a[c, j] = a[p, j] * scale
+            a[p, j] = low if p != c else a[p, j]
+            low = basis[INVERSE + c, j]
+            basis[INVERSE + c, j] = basis[INVERSE + p, j] * scale
+            basis[INVERSE + p, j] = low if p != c else basis[INVERSE + p, j]
+        for r in range(4):
+            factor = a[r, c]
+            if r != c and factor != 0.0:
+                for j in range(4):
+                    a[r, j] -= factor * a[c, j]
+                    basis[INVERSE + r, j] -= factor * basis[INVERSE + c, j]
+    return True
+
+
+@inline(one_caller=True)
+def solve(basis):
+    """False if the faces' planes meet in no one point or a multiplier is below 0; else sets both."""
+    if not invert(basis):
+        return False
+    for i in range(4):
+        total = 0.0
+        for j in range(4):
+            total += basis[INVERSE + i, j] * basis[BOUND, j]
+        basis[POINT, i] = total
+    sound = True
+    for j in range(4):
+        share = basis[INVERSE + 3, j]
+        sound = sound and share > -1e-9
+        basis[SHARE, j] = max(share, 0.0)
+    return sound
+
+
+@inline(one_caller=True)
+def start_around(basis, names, reach):
+    """A tetrahedron far around the origin; t at its middle is 1."""
+    side = 1.0 / math.sqrt(3.0)
+    for j in range(4):
+        names[j] = j - 4
+        basis[j, 0] = side if j < 2 else -side
+        basis[j, 1] = side if j % 2 == 0 else -side
+        basis[j, 2] = side if j == 0 or j == 3 else -side
+        basis[j, 3] = reach
+        basis[BOUND, j] = reach
+    solve(basis)
+
+
+@inline(one_caller=True)
+def put_face(basis, names, j, numbers, pose, away, body, face):
+    """Puts a face at place `j` of the basis; `away` is from the origin to the body's centroid."""
+    row = HEAD + ROW * face
+    bound = numbers[row + 7]
+    for i in range(3):
+        n = (
+            pose[i, 0] * numbers[row]
+            + pose[i, 1] * numbers[row + 1]
+            + pose[i, 2] * numbers[row + 2]
+        )
+        basis[j, i] = n
+        bound += n * away[i]
+    basis[j, 3] = numbers[row + 7]
+    basis[BOUND, j] = bound
+    names[j] = (body << 32) + face
+
+
+@inline(one_caller=True)
+def leaving(basis, numbers, pose, face):
+    """The place in the basis that the ratio test gives to a face, or -1."""
+    row = HEAD + ROW * face
+    leave = -1
+    least = math.inf
+    steepest = 0.0
+    for j in range(4):
+        slope = numbers[row + 7] * basis[INVERSE + 3, j]
+        for i in range(3):
+            n = (
+                pose[i, 0] * numbers[row]
+                + pose[i, 1] * numbers[row + 1]
+                + pose[i, 2] * numbers[row + 2]
+            )
+            slope += n * basis[INVERSE + i, j]
+        if slope <= 1e-12:
+            continue
+        ratio = basis[SHARE, j] / slope
+        if ratio < least or (ratio == least and slope > steepest):
+            least = ratio
+            leave = j
+            steepest = slope
+    return leave
+
+
+@inline(one_caller=True)
+def centre_of(numbers, pose, origin):
+    """From the origin to the body's centroid in the world."""
+    x, y, z = numbers[0], numbers[1], numbers[2]
+    return (
+        (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3]) - origin[0],
+        (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3]) - origin[1],
+        (pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3]) - origin[2],
+    )
+
+
+@inline(one_caller=True)
+def deepen(numbers, indices, pose, body, origin, basis, names, margin):
+    """(settled, faces brought in): brings in a body's worst faces, `TURN` at most, in widths by `margin` worse."""
+    away = centre_of(numbers, pose, origin)
+    for n_entered in range(TURN):
+        x = basis[POINT, 0] - away[0]
+        y = basis[POINT, 1] - away[1]
+        z = basis[POINT, 2] - away[2]
+        u = pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z
+        v = pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z
+        w = pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z
+        cell, _ = cell_of(numbers, indices, u, v, w)
+        face, gauge = exit_in(numbers, indices, cell, u, v, w)
+        if gauge <= 1.0 - basis[POINT, 3] + margin:
+            return True, n_entered
+        name = (body << 32) + face
+        if name == names[0] or name == names[1] or name == names[2] or name == names[3]:
+            return False, n_entered
+        leave = leaving(basis, numbers, pose, face)
+        if leave < 0:
+            return False, n_entered
+        put_face(basis, names, leave, numbers, pose, away, body, face)
+        solve(basis)
+    return False, TURN
+
+
+@inline(one_caller=True)
+def recall(numbers, pose, body, origin, basis, names):
+    """Puts the faces that the basis names of one body where they are now."""
+    away = centre_of(numbers, pose, origin)
+    for j in range(4):
+        if names[j] >= 0 and names[j] >> 32 == body:
+            put_face(basis, names, j, numbers, pose, away, body, names[j] & 0xFFFFFFFF)
+
+
+@kernel(reference_counts=False)
+def deepen_two(
+    numbers_a, indices_a, pose_a, a, numbers_b, indices_b, pose_b, b, origin, basis, names, margin,
+    begin, passes,
+):  # fmt: skip
+    """Brings in faces of bodies `a` and `b` by turns until neither has a worse one; (settled, faces, passes).
+
+    Args:
+        numbers, indices: the bodies, see `polytope.exits`; pose: (4, 4) world_from_body of each.
+        origin: (3,) what all x are about; basis, names: see above, changed in place.
+        begin: COLD, WARM (from the faces named, if they still hold) or ON (from the basis as it is).
+        passes: how many rounds at most; stops when four real faces have t < -1e-6.
+    """
+    if begin == WARM:
+        recall(numbers_a, pose_a, a, origin, basis, names)
+        recall(numbers_b, pose_b, b, origin, basis, names)
+    if begin == COLD or (begin == WARM and not solve(basis)):
+        start_around(basis, names, 16.0 * (numbers_a[13] + numbers_b[13]))
+    n_entered = 0
+    n_level = 0
+    for i_pass in range(1, passes + 1):
+        before = basis[POINT, 3]
+        one, n_one = deepen(numbers_a, indices_a, pose_a, a, origin, basis, names, margin)
+        other, n_other = deepen(numbers_b, indices_b, pose_b, b, origin, basis, names, margin)
+        n_entered += n_one + n_other
+        far = basis[POINT, 3] < -1e-6 and min(names[0], names[1], names[2], names[3]) >= 0
+        if n_one + n_other == 0 or far:
+            return one and other, n_entered, i_pass
+        n_level = 0 if before - basis[POINT, 3] > margin else n_level + 1
+        if n_level == LEVEL:
+            return False, n_entered, i_pass
+    return False, n_entered, passes

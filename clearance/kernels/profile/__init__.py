@@ -1,0 +1,1 @@
+"""Swept profiles: what a moving surface leaves in a plane, and its outline."""

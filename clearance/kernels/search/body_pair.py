@@ -1,0 +1,224 @@
+"""The distance of two bodies: descent of their trees, then containment."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.compile.kernel_table import SEARCH, Lent, apart, at_address, borrow, table_like
+from clearance.kernels.arithmetic.double_double import (
+    FRAMES_AT_REST,
+    Wide3,
+    plus3,
+    rounded,
+    wide,
+)
+from clearance.kernels.arithmetic.vec3 import Vec3, move, row
+from clearance.kernels.features.bounds import rounding_slack
+from clearance.kernels.features.common_point import common_point_of
+from clearance.kernels.features.face_pair import NOTHING_SEEN, Hit, Near, nearest_of_faces
+from clearance.kernels.features.refine import error_of
+from clearance.kernels.features.rounding_guard import PASSED_OVER
+from clearance.kernels.mesh.surface import box_of, surface_like
+from clearance.kernels.search.containment import contained
+from clearance.kernels.search.descent import Tally, descend, margin_of, nothing_yet
+from clearance.kernels.search.front import (
+    HULLS_NEARER,
+    HULLS_TOUCH,
+    forget,
+    is_worth_parting,
+    no_fronts,
+    note_parting,
+)
+from clearance.kernels.search.overlap import Overlap, overlap_of
+from clearance.kernels.search.scratch import new_scratch
+from clearance.kernels.search.separating_planes import NOTHING_PARTED, parting_of
+
+NO_FACE = -1
+
+TO_THE_END = 2**62
+"""The effort of a search that is not cut short."""
+
+
+class Asked(NamedTuple):
+    """What is asked of a body pair.
+
+    Attributes:
+        limit: [m] a lower bound beyond this needs not be better.
+        wanted: [m] points farther apart than this are not wanted; at most `limit`.
+        face_a, face_b: faces that were nearest before, or NO_FACE; they change the work, not the answer.
+        apart: True if it is known that neither body is inside the other.
+        touches: True if the bodies were in contact just before; it changes the work, not the answer.
+        effort: node pairs after which the search is cut short; what it has found is then a distance that occurs,
+            but perhaps not the least, and nothing is proven. `TO_THE_END` if that is not wanted.
+    """
+
+    limit: float
+    wanted: float
+    face_a: int
+    face_b: int
+    apart: bool
+    effort: int
+    touches: bool
+
+
+class Measured(NamedTuple):
+    """What is known of a body pair.
+
+    Attributes:
+        hit: the nearest points in the world, if nearer than the distance wanted; else faces of 2**62.
+        lower_bound: [m] proven.
+        error: [m] a bound on how far the distance of `hit` is from the truth.
+        face_a, face_b: where to begin the next time: the nearest faces met, within the limit or not.
+    """
+
+    hit: Hit
+    lower_bound: float
+    error: float
+    face_a: int
+    face_b: int
+    tally: Tally
+
+
+@inline
+def _in_world(frames, x):
+    """A point seen from the origin of a, in the world."""
+    t = frames.a.t
+    return rounded(plus3(x, Wide3(wide(t.x), wide(t.y), wide(t.z))))
+
+
+@inline(one_caller=True)
+def _contact(a, b, frames, found, tally, table):
+    face_a, face_b = found.face_a, found.face_b
+    common = common_point_of(table, a, face_a, b, face_b, frames, found.meeting)
+    p, q = _in_world(frames, common.p), _in_world(frames, common.q)
+    return Measured(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
+
+
+NOWHERE = Vec3(0.0, 0.0, 0.0)
+
+NOTHING_MEASURED = Measured(
+    Hit(np.inf, NO_FACE, NO_FACE, NOWHERE, NOWHERE), 0.0, 0.0, NO_FACE, NO_FACE, Tally(0, 0, 0)
+)
+
+
+def _like():
+    asked = Asked(0.0, 0.0, 0, 0, False, 0, False)
+    searched = no_fronts(1, 0), 0, 0.0, new_scratch(), table_like()
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, asked, *searched
+
+
+@inline(force=True)
+def _afresh(a, root_a, b, root_b, m):
+    """What a search begins with that knows nothing: the bodies' centres."""
+    p, q = box_of(a, root_a).centre, move(m, box_of(b, root_b).centre)
+    return Near(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
+
+
+@inline(force=True)
+def _begin(a, root_a, b, root_b, m, margin, asked):
+    """What a search begins with: the faces that were nearest and what is seen of them, or the bodies' centres."""
+    if asked.face_a >= 0:
+        near = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf))
+        if near.best.face_a != 2**62:
+            return near
+        p = row(a.vertices, a.face_vertices[a.face_starts[asked.face_a]])
+        q = row(b.vertices, b.face_vertices[b.face_starts[asked.face_b]])
+        return Near(Hit(np.inf, 2**62, 2**62, p, move(m, q)), NOTHING_SEEN)
+    return _afresh(a, root_a, b, root_b, m)
+
+
+@apart(SEARCH, _like)
+def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
+    """The nearest points of two bodies, or a proof that they are farther apart than the limit.
+
+    Args:
+        frames: of `frames_of`.
+        asked: what is wanted and known, an `Asked`.
+        fronts, pair, moved: of `descend`.
+    """
+    a, b = borrow(lent_a), borrow(lent_b)
+    root_a, root_b = a.roots[body_a], b.roots[body_b]
+    slack = rounding_slack(a, root_a, b, root_b, frames)
+    margin = margin_of(slack)
+    n_nodes, n_faces, n_exact = 0, 0, 0
+    if asked.touches:
+        over = overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch)
+        n_nodes, n_faces = over.n_nodes, over.n_faces
+        if over.meeting.found:
+            forget(fronts, pair)
+            return _contact(a, b, frames, over, Tally(n_nodes, n_faces, 0), table)
+    first = _begin(a, root_a, b, root_b, frames.m, margin, asked)
+    best = first.best
+    limit = asked.limit + margin
+    wanted = asked.wanted
+    parting = NOTHING_PARTED
+    if is_worth_parting(fronts, pair):
+        parting = parting_of(
+            table, lent_a, root_a, lent_b, root_b, frames.m, best, limit, margin, slack, scratch
+        )
+        n_nodes += parting.n_nodes
+        if parting.n_waiting == 0:
+            note_parting(fronts, pair, parting.floor > limit, HULLS_TOUCH)
+        if parting.floor > limit:
+            nothing = nothing_yet(asked.wanted * asked.wanted)
+            floor = max(0.0, parting.floor - slack - 2.0 * margin)
+            return Measured(nothing, floor, 0.0, parting.face_a, parting.face_b, Tally(n_nodes, 0, 0))
+    for _ in range(2):
+        found = descend(
+            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, parting,
+            fronts, pair, moved, scratch, table,
+        )  # fmt: skip
+        n_nodes += found.tally.nodes
+        n_faces += found.tally.faces
+        n_exact += found.tally.exact_decisions
+        if parting.n_waiting > 0:
+            is_all = parting.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
+            note_parting(fronts, pair, is_all, HULLS_NEARER)
+            if is_all:
+                break
+            best, parting = found.hit, NOTHING_PARTED  # the hulls are nearer than the bodies
+        else:
+            break
+    if found.meeting.found:  # which of several is told must not depend on where the search began
+        over = overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch)
+        tally = Tally(n_nodes + over.n_nodes, n_faces + over.n_faces, n_exact)
+        if not over.meeting.found:
+            over = Overlap(found.meeting, found.hit.face_a, found.hit.face_b, 0, 0)
+        return _contact(a, b, frames, over, tally, table)
+    tally = Tally(n_nodes, n_faces, n_exact)
+    if not (asked.apart or parting.n_waiting > 0):
+        inside, x = contained(a, body_a, b, body_b, frames, scratch, table)
+        if inside:
+            forget(fronts, pair)  # a contact must not depend on where the search begins
+            x = move(frames.a, x)
+            return Measured(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
+    floor = max(0.0, found.floor - slack - 2.0 * margin)
+    face_a, face_b = found.hit.face_a, found.hit.face_b
+    if face_a == 2**62:
+        face_a, face_b = asked.face_a, asked.face_b
+    refined = found.refined
+    if refined.face_a == 2**62:
+        return Measured(nothing_yet(asked.wanted * asked.wanted), floor, 0.0, face_a, face_b, tally)
+    distance = refined.length.hi
+    error = error_of(refined, distance) + PASSED_OVER * distance
+    hit = Hit(
+        distance * distance,
+        refined.face_a,
+        refined.face_b,
+        _in_world(frames, refined.p),
+        _in_world(frames, refined.q),
+    )
+    floor = min(floor, max(0.0, distance - error))
+    return Measured(hit, floor, error, refined.face_a, refined.face_b, tally)
+
+
+@inline(one_caller=True)
+def measure_pair(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
+    """The same by address."""
+    return at_address(
+        table,
+        SEARCH,
+        NOTHING_MEASURED,
+        (lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table),
+    )

@@ -1,0 +1,236 @@
+"""Whether a body lies wholly inside another one whose surface it does not meet, decided exactly.
+
+A point is inside where the winding number of the closed, consistently oriented components is not zero, so
+that cavities are outside and overlapping components inside. Open surfaces have no inside. The winding number is
+the signed count of the triangles that a ray along an axis of the world meets; only boxes of the tree that the ray
+may meet are opened. Where the ray meets an edge or a corner, the point is moved aside by (e, e^2) for an
+infinitely small e, in thought: the signs of the predicates (`predicates`) then follow from coordinates, so that
+no ray is a special case. Source: Edelsbrunner & Mücke 1990, simulation of simplicity.
+
+Components that are closed but for a few faults are counted with the caps that close them (`geometry.closing`), so
+that their number is whole and exact, too. The generalized winding number of their faces alone (Jacobson, Kavan &
+Sorkine-Hornung 2013) differs from it by the caps' solid angle in turns. Where that is at most `DOUBTFUL`, no other
+caps give another number unless they are seen from there under three quarters of all directions.
+"""
+
+import math
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.compile.kernel_table import WINDING_NUMBER, apart, at_address
+from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, size
+from clearance.kernels.arithmetic.lanes import WIDTH
+from clearance.kernels.arithmetic.predicates import (
+    FILTER,
+    Posed,
+    orient_posed,
+    room_for_exact,
+    set_poses,
+    side_along,
+    turn_along,
+)
+from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, move, move_back, row, sub
+from clearance.kernels.features.bounds import LEAN
+from clearance.kernels.mesh.surface import box_of, is_leaf, surface_like
+
+AXIS = 2
+"""The ray's coordinate axis."""
+
+ROUNDING = 512.0 * 2.0**-53
+"""Rounding of a moved point, relative to the sum of the coordinates' magnitudes, with room."""
+
+DOUBTFUL = 0.25
+"""[turns] Caps that are seen under more leave it open whether a point is inside."""
+
+ROUNDING_OF_ANGLES = 1e-5
+"""[rad] More than rounding, 2^-48 / `EDGE_ON`, makes of a triangle's solid angle."""
+
+EDGE_ON = 1e-9
+"""[-] A triangle with an edge straight through the point, but for so much, counts as half of all directions."""
+
+
+@inline
+def _room(box, d, far):
+    """[m] what rounding can move a point at `d` from the centre of a box, against its sides."""
+    return LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half))
+
+
+@inline
+def in_box(surface, node, x, far):
+    """True unless `x` is outside the node's box by more than rounding."""
+    box = box_of(surface, node)
+    d = sub(x, box.centre)
+    room = _room(box, d, far)
+    if abs(dot(box.x, d)) > box.half.x + room or abs(dot(box.y, d)) > box.half.y + room:
+        return False
+    return abs(dot(box.z, d)) <= box.half.z + room
+
+
+@inline
+def _turn(a, b, x, exact):
+    """1 or -1: how the points a, b and x, moved aside, turn seen along the ray; 0 if a and b are one there."""
+    turn = turn_along(a, b, x, AXIS, exact)
+    if turn == 0:
+        turn = side_along(a, b, (AXIS + 2) % 3, exact)
+    if turn == 0:
+        turn = side_along(b, a, (AXIS + 1) % 3, exact)
+    return turn
+
+
+@inline
+def _crossing(a, b, c, x, exact):
+    """1 or -1 if the ray from x leaves or enters through the triangle a b c, 0 if it misses it."""
+    turn = _turn(a, b, x, exact)
+    if turn == 0 or _turn(b, c, x, exact) != turn or _turn(c, a, x, exact) != turn:
+        return 0
+    return turn if orient_posed(a, b, c, x, exact) == turn else 0
+
+
+@inline
+def _beside(exact, a, b, c, x):
+    """True if the triangle is clearly beside or below the ray: told by the boxes of rounded coordinates."""
+    for axis in range(3):
+        turn_x, turn_a = row(exact.poses[x.body], axis), row(exact.poses[a.body], axis)
+        at = dot(turn_x, x.v) + (x.body - a.body) * exact.shift[0, axis]
+        p, q, r = dot(turn_a, a.v) - at, dot(turn_a, b.v) - at, dot(turn_a, c.v) - at
+        far = size(x.v) + abs(exact.shift[0, axis]) + max(size(a.v), max(size(b.v), size(c.v)))
+        error = 4.0 * FILTER * far
+        if max(p, max(q, r)) < -error or (axis != AXIS and min(p, min(q, r)) > error):
+            return True
+    return False
+
+
+@inline
+def _ray_may_meet(surface, node, x, along_ray, far):
+    """False only if the node's box is beside or behind the ray by more than rounding."""
+    box = box_of(surface, node)
+    d = sub(box.centre, x)
+    room = 8.0 * _room(box, d, far)
+    p = Vec3(dot(box.x, d), dot(box.y, d), dot(box.z, d))
+    t = Vec3(dot(box.x, along_ray), dot(box.y, along_ray), dot(box.z, along_ray))
+    h, u, v, w = box.half, abs(t.x), abs(t.y), abs(t.z)
+    return (
+        dot(p, t) + h.x * u + h.y * v + h.z * w >= -room
+        and abs(p.y * t.z - p.z * t.y) <= h.y * w + h.z * v + room
+        and abs(p.z * t.x - p.x * t.z) <= h.z * u + h.x * w + room
+        and abs(p.x * t.y - p.y * t.x) <= h.x * v + h.y * u + room
+    )
+
+
+@inline
+def _crossings(surface, face, side, x, exact):
+    """The signed count of the triangles of a face's fan that the ray from x meets."""
+    number = 0
+    start = surface.face_starts[face]
+    first = Posed(row(surface.exact, surface.face_vertices[start]), side)
+    for k in range(start + 2, surface.face_starts[face + 1]):
+        second = Posed(row(surface.exact, surface.face_vertices[k - 1]), side)
+        third = Posed(row(surface.exact, surface.face_vertices[k]), side)
+        if not _beside(exact, first, second, third, x):
+            number += _crossing(first, second, third, x, exact)
+    return number
+
+
+@inline
+def solid_angle(a, b, c):
+    """[rad] between 0 and 2 pi, of the triangle with corners at `a`, `b`, `c` from the origin.
+
+    Source: Van Oosterom and Strackee, The solid angle of a plane triangle, 1983, equation 8.
+    """
+    la, lb, lc = np.sqrt(dot(a, a)), np.sqrt(dot(b, b)), np.sqrt(dot(c, c))
+    volume = abs(dot(a, cross(b, c)))
+    spread = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb
+    if volume + abs(spread) <= EDGE_ON * la * lb * lc:
+        return 2.0 * math.pi
+    return 2.0 * math.atan2(volume, spread)
+
+
+@inline
+def _turns_of_caps(surface, body, x):
+    """[turns] the solid angles of the body's caps from `x` in its frame, added up whatever way they face."""
+    total = 0.0
+    first, last = surface.cap_starts[body], surface.cap_starts[body + 1]
+    for i in range(first, last, 3):
+        a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
+        total += solid_angle(sub(a, x), sub(b, x), sub(c, x)) + ROUNDING_OF_ANGLES
+    return total / (4.0 * math.pi)
+
+
+@inline
+def signed_turns_of_caps(surface, body, x):
+    """[turns] the solid angle of the body's caps from `x` in its frame, positive where seen from behind."""
+    total = 0.0
+    for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
+        a, b, c = row(surface.caps, i), row(surface.caps, i + 1), row(surface.caps, i + 2)
+        a, b, c = sub(a, x), sub(b, x), sub(c, x)
+        angle = solid_angle(a, b, c)
+        total += angle if dot(a, cross(b, c)) > 0.0 else -angle
+    return total / (4.0 * math.pi)
+
+
+def _like():
+    nodes = np.empty((0, 2), dtype=np.int32)
+    nowhere = Vec3(0.0, 0.0, 0.0)
+    return surface_like(), 0, True, nowhere, nowhere, 0.0, FRAMES_AT_REST, room_for_exact(), nodes
+
+
+@apart(WINDING_NUMBER, _like)
+def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
+    """How often the closed components of a body wind round a point that is not on its surface, exactly.
+
+    Args:
+        is_b: True if the body is b.
+        vertex: of the other body, in its frame.
+        x: the same in the body's own frame, rounded by no more than ROUNDING of `far` [m].
+        nodes: (k, 2) room for nodes that wait.
+    """
+    set_poses(frames, exact)
+    side = 1 if is_b else 0
+    along_ray = row(exact.poses[side], AXIS)
+    probe = Posed(vertex, 1 - side)
+    number = 0
+    n_waiting = 1
+    nodes[0, 0] = surface.roots[body]
+    while n_waiting > 0:
+        n_waiting -= 1
+        node = np.int64(nodes[n_waiting, 0])
+        if not _ray_may_meet(surface, node, x, along_ray, far):
+            continue
+        first = np.int64(surface.children[node, 0])
+        if not is_leaf(surface, node):
+            for k in range(surface.children[node, 1]):
+                nodes[n_waiting, 0] = WIDTH * first + k
+                n_waiting += 1
+        elif surface.turns[first] != 0:
+            number += surface.turns[first] * _crossings(surface, first, side, probe, exact)
+    for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
+        one, two = Posed(row(surface.caps, i), side), Posed(row(surface.caps, i + 1), side)
+        three = Posed(row(surface.caps, i + 2), side)
+        if not _beside(exact, one, two, three, probe):
+            number += _crossing(one, two, three, probe, exact)
+    return number
+
+
+@inline(one_caller=True)
+def contained(a, body_a, b, body_b, frames, scratch, table):
+    """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
+
+    Exactness: right for the float vertices under the float poses of `frames`.
+    """
+    far = size(frames.m.t)
+    one, body_one, two, body_two = a, body_a, b, body_b
+    for side in range(2):
+        is_a = side == 0
+        for i in range(one.probe_starts[body_one], one.probe_starts[body_one + 1]):
+            v = row(one.vertices, one.probes[i])
+            x = move_back(frames.m, v) if is_a else move(frames.m, v)
+            away = far + size(v)
+            if in_box(two, two.roots[body_two], x, away):
+                probe = row(one.exact, one.probes[i])
+                asked = (two, body_two, is_a, probe, x, away, frames, scratch.exact, scratch.nodes)
+                number = at_address(table, WINDING_NUMBER, 0, asked)
+                if number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL:
+                    return True, v if is_a else x
+        one, body_one, two, body_two = b, body_b, a, body_a
+    return False, frames.m.t

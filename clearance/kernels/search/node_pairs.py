@@ -1,0 +1,126 @@
+"""A group of nodes against a node of the other body: how far they are, and what is opened next."""
+
+from typing import NamedTuple
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.lanes import WIDTH, larger, marks_within, square_root
+from clearance.kernels.arithmetic.vec3 import Rigid, dot, inverse, move, sub
+from clearance.kernels.features.bounds import (
+    Sight,
+    lower_bound_boxes,
+    lower_bound_boxes_in_sight,
+    opposite,
+    sight_along,
+)
+from clearance.kernels.mesh.normal_cones import facing_of, marks_turned_away, while_moving
+from clearance.kernels.mesh.surface import box_at, box_of, group_at, is_leaf
+
+
+class View(NamedTuple):
+    """How two bodies are seen from the frame of one of them.
+
+    Attributes:
+        m: the motion from the frame of the other to its own.
+        sight: the direction that best parts them so far.
+    """
+
+    m: Rigid
+    sight: Sight
+
+
+@inline(force=True)
+def views_along(sight, m):
+    """The view from the frame of a and that from b."""
+    return View(m, sight), View(inverse(m), opposite(sight))
+
+
+@inline(force=True)
+def views_of(best, m):
+    """The views in which the best points so far part the bodies."""
+    return views_along(sight_along(best.p, best.q, m), m)
+
+
+@inline(force=True)
+def _seen(a, b, from_a, from_b, group, other, is_b):
+    """The boxes of a group, that of a node of the other body, and the view from the group's body."""
+    boxes, centres, boxes_across, centres_across = a.boxes, a.centres, b.boxes, b.centres
+    view = from_a
+    if is_b:
+        boxes, centres, boxes_across, centres_across = b.boxes, b.centres, a.boxes, a.centres
+        view = from_b
+    return group_at(boxes, centres, group), box_at(boxes_across, centres_across, other), view
+
+
+@inline(force=True)
+def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut):
+    """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
+
+    The cheap ones in sight if they exclude all that are marked.
+    """
+    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    in_sight = lower_bound_boxes_in_sight(p, q, view.sight) - slack
+    if marks & marks_within(in_sight, cut) == 0:
+        return in_sight
+    return larger(in_sight, lower_bound_boxes(p, q, view.m, slack))
+
+
+@inline(force=True)
+def _from_centres(p, q, view):
+    """[m] from the centres of a group's boxes, in lanes, to that of a node of the other body; in their frame."""
+    return sub(move(view.m, q.centre), p.centre)
+
+
+@inline(force=True)
+def between_centres(a, b, from_a, from_b, group, other, is_b):
+    """[m] from the centres of a group's boxes to that of a node of the other body, in lanes."""
+    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    d = _from_centres(p, q, view)
+    return square_root(dot(d, d))
+
+
+@inline(force=True)
+def _facing(a, b, from_a, from_b, group, other, is_b, slack):
+    """How a group and a node of the other body face each other, and what is from centre to centre."""
+    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    cones, cones_across = a.cones, b.cones
+    if is_b:
+        cones, cones_across = b.cones, a.cones
+    return facing_of(cones, group, cones_across, other, view.m, slack), _from_centres(p, q, view)
+
+
+@inline(force=True)
+def turned_away(a, b, from_a, from_b, group, other, is_b, slack):
+    """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
+    facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
+    return marks_turned_away(facing, d)
+
+
+@inline(force=True)
+def turned_away_while(a, b, from_a, from_b, group, other, is_b, slack, cos_turn, sin_turn, way):
+    """The same at every instant of a motion about the views' `m`: see `while_moving`."""
+    facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
+    return marks_turned_away(while_moving(facing, cos_turn, sin_turn, way), d)
+
+
+@inline(force=True)
+def _breadth(box):
+    """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
+    half = box.half
+    return half.x + half.y + half.z - max(half.x, max(half.y, half.z))
+
+
+@inline(force=True)
+def opened(a, node_a, b, node_b):
+    """What is looked at next of a node pair, not both leaves: (is of b, group, how many nodes, node across)."""
+    if is_leaf(a, node_a) or (
+        not is_leaf(b, node_b) and _breadth(box_of(a, node_a)) < _breadth(box_of(b, node_b))
+    ):
+        return True, b.children[node_b, 0], b.children[node_b, 1], node_a
+    return False, a.children[node_a, 0], a.children[node_a, 1], node_b
+
+
+@inline(force=True)
+def pair_in_group(is_b, group, k, other):
+    """Node `k` of a group and the node across, that of a first."""
+    node = WIDTH * group + k
+    return (other, node) if is_b else (node, other)

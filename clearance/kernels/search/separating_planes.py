@@ -1,0 +1,222 @@
+"""Two planes that part the bodies: a proof of how far apart they are where their convex hulls are as far apart.
+
+Along a unit vector u no points of the bodies are nearer than the least height of b less the greatest of a. Each
+is found in one tree by itself, not in pairs of nodes. Where the planes are as far apart as the nearest points of
+the faces that touch them, nothing else is as near. The direction is that of the nearest points of the hulls: GJK,
+from the points that were nearest before. Not for: bodies that are farther apart than their hulls (`descent`).
+
+Faces that touch the planes are left out only where they look elsewhere (`support`). Let d be the distance and f
+that of the planes. The nearest points are seen along w with u . w >= f / d, so |u - w|^2 <= 2 (d - f) / d. That is
+less than `TILT`^2, since d - f is less than the room that is left, and the room less than `TILTED` of d.
+
+Source: Gilbert, Johnson, Keerthi, A fast procedure for computing the distance between complex objects, 1988.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.compile.kernel_table import PARTING, Lent, apart, at_address, borrow
+from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
+from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, move, row, sub
+from clearance.kernels.features.bounds import sight_along
+from clearance.kernels.features.face_pair import Hit
+from clearance.kernels.features.segments import foot_inside
+from clearance.kernels.mesh.surface import surface_like
+from clearance.kernels.search.scratch import new_scratch
+from clearance.kernels.search.support import TILT, high_corner, top_of
+
+TURNS = 24
+"""Directions that are tried at most."""
+
+TOUCHING, TOUCHING_PAIRS = 24, 144
+"""Faces of each body that may touch the planes, and pairs of them; more take longer than to search."""
+
+LESS = 0.5
+"""Share of the distance of the points that were nearest. Where hulls come nearer than that, the bodies are most
+likely farther apart than their hulls."""
+
+CLOSE = 2.0**-30
+"""Share of the distance by which faces may stay behind the planes and are looked at all the same."""
+
+TILTED = 0.25 * TILT * TILT
+"""Share of the distance that the room behind the planes must be less than."""
+
+
+class Parting(NamedTuple):
+    """What two planes say.
+
+    Attributes:
+        floor: [m] proven: no points are nearer; -inf if nothing is said.
+        beyond: [m] proven: no points of other faces than those that wait are nearer.
+        n_waiting: pairs of leaves that wait. n_nodes: nodes that were bounded.
+        face_a, face_b: faces that touch the planes.
+    """
+
+    floor: float
+    beyond: float
+    n_waiting: int
+    n_nodes: int
+    face_a: int
+    face_b: int
+
+
+NOTHING_PARTED = Parting(-math.inf, -math.inf, 0, 0, -1, -1)
+
+
+@inline(force=True)
+def _nearest_on_edge(p, q):
+    """(the point of an edge nearest to the origin, True for each end that it is of)."""
+    inside, x = foot_inside(Vec3(0.0, 0.0, 0.0), p, q)
+    if inside:
+        return x, True, True
+    if dot(q, q) < dot(p, p):
+        return q, False, True
+    return p, True, False
+
+
+@inline(force=True)
+def _nearest_on_triangle(a, b, c):
+    """(the point of a triangle nearest to the origin, True for each corner that it is of): Ericson 2005, 5.1.5."""
+    ab, ac = sub(b, a), sub(c, a)
+    n = cross(ab, ac)
+    size = dot(n, n)
+    # shares of the corners, times the square of twice the area
+    u = dot(n, cross(b, c))
+    v = dot(n, cross(c, a))
+    w = dot(n, cross(a, b))
+    if size > 0.0 and u > 0.0 and v > 0.0 and w > 0.0:
+        h = dot(n, a) / size
+        return Vec3(h * n.x, h * n.y, h * n.z), True, True, True
+    best, of_a, of_b = _nearest_on_edge(a, b)
+    of_c = False
+    x, first, second = _nearest_on_edge(a, c)
+    if dot(x, x) < dot(best, best):
+        best, of_a, of_b, of_c = x, first, False, second
+    x, first, second = _nearest_on_edge(b, c)
+    if dot(x, x) < dot(best, best):
+        best, of_a, of_b, of_c = x, False, first, second
+    return best, of_a, of_b, of_c
+
+
+@inline(force=True)
+def _kept(p, q, r, of_p, of_q, of_r):
+    """Those of three points that are kept, in front: (how many, three points)."""
+    if not of_q:
+        q = r
+    if not of_p:
+        p, q = q, r
+    return int(of_p) + int(of_q) + int(of_r), p, q, r
+
+
+@inline(force=True)
+def _nearest_with(n, p, q, r, w):
+    """The point nearest to the origin of a simplex of `n` points, 1 to 3, and a new one; the points that it is of.
+
+    Of four points it is that of the three triangles with the new one. Returns (it, how many, three points).
+    """
+    if n == 1:
+        q = p
+    near, of_p, of_q, of_w = _nearest_on_triangle(p, q, w)
+    first, second = p, q
+    if n == 3:
+        other, of_0, of_1, of_2 = _nearest_on_triangle(p, r, w)
+        if dot(other, other) < dot(near, near):
+            near, of_p, of_q, of_w, first, second = other, of_0, of_1, of_2, p, r
+        other, of_0, of_1, of_2 = _nearest_on_triangle(q, r, w)
+        if dot(other, other) < dot(near, near):
+            near, of_p, of_q, of_w, first, second = other, of_0, of_1, of_2, q, r
+    n, p, q, r = _kept(first, second, w, of_p, of_q, of_w)
+    return near, n, p, q, r
+
+
+def _like():
+    hit = Hit(0.0, 0, 0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
+    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST.m, hit, 0.0, 0.0, 0.0, new_scratch()
+
+
+@inline(force=True)
+def _let_wait(n_a, n_b, floor, scratch):
+    """Lets each pair of the leaves in both columns of `scratch.left` wait; how many they are."""
+    n_waiting = 0
+    for i in range(n_a):
+        for k in range(n_b):
+            scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = ~scratch.left[i, 0], scratch.left[k, 1]
+            scratch.bounds[n_waiting] = floor
+            n_waiting += 1
+    return n_waiting
+
+
+@apart(PARTING, _like)
+def part(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch):
+    """Seeks planes that part the bodies by the distance of their nearest points, or by more than the limit [m].
+
+    Pairs of leaves that touch the planes wait, as those do that a front has.
+
+    Args:
+        best: a hit, whose points say where to begin. m, margin, slack: of `descend`.
+    """
+    a, b = borrow(lent_a), borrow(lent_b)
+    origin = Vec3(0.0, 0.0, 0.0)
+    near = sub(best.p, best.q)
+    p, q, r = near, near, near  # points of a less points of b
+    face_a, face_b = np.int64(-1), np.int64(-1)
+    n_points, n_nodes, expected = 0, 0, 0.0
+    if best.face_a < 2**62:
+        face_a, face_b = np.int64(best.face_a), np.int64(best.face_b)
+        n_points, expected = 1, min(limit, math.sqrt(best.gap_sq))
+    is_proof = n_points > 0
+    for _ in range(TURNS):
+        length = math.sqrt(dot(near, near))
+        room = 16.0 * margin + CLOSE * length
+        if not room < TILTED * length or length < LESS * expected:
+            break
+        sight = sight_along(near, origin, m)
+        v = Vec3(-sight.v.x, -sight.v.y, -sight.v.z)
+        n_a, n_b = 0, 0
+        if is_proof:
+            top_a, n_a, nodes_a = top_of(a, root_a, sight.u, face_a, room, TOUCHING, 0, scratch)
+            top_b, n_b, nodes_b = top_of(b, root_b, v, face_b, room, TOUCHING, 1, scratch)
+        else:
+            top_a, nodes_a = high_corner(a, root_a, sight.u, face_a)
+            top_b, nodes_b = high_corner(b, root_b, v, face_b)
+        n_nodes += nodes_a + nodes_b
+        face_a, face_b = top_a.face, top_b.face
+        if face_a < 0 or face_b < 0:
+            break
+        floor = sight.offset - top_b.height - top_a.height - slack
+        is_as_far = n_points > 0 and floor > 0.0 and floor + room > length + 2.0 * margin
+        if not is_proof and (floor > limit or is_as_far):
+            is_proof = True
+            continue
+        if floor > limit:
+            return Parting(floor, floor, 0, n_nodes, face_a, face_b)
+        if is_as_far:
+            if max(n_a, n_b) > TOUCHING or n_a * n_b > TOUCHING_PAIRS:
+                break
+            return Parting(floor, floor + room, _let_wait(n_a, n_b, floor, scratch), n_nodes, face_a, face_b)
+        x = row(a.vertices, a.face_vertices[top_a.corner])
+        w = sub(x, move(m, row(b.vertices, b.face_vertices[top_b.corner])))
+        if n_points == 0:
+            near, n_points, p = w, 1, w
+            continue
+        nearer, n_of, p_of, q_of, r_of = _nearest_with(n_points, p, q, r, w)
+        if dot(nearer, nearer) < dot(near, near):
+            near, n_points, p, q, r = nearer, n_of, p_of, q_of, r_of
+            is_proof = False
+        elif is_proof:
+            break
+        else:
+            is_proof = True
+    return Parting(-math.inf, -math.inf, 0, n_nodes, face_a, face_b)
+
+
+@inline(one_caller=True)
+def parting_of(table, lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch):
+    """The same by address."""
+    return at_address(
+        table, PARTING, NOTHING_PARTED,
+        (lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch),
+    )  # fmt: skip

@@ -1,0 +1,139 @@
+"""How far a body reaches along a direction, and which of its faces do: ways down one tree.
+
+A node whose faces look elsewhere holds nothing that is farthest along u: u or -u would be among the directions of
+its normal cone, for the reasons in `facing`, since beyond the farthest point there is nothing, as there is nothing
+between nearest points. Not for: two trees at once (`descent`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, lanes_at, marks_within
+from clearance.kernels.arithmetic.vec3 import Vec3, dot, row
+from clearance.kernels.features.bounds import box_reach
+from clearance.kernels.mesh.normal_cones import CONE_ROWS
+from clearance.kernels.mesh.surface import group_of, is_leaf
+from clearance.kernels.search.scratch import wait
+
+TILT = 2.0**-9
+"""[rad] Of all directions within this of the one that is asked for, what is farthest is found."""
+
+UNLIKE_ANY = 2.0**-19
+"""Makes `NO_CONE`, which a node without a cone has for a sine, more than any cosine; others lose 2^-19."""
+
+
+class Top(NamedTuple):
+    """The corner of a body that is farthest along a direction.
+
+    Attributes:
+        height: [m] from the origin of the body's frame along the direction; -inf if there is none.
+        face, corner: a face that has it, and its place in `Surface.face_vertices`.
+    """
+
+    height: float
+    face: int
+    corner: int
+
+
+@inline(force=True)
+def _top_of_face(surface, face, u):
+    """The `Top` of one face."""
+    top = Top(-math.inf, face, 0)
+    for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
+        height = dot(u, row(surface.vertices, surface.face_vertices[c]))
+        if height > top.height:
+            top = Top(height, face, c)
+    return top
+
+
+@inline(force=True)
+def _top_known(surface, face, u):
+    """The `Top` of a face, none for -1."""
+    return _top_of_face(surface, face, u) if face >= 0 else Top(-math.inf, face, 0)
+
+
+@inline(force=True)
+def _heights(surface, group, u):
+    """[m] how far the boxes of a group reach along `u` at most, in lanes."""
+    boxes = group_of(surface, group)
+    return dot(u, boxes.centre) + box_reach(boxes, u)
+
+
+@inline(force=True)
+def _turned_away(surface, group, u):
+    """Bits of the nodes of a group that hold nothing which is farthest along a direction within `TILT` of `u`."""
+    cones, first = surface.cones, CONE_ROWS * group
+    axis = Vec3(lanes_at(cones, first), lanes_at(cones, first + 1), lanes_at(cones, first + 2))
+    cosine = lanes_at(cones, first + 3) - lanes_at(cones, first + 4) * UNLIKE_ANY
+    return marks_within(abs(dot(axis, u)) - cosine, -TILT)
+
+
+@inline(force=True)
+def _open(surface, node, u, least, scratch, n_waiting):
+    """Lets the children of a node wait that may reach so far [m], the highest last: (waiting, children)."""
+    group, count = surface.children[node, 0], surface.children[node, 1]
+    depths = 0.0 - _heights(surface, group, u)
+    near = marks_within(depths, -least) & ((1 << count) - 1) & ~_turned_away(surface, group, u)
+    first = n_waiting
+    while near:
+        i = first_of(near)
+        near &= near - 1
+        n_waiting = wait(scratch, n_waiting, WIDTH * group + i, 0, lane(depths, i), first)
+    return n_waiting, count
+
+
+@inline(force=True)
+def top_of(surface, root, u, face, room, most, column, scratch):
+    """The `Top` of a body along a unit vector `u` of its frame, and the leaves that come near it.
+
+    Args:
+        face: where to begin, or -1.
+        room: [m] how far below the top leaves are near; more than rounding.
+        most: of these are written at most, into a column of `scratch.left`; if there are more, it says one more.
+
+    Returns: (the `Top`, how many leaves, nodes that it took). Some of the leaves may be lower.
+    """
+    top = _top_known(surface, face, u)
+    scratch.nodes[0, 0], scratch.bounds[0] = root, -math.inf
+    n_waiting, n_nodes, n_found = 1, 1, 0
+    while n_waiting > 0:
+        n_waiting -= 1
+        node = np.int64(scratch.nodes[n_waiting, 0])
+        if -scratch.bounds[n_waiting] < top.height - room:
+            continue
+        if not is_leaf(surface, node):
+            n_waiting, count = _open(surface, node, u, top.height - room, scratch, n_waiting)
+            n_nodes += count
+            continue
+        found = _top_of_face(surface, np.int64(surface.children[node, 0]), u)
+        if found.height < top.height - room:
+            continue
+        if found.height > top.height:
+            if found.height - room > top.height:
+                n_found = 0
+            top = found
+        if n_found <= most:
+            scratch.left[n_found, column] = node
+            n_found += 1
+    return top, n_found, n_nodes
+
+
+@inline(force=True)
+def high_corner(surface, root, u, face):
+    """A corner that is high along `u`, perhaps not the `Top`, on one way down the tree; the nodes that it took."""
+    top = _top_known(surface, face, u)
+    node, n_nodes = np.int64(root), 1
+    while not is_leaf(surface, node):
+        group, count = np.int64(surface.children[node, 0]), np.int64(surface.children[node, 1])
+        heights = _heights(surface, group, u)
+        highest = 0
+        for k in range(1, count):
+            if lane(heights, k) > lane(heights, highest):
+                highest = k
+        node = WIDTH * group + highest
+        n_nodes += count
+    found = _top_of_face(surface, np.int64(surface.children[node, 0]), u)
+    return (found if found.height > top.height else top), n_nodes

@@ -1,0 +1,1 @@
+"""Geometric constraints: equations, the graph they make, and how it is solved."""

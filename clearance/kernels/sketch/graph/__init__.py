@@ -1,0 +1,1 @@
+"""The constraint graph: what depends on what, and the construction plan."""

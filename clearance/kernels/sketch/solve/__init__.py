@@ -1,0 +1,1 @@
+"""Running a construction plan: closed steps, numeric clusters, all roots."""

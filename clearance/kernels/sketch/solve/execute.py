@@ -1,0 +1,225 @@
+"""Runs a construction plan: closed steps by ruler and compass, numeric clusters by search.
+
+A step whose equations already hold is left alone, which makes a second solve after one change cheap.
+A cluster of many bodies is solved with all its points free: rigid bodies bar the ways on which a
+descent gets past a wrong fold.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+from clearance.kernels.sketch.equations import evaluate
+from clearance.kernels.sketch.graph.graph import POINT
+from clearance.kernels.sketch.solve.motion import freedoms, move, pivots_of
+from clearance.kernels.sketch.solve.place import assign, place
+from clearance.kernels.sketch.solve.search import BANDED, solve_block
+
+DONE, FAILED, TOO_LARGE, KEPT = 0, 1, 2, 3
+"""Fates of a step: placed; no such place found; a cluster left untried; its equations held already."""
+
+
+class Limits(NamedTuple):
+    """A step is left alone when its equations hold to `settled`; a numeric one aims at `floor` and
+    counts as done at `tolerance` (all [m]), tries `attempts` times, and not with more equations than
+    `largest_block`."""
+
+    settled: float
+    floor: float
+    tolerance: float
+    largest_block: int
+    attempts: int
+
+
+FREED = 4
+"""How many times more unknowns a cluster may have with its bodies' points free than with bodies."""
+
+
+@inline
+def _holds(s, edges, x, gradient, tolerance):
+    """Whether every edge (-1 pads) already holds."""
+    for row in edges:
+        if row >= 0:
+            f = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
+            if not abs(f) <= tolerance:
+                return False
+    return True
+
+
+@inline
+def _base_of(s, plan, rows, inside):
+    """The initial cluster, if that is all that these rows hang on; else -1. `inside` marks the cluster."""
+    base = -1
+    for row in rows:
+        for k in range(5):
+            u = s.ends[row, k]
+            if u <= 0 or inside[u] >= 0:
+                continue
+            b = plan.body_of[u]
+            if b < 0 or not plan.held[b] or (base >= 0 and base != b):
+                return -1
+            base = b
+    return base
+
+
+@inline
+def _freed(s, plan, vertices, rows, base, inside):
+    """A cluster with the points of its bodies, and of the base, as (vertices, rows), inner rows and all.
+
+    `inside` (v,) marks the cluster's vertices on entry; -1 on return.
+    """
+    n = plan.body_of.shape[0]
+    free = np.empty(n, np.int64)
+    n_free = vertices.shape[0]
+    free[:n_free] = vertices
+    for v in range(n):
+        if base >= 0 and plan.body_of[v] == base:
+            free[n_free] = v
+            n_free += 1
+            inside[v] = 1
+    idle = np.zeros(s.ends.shape[0], np.uint8)
+    for row in plan.dependent:
+        idle[row] = 1
+    for row in rows:
+        idle[row] = 1
+    out = np.empty(s.ends.shape[0], np.int64)
+    count = rows.shape[0]
+    out[:count] = rows
+    for row in range(s.ends.shape[0]):
+        v = s.ends[row, 0]
+        if idle[row] or v <= 0 or inside[v] < 0 or plan.body_of[v] < 0:
+            continue
+        within = True
+        for k in range(1, 5):
+            u = s.ends[row, k]
+            within = within and (u < 0 or plan.body_of[u] == plan.body_of[v])
+        if within:
+            out[count] = row
+            count += 1
+    for v in free[:n_free]:
+        inside[v] = -1
+    return free[:n_free], out[:count]
+
+
+@inline
+def _put_back(s, plan, base, vertices, x, before, inside):
+    """Moves the vertices rigidly so that the base lies where it was; how far it is off then [m].
+
+    A base of a single point hangs on known directions: it is only shifted.
+    """
+    pivot, goal, turn, count = np.zeros((1, 2)), np.zeros(2), np.zeros(2), 0
+    for v in vertices:
+        inside[v] = 0
+        if plan.body_of[v] == base and s.kind[v] == POINT:
+            for k in range(2):
+                pivot[0, k] += x[s.root[v] + k]
+                goal[k] += before[s.root[v] + k]
+            count += 1
+    pivot /= count
+    goal /= count
+    for v in vertices:
+        if plan.body_of[v] == base and s.kind[v] == POINT:
+            i = s.root[v]
+            ax, ay = x[i] - pivot[0, 0], x[i + 1] - pivot[0, 1]
+            bx, by = before[i] - goal[0], before[i + 1] - goal[1]
+            turn[0] += ax * bx + ay * by
+            turn[1] += ax * by - ay * bx
+    step = np.empty(3)
+    step[:2] = goal - pivot[0]
+    step[2] = math.atan2(turn[1], turn[0])
+    move(s, vertices, step, 1.0, x, inside, np.zeros(inside.shape[0], np.int64), pivot)
+    off = 0.0
+    for v in vertices:
+        inside[v] = -1
+        if plan.body_of[v] == base and s.kind[v] == POINT:
+            for k in range(2):
+                off = max(off, abs(x[s.root[v] + k] - before[s.root[v] + k]))
+    return off
+
+
+@inline
+def _find_freed(
+    s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, alone_in_part
+):
+    """Solves a large cluster from the sketch with all its points free; it is set down by its base.
+
+    A base that came out mirrored will do only where no other cluster hangs on it already.
+    """
+    for v in vertices:
+        first[v] = 1
+    base = _base_of(s, plan, rows, first)
+    vertices, rows = _freed(s, plan, vertices, rows, base, first)
+    alone = np.full(s.kind.shape[0], -1, np.int64)
+    pivot = np.zeros((0, 2))
+    before = x.copy()
+    for v in vertices:
+        if s.kind[v] == POINT:
+            x[s.root[v]], x[s.root[v] + 1] = sketch[s.root[v]], sketch[s.root[v] + 1]
+        else:
+            assign(s, v, sketch[s.root[v]], x)
+    if not solve_block(s, vertices, rows, x, alone, pivot, floor, tolerance, attempts):
+        x[:] = before
+        return False
+    off = _put_back(s, plan, base, vertices, x, before, first) if base >= 0 else 0.0
+    if off > tolerance and not alone_in_part:
+        x[:] = before
+        return False
+    return True
+
+
+@kernel
+def place_closed(s, plan, x, sketch, turned, active, limits, begin, fate):
+    """Runs the closed steps from `begin` on, in place on x and `fate` (s,), up to a numeric step that has
+    work to do; its index, or the number of steps.
+
+    `turned` (s,) is 1 where a closed step takes the sketch's branch, -1 the other; `active` (v,) leaves
+    out the vertices of parts that need no work.
+    """
+    gradient = np.empty(8)
+    for k in range(begin, plan.vertex.shape[0]):
+        b, v = plan.block[k], plan.vertex[k]
+        fate[k] = KEPT
+        if b >= 0:
+            at = plan.block_row_start[b]
+            rows = plan.block_row[at : plan.block_row_start[b + 1]]
+            if not active[plan.block_vertex[plan.block_vertex_start[b]]]:
+                continue
+            if not _holds(s, rows, x, gradient, limits.settled):
+                return k
+        elif active[v]:
+            if turned[k] > 0.0 and _holds(s, plan.edges[k], x, gradient, limits.settled):
+                continue
+            if s.kind[v] == POINT and plan.partner[k] >= 0:
+                return k
+            done = place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient, turned[k])
+            fate[k] = DONE if done else FAILED
+    return plan.vertex.shape[0]
+
+
+@kernel
+def solve_numeric(s, plan, x, sketch, k, limits):
+    """The fate of one numeric step, in place on x: a cluster, or a circle from three conditions."""
+    floor, tolerance, attempts = limits.floor, limits.tolerance, limits.attempts
+    alone = np.full(s.kind.shape[0], -1, np.int64)
+    pivot = pivots_of(s, plan.body_of, plan.held.shape[0], x)
+    b = plan.block[k]
+    if b < 0:
+        vertices, rows = np.empty(2, np.int64), plan.edges[k][plan.edges[k] >= 0]
+        vertices[0], vertices[1] = plan.vertex[k], plan.partner[k]
+    else:
+        vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
+        rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
+    if rows.shape[0] > limits.largest_block:
+        return TOO_LARGE
+    unknowns = freedoms(s, vertices, plan.body_of)
+    if BANDED <= unknowns and freedoms(s, vertices, alone) <= FREED * unknowns:
+        first = np.full(s.kind.shape[0], -1, np.int64)
+        if _find_freed(
+            s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, b == 0
+        ):
+            return DONE
+    body_of = plan.body_of if b >= 0 else alone
+    done = solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance, attempts)
+    return DONE if done else FAILED

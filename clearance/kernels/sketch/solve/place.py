@@ -1,0 +1,190 @@
+"""Ruler and compass: one vertex (or a line, or a circle) placed in closed form from what already
+stands.
+
+A point comes from the loci of its conditions (`sketch.solve.loci`), a line from the points that it passes at known
+distances; the sketch's side is kept. Where a condition is missing the sketch is moved least (the paper's
+assumptions): the nearest point of a locus, a line's old direction.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.sketch.equations import ACROSS, LINE_CIRCLE, MIDDLE_ON, evaluate
+from clearance.kernels.sketch.graph.graph import POINT, SIZE, SLIDE, TURN
+from clearance.kernels.sketch.solve.loci import locus, meet, nearest_on, root_of
+
+
+class System(NamedTuple):
+    """Equations and graph as flat arrays; `member` lists the merged variables of a vertex."""
+
+    code: np.ndarray
+    var: np.ndarray
+    coef: np.ndarray
+    value: np.ndarray
+    kind: np.ndarray
+    root: np.ndarray
+    parent: np.ndarray
+    scale: np.ndarray
+    shift: np.ndarray
+    member_start: np.ndarray
+    member: np.ndarray
+    vertex_of: np.ndarray
+    ends: np.ndarray
+
+
+@inline
+def assign(s, v, number, x):
+    """Sets a class of directions, offsets or radii: its root and every merged variable."""
+    for at in range(s.member_start[v], s.member_start[v + 1]):
+        i = s.member[at]
+        x[i] = s.scale[i] * number + s.shift[i]
+
+
+@inline
+def _place_point(s, v, rows, count, x, sketch, turned):
+    i = s.root[v]
+    px, py = sketch[i], sketch[i + 1]
+    if count == 0:
+        x[i], x[i + 1] = px, py
+        return True
+    k1, a1, b1, c1 = locus(s, rows[0], i, x)
+    if k1 == 0:
+        return False
+    if count == 1:
+        good, x[i], x[i + 1] = nearest_on(k1, a1, b1, c1, px, py)
+        return good
+    k2, a2, b2, c2 = locus(s, rows[1], i, x)
+    if k2 == 0:
+        return False
+    first = locus(s, rows[0], i, sketch)
+    second = locus(s, rows[1], i, sketch)
+    good, mx, my = meet(k1, a1, b1, c1, k2, a2, b2, c2, first, second, px, py, turned)
+    if good:
+        x[i], x[i + 1] = mx, my
+    return good
+
+
+@inline
+def _place_number(s, v, row, x, gradient):
+    """Places an offset or a radius, in which every equation is linear; a radius must not be
+    negative."""
+    assign(s, v, 0.0, x)
+    f0 = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
+    assign(s, v, 1.0, x)
+    slope = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient) - f0
+    if abs(slope) < 1e-12:
+        return False
+    number = -f0 / slope
+    assign(s, v, number, x)
+    if s.kind[v] == SIZE:
+        for at in range(s.member_start[v], s.member_start[v + 1]):
+            if x[s.member[at]] < 0.0:
+                return False
+    return True
+
+
+@inline
+def _line_condition(s, row, own, x):
+    """(1, px, py, w) for n . p - d = w on the line at variables own, own + 1; (2, ux, uy, 0) for n
+    || u."""
+    code = s.code[row]
+    if code == ACROSS:
+        ux = x[s.var[row, 2]] - x[s.var[row, 0]]
+        uy = x[s.var[row, 3]] - x[s.var[row, 1]]
+        turn = s.shift[s.var[row, 4]] - s.shift[own]
+        c, si = math.cos(turn), math.sin(turn)
+        return 2, c * ux + si * uy, c * uy - si * ux, 0.0
+    px, py, w = x[s.var[row, 0]], x[s.var[row, 1]], s.value[row]
+    theta, d = s.var[row, 2], s.var[row, 3]
+    if code == MIDDLE_ON:
+        px, py, w = 0.5 * (px + x[s.var[row, 2]]), 0.5 * (py + x[s.var[row, 3]]), 0.0
+        theta, d = s.var[row, 4], s.var[row, 5]
+    elif code == LINE_CIRCLE:
+        w += s.coef[row, 0] * x[s.var[row, 4]]
+    sign = 1.0 if math.cos(s.shift[theta] - s.shift[own]) > 0.0 else -1.0
+    return 1, px, py, sign * (w + s.shift[d])
+
+
+@inline
+def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
+    """Gives the line at `own` the normal (nx, ny) and offset d; its direction stays near the
+    sketch's."""
+    theta = math.atan2(-nx, ny)
+    theta += 2.0 * math.pi * round((sketch[own] - theta) / (2.0 * math.pi))
+    assign(s, turn, theta - s.shift[own], x)
+    if slide >= 0:
+        assign(s, slide, d, x)
+
+
+@inline
+def _place_line(s, turn, slide, rows, count, x, sketch, turned):
+    """Places a line from at most two conditions; `slide` -1 places a direction alone (from one)."""
+    own = s.root[slide] - 1 if slide >= 0 else s.root[turn]
+    theta = sketch[own]
+    nx, ny = -math.sin(theta), math.cos(theta)
+    if count == 0:
+        _set_line(s, turn, slide, own, nx, ny, sketch[own + 1], x, sketch)
+        return True
+    k1, p1, q1, w1 = _line_condition(s, rows[0], own, x)
+    if slide < 0 and k1 == 1:
+        return False
+    if count == 1 and k1 == 1:
+        _set_line(s, turn, slide, own, nx, ny, nx * p1 + ny * q1 - w1, x, sketch)
+        return True
+    k2, p2, q2, w2 = 0, 0.0, 0.0, 0.0
+    if count == 2:
+        k2, p2, q2, w2 = _line_condition(s, rows[1], own, x)
+        if k1 == 2:
+            k1, p1, q1, w1, k2, p2, q2, w2 = k2, p2, q2, w2, k1, p1, q1, w1
+    if k1 == 2:
+        p2, q2 = p1, q1
+    if k1 == 2 or k2 == 2:
+        length = math.hypot(p2, q2)
+        if length == 0.0 or (k1 == 2 and k2 == 2):
+            return False
+        if nx * p2 + ny * q2 < 0.0:
+            length = -length
+        nx, ny = p2 / length, q2 / length
+        d = nx * p1 + ny * q1 - w1 if k1 == 1 else sketch[own + 1]
+        _set_line(s, turn, slide, own, nx, ny, d, x, sketch)
+        return True
+    dx, dy = p1 - p2, q1 - q2
+    length = math.hypot(dx, dy)
+    if length == 0.0:
+        return False
+    along = (w1 - w2) / length
+    h = root_of((1.0 - along) * (1.0 + along), 1.0)
+    if h < 0.0:
+        return False
+    _, s1, t1, _ = _line_condition(s, rows[0], own, sketch)
+    _, s2, t2, _ = _line_condition(s, rows[1], own, sketch)
+    ux, uy = dx / length, dy / length
+    if (s1 - s2) * ny - (t1 - t2) * nx < 0.0:
+        h = -h
+    h *= turned
+    nx, ny = along * ux - h * uy, along * uy + h * ux
+    _set_line(s, turn, slide, own, nx, ny, nx * p1 + ny * q1 - w1, x, sketch)
+    return True
+
+
+@inline
+def place(s, v, partner, rows, x, sketch, gradient, turned):
+    """Places vertex v, with its partner if any, from `rows` (-1 pads); False when there is no such
+    place. `turned` -1 takes the branch on the other side than the sketch's, 1 the sketch's."""
+    count = 0
+    while count < 3 and rows[count] >= 0:
+        count += 1
+    kind = s.kind[v]
+    if kind == POINT and partner < 0:
+        return count <= 2 and _place_point(s, v, rows, count, x, sketch, turned)
+    if kind == TURN:
+        return count <= 2 and _place_line(s, v, partner, rows, count, x, sketch, turned)
+    if kind == SLIDE or kind == SIZE:
+        if count == 0:
+            assign(s, v, sketch[s.root[v]], x)
+            return True
+        return count == 1 and _place_number(s, v, rows[0], x, gradient)
+    return False

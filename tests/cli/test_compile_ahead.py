@@ -1,0 +1,167 @@
+"""What a second process compiles ahead: taken by the first, never waited for in vain."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numba
+import pytest
+
+from clearance.simulate.parts import usable_cores
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled here")
+
+FROM_A_SECOND_PROCESS = """
+import json
+from clearance.cli import compile_ahead
+from clearance.compile import kernel_table
+from clearance.kernels.search import body_pair
+from clearance.kernels.search import separating_planes as parting
+from clearance.kernels.features import refine
+told = {"kept": [kernel_table.is_kept(place) for place in compile_ahead.FIRST], "first": compile_ahead.start()}
+for place in compile_ahead.FIRST:
+    kernel_table.compile_kernel(place)
+told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, refine.refine, parting.part)]
+told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, refine.refine, parting.part)]
+told["again"] = compile_ahead._start_once.__wrapped__()
+print(json.dumps(told))
+"""
+
+FROM_ONE_THAT_ENDS = """
+import json, subprocess, sys
+from clearance.compile import kernel_table
+from clearance.kernels.search import containment
+process = subprocess.Popen([sys.executable, "-c", ""], stdout=subprocess.PIPE)
+kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
+kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
+print(json.dumps(sum(containment.winding_number.stats.cache_misses.values())))
+"""
+
+FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER = """
+import json, subprocess, sys
+from clearance.compile import kernel_table
+from clearance.kernels.search import body_pair
+from clearance.kernels.search import containment
+process = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"], stdout=subprocess.PIPE)
+kernel_table.await_from(process, [kernel_table.SEARCH, kernel_table.WINDING_NUMBER])
+kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
+runs = process.poll() is None
+process.kill()
+print(json.dumps([sum(containment.winding_number.stats.cache_misses.values()), runs]))
+"""
+
+WHAT_GOES_TOGETHER = '''
+import json, subprocess, sys
+from clearance.compile import kernel_table
+from clearance.kernels.search import body_pair
+from clearance.kernels.features import common_point
+from clearance.kernels.features import meeting
+do = f"""import sys; sys.path[:] = {sys.path!r}
+from clearance.kernels.search import body_pair; from clearance.compile import kernel_table
+kernel_table.compile_kernel(kernel_table.MEETING)"""
+process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
+kernel_table.await_from(process, kernel_table.TOGETHER)
+kernel_table.compile_kernel(kernel_table.MEETING)
+made = [sum(f.stats.cache_misses.values()) for f in (meeting.meeting, common_point.common_point)]
+print(json.dumps([made, sum(meeting.meeting.stats.cache_hits.values())]))
+'''
+
+ONE_THAT_TAKES_LONG = """
+import json, subprocess, sys
+from clearance.compile import kernel_table
+from clearance.kernels.search import containment
+process = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+kernel_table.await_from(process, [kernel_table.WINDING_NUMBER])
+listened = []
+class Pipe:
+    def readline(self):
+        listened.append(len(listened))
+        if len(listened) < 1000:
+            return b"not this one yet"
+        process.kill()
+        return b""
+process.stdout = Pipe()
+compiled = []
+kernel_table._compile_here = compiled.append
+kernel_table.compile_kernel(kernel_table.WINDING_NUMBER)
+print(json.dumps([len(listened), compiled == [kernel_table.WINDING_NUMBER]]))
+"""
+
+ENDS_WITH_THE_FIRST = """
+import json, os, signal, sys
+from clearance.cli import compile_ahead
+process = compile_ahead._second_process()
+print(json.dumps(process.pid), flush=True)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+WHERE_NO_PROCESS_STARTS = """
+import json, sys
+from clearance.cli import compile_ahead
+from clearance.compile import kernel_table
+sys.executable = "/nowhere/python"
+print(json.dumps([compile_ahead.start(), len(kernel_table._elsewhere)]))
+"""
+
+
+def told_by(script, folder, ends=0):
+    """What a script prints in a process of its own with an empty cache, from a folder with a trap in it."""
+    here = folder / "work"
+    here.mkdir()
+    (here / "numba.py").write_text("open('trapped', 'w').close()\n")
+    (folder / "script.py").write_text(script)
+    settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(folder / "cache")}
+    done = subprocess.run(
+        [sys.executable, folder / "script.py"],
+        cwd=here, env={**os.environ, **settings}, capture_output=True, text=True,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (ends, "")
+    assert not (here / "trapped").exists()
+    return json.loads(done.stdout)
+
+
+@pytest.mark.skipif(usable_cores() < 2, reason="one core: nothing is compiled ahead")
+def test_what_the_second_process_compiles_is_taken_and_not_made_again(tmp_path):
+    told = told_by(FROM_A_SECOND_PROCESS, tmp_path)
+    assert told["kept"] == [False, False, False]
+    assert told["first"] and not told["again"]
+    assert told["taken"] == [1, 1, 1]
+    assert told["made"] == [0, 0, 0]
+
+
+def test_a_process_that_ends_without_it_is_not_waited_for(tmp_path):
+    assert told_by(FROM_ONE_THAT_ENDS, tmp_path) == 1
+
+
+def test_what_another_process_has_not_come_to_is_not_waited_for(tmp_path):
+    assert told_by(FROM_ONE_THAT_IS_BUSY_WITH_ANOTHER, tmp_path) == [1, True]
+
+
+def test_while_one_of_two_kernels_is_awaited_the_other_is_compiled(tmp_path):
+    assert told_by(WHAT_GOES_TOGETHER, tmp_path) == [[0, 1], 1]
+
+
+def test_what_takes_long_is_waited_for_until_that_process_has_ended(tmp_path):
+    """However often it has had something else to say: no clock decides."""
+    assert told_by(ONE_THAT_TAKES_LONG, tmp_path) == [1000, True]
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="another way to list processes")
+def test_the_second_process_ends_with_a_first_that_is_killed(tmp_path):
+    """It has nothing to end for but the pipe that has closed; a process that is being waited for is a zombie."""
+    second = Path("/proc", str(told_by(ENDS_WITH_THE_FIRST, tmp_path, -signal.SIGKILL)), "stat")
+    guard = time.monotonic() + 120.0
+    while second.exists() and second.read_text().rsplit(")")[-1].split()[0] != "Z":
+        assert time.monotonic() < guard
+        time.sleep(0.01)
+
+
+@pytest.mark.skipif(usable_cores() < 2, reason="one core: nothing is compiled ahead")
+def test_where_no_process_can_be_started_all_is_left_to_the_first(tmp_path):
+    assert told_by(WHERE_NO_PROCESS_STARTS, tmp_path) == [True, 0]
