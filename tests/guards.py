@@ -1,7 +1,7 @@
-"""A guard on every test: it starts no process and reads no case beside the repository unless it is marked so.
+"""A guard on every test: it starts no process and reads no case beside the repository unless marked so.
 
-An audit hook sees what the interpreter does, whoever asks for it, and refuses. Whatever the code under test makes of
-the refusal, the test fails.
+An audit hook sees what the interpreter does, whoever asks for it, and refuses. Whatever the code under test makes
+of the refusal, the test fails.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The exact least clearance of a case at one step, by the oracle: what the references of this folder are made of.
 
-Shapes are the polyhedra that the case is loaded to. Where the links are and how far they are from the obstacles is
-rational arithmetic. Only the order in which pairs are taken comes from floats, each bound less a micrometre, so that
-no pair is left out that could be the nearest.
+Shapes are the polyhedra that the case is loaded to. Where the links are and how far they are from the obstacles
+is rational arithmetic. Only the order in which pairs are taken comes from floats, each bound less a micrometre,
+so that no pair is left out that could be the nearest.
 """
 
 from __future__ import annotations
@@ -47,7 +47,10 @@ def _links(case: Case, step: int) -> dict:
 
 
 def _obstacles(case: Case) -> dict:
-    return {one.name: (one.body.shape, placed(one.body.shape.vertices, one.world_from_body)) for one in case.obstacles}
+    return {
+        one.name: (one.body.shape, placed(one.body.shape.vertices, one.world_from_body))
+        for one in case.obstacles
+    }
 
 
 def _by_bound(case: Case, links: dict, obstacles: dict) -> list[tuple[Fraction, str, str]]:
@@ -70,8 +73,9 @@ def _gap(one: tuple, two: tuple) -> Fraction:
 
 def _distance_sq(shape_a, vertices_a, shape_b, vertices_b) -> Fraction:
     return oracle.solid_distance_sq(
-        vertices_a, _faces(shape_a), vertices_b, _faces(shape_b), closed_a=_holds(shape_a), closed_b=_holds(shape_b)
-    )
+        vertices_a, _faces(shape_a), vertices_b, _faces(shape_b),
+        closed_a=_holds(shape_a), closed_b=_holds(shape_b),
+    )  # fmt: skip
 
 
 def _faces(shape) -> list:

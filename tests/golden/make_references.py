@@ -1,7 +1,8 @@
-"""Writes `references/*.json`: `python -m tests.golden.make_references [case …]`, some minutes for all.
+"""Writes `references/*.json`: `python -m tests.golden.make_references [case …]`.
 
-Each holds, of some steps of a case, the pairs of least clearance and that clearance to 30 digits. The steps are the
-nearest one by the engine, which the oracle is then asked about as about any other, and some spread over the motion.
+Each holds, of some steps of a case, the pairs of least clearance and that clearance to 30 digits. The steps are
+the nearest one by the engine, which the oracle is then asked about as about any other, and some spread over the
+motion. Meshes of thousands of triangles take it many minutes a case.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Whole cases against exact references that lie here, so that a clone with nothing beside it has a truth to test.
 
-`make_references` makes them, with rational arithmetic throughout. The engine may be off by its rounding alone: sixteen
-roundings of the scene's size a joint, for where the link is, and as many for the distance.
+`make_references` makes them, with rational arithmetic throughout. The engine may be off by its rounding alone:
+sixteen roundings of the scene's size a joint, for where the link is, and as many for the distance.
 """
 
 from __future__ import annotations

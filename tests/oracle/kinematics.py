@@ -1,8 +1,8 @@
-"""Where the links of a robot are, by rational arithmetic: right to 2^-130 m, shares no code with the package.
+"""Where the links of a robot are, by rational arithmetic that shares no code with the package.
 
-The numbers of the robot (poses of joints, axes, positions) are taken as the rationals that they are; an axis says a
-direction. Sines and cosines are Taylor sums of integers. Coordinates come back on a grid of 2^-120, far below what a
-float can tell, so that integers stay short.
+The numbers of the robot (poses of joints, axes, positions) are taken as the rationals that they are; an axis says
+a direction. Sines and cosines are Taylor sums of integers. Coordinates come back on a grid of 2^-120, far below
+what a float can tell, so that integers stay short.
 """
 
 from __future__ import annotations
@@ -69,10 +69,11 @@ def _motion(joint, position: Fraction) -> Pose:
         return [[Fraction(i == j) for j in range(3)] + [axis[i] * position] for i in range(3)]
     sine, cosine = sine_and_cosine(position) if kind != "fixed" else (Fraction(0), Fraction(1))
     across = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
-    return [
-        [cosine * (i == j) + sine * across[i][j] + (1 - cosine) * axis[i] * axis[j] for j in range(3)] + [Fraction(0)]
+    turned = [
+        [cosine * (i == j) + sine * across[i][j] + (1 - cosine) * axis[i] * axis[j] for j in range(3)]
         for i in range(3)
     ]
+    return [[*row, Fraction(0)] for row in turned]
 
 
 def _times(one: Pose, two: Pose) -> Pose:

@@ -1,7 +1,8 @@
 """A small question to each domain of kernels, for processes with other compiler settings (`test_domain_lanes`).
 
-`python tests/query/lane_of_domains.py DOMAIN …` prints the answers as JSON, every bit of them: floats are hexadecimal.
-The questions are as small as they can be and still come to the kernels: what takes time is to compile.
+`python tests/query/lane_of_domains.py DOMAIN …` prints the answers as JSON, every bit of them: floats are
+hexadecimal. The questions are as small as they can be and still come to the kernels: what takes time is to
+compile.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import sys
 import numpy as np
 
 import clearance as cl
-from tests.made_cases import arm, at, ball, dented, flying
+from tests.made_cases import arm, at, dented, flying
 from tests.query.lane import body_pairs, out_of_bounds_is_seen, told
 from tests.sketch.patterns import truth
 
@@ -45,7 +46,7 @@ def polytope() -> list:
     found = []
     for shift in (0.4, 0.9, 5.0):
         a, b = (cl.Polytope(random.normal(size=(9, 3)) + [i * shift, 0.0, 0.0]) for i in range(2))
-        region = cl.intersect(a, b)
+        region = cl.intersect([a, b])
         depth = cl.penetration(a, b)
         found.append([_bits(a.volume), _bits(region.volume), _bits(depth.depth), _bits(depth.at_least)])
     return found

@@ -1,7 +1,7 @@
 """Kernels that read without checks: each domain with every index checked, and as plain Python.
 
-The lane with checks compiles all it comes to, at level 0, into the cache that the user has: checked code has names of
-its own there, so that only the first run after a change of kernels pays for it.
+The lane with checks compiles all it comes to, at level 0, into the cache that the user has: checked code has
+names of its own there, so that only the first run after a change of kernels pays for it.
 """
 
 from __future__ import annotations

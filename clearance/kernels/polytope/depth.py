@@ -107,7 +107,7 @@ def put_face(basis, names, j, numbers, pose, away, body, face):
         bound += n * away[i]
     basis[j, 3] = numbers[row + 7]
     basis[BOUND, j] = bound
-    names[j] = (body << 32) + face
+    names[j] = (body << 32) + np.int64(face)
 
 
 @inline(one_caller=True)
@@ -162,7 +162,7 @@ def deepen(numbers, indices, pose, body, origin, basis, names, margin):
         face, gauge = exit_in(numbers, indices, cell, u, v, w)
         if gauge <= 1.0 - basis[POINT, 3] + margin:
             return True, n_entered
-        name = (body << 32) + face
+        name = (body << 32) + np.int64(face)
         if name == names[0] or name == names[1] or name == names[2] or name == names[3]:
             return False, n_entered
         leave = leaving(basis, numbers, pose, face)
