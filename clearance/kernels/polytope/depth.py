@@ -15,6 +15,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, exit_in
 
