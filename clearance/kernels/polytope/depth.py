@@ -125,7 +125,7 @@ def put_face(basis, names, j, placed, away, face):
         bound += n * away[i]
     basis[j, 3] = width
     basis[BOUND, j] = bound
-    names[j] = (placed.name << 32) + face
+    names[j] = (placed.name << 32) + np.int64(face)
 
 
 @inline(one_caller=True)
@@ -179,7 +179,7 @@ def deepen(placed, origin, basis, names, margin):
         face, gauge = exit_in(body, cell, u, v, w)
         if gauge <= 1.0 - basis[POINT, 3] + margin:
             return True, n_entered
-        name = (placed.name << 32) + face
+        name = (placed.name << 32) + np.int64(face)
         if name == names[0] or name == names[1] or name == names[2] or name == names[3]:
             return False, n_entered
         leave = leaving(basis, placed, face)
