@@ -6,6 +6,8 @@ beyond a sketch by less than the profile's bound is still called a violation. No
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from clearance.errors import at
@@ -67,7 +69,7 @@ def _answer(space: ReservedSpace, swept: Profile) -> ProfileAnswer:
         point_sketch=_pair(ends[1]),
         link=link,
         step=step,
-        picture=_picture(space, swept, Drawn("sketch", curve), ends),
+        picture=partial(_picture, space, swept, Drawn("sketch", curve), ends),
     )
 
 

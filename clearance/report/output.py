@@ -45,7 +45,7 @@ def write(record: Record, folder: str | Path) -> None:
         Unwritable: `folder` cannot be written.
     """
     summary, replay = summary_of(record), replay_of(record)
-    pictures = {answer.name: answer.picture for answer in record.profiles}
+    pictures = {answer.name: answer.picture() for answer in record.profiles}
     page = page_of(summary, replay, pictures, pair_curves(record))
 
     def fill(place: Path) -> None:

@@ -20,7 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadInput, NotFinite, Unavailable
+from clearance.errors import BadInput, NotFinite
+from clearance.extras import importing
 from clearance.simulate.physics_model import notes_on_masses, write_obj, write_physics_urdf
 from clearance.world.body import Obstacle
 from clearance.world.case import PlacedRobot
@@ -266,14 +267,9 @@ def _load(engine: Any, urdf: Path, placed: PlacedRobot) -> int:
 
 
 def _connect() -> Any:
-    try:
+    with importing("simulate", "simulated motion"):
         import pybullet
         from pybullet_utils.bullet_client import BulletClient
-    except ImportError as error:
-        raise Unavailable(
-            f"simulated motion needs pybullet, which cannot be imported ({error})",
-            valid="pip install pybullet, or use kinematic motion",
-        ) from None
     return BulletClient(connection_mode=pybullet.DIRECT)
 
 

@@ -203,7 +203,7 @@ class ProfileAnswer:
             is beyond it. For nearest the Hausdorff distance.
         bound: [m] the true gap is at most this much larger.
         point_sweep, point_sketch: [m] in the plane, where it is attained. link, step: who swept there.
-        picture: SVG.
+        picture: draws it as SVG, when a report asks for it.
     """
 
     name: str
@@ -219,7 +219,7 @@ class ProfileAnswer:
     point_sketch: tuple[float, float]
     link: str
     step: int
-    picture: str
+    picture: Callable[[], str]
 
 
 @dataclass(frozen=True, eq=False)
