@@ -11,7 +11,6 @@ from __future__ import annotations
 import atexit
 import functools
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -88,16 +87,14 @@ def usable_cores() -> int:
 
 def main() -> None:
     """The second process: compiles into the cache, after any other that does, and says so of each kernel."""
-    import fcntl
+    from filelock import FileLock, Timeout
 
     threading.Thread(target=_end_with_the_first, daemon=True).start()
     root = cache_root()
     assert root is not None
-    with open(root / "ahead.lock", "w") as lock, os.fdopen(os.dup(1), "w") as told:
+    turn = FileLock(root / "ahead.lock", timeout=LONGEST, fallback_to_soft=False)
+    with suppress(Timeout), turn, os.fdopen(os.dup(1), "w") as told:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        signal.alarm(LONGEST)  # ends this process
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        signal.alarm(0)
         for place in ALL:
             kernel_table.compile_kernel(place)
             if not kernel_table.is_kept(place):

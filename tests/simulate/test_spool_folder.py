@@ -72,7 +72,7 @@ def a_folder_with_an_empty_lock(place: Path) -> None:
 
 def a_folder_with_a_lock_elsewhere(place: Path) -> None:
     a_folder_with_files(place)
-    (place.parent / "lock elsewhere").write_text(MARK)
+    (place.parent / "lock elsewhere").write_bytes(MARK)
     (place / LOCK).symlink_to(place.parent / "lock elsewhere")
 
 
@@ -152,7 +152,7 @@ def test_of_two_runs_that_start_at_once_one_is_refused(
     monkeypatch.setattr(spool_folder.os.path, "lexists", seen_too_early)
     with pytest.raises(Unwritable, match="another run is writing"), open_spool(place, print):
         pass
-    assert (place / LOCK).read_text() == MARK
+    assert (place / LOCK).read_bytes() == MARK
     ways[0].__exit__(None, None, None)
     assert list(tmp_path.iterdir()) == []
 
