@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
 from clearance.simulate import inside
+from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import NEEDS, Measurement, Progress, measure
 from clearance.simulate.parts import blocks
-from clearance.simulate.question import fingerprint
 from clearance.simulate.record import Certificate, CrossCheck, Record, StepContact
-from clearance.simulate.spool import Rows
+from clearance.simulate.resumable_rows import Rows
 from clearance.simulate.steps import (
     PairMinima,
     cut_throughout,
@@ -192,7 +192,7 @@ def check(
             The verdict does not depend on it.
         jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.
         progress: called with steps done and all steps.
-        kept: where the rows are kept; in memory by default. In a spool (`open_spool`) memory does not grow with
+        kept: where the rows are kept; in memory by default. In `open_resumable_rows` memory does not grow with
             the steps, and the same question asked again goes on where an interrupted run was.
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
 

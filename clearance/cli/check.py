@@ -191,12 +191,12 @@ def _compile_ahead(quiet: bool) -> None:
     """Begins to compile what this machine has not yet, and says so in a terminal."""
     import warnings
 
-    from clearance import ahead
+    from clearance.cli import compile_ahead
     from clearance.compile.kernel_cache import KernelCacheWarning
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)
-    if ahead.start() and not quiet and sys.stderr.isatty():
+    if compile_ahead.start() and not quiet and sys.stderr.isatty():
         click.echo("compiling for this machine, once: about half a minute", err=True)
 
 

@@ -12,41 +12,37 @@ from __future__ import annotations
 import functools
 import hashlib
 import os
-import pickle
 import stat
 import sys
 import tempfile
 import warnings
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
 import numba
-from numba.core.caching import _Cache
-from numba.core.compiler import CompileResult
-from numba.core.serialize import dumps
+
+from clearance.compile.numba_private import KeptKernels
 
 _DIGEST = 32
-_SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX")
-"""numba's settings that change the code of a kernel and are not in the description of its target."""
 
 
 class KernelCacheWarning(UserWarning):
     """Compiled kernels cannot be kept; the message says why."""
 
 
-class KernelCache(_Cache):
+class KernelCache(KeptKernels):
     """The compiled forms of one kernel, a file for each.
 
     Args:
         source_key: names the folder; another one where the kernel's source is another.
     """
 
-    def __init__(self, function, source_key: str) -> None:
-        self._function = function
-        self._name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
-        self._stem = f"{self._name}-{sys.implementation.cache_tag}-{numba.__version__}"
+    def __init__(self, function: Callable, source_key: str) -> None:
+        self._code = function.__code__.co_code
+        name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
+        self._stem = f"{name}-{sys.implementation.cache_tag}-{numba.__version__}"
         self._source_key = source_key
-        self._enabled = True
 
     @property
     def cache_path(self) -> str:
@@ -57,47 +53,25 @@ class KernelCache(_Cache):
         """True if any form lies there, for this interpreter and this processor or others."""
         return bool(self.cache_path) and any(Path(self.cache_path).glob(f"{self._stem}.*.kernel"))
 
-    def load_overload(self, sig: tuple, target_context) -> CompileResult | None:
-        target_context.refresh()
-        root = cache_root() if self._enabled else None
-        if root is None:
-            return None
-        path = root / self._source_key / self._file_name(sig, target_context.codegen())
-        payload = _whole(path)
-        if payload is None:
-            return None
-        try:
-            found = CompileResult._rebuild(target_context, *pickle.loads(payload))
-            return found if found.signature.args == tuple(sig) else None
-        except Exception:  # of another build of numba or LLVM: compiled again, and written over
-            return None
+    def read(self, named: str) -> bytes | None:
+        root = cache_root()
+        return None if root is None else _whole(root / self._source_key / self._file_name(named))
 
-    def save_overload(self, sig: tuple, data: CompileResult) -> None:
-        root = cache_root() if self._enabled else None
-        if root is None or data.lifted or data.library.has_dynamic_globals:
+    def write(self, named: str, payload: Callable[[], bytes]) -> None:
+        root = cache_root()
+        if root is None:
             return
-        name = self._file_name(sig, data.codegen)
-        payload = dumps(data._reduce())
+        name, content = self._file_name(named), payload()
         try:
             folder = root / self._source_key
             folder.mkdir(mode=0o700, exist_ok=True)
-            _write(folder / name, _digest(name, payload) + payload)
+            _write(folder / name, _digest(name, content) + content)
         except OSError as error:
             _warn(f"{root} cannot be written ({error.strerror or error})")
 
-    def _file_name(self, sig: tuple, codegen) -> str:
-        settings = [int(getattr(numba.config, name, 0) or 0) for name in _SETTINGS]
-        key = (str(sig), codegen.magic_tuple(), self._function.__code__.co_code, settings)
-        return f"{self._stem}.{hashlib.sha256(repr(key).encode()).hexdigest()[:32]}.kernel"
-
-    def enable(self) -> None:
-        self._enabled = True
-
-    def disable(self) -> None:
-        self._enabled = False
-
-    def flush(self) -> None:
-        """Nothing is held back."""
+    def _file_name(self, named: str) -> str:
+        digest = hashlib.sha256(repr((named, self._code)).encode()).hexdigest()
+        return f"{self._stem}.{digest[:32]}.kernel"
 
 
 @functools.cache

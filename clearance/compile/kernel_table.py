@@ -21,11 +21,19 @@ from collections.abc import Callable, Sequence
 
 import numba
 import numpy as np
-from numba.core import cgutils, types
-from numba.core.imputils import impl_ret_borrowed
+from numba import types
 from numba.extending import intrinsic
 
-from clearance.compile.jit import borrowing
+from clearance.compile.jit import kernel
+from clearance.compile.numba_private import (
+    borrow_tuple,
+    call_at,
+    elements_at,
+    entry_address,
+    lend_tuple,
+    plain,
+    stop_if,
+)
 
 REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS, PARTING, FEATURES, FANS = range(10)
 CERTIFY, OVERLAP = 10, 11
@@ -66,7 +74,7 @@ def apart(place: int, like: Callable[[], tuple]) -> Callable:
     """
 
     def register(function: Callable) -> Callable:
-        compiled = borrowing(function)
+        compiled = kernel(function, reference_counts=False)
         _apart[place] = (compiled, like)
         return compiled
 
@@ -154,9 +162,8 @@ def _compile_here(place: int) -> None:
     argument_types = tuple(_type_of(argument) for argument in like())
     with _compiling:
         function.compile(argument_types)
-        compiled = function.overloads[argument_types]
-        address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
-        _table[place] = address, _stamp(compiled.signature.return_type, argument_types)
+        address, result = entry_address(function, argument_types)
+        _table[place] = address, _stamp(result, argument_types)
 
 
 def _type_of(value: object) -> types.Type:
@@ -166,53 +173,32 @@ def _type_of(value: object) -> types.Type:
 
 
 def _stamp(result: types.Type, arguments: tuple[types.Type, ...]) -> int:
-    return 1 + zlib.crc32(f"{_plain(result)}{arguments}".encode())
-
-
-def _plain(kind: types.Type) -> types.Type:
-    """The type without what the compiler knows of the value."""
-    if isinstance(kind, types.BaseTuple):
-        return types.BaseTuple.from_types(
-            tuple(_plain(item) for item in kind), getattr(kind, "instance_class", None)
-        )
-    return types.unliteral(kind)
+    return 1 + zlib.crc32(f"{plain(result)}{arguments}".encode())
 
 
 @intrinsic(prefer_literal=True)
 def _at_address(typing_context, table, place, result, args):
-    argument_types = tuple(_plain(kind) for kind in args)
-    result_type = _plain(result)
+    argument_types = tuple(plain(kind) for kind in args)
+    result_type = plain(result)
     stamp = _stamp(result_type, argument_types)
 
     def emit(context, builder, signature, values):
-        rows = context.make_array(signature.args[0])(context, builder, values[0]).data
         index = 2 * place.literal_value
-        found = builder.load(cgutils.gep_inbounds(builder, rows, index + 1))
-        with builder.if_then(builder.icmp_signed("!=", found, found.type(stamp)), likely=False):
-            context.call_conv.return_user_exc(builder, NotCompiled, (place.literal_value,))
-        address = builder.load(cgutils.gep_inbounds(builder, rows, index))
-        function_type = context.call_conv.get_function_type(result_type, argument_types)
-        status, value = context.call_conv.call_function(
-            builder,
-            builder.inttoptr(address, function_type.as_pointer()),
-            result_type,
-            argument_types,
-            cgutils.unpack_tuple(builder, values[3]),
-        )
-        with cgutils.if_unlikely(builder, status.is_error):
-            context.call_conv.return_status_propagate(builder, status)
-        return value
+        at, stamp_at = elements_at(context, builder, signature.args[0], values[0], (index, index + 1))
+        found = builder.load(stamp_at)
+        is_other = builder.icmp_signed("!=", found, found.type(stamp))
+        stop_if(context, builder, is_other, NotCompiled, place.literal_value)
+        return call_at(context, builder, builder.load(at), result_type, argument_types, values[3])
 
     return result_type(table, place, result, args), emit
 
 
 @intrinsic
 def _lend(typing_context, value):
-    kind = types.CPointer(_plain(value))
+    kind = types.CPointer(plain(value))
 
     def emit(context, builder, signature, values):
-        place = cgutils.alloca_once_value(builder, values[0])
-        return builder.bitcast(place, context.get_value_type(kind))
+        return lend_tuple(context, builder, kind, values[0])
 
     return kind(value), emit
 
@@ -220,8 +206,7 @@ def _lend(typing_context, value):
 @intrinsic
 def _borrow(typing_context, lent):
     def emit(context, builder, signature, values):
-        place = builder.bitcast(values[0], context.get_value_type(lent.dtype).as_pointer())
-        return impl_ret_borrowed(context, builder, lent.dtype, builder.load(place))
+        return borrow_tuple(context, builder, lent.dtype, values[0])
 
     return lent.dtype(lent), emit
 

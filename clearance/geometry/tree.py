@@ -114,9 +114,6 @@ def _joined_children(
 
 
 def _build(shape: Polyhedron) -> Surface:
-    from clearance import ahead  # here, since who only makes polyhedra need not load the search
-
-    ahead.start()
     vertices, weld = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
     corners = weld.reshape(-1)[shape.face_vertices].astype(np.int64)
     starts = shape.face_starts.copy()

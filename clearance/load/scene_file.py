@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from clearance.errors import DuplicateName, at
-from clearance.geometry import shapes
-from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import SHAPES
 from clearance.load import schema
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
@@ -47,21 +46,5 @@ def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body,
             mesh = meshes.load(path, item.mesh.factors)
         shown = meshes.files.shown(path)
         return Body(item.name, mesh.shape, shown), list(mesh.notes)
-    key = next(key for key in schema.SHAPES if getattr(item, key) is not None)
-    with at(key):
-        return Body(item.name, _primitive(item), key), []
-
-
-def _primitive(item: schema.Obstacle) -> Polyhedron:
-    if item.box is not None:
-        return shapes.box(item.box.size)
-    if item.cylinder is not None:
-        return shapes.cylinder(radius=item.cylinder.radius, length=item.cylinder.length)
-    if item.sphere is not None:
-        return shapes.sphere(radius=item.sphere.radius)
-    return _pipe(item.pipe)
-
-
-def _pipe(pipe: schema.Pipe) -> Polyhedron:
-    given = pipe.model_dump(exclude_none=True)
-    return shapes.pipe(**given)
+    with at(item.kind):
+        return Body(item.name, SHAPES[item.kind].maker(**item.dimensions), item.kind), []

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.ahead import usable_cores
 from clearance.compile.kernel_table import call
 from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
@@ -21,9 +20,9 @@ from clearance.kernels.motion.joint_path import JointPath
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
 from clearance.simulate.moment import Moment, Moments
-from clearance.simulate.parts import blocks, in_order, parts
+from clearance.simulate.parts import blocks, in_order, parts, usable_cores
 from clearance.simulate.record import Certificate
-from clearance.simulate.spool import Rows
+from clearance.simulate.resumable_rows import Rows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link

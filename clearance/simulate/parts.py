@@ -25,6 +25,13 @@ BLOCK = 2**16
 """Rows that are looked at together where all rows are gone through: 0.5 MB of each number."""
 
 
+def usable_cores() -> int:
+    """The cores that this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def parts(n_rows: int, *, sparse: bool = False) -> list[slice]:
     """The rows in parts of at most `LONGEST_PART`, or `SPARSE` times that; an even number where they are long."""
     longest = LONGEST_PART * (SPARSE if sparse else 1)

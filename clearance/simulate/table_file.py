@@ -12,7 +12,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from clearance.errors import unwritable
-from clearance.simulate.spool import let_go
+from clearance.simulate.resumable_rows import let_go
 
 
 def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, Callable[[], None]]:

@@ -20,8 +20,7 @@ class SketchResult:
     """The outcome of `Sketch.solve` or `Sketch.drag`.
 
     Attributes:
-        residual: [m] the largest equation error that is left (directions as arcs at the sketch's
-        size).
+        residual: [m] the largest equation error that is left (directions as arcs at the sketch's size).
         movement: [m] root of the summed squares of the points' shifts.
     """
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.compile.jit import borrowing, kernel
+from clearance.compile.jit import kernel
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
 from clearance.kernels.features.bounds import SLACK
 from clearance.kernels.features.face_pair import nearest_of_faces
@@ -40,7 +40,7 @@ def plain(ps, qs, answers):
     _plain_each(ps, qs, _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1]), answers)
 
 
-@borrowing
+@kernel(reference_counts=False)
 def _plain_each(ps, qs, a_p, b_q, answers):
     frames = FRAMES_AT_REST
     for k in range(ps.shape[0]):

@@ -19,7 +19,7 @@ TIMES = 30
 
 LEAVING = """
 import json, os, sys
-import clearance.ahead, clearance.cli.check, clearance.load.case_file, clearance.run, pyarrow.csv
+import clearance.cli.check, clearance.cli.compile_ahead, clearance.load.case_file, clearance.run, pyarrow.csv
 from clearance import cli
 from clearance.load import case_file
 ends = {}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import (
@@ -19,6 +19,7 @@ from clearance.errors import (
 from clearance.geometry.faces import split_warped
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder, sphere
+from tests.examples import examples
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
 PENTAGRAM = np.array([[np.cos(a), np.sin(a), 0] for a in np.arange(5) * 4 * np.pi / 5])
@@ -140,7 +141,7 @@ def test_outward_turns_what_is_inside_out_and_leaves_cavities():
     assert beside.volume == 26.0 and beside.outward().volume == 28.0
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(st.lists(st.floats(0.01, 100) | st.floats(-100, -0.01), min_size=3, max_size=3))
 def test_scaling_keeps_the_outside_outside(factors):
     shape = box((1, 2, 3)).scaled(factors)

@@ -3,13 +3,14 @@ the drawing is shaken. Verdict, freedom and residual are compared with formulas 
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from clearance.sketch import Sketch
+from tests.examples import examples
 from tests.sketch.independent import Numbers
 
-SOME = settings(max_examples=40, deadline=None)
+SOME = examples(40)
 
 
 class Builder:

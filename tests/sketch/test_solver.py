@@ -5,13 +5,14 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.sketch import Sketch
+from tests.examples import examples
 from tests.sketch.patterns import distances, shape, truth
 
-QUICK = settings(max_examples=25, deadline=None)
+QUICK = examples(25)
 
 
 @QUICK

@@ -10,7 +10,7 @@ double-word arithmetic, 2017 (algorithms 5, 11, 17).
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.expansion import two_product, two_sum
 from clearance.kernels.arithmetic.vec3 import Rigid, Vec3, relative
 
@@ -68,39 +68,39 @@ FRAMES_AT_REST = _frames_at_rest()
 """Two bodies that stand in one frame."""
 
 
-@inlined
+@inline
 def _renormal(hi, lo):
     s = hi + lo
     return Wide(s, lo - (s - hi))
 
 
-@inlined
+@inline
 def wide(x):
     """The wide number equal to a double."""
     return Wide(x, 0.0)
 
 
-@inlined
+@inline
 def plus(a, b):
     """a + b, right to 2^-104 (|a| + |b|); exact for sums of two doubles."""
     s, e = two_sum(a.hi, b.hi)
     return _renormal(s, e + (a.lo + b.lo))
 
 
-@inlined
+@inline
 def minus(a, b):
     """a - b."""
     return plus(a, Wide(-b.hi, -b.lo))
 
 
-@inlined
+@inline
 def times(a, b):
     """a b."""
     p, e = two_product(a.hi, b.hi)
     return _renormal(p, e + (a.hi * b.lo + a.lo * b.hi))
 
 
-@inlined
+@inline
 def _by_long_division(a, b):
     first = a.hi / b.hi
     rest = minus(a, times(b, wide(first)))
@@ -110,7 +110,7 @@ def _by_long_division(a, b):
     return plus(quotient, wide(rest.hi / b.hi))
 
 
-@inlined
+@inline
 def inverse(b):
     """1 / b by one division and a step of Newton's, right to 2^-103; of a `b` that `is_medium`."""
     first = 1.0 / b.hi
@@ -119,13 +119,13 @@ def inverse(b):
     return _renormal(first, first * rest)
 
 
-@inlined
+@inline
 def is_medium(b):
     """True if neither `b` nor 1 / b comes near the least or the greatest double."""
     return 2.0**-900 < abs(b.hi) < 2.0**900
 
 
-@inlined
+@inline
 def over(a, b):
     """a / b for b other than 0."""
     if is_medium(b):
@@ -133,7 +133,7 @@ def over(a, b):
     return _by_long_division(a, b)
 
 
-@inlined
+@inline
 def root(a):
     """The square root of a number that is not negative."""
     if not a.hi > 0.0:
@@ -143,55 +143,55 @@ def root(a):
     return _renormal(first, rest.hi / (2.0 * first))
 
 
-@inlined
+@inline
 def less(a, b):
     """a < b."""
     return a.hi < b.hi or (a.hi == b.hi and a.lo < b.lo)
 
 
-@inlined
+@inline
 def lesser(a, b):
     """The lesser of two."""
     return a if less(a, b) else b
 
 
-@inlined
+@inline
 def plus3(a, b):
     """a + b."""
     return Wide3(plus(a.x, b.x), plus(a.y, b.y), plus(a.z, b.z))
 
 
-@inlined
+@inline
 def minus3(a, b):
     """a - b."""
     return Wide3(minus(a.x, b.x), minus(a.y, b.y), minus(a.z, b.z))
 
 
-@inlined
+@inline
 def scaled3(s, a):
     """s a."""
     return Wide3(times(s, a.x), times(s, a.y), times(s, a.z))
 
 
-@inlined
+@inline
 def negative3(a):
     """-a."""
     return Wide3(Wide(-a.x.hi, -a.x.lo), Wide(-a.y.hi, -a.y.lo), Wide(-a.z.hi, -a.z.lo))
 
 
-@inlined
+@inline
 def along3(a, s, d):
     """a + s d."""
     return Wide3(plus(a.x, times(s, d.x)), plus(a.y, times(s, d.y)), plus(a.z, times(s, d.z)))
 
 
-@inlined
+@inline
 def dot3(a, b):
     """The scalar product."""
     return plus(plus(times(a.x, b.x), times(a.y, b.y)), times(a.z, b.z))
 
 
-@inlined
+@inline
 def cross3(a, b):
     """The vector product."""
     return Wide3(
@@ -201,7 +201,7 @@ def cross3(a, b):
     )
 
 
-@inlined
+@inline
 def _product_sum(a, x, b, y, c, z):
     p, e = two_product(a, x)
     q, f = two_product(b, y)
@@ -209,14 +209,14 @@ def _product_sum(a, x, b, y, c, z):
     return plus(plus(Wide(p, e), Wide(q, f)), Wide(r, g))
 
 
-@inlined
+@inline
 def is_still(m):
     """True for the identity rotation."""
     off = abs(m.xy) + abs(m.xz) + abs(m.yx) + abs(m.yz) + abs(m.zx) + abs(m.zy)
     return off == 0.0 and m.xx == 1.0 and m.yy == 1.0 and m.zz == 1.0
 
 
-@inlined
+@inline
 def turned(m, v):
     """R v of a plain vector."""
     return Wide3(
@@ -226,7 +226,7 @@ def turned(m, v):
     )
 
 
-@inlined
+@inline
 def difference(a, b):
     """a - b of plain vectors, exact."""
     x, e = two_sum(a.x, -b.x)
@@ -235,24 +235,24 @@ def difference(a, b):
     return Wide3(Wide(x, e), Wide(y, f), Wide(z, g))
 
 
-@inlined
+@inline
 def rounded(a):
     """The nearest plain vector."""
     return Vec3(a.x.hi, a.y.hi, a.z.hi)
 
 
-@inlined
+@inline
 def size(v):
     """The sum of the coordinates' magnitudes."""
     return abs(v.x) + abs(v.y) + abs(v.z)
 
 
-@inlined
+@inline
 def _row_defect(ax, ay, az, bx, by, bz, expected):
     return abs(ax * bx + ay * by + az * bz - expected)
 
 
-@inlined
+@inline
 def defect_of(m):
     """How far R^T R is from the identity: a bound on the norm of the difference."""
     far = _row_defect(m.xx, m.yx, m.zx, m.xx, m.yx, m.zx, 1.0)
@@ -263,7 +263,7 @@ def defect_of(m):
     return far + 2.0 * _row_defect(m.xy, m.yy, m.zy, m.xz, m.yz, m.zz, 0.0)
 
 
-@inlined
+@inline
 def frames_of(world_from_a, world_from_b):
     """The frames of two bodies at given poses (`Rigid`)."""
     a, b = world_from_a, world_from_b
@@ -271,7 +271,7 @@ def frames_of(world_from_a, world_from_b):
     return Frames(a, b, relative(a, b), shift, defect_of(a) + defect_of(b), is_still(a), is_still(b))
 
 
-@inlined
+@inline
 def point_of_a(frames, v):
     """A point of a (body frame), seen from the origin of a in the orientation of the world."""
     if frames.still_a:
@@ -279,7 +279,7 @@ def point_of_a(frames, v):
     return turned(frames.a, v)
 
 
-@inlined
+@inline
 def point_of_b(frames, v):
     """A point of b (body frame), seen from the origin of a in the orientation of the world."""
     if frames.still_b:

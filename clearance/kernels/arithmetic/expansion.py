@@ -11,7 +11,7 @@ from __future__ import annotations
 import numba
 from numba.extending import intrinsic
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 
 N_TERMS = 128
 """Room for the longest expansion here: 24 products of three coordinates, four terms each, and one spare."""
@@ -21,7 +21,7 @@ _FILTER_3D = 7.771561172376103e-16  # (7 + 56 u) u with u = 2^-53, Shewchuk's o3
 _FILTER_2D = 3.3306690738754716e-16  # (3 + 16 u) u, Shewchuk's ccwerrboundA
 
 
-@inlined
+@inline
 def two_sum(a, b):
     """(s, e) with s = fl(a + b) and a + b = s + e exactly."""
     s = a + b
@@ -55,14 +55,14 @@ def _rest_fused(typing_context, a, b, p):
 _rest = rest_by_splitting if numba.config.DISABLE_JIT else _rest_fused
 
 
-@inlined
+@inline
 def two_product(a, b):
     """(p, e) with p = fl(a b) and a b = p + e exactly."""
     p = a * b
     return p, _rest(a, b, p)
 
 
-@inlined
+@inline
 def grow(terms, n_terms, value):
     """Adds `value` to the expansion in place and returns its new number of terms; zero terms are dropped."""
     kept = 0
@@ -78,21 +78,21 @@ def grow(terms, n_terms, value):
     return kept
 
 
-@inlined
+@inline
 def grow_product(terms, n_terms, a, b):
     """Adds a b to the expansion."""
     p, e = two_product(a, b)
     return grow(terms, grow(terms, n_terms, e), p)
 
 
-@inlined
+@inline
 def grow_product3(terms, n_terms, a, b, c):
     """Adds a b c to the expansion."""
     p, e = two_product(a, b)
     return grow_product(terms, grow_product(terms, n_terms, e, c), p, c)
 
 
-@inlined
+@inline
 def sign_of(terms, n_terms):
     """-1, 0 or 1: the sign of an expansion, which is that of its last (greatest) term."""
     if n_terms == 0:
@@ -100,7 +100,7 @@ def sign_of(terms, n_terms):
     return 1 if terms[n_terms - 1] > 0.0 else -1
 
 
-@inlined
+@inline
 def orient2d(ax, ay, bx, by, cx, cy, terms):
     """The exact sign of (a - c) x (b - c): 1 where a, b, c turn left. `terms`: scratch of N_TERMS doubles."""
     left = (ax - cx) * (by - cy)
@@ -117,7 +117,7 @@ def orient2d(ax, ay, bx, by, cx, cy, terms):
     return sign_of(terms, n)
 
 
-@inlined
+@inline
 def _determinant3(p, q, r, terms, n):
     """Adds det [p; q; r] to the expansion."""
     n = grow_product3(terms, n, p[0], q[1], r[2])
@@ -128,7 +128,7 @@ def _determinant3(p, q, r, terms, n):
     return grow_product3(terms, n, -p[2], q[1], r[0])
 
 
-@inlined
+@inline
 def _difference(a, d):
     """(a - d rounded, True if it is exact)."""
     x, x_rest = two_sum(a[0], -d[0])
@@ -137,7 +137,7 @@ def _difference(a, d):
     return (x, y, z), x_rest == 0.0 and y_rest == 0.0 and z_rest == 0.0
 
 
-@inlined
+@inline
 def orient3d(a, b, c, d, terms):
     """The exact sign of det [a-d; b-d; c-d]; 0 where the four points are coplanar.
 

@@ -10,10 +10,11 @@ import operator
 import numba
 import numpy as np
 from llvmlite import ir
-from numba.core import cgutils, types
+from numba import types
 from numba.extending import intrinsic, lower_builtin, models, register_model, type_callable
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
+from clearance.compile.numba_private import elements_at, llvm_function
 
 WIDTH = 4
 
@@ -93,7 +94,7 @@ def _each(builder, name, value):
     """A function of LLVM's of one number, or of each lane."""
     suffix = f"v{WIDTH}f64" if value.type == _VECTOR else "f64"
     kind = ir.FunctionType(value.type, [value.type])
-    return builder.call(cgutils.get_or_insert_function(builder.module, kind, f"{name}.{suffix}"), [value])
+    return builder.call(llvm_function(builder, f"{name}.{suffix}", kind), [value])
 
 
 def _alike(builder, signature, values):
@@ -133,8 +134,8 @@ def _where_positive(typing_context, test, a, b):
 def _lanes_at(typing_context, array, row):
     def emit(context, builder, signature, values):
         kind = signature.args[0]
-        first = context.make_array(kind)(context, builder, values[0]).data
-        place = cgutils.gep_inbounds(builder, first, builder.mul(values[1], values[1].type(WIDTH)))
+        index = builder.mul(values[1], values[1].type(WIDTH))
+        (place,) = elements_at(context, builder, kind, values[0], [index])
         bits = kind.dtype.bitwidth
         vector = _VECTOR if bits == 64 else _SINGLE
         loaded = builder.load(builder.bitcast(place, vector.as_pointer()), align=bits // 8)
@@ -146,9 +147,9 @@ def _lanes_at(typing_context, array, row):
 @intrinsic
 def _number_at(typing_context, array, row, place):
     def emit(context, builder, signature, values):
-        first = context.make_array(signature.args[0])(context, builder, values[0]).data
         index = builder.add(builder.mul(values[1], values[1].type(WIDTH)), values[2])
-        number = builder.load(cgutils.gep_inbounds(builder, first, index))
+        (place,) = elements_at(context, builder, signature.args[0], values[0], [index])
+        number = builder.load(place)
         return number if number.type == ir.DoubleType() else builder.fpext(number, ir.DoubleType())
 
     return types.float64(array, types.intp, types.intp), emit
@@ -218,18 +219,18 @@ else:
     lanes_at, number_at, lane, first_of = _lanes_at, _number_at, _lane, _first_of
 
 
-@merged
+@inline(force=True)
 def how_many(marks):
     """How many bits are set."""
     return (marks & 1) + (marks >> 1 & 1) + (marks >> 2 & 1) + (marks >> 3 & 1)
 
 
-@merged
+@inline(force=True)
 def _if_marked(lanes, marks, place):
     return lane(lanes, place) if marks & (1 << place) else np.inf
 
 
-@merged
+@inline(force=True)
 def least_of(lanes, marks):
     """The least of the lanes whose bits are set in `marks`, infinite if none is."""
     return min(

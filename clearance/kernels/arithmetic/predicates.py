@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, shared
+from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.double_double import size
 from clearance.kernels.arithmetic.expansion import grow, grow_product, sign_of, two_sum
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, row, sub
@@ -63,7 +63,7 @@ def room_for_exact():
     )
 
 
-@inlined
+@inline
 def compress(terms, n):
     """The same number in as few terms as possible; their new number. Source: Shewchuk 1997, figure 15."""
     if n < 2:
@@ -89,7 +89,7 @@ def compress(terms, n):
     return top + 1
 
 
-@inlined
+@inline
 def _add_products(out, n, e, n_e, f, n_f, sign):
     """Adds sign * e * f of two expansions to `out`."""
     for i in range(n_e):
@@ -99,7 +99,7 @@ def _add_products(out, n, e, n_e, f, n_f, sign):
     return compress(out, n)
 
 
-@inlined
+@inline
 def _coordinate(exact, axis, p, q, out):
     """Writes the coordinate of p - q as an expansion; its number of terms."""
     turn_p, turn_q = exact.poses[p.body, axis], exact.poses[q.body, axis]
@@ -114,14 +114,14 @@ def _coordinate(exact, axis, p, q, out):
     return compress(out, n)
 
 
-@inlined
+@inline
 def _difference(exact, i, p, q):
     """Writes the vector p - q into the sides 3 i, 3 i + 1, 3 i + 2."""
     for axis in range(3):
         exact.lengths[3 * i + axis] = _coordinate(exact, axis, p, q, exact.sides[3 * i + axis])
 
 
-@inlined
+@inline
 def _minor(exact, i, j):
     """Writes side[i] side[3 + j] - side[j] side[3 + i] of vectors given by their first sides; its length."""
     e, n = exact.sides, exact.lengths
@@ -129,14 +129,14 @@ def _minor(exact, i, j):
     return _add_products(exact.minor, k, e[3 + j], n[3 + j], e[6 + i], n[6 + i], -1.0)
 
 
-@inlined
+@inline
 def _turned(exact, p):
     """R v of a posed vertex, rounded."""
     m = exact.poses[p.body]
     return Vec3(dot(row(m, 0), p.v), dot(row(m, 1), p.v), dot(row(m, 2), p.v))
 
 
-@inlined
+@inline
 def approximate_difference(p, q, exact):
     """(p - q rounded, error of each coordinate)."""
     if p.body == q.body:
@@ -150,7 +150,7 @@ def approximate_difference(p, q, exact):
     return Vec3(f * t.x + d.x, f * t.y + d.y, f * t.z + d.z), FILTER * (size(p.v) + size(q.v) + size(t))
 
 
-@inlined
+@inline
 def _are_still(exact):
     """True if both rotations are the identity."""
     for body in range(2):
@@ -161,7 +161,7 @@ def _are_still(exact):
     return True
 
 
-@inlined
+@inline
 def orient_posed(a, b, c, d, exact):
     """The exact sign of det [a-d; b-d; c-d]; 0 where the four points are coplanar."""
     p, e_p = approximate_difference(a, d, exact)
@@ -196,7 +196,7 @@ def orient_posed(a, b, c, d, exact):
     return sign_of(exact.total, n)
 
 
-@inlined
+@inline
 def turn_along(a, b, c, axis, exact):
     """The exact sign of (a - c) x (b - c) along a coordinate axis."""
     p, e_p = approximate_difference(a, c, exact)
@@ -216,7 +216,7 @@ def turn_along(a, b, c, axis, exact):
     return sign_of(exact.minor, _minor(exact, i, j))
 
 
-@inlined
+@inline
 def side_along(a, b, axis, exact):
     """The exact sign of the coordinate of a - b."""
     d, error = approximate_difference(a, b, exact)
@@ -226,7 +226,7 @@ def side_along(a, b, axis, exact):
     return sign_of(exact.sides[axis], exact.lengths[axis])
 
 
-@inlined
+@inline
 def _boxes_meet(a, b, c, d, axis, exact):
     """True if the intervals of the segments a b and c d on an axis meet."""
     ends, others = (a, b), (c, d)
@@ -238,7 +238,7 @@ def _boxes_meet(a, b, c, d, axis, exact):
     return n_above < 4 and n_below < 4
 
 
-@inlined
+@inline
 def _segments_meet_along(a, b, c, d, axis, exact):
     """True if the segments a b and c d, seen along an axis, have a point in common."""
     for k in range(1, 3):
@@ -255,7 +255,7 @@ def _segments_meet_along(a, b, c, d, axis, exact):
     return True
 
 
-@inlined
+@inline
 def segments_meet(a, b, c, d, exact):
     """True if two segments have a point in common.
 
@@ -270,7 +270,7 @@ def segments_meet(a, b, c, d, exact):
     return True
 
 
-@inlined
+@inline
 def _holds_in_plane(a, b, c, x, exact):
     """True if the triangle a b c has area and holds x, which is in its plane."""
     tails, heads, thirds = (a, a, b, c), (b, b, c, a), (c, x, x, x)
@@ -288,7 +288,7 @@ def _holds_in_plane(a, b, c, x, exact):
     return False
 
 
-@inlined
+@inline
 def segment_meets_triangle(p, q, a, b, c, exact):
     """True if the closed segment p q and the closed triangle a b c have a point in common.
 
@@ -317,7 +317,7 @@ def segment_meets_triangle(p, q, a, b, c, exact):
     return _holds_in_plane(a, b, c, p, exact)
 
 
-@inlined
+@inline
 def set_poses(frames, exact):
     """Puts the poses of two bodies where the predicates look for them."""
     poses = exact.poses

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 
-@inlined
+@inline
 def find_root(parents, i):
     """The root of `i` in a union-find forest, halving the path on the way."""
     while parents[i] != i:

@@ -6,10 +6,11 @@ Not for: arrays of points (numpy) and poses as users give them (room `geometry.p
 from typing import NamedTuple
 
 import numba
-from numba.core import cgutils, types
+from numba import types
 from numba.extending import intrinsic
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
+from clearance.compile.numba_private import elements_at
 
 
 class Vec3(NamedTuple):
@@ -35,37 +36,37 @@ class Rigid(NamedTuple):
     t: Vec3
 
 
-@merged
+@inline(force=True)
 def add(a, b):
     """a + b."""
     return Vec3(a.x + b.x, a.y + b.y, a.z + b.z)
 
 
-@merged
+@inline(force=True)
 def sub(a, b):
     """a - b."""
     return Vec3(a.x - b.x, a.y - b.y, a.z - b.z)
 
 
-@merged
+@inline(force=True)
 def along(a, s, d):
     """a + s d."""
     return Vec3(a.x + s * d.x, a.y + s * d.y, a.z + s * d.z)
 
 
-@merged
+@inline(force=True)
 def dot(a, b):
     """The scalar product."""
     return a.x * b.x + a.y * b.y + a.z * b.z
 
 
-@merged
+@inline(force=True)
 def cross(a, b):
     """The vector product."""
     return Vec3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)
 
 
-@merged
+@inline(force=True)
 def gap_sq(a, b):
     """The squared distance of two points."""
     x = a.x - b.x
@@ -74,7 +75,7 @@ def gap_sq(a, b):
     return x * x + y * y + z * z
 
 
-@merged
+@inline(force=True)
 def _row_checked(array, i):
     return Vec3(array[i, 0], array[i, 1], array[i, 2])
 
@@ -86,13 +87,10 @@ def _row(typing_context, array, i):
         raise TypeError(f"{array} does not lie in one piece")
 
     def emit(context, builder, signature, values):
-        first = context.make_array(array)(context, builder, values[0]).data
-        index = builder.mul(values[1], values[1].type(3), flags=["nsw"])
-        numbers = [
-            builder.load(cgutils.gep_inbounds(builder, first, builder.add(index, index.type(k), flags=["nsw"])))
-            for k in range(3)
-        ]
-        return context.make_tuple(builder, place, numbers)
+        start = builder.mul(values[1], values[1].type(3), flags=["nsw"])
+        indices = [builder.add(start, start.type(k), flags=["nsw"]) for k in range(3)]
+        numbers = map(builder.load, elements_at(context, builder, array, values[0], indices))
+        return context.make_tuple(builder, place, list(numbers))
 
     return place(array, types.intp), emit
 
@@ -101,7 +99,7 @@ row = _row_checked if numba.config.DISABLE_JIT or numba.config.BOUNDSCHECK else 
 """`row(array, i)`: row `i`, from 0, of an (n, 3) array."""
 
 
-@merged
+@inline(force=True)
 def turn(m, v):
     """R v."""
     return Vec3(
@@ -111,7 +109,7 @@ def turn(m, v):
     )
 
 
-@merged
+@inline(force=True)
 def turn_back(m, v):
     """R^T v."""
     return Vec3(
@@ -121,26 +119,26 @@ def turn_back(m, v):
     )
 
 
-@merged
+@inline(force=True)
 def move(m, v):
     """R v + t."""
     return add(turn(m, v), m.t)
 
 
-@merged
+@inline(force=True)
 def move_back(m, v):
     """R^T (v - t): the inverse motion."""
     return turn_back(m, sub(v, m.t))
 
 
-@merged
+@inline(force=True)
 def inverse(m):
     """The motion x -> R^T (x - t)."""
     t = turn_back(m, m.t)
     return Rigid(m.xx, m.yx, m.zx, m.xy, m.yy, m.zy, m.xz, m.yz, m.zz, Vec3(-t.x, -t.y, -t.z))
 
 
-@merged
+@inline(force=True)
 def rigid(matrix):
     """The motion that a (4, 4) or (3, 4) matrix describes."""
     return Rigid(
@@ -151,7 +149,7 @@ def rigid(matrix):
     )  # fmt: skip
 
 
-@merged
+@inline(force=True)
 def relative(world_from_a, world_from_b):
     """The motion `a_from_b`; the origins are differenced before anything is multiplied."""
     a = world_from_a

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import CHOOSE, hypotenuse
 
 S0, S1, X0, Y0, X1, Y1, CX, CY, RADIUS, SENSE, EPS, COSINE = range(12)
@@ -18,7 +18,7 @@ WIDTH = 12
 ROUNDOFF = 2.0**-53
 
 
-@inlined
+@inline
 def set_segment(row, s0, s1, x0, y0, x1, y1):
     """Makes `row` the straight segment between two points."""
     row[S0], row[S1] = s0, s1
@@ -26,7 +26,7 @@ def set_segment(row, s0, s1, x0, y0, x1, y1):
     row[CX], row[CY], row[RADIUS], row[SENSE], row[EPS], row[COSINE] = 0.0, 0.0, 0.0, 1.0, 0.0, 1.0
 
 
-@inlined
+@inline
 def set_arc(row, s0, s1, x0, y0, tx, ty, x1, y1, flat):
     """Makes `row` the arc from one point along the unit tangent (tx, ty) to another.
 
@@ -47,7 +47,7 @@ def set_arc(row, s0, s1, x0, y0, tx, ty, x1, y1, flat):
     row[COSINE] = cosine
 
 
-@inlined
+@inline
 def segment_distance(x, y, x0, y0, x1, y1):
     """The distance from (x, y) to a segment."""
     dx, dy = x1 - x0, y1 - y0
@@ -58,7 +58,7 @@ def segment_distance(x, y, x0, y0, x1, y1):
     return hypotenuse(x - x0 - t * dx, y - y0 - t * dy)
 
 
-@inlined
+@inline
 def arc_distance(row, x, y):
     """The distance from (x, y) to the arc: the cone of the distance map over that point."""
     if row[RADIUS] == 0.0:
@@ -72,7 +72,7 @@ def arc_distance(row, x, y):
     return math.sqrt(min(start, (x - row[X1]) ** 2 + (y - row[Y1]) ** 2))
 
 
-@inlined
+@inline
 def arc_middle(row):
     """The middle control point of the arc as a rational quadratic: where its end tangents meet."""
     mx, my = 0.5 * (row[X0] + row[X1]), 0.5 * (row[Y0] + row[Y1])
@@ -83,7 +83,7 @@ def arc_middle(row):
     return row[CX] + (mx - row[CX]) * grow, row[CY] + (my - row[CY]) * grow
 
 
-@inlined
+@inline
 def segment_error(row, points, n):
     """A proven bound of the distance between segment and curve part: the hull's distance to the segment.
 
@@ -97,7 +97,7 @@ def segment_error(row, points, n):
     return worst
 
 
-@inlined
+@inline
 def arc_error(row, points, n, work):
     """A proven bound of the distance between arc and curve part.
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import (
     CX,
     CY,
@@ -44,7 +44,7 @@ class Leaves(NamedTuple):
     boxes: np.ndarray
 
 
-@inlined
+@inline
 def end_tangent(points, n, at_end):
     """The unit tangent at one end of a control polygon, from the nearest control point that differs."""
     e = n if at_end else 0
@@ -59,7 +59,7 @@ def end_tangent(points, n, at_end):
     return 1.0, 0.0
 
 
-@inlined
+@inline
 def _off_joint_circle(pieces, i, s, row, sine, cosine):
     """The implicit equation of the circle of all joints, at the curve's parameter `s`."""
     here = jet(pieces, i, s)
@@ -70,7 +70,7 @@ def _off_joint_circle(pieces, i, s, row, sine, cosine):
     return sine * (x * (x - length) + y * y) + length * cosine * y
 
 
-@inlined
+@inline
 def joint_parameter(pieces, i, row, s0, s1, ax, ay, bx, by, steps):
     """Where the curve crosses the circle of joints between `s0` and `s1`, or nan.
 
@@ -132,7 +132,7 @@ def fit_biarc(pieces, i, s0, s1, flat, steps, work, pair):
     return 2
 
 
-@inlined
+@inline
 def _reverse(row):
     """Runs an arc built from its end backwards the right way round."""
     x, y = row[X0], row[Y0]
@@ -190,7 +190,7 @@ def fit_leaves(pieces, tolerance, steps):
     return arcs[:used], owner[:used]
 
 
-@inlined
+@inline
 def _grown(arcs, owner):
     size = 2 * arcs.shape[0]
     wider = np.empty((size, arcs.shape[1]))

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import (
     CX,
     CY,
@@ -32,7 +32,7 @@ ROUNDINGS = 64.0 * 2.0**-53
 """Relative to centres, radii and coordinates: the candidates are a few dozen operations each."""
 
 
-@inlined
+@inline
 def _in_sector(row, x, y):
     """Whether the direction from the arc's centre to (x, y) meets the arc."""
     ox, oy = x - row[CX], y - row[CY]
@@ -41,7 +41,7 @@ def _in_sector(row, x, y):
     return after * row[SENSE] >= 0.0 and before * row[SENSE] >= 0.0
 
 
-@inlined
+@inline
 def _segments_cross(a, b):
     ux, uy, vx, vy = a[X1] - a[X0], a[Y1] - a[Y0], b[X1] - b[X0], b[Y1] - b[Y0]
     p = ux * (b[Y0] - a[Y0]) - uy * (b[X0] - a[X0])
@@ -51,7 +51,7 @@ def _segments_cross(a, b):
     return p * q < 0.0 and r * s < 0.0
 
 
-@inlined
+@inline
 def _segment_and_arc(line, arc):
     """The least distance of places inside both: at the foot of the centre, or 0 where they cross."""
     ux, uy = line[X1] - line[X0], line[Y1] - line[Y0]
@@ -74,7 +74,7 @@ def _segment_and_arc(line, arc):
     return found
 
 
-@inlined
+@inline
 def _arc_and_arc(a, b):
     """The least distance of places inside both: on the line of the centres, or 0 where they cross."""
     ux, uy = b[CX] - a[CX], b[CY] - a[CY]
@@ -123,7 +123,7 @@ def arcs_apart(a, b):
     return least, ROUNDINGS * scale
 
 
-@inlined
+@inline
 def _set_cell_arc(points, n, shift_x, shift_y, work, row):
     """Makes `row` the arc of a cell of a curve by its control points, shifted, with its error."""
     x0, y0 = points[0, 0] / points[0, 2], points[0, 1] / points[0, 2]

@@ -6,11 +6,11 @@ it in turn. The bound is exact where the parts coincide, run parallel or are con
 the search on overlapping curves. Not for: choosing the parts.
 """
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.curve.bezier import CHOOSE
 
 
-@inlined
+@inline
 def raise_degree(points, n, m):
     """Rewrites the n + 1 rows of `points` as control points of degree `m` >= n."""
     for r in range(n, m):
@@ -22,7 +22,7 @@ def raise_degree(points, n, m):
                 points[k, c] = share * points[k - 1, c] + (1.0 - share) * points[k, c]
 
 
-@inlined
+@inline
 def match_weights(p, q, n):
     """Rescales the weights of `q` as lambda^i so that its end weights stand as those of `p` do.
 
@@ -39,7 +39,7 @@ def match_weights(p, q, n):
             q[k, c] *= grow
 
 
-@inlined
+@inline
 def gap_coefficients(p, n, q, m, rational, shift_x, shift_y, gap, out):
     """Bernstein coefficients of |p(u) + shift - q(u)|^2 in out[:, 0]; returns their degree.
 
@@ -89,7 +89,7 @@ def gap_coefficients(p, n, q, m, rational, shift_x, shift_y, gap, out):
     return 4 * n
 
 
-@inlined
+@inline
 def cubic_square(gap, out):
     """The seven coefficients for cubics, written out: half the time of the loop."""
     ax, ay, bx, by = gap[0, 0], gap[0, 1], gap[1, 0], gap[1, 1]
@@ -104,7 +104,7 @@ def cubic_square(gap, out):
     return 6
 
 
-@inlined
+@inline
 def greatest(out, degree):
     """The greatest of the coefficients, and its index, the end points first among equals."""
     best, which = out[0, 0], 0
@@ -116,7 +116,7 @@ def greatest(out, degree):
     return best, which
 
 
-@inlined
+@inline
 def reverse_rows(points, n):
     """Runs a control polygon the other way."""
     for k in range((n + 1) // 2):

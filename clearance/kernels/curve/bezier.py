@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 HIGHEST_DEGREE = 24
 CHOOSE = np.array(
@@ -41,7 +41,7 @@ class Jet(NamedTuple):
     ddy: float
 
 
-@inlined
+@inline
 def component(control, start, n, column, t):
     """Value, first and second derivative of one homogeneous coordinate at `t`, Bernstein-Horner."""
     s = 1.0 - t
@@ -76,7 +76,7 @@ def component(control, start, n, column, t):
     return value, n * slope, n * (n - 1) * bend
 
 
-@inlined
+@inline
 def _cubic_jet(control, k, t):
     """The `Jet` of a polynomial cubic from row `k` on, by de Casteljau: both coordinates side by side."""
     s = 1.0 - t
@@ -91,7 +91,7 @@ def _cubic_jet(control, k, t):
     return Jet(x, y, 3.0 * (bx - ax), 3.0 * (by - ay), 6.0 * turn_x, 6.0 * turn_y)
 
 
-@inlined
+@inline
 def jet(pieces, i, t):
     """The `Jet` of piece `i` at the local parameter `t` in [0, 1]."""
     start = pieces.first[i]
@@ -118,7 +118,7 @@ def jet(pieces, i, t):
     return Jet(x, y, dx, dy, ddx, ddy)
 
 
-@inlined
+@inline
 def keep_right(points, n, t):
     """Turns the n + 1 rows of `points` into the control points of their part [t, 1]."""
     for r in range(1, n + 1):
@@ -127,7 +127,7 @@ def keep_right(points, n, t):
                 points[k, c] += t * (points[k + 1, c] - points[k, c])
 
 
-@inlined
+@inline
 def keep_left(points, n, t):
     """Turns the n + 1 rows of `points` into the control points of their part [0, t]."""
     for r in range(1, n + 1):
@@ -216,7 +216,7 @@ def control_box(control):
     return box
 
 
-@inlined
+@inline
 def hypotenuse(x, y):
     """The length of (x, y), without the cost of guarding against overflow: sizes are checked before."""
     return math.sqrt(x * x + y * y)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance
 from clearance.kernels.curve.arc_fit import BUCKET, box_gap_sq
 from clearance.kernels.curve.bezier import hypotenuse, jet
@@ -63,7 +63,7 @@ def nearest_arc(leaves, x, y, hint, enough, stack):
     return best, which
 
 
-@inlined
+@inline
 def _samples(row, pixel):
     """How many steps along one arc keep neighbouring samples about a pixel apart."""
     return max(1, math.ceil(1.2 * hypotenuse(row[X1] - row[X0], row[Y1] - row[Y0]) / pixel))

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bernstein import greatest
 from clearance.kernels.curve.bezier import CHOOSE, cut, hypotenuse
 
@@ -45,13 +45,13 @@ SHARES = _feet_shares()
 COEFFICIENTS = _interpolations()
 
 
-@inlined
+@inline
 def order_for(n, m):
     """The highest degree of a map for a part of A of degree `n`, one of B of degree `m`; below 2 none serves."""
     return min(HIGHEST_ORDER, (LARGEST_DEGREE - n) // m)
 
 
-@inlined
+@inline
 def least_order(bend, length, fine, most):
     """The degree of a map that likely leaves a drift below `fine`, at most `most`.
 
@@ -66,7 +66,7 @@ def least_order(bend, length, fine, most):
     return most
 
 
-@inlined
+@inline
 def _set_map(feet, order, curve_map):
     """Writes the map's coefficients into columns 0 (times s) and 1 (times 1 - s) of `curve_map`, scaled.
 
@@ -88,7 +88,7 @@ def _set_map(feet, order, curve_map):
     return low, high
 
 
-@inlined
+@inline
 def _compose(composed, n, curve_map, order, columns):
     """Turns the points composed[:n + 1, :, 0] into the scaled coefficients composed[0] of degree n times order.
 
@@ -109,7 +109,7 @@ def _compose(composed, n, curve_map, order, columns):
     return degree
 
 
-@inlined
+@inline
 def _relative(points, n, x, y):
     """Takes (x, y) off the points; returns the largest coordinate left."""
     reach = 0.0
@@ -120,7 +120,7 @@ def _relative(points, n, x, y):
     return reach
 
 
-@inlined
+@inline
 def _raised(row, degree, to, made):
     """Raises the scaled coefficients in `row` to the degree `to`, into the same row."""
     if to == degree:
@@ -133,7 +133,7 @@ def _raised(row, degree, to, made):
     row[: to + 1] = made[: to + 1]
 
 
-@inlined
+@inline
 def _gaps(one, n, two, m, rational, gap):
     """Scaled coefficients of one - two into `gap`, with its weight where rational; returns their degree."""
     if not rational:
@@ -154,7 +154,7 @@ def _gaps(one, n, two, m, rational, gap):
     return n + m
 
 
-@inlined
+@inline
 def _largest_sq(gap, degree, rational):
     """The largest squared coefficient, which bounds the square, and its index."""
     largest, which = 0.0, 0
@@ -166,7 +166,7 @@ def _largest_sq(gap, degree, rational):
     return largest, which
 
 
-@inlined
+@inline
 def _squares(gap, degree, rational, out):
     """Bernstein coefficients (or their ratios) of the squared length of `gap`, scaled, into out[:, 0]."""
     for r in range(2 * degree + 1):
@@ -223,7 +223,7 @@ def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, wo
     return bound, which / degree, rounding
 
 
-@inlined
+@inline
 def drift(off, distance):
     """What a drift of `off` along the curves adds to a distance."""
     return hypotenuse(off, distance) - distance

@@ -6,7 +6,7 @@ or just one, in a cell. Rounding is not enclosed: a cell is only cut while it is
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import Pieces, cut
 
 
@@ -28,14 +28,14 @@ def derived(pieces):
     return Pieces(control, first, pieces.rational)
 
 
-@inlined
+@inline
 def times(a0, a1, b0, b1):
     """The product of two intervals."""
     p, q, r, s = a0 * b0, a0 * b1, a1 * b0, a1 * b1
     return min(min(p, q), min(r, s)), max(max(p, q), max(r, s))
 
 
-@inlined
+@inline
 def dot(a, b):
     """The inner product of two boxes, an interval."""
     x0, x1 = times(a[0], a[1], b[0], b[1])
@@ -43,7 +43,7 @@ def dot(a, b):
     return x0 + y0, x1 + y1
 
 
-@inlined
+@inline
 def _box(points, n, column):
     low = high = points[0, column]
     for k in range(1, n + 1):
@@ -92,14 +92,14 @@ def enclose(pieces, one, two, three, i, t0, t1, points, out):
         _over(out, 3, c, w0, w1)
 
 
-@inlined
+@inline
 def _less(out, order, c, other, w0, w1, factor):
     low, high = times(out[other, c], out[other, c + 1], w0, w1)
     out[order, c] -= factor * high
     out[order, c + 1] -= factor * low
 
 
-@inlined
+@inline
 def _over(out, order, c, w0, w1):
     low, high = times(out[order, c], out[order, c + 1], 1.0 / w1, 1.0 / w0)
     out[order, c], out[order, c + 1] = low, high

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import EPS, S0, S1, arc_distance
 from clearance.kernels.curve.arc_fit import BUCKET, box_gap_sq
 from clearance.kernels.curve.bernstein import cubic_square
@@ -34,7 +34,7 @@ class Foot(NamedTuple):
     local: float
 
 
-@inlined
+@inline
 def rising_slope(points, n, rational, work):
     """Half the squared distance's slope, by Bernstein coefficients, as to the parameter of `points`.
 
@@ -68,7 +68,7 @@ def rising_slope(points, n, rational, work):
     return g[0, 0], g[m, 0], least, most, m * rise
 
 
-@inlined
+@inline
 def _cubic_slope(points):
     """`rising_slope` of a polynomial cubic, written out."""
     ax, ay, bx, by = points[0, 0], points[0, 1], points[1, 0], points[1, 1]
@@ -85,7 +85,7 @@ def _cubic_slope(points):
     return a, f, least, most, 5.0 * rise
 
 
-@inlined
+@inline
 def _rational_slope(q, d, g, n):
     """Turns <q, q'> in column 0 of `g` into <q, q'> w - <q, q> w', scaled; returns its degree."""
     for k in range(2 * n + 1):
@@ -106,7 +106,7 @@ def _rational_slope(q, d, g, n):
     return m
 
 
-@inlined
+@inline
 def least_square(points, n, rational, out):
     """The least Bernstein coefficient of the squared distance from the origin, and the largest |point|^2."""
     least, reach = np.inf, 0.0
@@ -156,7 +156,7 @@ def slide_to_foot(pieces, i, x, y, t, low, high):
     return t
 
 
-@inlined
+@inline
 def _foot_between(pieces, i, x, y, t, low, high):
     """The root of the slope on [low, high], where it rises from negative to positive: Newton in a bracket."""
     for _ in range(60):
@@ -242,7 +242,7 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
     return np.inf, lower, s0
 
 
-@inlined
+@inline
 def _closest_on_line(control, start, s0, s1, x, y):
     x0, y0 = control[start, 0] / control[start, 2], control[start, 1] / control[start, 2]
     x1, y1 = (
@@ -259,7 +259,7 @@ def _closest_on_line(control, start, s0, s1, x, y):
     return distance, distance, t
 
 
-@inlined
+@inline
 def _newton_defect_sq(here, x, y, t, a, b, rise, points, n):
     """How much the square of the distance may fall below that of the point `here`, at most.
 

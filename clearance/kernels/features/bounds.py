@@ -6,7 +6,7 @@ Where a box is taken, four boxes in lanes may stand in its place (`surface.group
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import larger, square_root, where_positive
 from clearance.kernels.arithmetic.vec3 import (
     Rigid,
@@ -38,12 +38,12 @@ CROSSED = 64
 """Pairs of edges that are worth crossing."""
 
 
-@merged
+@inline(force=True)
 def _axis_gap(centre, half_a, half_b, slack):
     return larger(abs(centre) - half_a - half_b - slack, 0.0)
 
 
-@merged
+@inline(force=True)
 def between_boxes(p, u, v, w, d):
     """The motion between two boxes: from the axes u, v, w of one to those of p; d is from centre to centre."""
     x, y, z = p.x, p.y, p.z
@@ -55,7 +55,7 @@ def between_boxes(p, u, v, w, d):
     )  # fmt: skip
 
 
-@merged
+@inline(force=True)
 def lower_bound_boxes(p, q, m, slack):
     """[m] a lower bound on the distance of two boxes, p in the frame of a and q in that of b.
 
@@ -70,7 +70,7 @@ def lower_bound_boxes(p, q, m, slack):
     return lower_bound_between(p.half, q.half, n, slack)
 
 
-@merged
+@inline(force=True)
 def lower_bound_between(h, k, n, slack):
     """[m] `lower_bound_boxes` from the half sizes of both boxes and the motion `between_boxes`."""
     d = n.t
@@ -103,7 +103,7 @@ class Sight(NamedTuple):
     offset: float  # [m] u . t of `a_from_b`
 
 
-@merged
+@inline(force=True)
 def sight_along(p, q, m):
     """The sight from `p` to `q` (frame of a); one of zero length bounds nothing."""
     d = sub(q, p)
@@ -113,21 +113,21 @@ def sight_along(p, q, m):
     return Sight(d, turn_back(m, d), dot(d, m.t))
 
 
-@merged
+@inline(force=True)
 def _back(sight):
     """The other way along the same line."""
     u, v = sight.u, sight.v
     return Sight(Vec3(-u.x, -u.y, -u.z), Vec3(-v.x, -v.y, -v.z), -sight.offset)
 
 
-@merged
+@inline(force=True)
 def opposite(sight):
     """The same sight with a and b exchanged."""
     u, v = sight.u, sight.v
     return Sight(Vec3(-v.x, -v.y, -v.z), Vec3(-u.x, -u.y, -u.z), sight.offset)
 
 
-@merged
+@inline(force=True)
 def box_reach(box, direction):
     """[m] how far a box reaches from its centre along a direction."""
     h = box.half
@@ -136,7 +136,7 @@ def box_reach(box, direction):
     )
 
 
-@merged
+@inline(force=True)
 def lower_bound_boxes_in_sight(p, q, sight):
     """[m] a lower bound on the distance of two boxes, without their rounding slack; may be negative."""
     far_of_a = dot(sight.u, p.centre) + box_reach(p, sight.u)
@@ -144,7 +144,7 @@ def lower_bound_boxes_in_sight(p, q, sight):
     return near_of_b + sight.offset - far_of_a
 
 
-@merged
+@inline(force=True)
 def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
     """[m] a lower bound on the distance of two faces, without rounding slack; may be negative."""
     far_of_a = -math.inf
@@ -156,7 +156,7 @@ def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
     return near_of_b + sight.offset - far_of_a
 
 
-@merged
+@inline(force=True)
 def _beside(surface, face, other, face_other, m):
     """(squared distance, where to) of what lies beyond the plane and one edge of a face, seen from its body.
 
@@ -187,7 +187,7 @@ def _beside(surface, face, other, face_other, m):
     return height * height + farthest * farthest, to
 
 
-@merged
+@inline(force=True)
 def sight_beside(a, face_a, b, face_b, from_a, from_b):
     """A sight in which two faces are probably apart: up from the plane of one and away from its nearest edge.
 
@@ -201,13 +201,13 @@ def sight_beside(a, face_a, b, face_b, from_a, from_b):
     return sight_along(Vec3(0.0, 0.0, 0.0), d, from_a)
 
 
-@merged
+@inline(force=True)
 def lower_bound_faces_beside(a, face_a, b, face_b, m):
     """[m] a lower bound on the distance of two faces but for rounding, `sight_beside`."""
     return lower_bound_faces_in_sight(a, face_a, b, face_b, sight_beside(a, face_a, b, face_b, m, inverse(m)))
 
 
-@merged
+@inline(force=True)
 def lower_bound_faces_across(a, face_a, b, face_b, m):
     """[m] the same, across an edge of each: the greatest of all pairs; 0 where none parts the faces."""
     most = 0.0
@@ -228,7 +228,7 @@ def lower_bound_faces_across(a, face_a, b, face_b, m):
     return most
 
 
-@merged
+@inline(force=True)
 def _reach(surface, root):
     """[m] the greatest sum of coordinate magnitudes in a body is at most this."""
     box = box_of(surface, root)
@@ -236,7 +236,7 @@ def _reach(surface, root):
     return abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
 
 
-@merged
+@inline(force=True)
 def rounding_slack(a, root_a, b, root_b, frames):
     """[m] how much rounding, and rotations that are not quite orthonormal, can raise a box bound."""
     t = frames.m.t
@@ -244,7 +244,7 @@ def rounding_slack(a, root_a, b, root_b, frames):
     return (SLACK + 8.0 * frames.defect) * (apart + _reach(a, root_a) + _reach(b, root_b))
 
 
-@merged
+@inline(force=True)
 def displacement(surface, root, before, after):
     """[m] an upper bound on how far a motion of the body from one pose to another moves any of its points.
 

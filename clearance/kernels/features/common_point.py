@@ -5,7 +5,7 @@ Not for: whether they meet (`predicates`).
 
 from typing import NamedTuple
 
-from clearance.compile.jit import kernel, spliced
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import COMMON_POINT, apart, at_address
 from clearance.kernels.arithmetic.double_double import (
     FRAMES_AT_REST,
@@ -76,7 +76,7 @@ def common_point(a, face_a, b, face_b, frames, found):
 _NOWHERE = Common(ZERO3, ZERO3)
 
 
-@spliced
+@inline(one_caller=True)
 def common_point_of(table, a, face_a, b, face_b, frames, found):
     """The same by address."""
     return at_address(table, COMMON_POINT, _NOWHERE, (a, face_a, b, face_b, frames, found))

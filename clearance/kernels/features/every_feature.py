@@ -7,7 +7,7 @@ the usual case, in which one feature pair and its floor suffice (`refine`).
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.double_double import Wide, less, lesser, minus, wide
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, gap_sq, move, move_back, row, sub
 from clearance.kernels.features.face_pair import has_plane, height, may_be_over
@@ -39,7 +39,7 @@ class Chosen(NamedTuple):
     sure: Wide
 
 
-@inlined
+@inline
 def _take(frames, one, two, feature, best, table):
     """`best`, or a feature pair that is nearer."""
     sized = sized_of(table, frames, one, two)
@@ -52,7 +52,7 @@ def _take(frames, one, two, feature, best, table):
     return Chosen(best.gap_sq, best.feature, sure)
 
 
-@inlined
+@inline
 def _corner_to_face(one, at, two, face, frames, is_a, ask, best, table):
     """`best` with a vertex of one body against the triangles of the fan of a face of the other."""
     v = row(one.vertices, at)
@@ -71,7 +71,7 @@ def _corner_to_face(one, at, two, face, frames, is_a, ask, best, table):
     return best
 
 
-@inlined
+@inline
 def _corner_to_segments(one, at, two, face, frames, is_a, ask, best, table):
     """`best` with a vertex of one body against the segments of a face of the other."""
     v = row(one.vertices, at)
@@ -93,7 +93,7 @@ def _corner_to_segments(one, at, two, face, frames, is_a, ask, best, table):
     return best
 
 
-@inlined
+@inline
 def _far_apart(p0, p1, q0, q1, limit):
     """True if two segments are clearly farther apart than a limit, by the plane between their middles."""
     u, v = sub(p1, p0), sub(q1, q0)
@@ -107,7 +107,7 @@ def _far_apart(p0, p1, q0, q1, limit):
     return spare > 0.0 and spare * spare > limit * limit * length_sq * (1.0 + 1e-9)
 
 
-@inlined
+@inline
 def _between_corners(a, face_a, b, face_b, frames, ask, best, table):
     """`best` with corners against corners."""
     for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
@@ -121,7 +121,7 @@ def _between_corners(a, face_a, b, face_b, frames, ask, best, table):
     return best
 
 
-@inlined
+@inline
 def _between_segments(a, face_a, b, face_b, frames, ask, best, table):
     """`best` with the insides of the segments of both faces."""
     for j in range(n_segments(b, face_b)):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, spliced
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.double_double import (
     NOISE,
     Wide,
@@ -64,20 +64,20 @@ class Corners(NamedTuple):
     high: int
 
 
-@inlined
+@inline
 def whole(surface, face):
     """All corners."""
     return Part(surface.face_starts[face] + 1, surface.face_starts[face + 1])
 
 
-@spliced
+@inline(one_caller=True)
 def corners_of(surface, face, part):
     """Part of a face."""
     start = surface.face_starts[face]
     return Corners(surface.exact, surface.face_vertices, start, part.low, part.high)
 
 
-@spliced
+@inline(one_caller=True)
 def _greatest_share(corners, frames, is_a, pair):
     """(share, reach): the greatest of w . (x - o), for b of w . (o - x), and what its rounding is relative to.
 
@@ -107,7 +107,7 @@ def _greatest_share(corners, frames, is_a, pair):
     return share, spread if frames.still_a and frames.still_b else spread + reach
 
 
-@spliced
+@inline(one_caller=True)
 def floor_along(frames, a, b, pair):
     """[m] a lower bound on the distance of the hulls of corners of a and b: their gap along a pair's direction."""
     if not pair.w_sq.hi > 0.0:
@@ -122,7 +122,7 @@ def floor_along(frames, a, b, pair):
     return minus(over(Wide(-far.hi, -far.lo), root(pair.w_sq)), wide(noise))
 
 
-@inlined
+@inline
 def _plain_floor(a, face_a, part_a, b, face_b, part_b, m, w):
     """[m] the same in doubles, along a direction in the frame of a."""
     far_of_a = dot(w, row(a.vertices, a.face_vertices[a.face_starts[face_a]]))
@@ -135,7 +135,7 @@ def _plain_floor(a, face_a, part_a, b, face_b, part_b, m, w):
     return (near_of_b + offset - far_of_a) / math.sqrt(dot(w, w))
 
 
-@inlined
+@inline
 def _beyond(surface, face, corner, third, w):
     """`w` (frame of the face's body), tilted towards what lies beyond the diagonal to a corner from `third`."""
     flat = surface.face_vertices
@@ -150,7 +150,7 @@ def _beyond(surface, face, corner, third, w):
     return along(w, tilt, aside)
 
 
-@spliced
+@inline(one_caller=True)
 def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
     """True if all of a bent fan but the triangle with middle corner `k` is farther than `least` for certain."""
     n = rounded(pair.w)
@@ -177,7 +177,7 @@ def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
     return True
 
 
-@spliced
+@inline(one_caller=True)
 def floor_of(a, face_a, b, face_b, frames, feature, pair, margin):
     """[m] a lower bound on the distance of two faces, tight where `pair` is the nearest."""
     part_a, part_b = whole(a, face_a), whole(b, face_b)

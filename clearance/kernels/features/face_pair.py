@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, spliced
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, gap_sq, move, move_back, row, sub
 from clearance.kernels.features.bounds import lower_bound_faces_beside
 from clearance.kernels.features.segments import LOOSE, common_perpendicular, foot_inside
@@ -46,7 +46,7 @@ class Hit(NamedTuple):
     q: Vec3
 
 
-@inlined
+@inline
 def write_points(hit, points):
     """Fills `points` (2, 3) with those of a hit."""
     for axis in range(3):
@@ -81,7 +81,7 @@ class Near(NamedTuple):
     seen: Seen
 
 
-@merged
+@inline(force=True)
 def limit_of(a, face_a, b, face_b, best_gap, margin):
     """[m] the greatest distance in doubles that a feature pair of two faces may have and still win."""
     blunt_a, blunt_b = a.blunt[face_a], b.blunt[face_b]
@@ -93,7 +93,7 @@ def limit_of(a, face_a, b, face_b, best_gap, margin):
     )
 
 
-@merged
+@inline(force=True)
 def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
     """`near` with one more candidate, which is within the limit."""
     best = near.best
@@ -104,7 +104,7 @@ def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
     return Near(best, near.seen)
 
 
-@merged
+@inline(force=True)
 def is_over(surface, face, x):
     """True if the foot of `x` on the plane of `face` lies in the face (body frame)."""
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
@@ -114,7 +114,7 @@ def is_over(surface, face, x):
     return True
 
 
-@merged
+@inline(force=True)
 def may_be_over(surface, face, x, margin):
     """True unless the foot of `x` is outside the face by more than rounding."""
     room = margin * surface.blunt[face] + surface.width[face]
@@ -126,21 +126,21 @@ def may_be_over(surface, face, x, margin):
     return True
 
 
-@merged
+@inline(force=True)
 def height(surface, face, x):
     """The signed height of `x` over the plane of `face` (body frame)."""
     first = row(surface.vertices, surface.face_vertices[surface.face_starts[face]])
     return dot(row(surface.normals, face), sub(x, first))
 
 
-@merged
+@inline(force=True)
 def has_plane(surface, face):
     """True if the face has a normal that is more than rounding."""
     n = row(surface.normals, face)
     return n.x != 0.0 or n.y != 0.0 or n.z != 0.0
 
 
-@merged
+@inline(force=True)
 def _upper_sq(surface, face, h, margin):
     """An upper bound on the squared distance of a point at height `h` over the face."""
     blunt = surface.blunt[face]
@@ -148,7 +148,7 @@ def _upper_sq(surface, face, h, margin):
     return upper * upper
 
 
-@spliced
+@inline(one_caller=True)
 def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the vertices owned by `face_a` against the inside of `face_b`."""
     if has_plane(b, face_b):
@@ -164,7 +164,7 @@ def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@spliced
+@inline(one_caller=True)
 def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the inside and the owned edges of `face_a` against vertices owned by `face_b`."""
     flat = has_plane(a, face_a)
@@ -188,7 +188,7 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@spliced
+@inline(one_caller=True)
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`.
 
@@ -227,7 +227,7 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     return near
 
 
-@spliced
+@inline(one_caller=True)
 def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     """`near` with owned vertices against owned vertices."""
     for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
@@ -242,7 +242,7 @@ def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
     return near
 
 
-@merged
+@inline(force=True)
 def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     """The best pair of points, and the nearest that two faces come if it could be the minimum, else infinity.
 
@@ -259,7 +259,7 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     return edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near)
 
 
-@merged
+@inline(force=True)
 def _may_own_farthest(surface, face, u, depth):
     """False if nothing that a face owns is its farthest along any direction within `LEANING` of `u`.
 
@@ -289,7 +289,7 @@ def _may_own_farthest(surface, face, u, depth):
     return but_one != 0 and (edges == 0 or but_one & (but_one - 1) != 0)
 
 
-@merged
+@inline(force=True)
 def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
     """False if two faces, should they be the nearest of all, are nearest at features that are other faces' own.
 
@@ -306,7 +306,7 @@ def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
     )
 
 
-@merged
+@inline(force=True)
 def may_meet(a, face_a, b, face_b, m, margin):
     """False only if two faces are clearly apart, seen up from the plane of one and away from its nearest edge."""
     return lower_bound_faces_beside(a, face_a, b, face_b, m) <= margin

@@ -4,7 +4,7 @@ Where two faces bent by rounding lie parallel over each other, no one direction 
 apart. Each pair of triangles is convex and has one that does: that between its own nearest features.
 """
 
-from clearance.compile.jit import inlined, kernel, merged
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import FANS, Lent, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, less, lesser
 from clearance.kernels.features.face_lower_bounds import Part, corners_of, floor_along
@@ -16,7 +16,7 @@ MOST = 64
 """Triangle pairs that are worth it; faces of more keep the bound of their convex hulls."""
 
 
-@merged
+@inline(force=True)
 def _turned(triangle, i):
     """The triangle read from corner `i`."""
     if i == 0:
@@ -26,7 +26,7 @@ def _turned(triangle, i):
     return Simplex(3, triangle.w, triangle.u, triangle.v)
 
 
-@merged
+@inline(force=True)
 def _start(n, triangle):
     """The first `n` corners of a triangle as a simplex of its own."""
     return Simplex(n, triangle.u, triangle.u if n == 1 else triangle.v, triangle.w)
@@ -80,7 +80,7 @@ def floor_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
     return floor if less(least_floor, floor) else least_floor
 
 
-@inlined
+@inline
 def fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
     """The same by address."""
     return at_address(table, FANS, floor, (lent_a, face_a, lent_b, face_b, frames, pair, least, floor))

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inlined, merged, spliced
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import cross, dot, move, move_back, row, sub
 from clearance.kernels.features.face_pair import (
     CORNER_EDGE,
@@ -29,13 +29,13 @@ class Feature(NamedTuple):
     j: int
 
 
-@inlined
+@inline
 def n_segments(surface, face):
     """Edges that a face owns, and the diagonals of its fan if it is bent."""
     return surface.edge_starts[face + 1] - surface.edge_starts[face]
 
 
-@inlined
+@inline
 def segment(surface, face, s):
     """The two vertices of segment `s` of a face: owned edges, then diagonals."""
     at = surface.edge_starts[face] + s
@@ -54,12 +54,12 @@ def _simplex(surface, face, n, i):
     return Simplex(n, row(surface.exact, u), row(surface.exact, v), row(surface.exact, w))
 
 
-simplex = inlined(_simplex)
-simplex_here = merged(_simplex)
+simplex = inline(_simplex)
+simplex_here = inline(force=True)(_simplex)
 """The same, copied into the caller."""
 
 
-@inlined
+@inline
 def _middle_under(surface, face, y):
     """The middle corner of the fan's triangle in which the foot of `y` (body frame) lies, for rounding."""
     start, end = surface.face_starts[face], surface.face_starts[face + 1]
@@ -75,7 +75,7 @@ def _middle_under(surface, face, y):
     return k
 
 
-@spliced
+@inline(one_caller=True)
 def nearest_feature(a, face_a, b, face_b, m, seen):
     """The feature pair that the search in doubles found the nearest."""
     n_a, i, n_b, j = 1, seen.i, 1, seen.j

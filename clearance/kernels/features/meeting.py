@@ -6,7 +6,7 @@ definite surface. Not for: where they meet (`common_point`).
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inlined, merged, spliced
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import MEETING, Lent, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, size
 from clearance.kernels.arithmetic.predicates import (
@@ -21,7 +21,7 @@ from clearance.kernels.features.face_pair import ROUGH, has_plane, height
 from clearance.kernels.mesh.surface import surface_like
 
 
-@inlined
+@inline
 def _posed(surface, corner, body):
     return Posed(row(surface.exact, surface.face_vertices[corner]), body)
 
@@ -45,7 +45,7 @@ class Meeting(NamedTuple):
 NO_MEETING = Meeting(False, True, 0, 0, 0)
 
 
-@inlined
+@inline
 def _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance):
     """True if a segment x y (body frame) goes through the plane of a face clearly beyond one of its edges.
 
@@ -73,7 +73,7 @@ def _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance):
     return False
 
 
-@inlined
+@inline
 def _clearly_misses(surface, face, p, q, frames, is_a):
     """True if a segment p q of the other body clearly misses a face, told in doubles.
 
@@ -97,7 +97,7 @@ def _clearly_misses(surface, face, p, q, frames, is_a):
     return _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance)
 
 
-@inlined
+@inline
 def _edges_meet_face(one, face_one, two, face_two, edge_of_a, inner, frames, exact):
     """Where an edge of `face_one`, or if `inner` a diagonal of its fan, meets a triangle of `face_two`."""
     start, end = one.face_starts[face_one], one.face_starts[face_one + 1]
@@ -120,7 +120,7 @@ def _edges_meet_face(one, face_one, two, face_two, edge_of_a, inner, frames, exa
     return Meeting(False, edge_of_a, start, start, other + 1)
 
 
-@merged
+@inline(force=True)
 def _edges_clearly_miss(one, face_one, two, face_two, edge_of_a, frames):
     """True if every edge of `face_one` clearly misses `face_two`."""
     start, end = one.face_starts[face_one], one.face_starts[face_one + 1]
@@ -166,7 +166,7 @@ def meeting(lent_a, face_a, lent_b, face_b, frames, exact):
     return found
 
 
-@spliced
+@inline(one_caller=True)
 def meeting_of(table, lent_a, face_a, lent_b, face_b, frames, exact):
     """The same by address."""
     return at_address(table, MEETING, NO_MEETING, (lent_a, face_a, lent_b, face_b, frames, exact))

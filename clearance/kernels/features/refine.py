@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, shared, spliced
+from clearance.compile.jit import inline, shared
 from clearance.compile.kernel_table import (
     REFINE,
     REFINE_EVERY,
@@ -71,7 +71,7 @@ NOTHING_REFINED = Refined(FAR, FAR, 2**62, 2**62, ZERO3, ZERO3, FAR, FAR)
 """What any pair of points beats."""
 
 
-@inlined
+@inline
 def _wins(found_sq, face_a, face_b, best):
     """True where a new pair is nearer, or as near with lesser faces."""
     if less(best.gap_sq, found_sq):
@@ -81,13 +81,13 @@ def _wins(found_sq, face_a, face_b, best):
     return face_a < best.face_a or (face_a == best.face_a and face_b < best.face_b)
 
 
-@inlined
+@inline
 def _enough(length, margin):
     """[m] the floor that proves a distance."""
     return minus(length, wide(SURE * length.hi + UNSURE * margin))
 
 
-@inlined
+@inline
 def _better(best, pair, length, face_a, face_b, floor, sure):
     """`best` after a face pair. The floor of one that does not win may be low: it is nearest at others' own."""
     sure = lesser(best.sure, sure)
@@ -142,7 +142,7 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
     )
 
 
-@spliced
+@inline(one_caller=True)
 def refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best):
     """The same by address."""
     return at_address(
@@ -175,7 +175,7 @@ def room_for_waiting():
     )
 
 
-@merged
+@inline(force=True)
 def put(waiting, at, face_a, face_b, seen, least_sq):
     """Lets a face pair wait at a place."""
     waiting.faces[at, 0], waiting.faces[at, 1] = face_a, face_b
@@ -184,7 +184,7 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
     features[at, 0], features[at, 1], features[at, 2] = seen.kind, seen.i, seen.j
 
 
-@merged
+@inline(force=True)
 def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table):
     """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
 
@@ -209,7 +209,7 @@ def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, 
     return best
 
 
-@merged
+@inline(force=True)
 def shed(a, b, best_gap, margin, waiting, n_waiting):
     """Drops the waiting face pairs that cannot win any more; how many are left."""
     kept = 0
@@ -225,7 +225,7 @@ def shed(a, b, best_gap, margin, waiting, n_waiting):
     return kept
 
 
-@inlined
+@inline
 def error_of(refined, distance):
     """[m] a bound on |distance - true distance|, `distance` being the refined one rounded."""
     short = minus(refined.length, lesser(refined.sure, refined.floor))

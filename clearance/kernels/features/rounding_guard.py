@@ -5,7 +5,7 @@ rounding, another face's feature beside it is measured, which is as near only wh
 wait with a lower bound in place of what was seen. Not for: what is seen (`face_pair`).
 """
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import gap_sq, inverse, move, row
 from clearance.kernels.features.bounds import lower_bound_faces_across, lower_bound_faces_beside
 from clearance.kernels.features.face_pair import has_plane
@@ -24,7 +24,7 @@ times the width of a face without a plane. Directions are off by 2^-34 where a n
 """
 
 
-@merged
+@inline(force=True)
 def _unsure(surface, face):
     """[m] how far its triangles, or its inside where it has no plane, may be off what stands for a face."""
     if surface.bent[face] or not has_plane(surface, face):
@@ -32,13 +32,13 @@ def _unsure(surface, face):
     return 0.0
 
 
-@merged
+@inline(force=True)
 def told_apart(a, face_a, b, face_b, gap, margin):
     """True if what rounding can hide of two faces that are `gap` apart is no nearer than by `PASSED_OVER`."""
     return 2.0 * margin + 4.0 * (_unsure(a, face_a) + _unsure(b, face_b)) <= TOLD * gap
 
 
-@merged
+@inline(force=True)
 def _corner_near(one, face_one, two, face_two, two_from_one, limit):
     """True if a corner that a face owns may be within a limit of the inside of one that is bent or has no plane.
 
@@ -59,7 +59,7 @@ def _corner_near(one, face_one, two, face_two, two_from_one, limit):
     return False
 
 
-@merged
+@inline(force=True)
 def may_hide(a, face_a, b, face_b, m, margin, limit, least):
     """True if rounding can hide features of two faces within a limit, whatever was seen.
 
@@ -77,7 +77,7 @@ def may_hide(a, face_a, b, face_b, m, margin, limit, least):
     )
 
 
-@merged
+@inline(force=True)
 def sure_gap(a, face_a, b, face_b, m, margin, in_sight):
     """[m] a lower bound on the distance of two faces: that in sight, or a greater one if it leaves them untold."""
     if told_apart(a, face_a, b, face_b, in_sight, margin):

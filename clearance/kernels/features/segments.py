@@ -2,11 +2,11 @@
 
 import math
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import along, cross, dot, sub
 
 
-@merged
+@inline(force=True)
 def nearest_on_segment(x, start, end):
     """The point of the segment nearest to `x`; an end point where the foot lies beyond it."""
     d = sub(end, start)
@@ -23,7 +23,7 @@ def nearest_on_segment(x, start, end):
     return along(start, s, d)
 
 
-@merged
+@inline(force=True)
 def foot_inside(x, start, end):
     """(inside, foot): the foot of `x` on the line, if strictly between the ends."""
     d = sub(end, start)
@@ -36,7 +36,7 @@ def foot_inside(x, start, end):
     return True, along(start, along_d / length_sq, d)
 
 
-@merged
+@inline(force=True)
 def _may_still_be_inside(over, u, v, r, n_sq, margin):
     """True if feet that are `over` beyond the ends, times |n|^2, may be inside but for rounding of the ends.
 
@@ -47,7 +47,7 @@ def _may_still_be_inside(over, u, v, r, n_sq, margin):
     return over <= rounding and n_sq > margin * margin * (u_sq + v_sq)
 
 
-@merged
+@inline(force=True)
 def common_perpendicular(p0, p1, q0, q1, margin):
     """(inside, p, q): the feet of the common perpendicular of two segments, if inside both.
 
@@ -75,7 +75,7 @@ def common_perpendicular(p0, p1, q0, q1, margin):
     return True, p, nearest_on_segment(p, q0, q1)
 
 
-@merged
+@inline(force=True)
 def may_be_inside(x, start, end, margin):
     """True unless the foot of `x` on the line is beyond the ends by more than rounding."""
     d = sub(end, start)
@@ -85,7 +85,7 @@ def may_be_inside(x, start, end, margin):
     return -room <= s <= length_sq + room
 
 
-@merged
+@inline(force=True)
 def may_be_inside_both(p0, p1, q0, q1, margin):
     """True unless the common perpendicular misses one of the segments by more than rounding."""
     u = sub(p1, p0)

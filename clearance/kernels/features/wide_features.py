@@ -7,7 +7,7 @@ A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: wh
 import math
 from typing import NamedTuple
 
-from clearance.compile.jit import inlined, kernel, spliced
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import FEATURES, apart, at_address
 from clearance.kernels.arithmetic.double_double import (
     FAR,
@@ -73,7 +73,7 @@ class Pair(NamedTuple):
     o: Wide3
 
 
-@inlined
+@inline
 def _share(part, whole):
     """part / whole between 0 and 1; 0 where `whole` is."""
     if not part.hi > 0.0 or not whole.hi > 0.0:
@@ -81,7 +81,7 @@ def _share(part, whole):
     return over(part, whole) if minus(whole, part).hi > 0.0 else wide(1.0)
 
 
-@inlined
+@inline
 def _across(w, d, d_sq):
     """`w` without its part along `d`: perpendicular to it to the last digits, however short `w` is."""
     if not d_sq.hi > 0.0:
@@ -89,7 +89,7 @@ def _across(w, d, d_sq):
     return minus3(w, scaled3(over(dot3(w, d), d_sq), d))
 
 
-@inlined
+@inline
 def _point_and_segment(x, start, end):
     """The pair of a point and its nearest point of a segment."""
     r, d = minus3(start, x), minus3(end, start)
@@ -103,7 +103,7 @@ def _point_and_segment(x, start, end):
     return Pair(gap_sq, x, along3(start, share, d), w, w_sq, x)
 
 
-@inlined
+@inline
 def point_and_triangle(x, a, b, c):
     """The pair of a point and its foot on a triangle's plane; infinitely far where it is not inside.
 
@@ -123,7 +123,7 @@ def point_and_triangle(x, a, b, c):
     return Pair(times(h, share), x, foot, negative3(n) if h.hi > 0.0 else n, n_sq, x)
 
 
-@inlined
+@inline
 def two_segments(p0, p1, q0, q1):
     """The pair of the feet of the common perpendicular, clamped to the segments.
 
@@ -184,11 +184,11 @@ def _wide_feature(frames, one, two):
 
 
 wide_feature = kernel(_wide_feature)
-wide_feature_here = spliced(_wide_feature)
+wide_feature_here = inline(one_caller=True)(_wide_feature)
 """The same, copied into the caller."""
 
 
-@inlined
+@inline
 def _unevenness(frames, corners, is_a, pair):
     """[m] how far a triangle's corners are off the plane of its rounded normal, along which a height was taken."""
     if corners.n < 3:
@@ -204,7 +204,7 @@ def _unevenness(frames, corners, is_a, pair):
     return 2.0 * off / math.sqrt(pair.w_sq.hi)
 
 
-@inlined
+@inline
 def too_far(frames, one, two, pair, length):
     """[m] how much a height along a rounded normal, of a triangle or two segments, may be above the truth."""
     if one.n == 2 and two.n == 2:
@@ -243,7 +243,7 @@ def size_features(frames, one, two):
     return Sized(pair, length, too_far(frames, one, two, pair, length))
 
 
-@inlined
+@inline
 def sized_of(table, frames, one, two):
     """The same by address."""
     return at_address(table, FEATURES, NOTHING_SIZED, (frames, one, two))

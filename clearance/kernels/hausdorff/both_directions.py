@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.distance_map import draw, lower_bound_of_map
@@ -34,7 +34,7 @@ MANY = 512  # arcs from which on whole runs are tried first
 SAMPLES = 1000
 
 
-@inlined
+@inline
 def widest(pieces):
     """The largest number of control points of a piece."""
     most = 0
@@ -43,7 +43,7 @@ def widest(pieces):
     return most
 
 
-@inlined
+@inline
 def length_of_arcs(arcs):
     """The length of all chords, enough to choose a pixel by."""
     total = 0.0
@@ -52,7 +52,7 @@ def length_of_arcs(arcs):
     return total
 
 
-@inlined
+@inline
 def _search_kept(pair, la, aim, drawn, sparing, kept, state, work, composed, heap):
     """Solves the arcs kept exactly and takes them off the list; where `sparing`, only some of many.
 
@@ -81,12 +81,12 @@ def _search_kept(pair, la, aim, drawn, sparing, kept, state, work, composed, hea
     return close(pair, aim, state, work, composed, heap, n_open)
 
 
-@inlined
+@inline
 def _is_end(ends, piece, local):
     return (local <= 1e-12 and ends[piece, 0]) or (local >= 1.0 - 1e-12 and ends[piece, 1])
 
 
-@inlined
+@inline
 def witness(pa, ends_a, pb, ends_b, shift_x, shift_y, state, out):
     """Fills `out` with the two points that `state` names and the kind of solution that they are.
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import (
     EPS,
     RADIUS,
@@ -34,7 +34,7 @@ from clearance.kernels.hausdorff.state import (
 LONGEST_RUN = 2000
 
 
-@inlined
+@inline
 def consider(pa, pb, lb, i, t, shift_x, shift_y, hint, state, work):
     """The foot on B of A's point at (i, t); the best such point so far is kept in `state`."""
     here = jet(pa, i, t)
@@ -117,7 +117,7 @@ def self_bisector(pa, pb, i, t_one, t_two, j, s, k, r, shift_x, shift_y):
     return t
 
 
-@inlined
+@inline
 def upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
     """A proven upper bound of the distance of A on [t0, t1] to B, and where its square's bound is largest.
 
@@ -135,7 +135,7 @@ def upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
     return math.sqrt(most), which / degree
 
 
-@inlined
+@inline
 def chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
     """Another upper bound, which no speed along the curves disturbs: by way of the chord of B's part.
 
@@ -155,7 +155,7 @@ def chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work):
     return most + off
 
 
-@inlined
+@inline
 def line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
     """Whether a straight part of A lies within `lower` of the arc that was nearest before: no search needed."""
     here, there = jet(pa, i, t0), jet(pa, i, t1)
@@ -165,7 +165,7 @@ def line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, lower):
     return half < lower and (arc_distance(row, x, y) + row[EPS] + half) * (1.0 + 1e-14) <= lower
 
 
-@inlined
+@inline
 def chain_bound(pa, i, t0, t1, leaves, first, last, off_first, off_last, shift_x, shift_y, enough):
     """An upper bound of the distance of a straight part of A to the run of B's arcs `first` to `last`.
 

@@ -6,7 +6,7 @@ middle points this bound errs by the square of their length alone. Not for: the 
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import S0, S1, WIDTH
 from clearance.kernels.curve.arcs import cells_apart
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet
@@ -37,7 +37,7 @@ def feet(pieces, leaves, points, out):
         )
 
 
-@inlined
+@inline
 def _apart(p, n, q, m, ux, uy, shift):
     """The gap of two control polygons along the unit vector (ux, uy): a lower bound of their distance."""
     least, most = np.inf, -np.inf
@@ -48,7 +48,7 @@ def _apart(p, n, q, m, ux, uy, shift):
     return least + shift - most
 
 
-@inlined
+@inline
 def _extent(p, n):
     """How far the control points are from the first, at the most, by the sum of both coordinates."""
     x, y, far = p[0, 0] / p[0, 2], p[0, 1] / p[0, 2], 0.0
@@ -57,14 +57,14 @@ def _extent(p, n):
     return far
 
 
-@inlined
+@inline
 def _boxes_apart(a, i, b, j, shift_x, shift_y):
     dx = max(0.0, a[i, 0] + shift_x - b[j, 2], b[j, 0] - a[i, 2] - shift_x)
     dy = max(0.0, a[i, 1] + shift_y - b[j, 3], b[j, 1] - a[i, 3] - shift_y)
     return hypotenuse(dx, dy)
 
 
-@inlined
+@inline
 def _apart_at(pa, pb, i, t, j, s, shift_x, shift_y):
     a, b = jet(pa, i, t), jet(pb, j, s)
     return hypotenuse(a.x + shift_x - b.x, a.y + shift_y - b.y)

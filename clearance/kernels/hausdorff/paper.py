@@ -9,13 +9,13 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance, arc_middle
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.hausdorff.trim import arc_covers, field
 
 
-@inlined
+@inline
 def _pixel_of(x, y, x0, y0, pixel, depth):
     """Row and column of the pixel that (x, y) lies on; the page's edge for points off it."""
     row = min(depth.shape[0] - 1, max(0, math.floor((y - y0) / pixel)))
@@ -37,7 +37,7 @@ def greatest_depth(pa, la, shift_x, shift_y, x0, y0, pixel, depth):
     return most
 
 
-@inlined
+@inline
 def _likeliest(points, candidates, arcs):
     """Of the arcs seen at three control points the one whose farthest control point is nearest."""
     best, which = np.inf, candidates[0]

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.hausdorff.state import (
     ARCS,
     AT_A,
@@ -59,7 +59,7 @@ def segment_boxes(control):
     return boxes
 
 
-@inlined
+@inline
 def _foot(control, k, x, y):
     """The squared distance from (x, y) to segment `k`, and the local parameter of its foot."""
     x0, y0 = control[2 * k, 0], control[2 * k, 1]
@@ -76,13 +76,13 @@ def _foot(control, k, x, y):
     return ex * ex + ey * ey, t
 
 
-@inlined
+@inline
 def _off(control, k, x, y):
     """The distance from (x, y) to segment `k`."""
     return math.sqrt(_foot(control, k, x, y)[0])
 
 
-@inlined
+@inline
 def _box_sq(boxes, node, x, y):
     dx = max(boxes[node, 0] - x, 0.0, x - boxes[node, 2])
     dy = max(boxes[node, 1] - y, 0.0, y - boxes[node, 3])
@@ -115,7 +115,7 @@ def nearest_segment(control, boxes, x, y, hint, nodes, gaps):
     return math.sqrt(best), which
 
 
-@inlined
+@inline
 def _at(control, k, t):
     """The point of segment `k` at the local parameter `t`."""
     s = 1.0 - t
@@ -125,7 +125,7 @@ def _at(control, k, t):
     )
 
 
-@inlined
+@inline
 def _offer(qc, i, t, j, x, y, distance, state):
     """Raises the lower bound by the true distance of one point of A."""
     if distance > state[LOWER] or state[PIECE_A] < 0.0:
@@ -134,7 +134,7 @@ def _offer(qc, i, t, j, x, y, distance, state):
         state[PIECE_B], state[AT_B] = j, _foot(qc, j, x, y)[1]
 
 
-@inlined
+@inline
 def _crossing(pc, qc, i, t0, t1, j, k, shift_x, shift_y):
     """Where segment `i` of A is equally far from `j`, the nearer at t0, and `k`: system (13), regula falsi.
 
@@ -163,7 +163,7 @@ def _crossing(pc, qc, i, t0, t1, j, k, shift_x, shift_y):
     return t, most
 
 
-@inlined
+@inline
 def _run_bound(pc, i, t0, t1, d0, d1, qc, first, last, shift_x, shift_y, enough):
     """An upper bound of the distance of a part of segment `i` to the run of B's segments first to last.
 
@@ -189,7 +189,7 @@ def _run_bound(pc, i, t0, t1, d0, d1, qc, first, last, shift_x, shift_y, enough)
     return most
 
 
-@inlined
+@inline
 def _box_covered(boxes, node, qc, k, shift_x, shift_y, reach_sq):
     """Whether a box lies within reach of segment `k`: its four corners decide, what is in reach is convex."""
     for corner in range(4):
@@ -200,7 +200,7 @@ def _box_covered(boxes, node, qc, k, shift_x, shift_y, reach_sq):
     return True
 
 
-@inlined
+@inline
 def _covering(pc, i, qc, hint, shift_x, shift_y, reach_sq):
     """The segment of B within whose reach segment `i` of A lies: the hint, the next, the one before; else -1."""
     x0, y0 = pc[2 * i, 0] + shift_x, pc[2 * i, 1] + shift_y

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc_fit import Leaves
 from clearance.kernels.curve.bezier import Pieces, hypotenuse, jet
 from clearance.kernels.curve.follow import SHARES, drift, follow_bound, least_order, order_for
@@ -59,21 +59,21 @@ class Pair(NamedTuple):
     shift_y: float
 
 
-@inlined
+@inline
 def settled_below(aim, state):
     """The bound up to which an interval is settled."""
     gap = aim.gap if state[CUTS] <= aim.sharp else aim.wide
     return max(state[DISTANCE] + gap, aim.enough)
 
 
-@inlined
+@inline
 def is_settled(bound, lost, aim, state):
     """Whether a bound that may have `lost` digits settles an interval; what is enough is held to all of them."""
     gap = aim.gap if state[CUTS] <= aim.sharp else aim.wide
     return bound <= state[DISTANCE] + gap or bound + lost <= aim.enough
 
 
-@inlined
+@inline
 def _before(heap, i, j):
     """Whether entry `i` comes before `j`: the greater bound, of equals the earlier part of the curve."""
     if heap[i, BOUND] != heap[j, BOUND]:
@@ -83,13 +83,13 @@ def _before(heap, i, j):
     return heap[i, T0] < heap[j, T0]
 
 
-@inlined
+@inline
 def _swap(heap, i, j):
     for c in range(heap.shape[1]):
         heap[i, c], heap[j, c] = heap[j, c], heap[i, c]
 
 
-@inlined
+@inline
 def _push(heap, n, bound, t0, t1, hint, was_cut, piece):
     """Puts an interval into the queue (a binary heap of `n` entries); returns the new number."""
     row = heap[n]
@@ -102,7 +102,7 @@ def _push(heap, n, bound, t0, t1, hint, was_cut, piece):
     return n + 1
 
 
-@inlined
+@inline
 def _pop(heap, n):
     """Moves the first entry behind the others; returns the new number."""
     n -= 1
@@ -119,14 +119,14 @@ def _pop(heap, n):
         k = first
 
 
-@inlined
+@inline
 def grown(heap):
     wider = np.empty((2 * heap.shape[0], heap.shape[1]))
     wider[: heap.shape[0]] = heap
     return wider
 
 
-@inlined
+@inline
 def _follow(pair, i, t0, t1, j, s0, s_middle, s1, bound, share, order, enough, work, composed):
     """A known bound, or `follow_bound` where less: through the feet of a part of A on piece `j` of B.
 
@@ -162,7 +162,7 @@ def _follow(pair, i, t0, t1, j, s0, s_middle, s1, bound, share, order, enough, w
     return bound, share, 0.0
 
 
-@inlined
+@inline
 def _cut_beside_joints(pair, heap, n_open, bound, i, t0, t1, t, j, other, hint):
     """Cuts an interval next to B's joints between piece `j`, nearest to its middle, and `other`, nearest to `t`.
 

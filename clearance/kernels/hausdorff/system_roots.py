@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import jet
 from clearance.kernels.curve.nearest import closest_on
 from clearance.kernels.hausdorff.exact import common_normal, consider
@@ -23,7 +23,7 @@ from clearance.kernels.hausdorff.state import (
 )
 
 
-@inlined
+@inline
 def _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work):
     """The distance of A's point to one cell of B, and where."""
     here = jet(pa, i, t)
@@ -32,14 +32,14 @@ def _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work):
     return d, s
 
 
-@inlined
+@inline
 def keep_root(distance, i, t, j, s, state):
     """Keeps a root as that of the greatest distance."""
     state[ROOT], state[ROOT_PIECE_A], state[ROOT_AT_A] = distance, i, t
     state[ROOT_PIECE_B], state[ROOT_AT_B] = j, s
 
 
-@inlined
+@inline
 def _offer(pa, pb, lb, i, t, cell, shift_x, shift_y, state, work):
     """Takes a root in: its own distance, and that of A's point to the whole of B, which may be less."""
     d, s = _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work)
@@ -48,7 +48,7 @@ def _offer(pa, pb, lb, i, t, cell, shift_x, shift_y, state, work):
     consider(pa, pb, lb, i, t, shift_x, shift_y, 0, state, work)
 
 
-@inlined
+@inline
 def _is_normal(pa, pb, i, t, j, s, shift_x, shift_y):
     """Whether both equations of (12) hold at (t, s) to rounding: the cosines with both tangents vanish."""
     a, b = jet(pa, i, t), jet(pb, j, s)
@@ -59,7 +59,7 @@ def _is_normal(pa, pb, i, t, j, s, shift_x, shift_y):
     return fine and g * g <= 1e-20 * gap * (b.dx * b.dx + b.dy * b.dy)
 
 
-@inlined
+@inline
 def _slope_at_foot(pa, pb, i, t, cell, shift_x, shift_y, work):
     """The slope of half the squared distance along A at `t`, from A's foot in one cell of B."""
     _, s = _distance_to_cell(pa, pb, i, t, cell, shift_x, shift_y, work)
@@ -120,7 +120,7 @@ def try_normal(pa, pb, lb, i, t0, t1, cell, shift_x, shift_y, state, work):
     _offer(pa, pb, lb, i, t, cell, shift_x, shift_y, state, work)
 
 
-@inlined
+@inline
 def _slope_to(pa, i, t, end, shift_x, shift_y):
     here = jet(pa, i, t)
     return (here.x + shift_x - end.x) * here.dx + (here.y + shift_y - end.y) * here.dy

@@ -11,7 +11,7 @@ superfluous root does no harm; a lost one would, and is excluded by the proofs n
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet
 from clearance.kernels.curve.interval import derived, dot, enclose, times
 from clearance.kernels.hausdorff.both_directions import widest, witness
@@ -37,14 +37,14 @@ A_ROOT = 40.0  # what finding a root costs beside excluding a cell
 PIECE, S0, S1, OPEN = 0, 1, 2, 3
 
 
-@inlined
+@inline
 def _gap_box(a, b, shift_x, shift_y, out):
     """The box of A - B from those of a part of each."""
     out[0], out[1] = a[0] + shift_x - b[1], a[1] + shift_x - b[0]
     out[2], out[3] = a[2] + shift_y - b[3], a[3] + shift_y - b[2]
 
 
-@inlined
+@inline
 def _foot_slopes(gap, b):
     """Intervals of the foot equation <A - B, B'>, and of its first two derivatives by B's parameter."""
     f0, f1 = dot(gap, b[1])
@@ -55,7 +55,7 @@ def _foot_slopes(gap, b):
     return f0, f1, g0 - h1, g1 - max(h0, 0.0), i0 - 3.0 * j1, i1 - 3.0 * j0
 
 
-@inlined
+@inline
 def _gap_sq(gap):
     """The squared length of the vectors in a box, an interval."""
     x = max(0.0, gap[0], -gap[1])
@@ -64,7 +64,7 @@ def _gap_sq(gap):
     return x * x + y * y, far_x * far_x + far_y * far_y
 
 
-@inlined
+@inline
 def _normal_is_single(gap, a, b, is_point):
     """Whether <A - B(s(t)), A'> is strictly monotone, s following the foot or standing still."""
     p0, p1 = dot(gap, a[2])
@@ -86,7 +86,7 @@ def _normal_is_single(gap, a, b, is_point):
     return low - r1 > 0.0 or high - r0 < 0.0
 
 
-@inlined
+@inline
 def _follows(pb, i, j, ends_b, smoothly):
     """Whether piece `j` of B starts where piece `i` ends (without a corner where `smoothly`)."""
     if smoothly and (ends_b[i, 1] or ends_b[j, 0]):
@@ -97,7 +97,7 @@ def _follows(pb, i, j, ends_b, smoothly):
     return abs(dx) + abs(dy) < 1e-12
 
 
-@inlined
+@inline
 def _single_in(pb, db, j, s0, s1, a_box, shift_x, shift_y, points, union, gap, rising_only):
     """Whether piece `j` on [s0, s1] has one nearest point at most to every point of A's part."""
     if s0 == s1:
@@ -108,7 +108,7 @@ def _single_in(pb, db, j, s0, s1, a_box, shift_x, shift_y, points, union, gap, r
     return g1 < 0.0 or (not rising_only and (h0 > 0.0 or h1 < 0.0))
 
 
-@inlined
+@inline
 def _same_foot(pb, db, one, two, ends_b, a_box, shift_x, shift_y, points, union, gap):
     """Whether the stretch of B from one cell to the other has provably one nearest point at most."""
     i, j = int(one[0]), int(two[0])
@@ -129,7 +129,7 @@ def _same_foot(pb, db, one, two, ends_b, a_box, shift_x, shift_y, points, union,
     return False
 
 
-@inlined
+@inline
 def _first_cells(b_parts, ends_b, cells):
     """The parts of B and its ends and corners as cells; returns their number, 0 where they are too many."""
     n = 0
@@ -152,7 +152,7 @@ def _first_cells(b_parts, ends_b, cells):
     return n
 
 
-@inlined
+@inline
 def _child_cells(
     pb, db, old, n_old, split, a_box, shift_x, shift_y, points, new, boxes, child, ranges, gap
 ):
@@ -189,7 +189,7 @@ def _child_cells(
     return n
 
 
-@inlined
+@inline
 def _left_out(cells, n, pairs, n_pairs, boxes):
     """Takes out the cells that no open system needs; returns how many stay."""
     needed = np.zeros(n, np.int64)

@@ -8,7 +8,7 @@ tested by its whole stadium, which is convex.
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import (
     COSINE,
     CX,
@@ -29,7 +29,7 @@ from clearance.kernels.curve.bezier import hypotenuse
 from clearance.kernels.curve.distance_map import draw, nearest_arc
 
 
-@inlined
+@inline
 def _within_segment(points, row, reach):
     for k in range(3):
         x, y = points[k, 0], points[k, 1]
@@ -38,7 +38,7 @@ def _within_segment(points, row, reach):
     return True
 
 
-@inlined
+@inline
 def _within_circle(points, x, y, reach):
     """Equations (9) and (10): all three control points within `reach` of one end of the arc."""
     for k in range(3):
@@ -47,7 +47,7 @@ def _within_circle(points, x, y, reach):
     return True
 
 
-@inlined
+@inline
 def _side(row, x, y):
     """0 where (x, y) is between the two rays from the arc's centre, -1 before the first, 1 past the second."""
     ox, oy = x - row[CX], y - row[CY]
@@ -58,7 +58,7 @@ def _side(row, x, y):
     return 0
 
 
-@inlined
+@inline
 def arc_covers(points, row, reach):
     """Whether the triangle of three control points lies within `reach` of the arc `row`, proven.
 
@@ -82,7 +82,7 @@ def arc_covers(points, row, reach):
     return True
 
 
-@inlined
+@inline
 def _node_covered(boxes, node, other, shift_x, shift_y, reach, hint, stack):
     """Whether all curve in a node's box lies within `reach` of one arc of the other curve; and that arc.
 

@@ -5,14 +5,14 @@ Not for: refusing a polygon (`geometry.faces` looks at those again that are not)
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, row, sub
 
 FLAT = 1e-12
 """[-] How far corners may be off the plane, relative to the polygon's size."""
 
 
-@inlined
+@inline
 def _seems_convex(corners):
     n = len(corners)
     first, total, size = row(corners, 0), Vec3(0.0, 0.0, 0.0), 0.0

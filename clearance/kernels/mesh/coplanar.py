@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d, orient3d
 from clearance.kernels.arithmetic.union_find import find_root
 
 DEGENERATE = -1
 
 
-@inlined
+@inline
 def turn(vertices, i, j, k, axis, terms):
     """The exact sign of the turn i, j, k seen along coordinate `axis` (which is left out)."""
     x = (axis + 1) % 3
@@ -25,7 +25,7 @@ def turn(vertices, i, j, k, axis, terms):
     return orient2d(a[x], a[y], b[x], b[y], c[x], c[y], terms)
 
 
-@inlined
+@inline
 def _widest_axes(a, b, c):
     """The three axes, the one with the greatest normal component of triangle a, b, c first."""
     ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -78,7 +78,7 @@ def coplanar_twins(vertices, triangles, axes, signs, twin):
     return flags
 
 
-@inlined
+@inline
 def _is_between(vertices, u, v, w):
     """True if v, which is on the line u, w, lies strictly between u and w."""
     a, b, c = vertices[u], vertices[v], vertices[w]
@@ -105,7 +105,7 @@ def straight_corners(vertices, before, at, after):
     return flags
 
 
-@inlined
+@inline
 def _unlink(h, g, ahead, behind):
     """Takes the half-edges h and g = twin of h out, so that their two rings become one."""
     ahead[behind[h]] = ahead[g]
@@ -114,7 +114,7 @@ def _unlink(h, g, ahead, behind):
     behind[ahead[h]] = behind[g]
 
 
-@inlined
+@inline
 def _stays_convex(vertices, u, v, w, axis, sign, terms):
     """True if the corner u, v, w, whose angle is a sum of two of at most pi, is at most pi."""
     bend = turn(vertices, u, v, w, axis, terms) * sign

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d, orient3d
 from clearance.kernels.arithmetic.vec3 import Vec3, add, cross, dot, row, sub
 
@@ -16,7 +16,7 @@ ROUNDING = 64.0 * 2.0**-53
 """Relative error of an area vector, with room."""
 
 
-@inlined
+@inline
 def unit(v):
     """v / |v|, scaled first so that nothing under- or overflows; zero for a zero vector."""
     largest = max(abs(v.x), max(abs(v.y), abs(v.z)))
@@ -27,7 +27,7 @@ def unit(v):
     return Vec3(x / length, y / length, z / length)
 
 
-@inlined
+@inline
 def plane_of(points, flat, start, end):
     """(normal, blunt, width) of one face as in `Surface`.
 
@@ -55,7 +55,7 @@ def plane_of(points, flat, start, end):
     return normal, 1.0 / angle, warp + ROUNDING * reach / angle
 
 
-@inlined
+@inline
 def _far_corners(points, flat, start, end):
     """The corner farthest from the first one, and the one farthest from the line through both."""
     first = row(points, flat[start])
@@ -74,7 +74,7 @@ def _far_corners(points, flat, start, end):
     return second, third
 
 
-@inlined
+@inline
 def _is_bent(points, flat, start, end, normal, terms):
     """True unless the corners are exactly in one plane and the boundary turns the wrong way nowhere."""
     n = end - start
@@ -100,7 +100,7 @@ def _is_bent(points, flat, start, end, normal, terms):
     return False
 
 
-@inlined
+@inline
 def _cut_off(points, flat, start, end, normal):
     """[m] how far corners are beyond the line of an edge: so far outside may seem what is over the face."""
     most = 0.0

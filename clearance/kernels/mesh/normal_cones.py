@@ -27,7 +27,7 @@ Source: Johnson & Cohen, Spatialized normal cone hierarchies, 2001 (local minimu
 
 from typing import NamedTuple
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import (
     WIDTH,
     lanes_at,
@@ -75,7 +75,7 @@ class Facing(NamedTuple):
     reach: float  # in lanes
 
 
-@merged
+@inline(force=True)
 def facing_of(cones_p, group, cones_q, other, m, slack):
     """How a group and a node of the other body face each other.
 
@@ -93,7 +93,7 @@ def facing_of(cones_p, group, cones_q, other, m, slack):
     return Facing(u, cos_u, sin_u, v, cos_v, sin_v, reach)
 
 
-@merged
+@inline(force=True)
 def while_moving(facing, cos_turn, sin_turn, way):
     """What holds of both at every instant of a motion.
 
@@ -109,7 +109,7 @@ def while_moving(facing, cos_turn, sin_turn, way):
     )  # fmt: skip
 
 
-@merged
+@inline(force=True)
 def marks_turned_away(facing, d):
     """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with.
 

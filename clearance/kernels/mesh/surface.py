@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import WIDTH, lanes_at, number_at
 from clearance.kernels.arithmetic.vec3 import Vec3, along
 
@@ -102,12 +102,12 @@ class Box(NamedTuple):
     half: Vec3
 
 
-@merged
+@inline(force=True)
 def _point_at(numbers, first, k):
     return Vec3(number_at(numbers, first, k), number_at(numbers, first + 1, k), number_at(numbers, first + 2, k))
 
 
-@merged
+@inline(force=True)
 def box_at(boxes, centres, node):
     """The box of a node."""
     group, k = node // WIDTH, node % WIDTH
@@ -121,18 +121,18 @@ def box_at(boxes, centres, node):
     )
 
 
-@merged
+@inline(force=True)
 def box_of(surface, node):
     """The box of a node of the tree."""
     return box_at(surface.boxes, surface.centres, node)
 
 
-@merged
+@inline(force=True)
 def _points_at(numbers, first):
     return Vec3(lanes_at(numbers, first), lanes_at(numbers, first + 1), lanes_at(numbers, first + 2))
 
 
-@merged
+@inline(force=True)
 def group_at(boxes, centres, group):
     """The boxes of the nodes of a group, in lanes."""
     first = 12 * group
@@ -145,19 +145,19 @@ def group_at(boxes, centres, group):
     )
 
 
-@merged
+@inline(force=True)
 def group_of(surface, group):
     """The boxes of a group of the tree, in lanes."""
     return group_at(surface.boxes, surface.centres, group)
 
 
-@merged
+@inline(force=True)
 def is_leaf(surface, node):
     """True if the node is of one face, which is `children[node, 0]`."""
     return surface.children[node, 1] == 0
 
 
-@merged
+@inline(force=True)
 def corner_of(box, i):
     """Corner `i` (0 to 7) of a box."""
     x = along(box.centre, box.half.x if i & 1 else -box.half.x, box.x)

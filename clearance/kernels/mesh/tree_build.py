@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.lanes import WIDTH
 
 OUTWARD = 1.0 + 1e-15
@@ -25,7 +25,7 @@ LEAST_HALF = 2.0**-125
 """[m] half sizes are no less, so that none is lost below the least normal number in single precision."""
 
 
-@inlined
+@inline
 def _rotate(c, v, i, j):
     """One Jacobi rotation that makes c[i, j] zero; the columns of `v` follow."""
     if c[i, j] == 0.0:
@@ -41,7 +41,7 @@ def _rotate(c, v, i, j):
         v[k, i], v[k, j] = cosine * v[k, i] - sine * v[k, j], sine * v[k, i] + cosine * v[k, j]
 
 
-@inlined
+@inline
 def _principal_axes(points, starts, order, first, last, v, c):
     """Writes the principal axes of the corners of the faces `order[first:last]` into the columns of `v`."""
     n = 0
@@ -71,7 +71,7 @@ def _principal_axes(points, starts, order, first, last, v, c):
             _rotate(c, v, turn // 2, min(turn + 1, 2))
 
 
-@inlined
+@inline
 def _fit(points, starts, order, first, last, v, low, high):
     """Writes the extent of the faces' corners along the columns of `v`; the surface area of that box."""
     low[:] = np.inf
@@ -86,7 +86,7 @@ def _fit(points, starts, order, first, last, v, low, high):
     return a * b + b * c + c * a
 
 
-@inlined
+@inline
 def _store(v, low, high, centre, box):
     """Writes one box: axes as rows, then half sizes rounded outward; centre in the body frame.
 
@@ -108,7 +108,7 @@ def _store(v, low, high, centre, box):
         box[9 + axis] = (0.5 * (high[axis] - low[axis]) * OUTWARD + room) * (1.0 + TURNED)
 
 
-@inlined
+@inline
 def _enclose(points, starts, order, first, last, room, centre, box):
     """Writes the box of the faces `order[first:last]`: the better of two frames; its surface area."""
     _principal_axes(points, starts, order, first, last, room.v, room.c)
@@ -121,7 +121,7 @@ def _enclose(points, starts, order, first, last, room, centre, box):
     return area
 
 
-@inlined
+@inline
 def _split(points, starts, order, first, last, box, middles):
     """Reorders `order[first:last]` about the mean along the longest axis of their box; the cut."""
     longest = 0
@@ -153,7 +153,7 @@ def _split(points, starts, order, first, last, box, middles):
     return cut
 
 
-@inlined
+@inline
 def _full_groups(order, first, last, cut, middles):
     """Sorts `order[first:last]` and moves the cut to where whole groups of leaves fit before it."""
     for i in range(first + 1, last):
@@ -184,7 +184,7 @@ class Room(NamedTuple):
     boxes: np.ndarray
 
 
-@inlined
+@inline
 def _room():
     return Room(
         np.empty((3, 3)), np.empty((3, 3)), np.eye(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
@@ -193,7 +193,7 @@ def _room():
     )  # fmt: skip
 
 
-@inlined
+@inline
 def _set_part(points, starts, order, part, first, last, room):
     room.spans[part, 0], room.spans[part, 1] = first, last
     room.areas[part] = _enclose(
@@ -201,7 +201,7 @@ def _set_part(points, starts, order, part, first, last, room):
     )
 
 
-@inlined
+@inline
 def _parts(points, starts, order, middles, room):
     """Splits the part in `room`, the widest first, until there are four or all fit into a group; their number."""
     n_parts = 1
@@ -222,7 +222,7 @@ def _parts(points, starts, order, middles, room):
     return n_parts
 
 
-@inlined
+@inline
 def _write_group(room, n_parts, group, centres, boxes):
     """The boxes of the parts as a group of nodes; lanes without one repeat the first."""
     for k in range(WIDTH):
@@ -268,7 +268,7 @@ def build_tree(points, starts, order, centres, boxes, children):
     return n_groups
 
 
-@inlined
+@inline
 def _take_part(node, first, last, centres, boxes, room):
     """Makes a node that is written the first part in `room`."""
     group, k = node // WIDTH, node % WIDTH

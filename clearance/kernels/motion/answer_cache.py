@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, shared
+from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.vec3 import row
 from clearance.kernels.features.face_pair import Hit, write_points
 
@@ -40,7 +40,7 @@ def no_answers(n_pairs):
     )  # fmt: skip
 
 
-@merged
+@inline(force=True)
 def still_holds(answers, pair, moves, gap):
     """True if a pair need not be measured to know whether it is within `gap` [m], and how near.
 
@@ -50,13 +50,13 @@ def still_holds(answers, pair, moves, gap):
     return answers.asked[pair] == moves and answers.gaps_sq[pair] <= gap * gap
 
 
-@inlined
+@inline
 def was_contact(answers, pair):
     """True if the surfaces of a pair met when it was last measured."""
     return answers.asked[pair] != NEVER and answers.gaps_sq[pair] == 0.0 and answers.faces[pair, 0] >= 0
 
 
-@inlined
+@inline
 def answer_of(answers, pair):
     """(the hit, the proven bound [m]) of a pair."""
     face_a, face_b = answers.faces[pair]
@@ -64,7 +64,7 @@ def answer_of(answers, pair):
     return Hit(answers.gaps_sq[pair], face_a, face_b, p, q), answers.floors[pair]
 
 
-@inlined
+@inline
 def note_answer(answers, pair, moves, hit, floor):
     """Keeps what a pair was found to be; `hit.face_a` is 2**62 if nothing was found. `moves` as above."""
     answers.asked[pair] = NEVER

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, shared
+from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.double_double import defect_of
 from clearance.kernels.arithmetic.vec3 import dot, move, row, sub, turn
 from clearance.kernels.features.bounds import LEAN, SLACK, between_boxes, lower_bound_between
@@ -46,7 +46,7 @@ def room_for_boxes(n_bodies):
     )  # fmt: skip
 
 
-@inlined
+@inline
 def place_box(surface, body, pose, boxes):
     """Puts the box of a body to where the body is, at a `Rigid`."""
     box = box_of(surface, surface.roots[body])
@@ -60,13 +60,13 @@ def place_box(surface, body, pose, boxes):
     boxes.radii[body] = math.sqrt(dot(h, h)) * OUTWARD
 
 
-@merged
+@inline(force=True)
 def _box(boxes, body):
     axes = boxes.axes[body]
     return Box(row(axes, 0), row(axes, 1), row(axes, 2), row(boxes.centres, body), row(boxes.halves, body))
 
 
-@merged
+@inline(force=True)
 def _beyond(box, d, slack):
     """[m] a lower bound on the distance of a box from what lies `d` from its centre."""
     x = max(0.0, abs(dot(box.x, d)) - box.half.x - slack)
@@ -75,7 +75,7 @@ def _beyond(box, d, slack):
     return math.sqrt(x * x + y * y + z * z)
 
 
-@merged
+@inline(force=True)
 def bound_of_bodies(boxes, a, b, enough):
     """[m] a lower bound on the distance of two bodies; one above `enough` is not made tighter.
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import (
     CERTIFY,
     Lent,
@@ -131,7 +131,7 @@ class Known(NamedTuple):
     scratch: Scratch
 
 
-@inlined
+@inline
 def _go_to(chain, path, step, low, high, middle):
     """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
     for link in range(path.positions.shape[1]):
@@ -145,12 +145,12 @@ def _go_to(chain, path, step, low, high, middle):
     )  # fmt: skip
 
 
-@inlined
+@inline
 def _new_middle(n_links):
     return Middle(np.empty((1, n_links)), np.empty(n_links), np.empty(n_links), np.empty((1, n_links, 4, 4)))
 
 
-@inlined
+@inline
 def _drift_in(surface, chain, body, link, middle):
     """The drift of a body about `middle`."""
     pose = rigid(middle.poses[0, link])
@@ -158,13 +158,13 @@ def _drift_in(surface, chain, body, link, middle):
     return drift_of(surface, root, chain, link, middle.poses[0], middle.swing, middle.bend, pose)
 
 
-@inlined
+@inline
 def _drift_at(drifts, body):
     d = drifts[body]
     return Drift(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
 
 
-@inlined
+@inline
 def _go_on(surface, chain, path, step, known):
     """Goes to the interval after `step`: its middle, how each body drifts about it, and the travel at its end."""
     _go_to(chain, path, step, 0.0, 1.0, known.whole)
@@ -180,7 +180,7 @@ def _go_on(surface, chain, path, step, known):
         known.travel[body] += 2.0 * GROWTH * drift_of_box(box_of(surface, surface.roots[body]), drift)
 
 
-@inlined
+@inline
 def _hold_pair(surface, asked, pair, middle, drift, least, gap, aim, known, tally, table):
     """`hold` of a pair at the state in `middle`."""
     body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
@@ -270,7 +270,7 @@ def _certify(lent, chain, asked, path, order, first, last, clearance, aim, bound
     return 0
 
 
-@inlined
+@inline
 def _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, tally, table):
     """`hold` of a pair over the whole interval after `step`, halved until that is done."""
     body = asked.bodies[pair, 0]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import lend
 from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
 from clearance.kernels.arithmetic.vec3 import inverse
@@ -68,7 +68,7 @@ class Held(NamedTuple):
     face_b: int
 
 
-@inlined
+@inline
 def _node_floors(p, q, m, sight, slack, drift, target):
     """[m] lower bounds on the distances of boxes in lanes over the interval."""
     in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack - drift_of_box_along(p, sight.u, drift)
@@ -78,7 +78,7 @@ def _node_floors(p, q, m, sight, slack, drift, target):
     return larger(in_sight, apart - drift_of_box(p, drift))
 
 
-@inlined
+@inline
 def _floors_of_group(a, b, group, other, is_b, m, sight, slack, drift, target):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body over the interval."""
     if is_b:
@@ -86,7 +86,7 @@ def _floors_of_group(a, b, group, other, is_b, m, sight, slack, drift, target):
     return _node_floors(group_of(a, group), box_of(b, other), m, sight, slack, drift, target)
 
 
-@inlined
+@inline
 def allowed_gap(least, gap, fail):
     """[m] how far below the least distance seen the bound may stay: less where that leaves `fail` undecided."""
     if least < fail:
@@ -94,7 +94,7 @@ def allowed_gap(least, gap, fail):
     return max(min(gap, 0.5 * (least - fail)), gap * FINEST)
 
 
-@inlined
+@inline
 def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, scratch, tally, table):
     """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
 
@@ -179,7 +179,7 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
     return Held(floor, least, True, near_a, near_b)
 
 
-@inlined
+@inline
 def _meet(a, face_a, b, face_b, frames, margin, scratch, table):
     """True if two faces have a point in common, by exact signs."""
     if not may_meet(a, face_a, b, face_b, frames.m, margin):
@@ -187,7 +187,7 @@ def _meet(a, face_a, b, face_b, frames, margin, scratch, table):
     return meeting_of(table, lend(a), face_a, lend(b), face_b, frames, scratch.exact).found
 
 
-@inlined
+@inline
 def _face_floor(a, face_a, b, face_b, sight, slack, drift):
     """[m] a lower bound on the distance of two faces over the interval, seen along one direction."""
     apart = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack

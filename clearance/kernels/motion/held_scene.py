@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from numba.core import types
 
-from clearance.compile.jit import borrowing, kernel
+from clearance.compile.jit import kernel
 from clearance.compile.kernel_table import lend
+from clearance.compile.numba_private import HeapHandle, HeapType, lay_on_heap
 from clearance.kernels.motion.pair_order import fill_order, sort_all
 from clearance.kernels.motion.placed import bring, put_all
 from clearance.kernels.motion.schedule import all_due
@@ -53,21 +53,14 @@ class HeldScene(NamedTuple):
 
 
 if not numba.config.DISABLE_JIT:
-    from numba.experimental import structref
 
-    @structref.register
-    class HeldSceneType(types.StructRef):
+    class HeldSceneType(HeapType):
         """The compiler's type of a `HeldScene` that lies on the heap."""
 
-        def preprocess_fields(self, fields):
-            """Fields of literal type are fields of that type."""
-            return tuple((name, types.unliteral(kind)) for name, kind in fields)
-
-    class HeldScene(structref.StructRefProxy):
+    class HeldScene(HeapHandle):
         """The handle that Python has of a scene on the heap; fields as above."""
 
-    structref.define_boxing(HeldSceneType, HeldScene)
-    structref.define_constructor(HeldScene, HeldSceneType, _FIELDS)
+    lay_on_heap(HeldSceneType, HeldScene, _FIELDS)
 
 
 @kernel
@@ -97,7 +90,7 @@ def nearest_at_positions(held, positions, rows, tally, table):
         )  # fmt: skip
 
 
-@borrowing
+@kernel(reference_counts=False)
 def _look(surface, world, goal, pair_rows, known, at, positions, row, rows, tally, table):
     """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step."""
     look = at[LOOK]

@@ -11,7 +11,7 @@ Not for: the motion between the steps (`drift`).
 
 import math
 
-from clearance.compile.jit import inlined, merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.double_double import defect_of
 from clearance.kernels.arithmetic.vec3 import cross, dot, rigid, row
 from clearance.kernels.mesh.surface import box_of, corner_of
@@ -27,7 +27,7 @@ ANGLE_ROUNDING = 2.0**-50
 """Rounding of the position of a joint that follows another, relative to the magnitudes of what is added."""
 
 
-@inlined
+@inline
 def _radius(box):
     """[m] how far a body gets from the origin of its frame."""
     far_sq = 0.0
@@ -37,7 +37,7 @@ def _radius(box):
     return math.sqrt(far_sq)
 
 
-@inlined
+@inline
 def _radius_about(box, axis):
     """[m] how far a body gets from a unit axis through the origin of its frame."""
     far_sq = 0.0
@@ -47,13 +47,13 @@ def _radius_about(box, axis):
     return math.sqrt(far_sq)
 
 
-@inlined
+@inline
 def _length(pose):
     """[m] of the shift of a pose."""
     return math.sqrt(pose[0, 3] * pose[0, 3] + pose[1, 3] * pose[1, 3] + pose[2, 3] * pose[2, 3])
 
 
-@inlined
+@inline
 def _farthest_slide(links, link, positions):
     """[m] how far the joint above a link slides at most."""
     column = links.columns[link]
@@ -63,7 +63,7 @@ def _farthest_slide(links, link, positions):
     return most
 
 
-@inlined
+@inline
 def _reach_of_body(box, links, link, positions, reach):
     """Fills `reach` (columns,) of one body, and returns what rounding can move it [m]."""
     radius = _radius(box)
@@ -91,7 +91,7 @@ def _reach_of_body(box, links, link, positions, reach):
     return stretch * (noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link])))
 
 
-@inlined
+@inline
 def fill_reach(surface, frames, links, positions, reach, noise):
     """Fills, for each body, how far the unit of each column of `positions` can move it, and what rounding can.
 
@@ -109,7 +109,7 @@ def fill_reach(surface, frames, links, positions, reach, noise):
             noise[body] = _reach_of_body(box, links, frames[body], positions, reach[body])
 
 
-@merged
+@inline(force=True)
 def stride_of(positions, last, step, reach, noise):
     """[m] no less than what a body moves from one step to another.
 

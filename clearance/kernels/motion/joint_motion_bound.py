@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, add, along, cross, dot, row, sub, turn_back
 from clearance.kernels.features.bounds import LEAN, box_reach
@@ -45,7 +45,7 @@ class Drift(NamedTuple):
     turn: float
 
 
-@inlined
+@inline
 def _farthest_from_axis(surface, root, pose, origin, axis):
     """[m] an upper bound on the distance of the body's points from a line, by the corners of its box."""
     far_sq = 0.0
@@ -62,7 +62,7 @@ def _farthest_from_axis(surface, root, pose, origin, axis):
     return math.sqrt(far_sq)
 
 
-@inlined
+@inline
 def _world_axis(chain, poses, link):
     pose = poses[link]
     x, y, z = chain.axes[link, 0], chain.axes[link, 1], chain.axes[link, 2]
@@ -73,7 +73,7 @@ def _world_axis(chain, poses, link):
     )
 
 
-@inlined
+@inline
 def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
     """The drift of a body that is fixed to `link`.
 
@@ -119,13 +119,13 @@ def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
     )
 
 
-@inlined
+@inline
 def velocity_at(drift, x):
     """How a point of the body moves in the first order over half the interval [m]."""
     return add(drift.velocity, cross(drift.spin, x))
 
 
-@inlined
+@inline
 def drift_of_box(box, drift):
     """[m] an upper bound on how far any point of a box moves from the middle."""
     v = velocity_at(drift, box.centre)
@@ -134,14 +134,14 @@ def drift_of_box(box, drift):
     return square_root(dot(v, v)) + turning + drift.rest
 
 
-@inlined
+@inline
 def drift_of_box_along(box, direction, drift):
     """[m] an upper bound on how far any point of a box moves along a unit direction, either way."""
     first = abs(dot(direction, velocity_at(drift, box.centre)))
     return first + box_reach(box, cross(direction, drift.spin)) + drift.rest
 
 
-@inlined
+@inline
 def drift_of_face_along(surface, face, direction, drift):
     """[m] an upper bound on how far any point of a face moves along a unit direction, either way."""
     first = 0.0

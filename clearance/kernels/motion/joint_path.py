@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged
+from clearance.compile.jit import inline
 
 OUTWARD = 1.0 + 1e-12
 """Covers the rounding of a bound that is a sum of a few positive terms."""
@@ -44,7 +44,7 @@ class Part(NamedTuple):
     bend: float
 
 
-@merged
+@inline(force=True)
 def linear_part(before, after, low, high):
     """The part `low` to `high` (0 to 1) of a linear motion; its bend is 0."""
     step = after - before
@@ -52,7 +52,7 @@ def linear_part(before, after, low, high):
     return Part(before + 0.5 * (low + high) * step, swing, 0.0)
 
 
-@inlined
+@inline
 def cubic_part(before, after, slope_before, slope_after, low, high):
     """The part `low` to `high` (0 to 1) of a cubic; slopes are velocities times the length of the interval.
 
@@ -72,7 +72,7 @@ def cubic_part(before, after, slope_before, slope_after, low, high):
     return Part(middle, half * slope * OUTWARD, bend)
 
 
-@merged
+@inline(force=True)
 def part_of(path, step, link, low, high):
     """The part `low` to `high` of the motion of a link's joint from `step` to the next."""
     before, after = path.positions[step, link], path.positions[step + 1, link]

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import kernel, merged
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Rigid, Vec3, move, rigid
 
 FIXED, TURNING, SLIDING = 0, 1, 2
@@ -33,7 +33,7 @@ class Links(NamedTuple):
     offsets: np.ndarray
 
 
-@merged
+@inline(force=True)
 def _then(a, b):
     """The motion `b` and then `a`."""
     return Rigid(
@@ -50,7 +50,7 @@ def _then(a, b):
     )  # fmt: skip
 
 
-@merged
+@inline(force=True)
 def _turned(m, axis, position):
     """The motion `m` after a turn about a unit axis."""
     s = math.sin(position)
@@ -65,14 +65,14 @@ def _turned(m, axis, position):
     return _then(m, turn)
 
 
-@merged
+@inline(force=True)
 def _slid(m, axis, position):
     """The motion `m` after a slide along an axis."""
     way = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
     return Rigid(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
 
 
-@merged
+@inline(force=True)
 def _write(m, out):
     """Writes a motion as a (4, 4) pose."""
     out[0, 0], out[0, 1], out[0, 2], out[0, 3] = m.xx, m.xy, m.xz, m.t.x
@@ -81,7 +81,7 @@ def _write(m, out):
     out[3, 0], out[3, 1], out[3, 2], out[3, 3] = 0.0, 0.0, 0.0, 1.0
 
 
-@merged
+@inline(force=True)
 def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out):
     """Writes the pose of a link whose joint is at `position`."""
     at = _then(rigid(world_from_parent), rigid(parent_from_joint))
@@ -92,7 +92,7 @@ def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out)
     _write(at, out)
 
 
-@merged
+@inline(force=True)
 def place_links(links, positions, poses, wanted, look):
     """Fills `poses` (links, 4, 4) of the links whose `wanted` (links,) is `look`, the joints at `positions`.
 

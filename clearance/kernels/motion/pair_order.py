@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, shared
+from clearance.compile.jit import inline, shared
 
 
 class PairOrder(NamedTuple):
@@ -29,7 +29,7 @@ def room_for_order(n_bodies, n_pairs):
     return PairOrder(np.zeros(n_bodies + 2, dtype=np.int64), np.empty(n_pairs + 1, dtype=np.int64))
 
 
-@inlined
+@inline
 def fill_order(body_pairs, order):
     """Fills the lists from (p, 2) bodies, the first of which moves; each in the order of the pairs."""
     starts = order.starts
@@ -46,7 +46,7 @@ def fill_order(body_pairs, order):
         order.pairs[starts[body]] = pair
 
 
-@inlined
+@inline
 def sort_all(bounds, order):
     """Puts each list in the order of the pairs' bounds (p,): Shell 1959."""
     pairs = order.pairs
@@ -64,7 +64,7 @@ def sort_all(bounds, order):
             step //= 2
 
 
-@merged
+@inline(force=True)
 def _move_on(bounds, pairs, place, end):
     """Moves a pair on from its place to where it belongs before `end`, if those after it are in order."""
     pair = pairs[place]
@@ -74,14 +74,14 @@ def _move_on(bounds, pairs, place, end):
     pairs[place] = pair
 
 
-@merged
+@inline(force=True)
 def sort_first(bounds, order, body, stop):
     """The same for a body where only the bounds of pairs before the place `stop` have changed."""
     for place in range(stop - 1, order.starts[body] - 1, -1):
         _move_on(bounds, order.pairs, place, order.starts[body + 1])
 
 
-@merged
+@inline(force=True)
 def sort_one(bounds, order, body, pair):
     """The same where only the bound of one pair has changed."""
     pairs = order.pairs

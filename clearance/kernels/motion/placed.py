@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, shared
+from clearance.compile.jit import inline, shared
 from clearance.kernels.features.bounds import displacement
 from clearance.kernels.motion.kinematics import NO_PARENT, place_links
 
@@ -44,7 +44,7 @@ def room_for_bodies(n_links, n_bodies):
     )  # fmt: skip
 
 
-@merged
+@inline(force=True)
 def _want(links, link, look, wanted):
     """Marks a link and all above it."""
     while link != NO_PARENT and wanted[link] != look:
@@ -52,7 +52,7 @@ def _want(links, link, look, wanted):
         link = links.parents[link]
 
 
-@merged
+@inline(force=True)
 def _has_moved(before, after):
     """True if two (4, 4) poses are not the same to the last bit of each number."""
     for i in range(3):
@@ -62,14 +62,14 @@ def _has_moved(before, after):
     return False
 
 
-@merged
+@inline(force=True)
 def _put(pose, placed, body):
     for i in range(4):
         for k in range(4):
             placed.poses[body, i, k] = pose[i, k]
 
 
-@inlined
+@inline
 def put_all(world, positions, placed):
     """Puts every body where it is with the joints at `positions` (columns,); this is look 0."""
     for body in range(len(world.frames)):
@@ -80,7 +80,7 @@ def put_all(world, positions, placed):
         _put(placed.links[frame] if frame >= 0 else world.standing[body], placed, body)
 
 
-@merged
+@inline(force=True)
 def bring(surface, world, bodies, positions, look, placed):
     """Brings those of `bodies` that links carry to where they are with the joints at `positions` (columns,)."""
     for body in bodies:

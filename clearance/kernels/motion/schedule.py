@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, shared
+from clearance.compile.jit import inline, shared
 from clearance.kernels.motion.interval_motion_bound import stride_of
 
 
@@ -41,7 +41,7 @@ def room_for_due(n_bodies, n_columns):
     )  # fmt: skip
 
 
-@inlined
+@inline
 def all_due(frames, due):
     """Makes all bodies due that links carry; the number of them."""
     n_due = 0
@@ -52,7 +52,7 @@ def all_due(frames, due):
     return n_due
 
 
-@merged
+@inline(force=True)
 def find_due(frames, positions, row, look, within, due):
     """Finds who can come `within` [m] at a row of `positions`: (how many, [m] how near the others can be).
 
@@ -73,7 +73,7 @@ def find_due(frames, positions, row, look, within, due):
     return n_due, least
 
 
-@merged
+@inline(force=True)
 def note_look(body, row, nearest, due):
     """Notes that a body was looked at, and the least bound of its pairs [m]."""
     due.rows[body], due.nearest[body] = row, nearest

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import borrowing, kernel, merged, shared, spliced
+from clearance.compile.jit import inline, kernel, shared
 from clearance.compile.kernel_table import lend
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
@@ -100,13 +100,13 @@ class FirstLook(NamedTuple):
     effort: int
 
 
-@merged
+@inline(force=True)
 def pair_frames(world, pair, poses):
     """Where both bodies of a pair are, of `poses` (bodies, 4, 4)."""
     return frames_of(rigid(poses[world.pairs[pair, 0]]), rigid(poses[world.pairs[pair, 1]]))
 
 
-@merged
+@inline(force=True)
 def box_bound(surface, world, pair, placed, boxes, enough):
     """[m] a lower bound on the distance of a pair by the boxes of both bodies; one above `enough` will do."""
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
@@ -143,19 +143,19 @@ class Known(NamedTuple):
     scratch: Scratch
 
 
-@merged
+@inline(force=True)
 def carried(world, pair, known):
     """[m] what is left of the bound of a pair: only its first body moves."""
     return known.floors[pair] - known.placed.travel[world.pairs[pair, 0]]
 
 
-@merged
+@inline(force=True)
 def _spare(world, pair, known, goal):
     """[m] the same, less how near the pair must come where that is another distance for each."""
     return carried(world, pair, known) - (known.within[pair] if goal.each else 0.0)
 
 
-@merged
+@inline(force=True)
 def _bounded_again(surface, world, pair, known, enough):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
     by_boxes = box_bound(surface, world, pair, known.placed, known.boxes, enough)
@@ -164,7 +164,7 @@ def _bounded_again(surface, world, pair, known, enough):
     return floor
 
 
-@merged
+@inline(force=True)
 def nearest_by_boxes(surface, world, bodies, known, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
     order = known.order
@@ -184,7 +184,7 @@ def nearest_by_boxes(surface, world, bodies, known, winner):
     return winner
 
 
-@spliced
+@inline(one_caller=True)
 def _asked(world, pair, floor, gap, effort, lent, known, tally, table):
     """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on."""
     placed, answers, seeds = known.placed, known.answers, known.seeds
@@ -212,7 +212,7 @@ def _asked(world, pair, floor, gap, effort, lent, known, tally, table):
     return measured.hit, measured.lower_bound
 
 
-@spliced
+@inline(one_caller=True)
 def _next_look(world, positions, row, look, within, due, rows, tally):
     """The next row, from `row` on, at which a body is due; writes those before, where nothing comes `within` [m].
 
@@ -228,7 +228,7 @@ def _next_look(world, positions, row, look, within, due, rows, tally):
     return row, n_due, lowest
 
 
-@spliced
+@inline(one_caller=True)
 def nearest_of(
     surface, world, bodies, first, row, step, lowest, goal, effort, lent, known, pair_rows, tally, table
 ):  # fmt: skip
@@ -326,7 +326,7 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
     _sweep(surface, world, positions, steps, goal, TO_THE_END, known, rows, pair_rows, tally, table)
 
 
-@borrowing
+@kernel(reference_counts=False)
 def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_rows, tally, table):
     """`sweep`, with room for what is known. The rows after a first look are overwritten."""
     within, floors, order, placed, due = known.within, known.floors, known.order, known.placed, known.due

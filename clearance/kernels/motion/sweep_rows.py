@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged
+from clearance.compile.jit import inline
 from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.search.descent import nothing_yet
 
@@ -41,7 +41,7 @@ class PairRows(NamedTuple):
     points: np.ndarray
 
 
-@inlined
+@inline
 def write_step(row, pair, hit, floor, rows):
     """Writes the nearest pair of a step and its points, -1 if none is known; `floor` [m] bounds all pairs."""
     rows.pair[row] = pair
@@ -52,7 +52,7 @@ def write_step(row, pair, hit, floor, rows):
     write_points(hit, rows.points[row])
 
 
-@inlined
+@inline
 def write_pair(row, step, pair, hit, pair_rows):
     """Writes what a pair was found to be at a step, where that is asked for, and its least."""
     gap = np.sqrt(hit.gap_sq)
@@ -64,7 +64,7 @@ def write_pair(row, step, pair, hit, pair_rows):
         write_points(hit, pair_rows.points[pair])
 
 
-@merged
+@inline(force=True)
 def pass_over(n_pairs, row, floor, rows, tally):
     """Writes a row at which nothing needs a look: none of so many pairs is nearer than `floor` [m]."""
     write_step(row, -1, nothing_yet(np.inf), floor, rows)

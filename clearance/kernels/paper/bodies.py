@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.vec3 import (
     Vec3,
     dot,
@@ -59,13 +59,13 @@ class PaperFound(NamedTuple):
     passes: np.ndarray
 
 
-@inlined
+@inline
 def far_apart(centre_a, centre_b, reach, tolerance):
     """Rule 1 (step 6): the distance of the centres less both radii is not below the tolerance."""
     return math.sqrt(gap_sq(centre_a, centre_b)) - reach >= tolerance
 
 
-@inlined
+@inline
 def turned_away(normal_a, normal_b, centre_a, centre_b):
     """Rule 2 (steps 2 and 5): the normals do not oppose, or a face's centre is not before the
     other's.
@@ -78,7 +78,7 @@ def turned_away(normal_a, normal_b, centre_a, centre_b):
     return not (opposed and dot(normal_a, v) > 0.0 and dot(normal_b, v) < 0.0)
 
 
-@inlined
+@inline
 def moved_points(motion, points):
     """The (n, 3) points after a rigid motion."""
     result = np.empty_like(points)
@@ -88,7 +88,7 @@ def moved_points(motion, points):
     return result
 
 
-@inlined
+@inline
 def face_polygon(body, i, normal, centre):
     """Face `i` as a polygon."""
     return Polygon(body.corners, body.starts[i], body.starts[i + 1], normal, centre)

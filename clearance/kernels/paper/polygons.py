@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.vec3 import Vec3, along, cross, dot, gap_sq, row, sub
 from clearance.kernels.paper.segments import lumelsky
 
@@ -58,7 +58,7 @@ class PaperMinimum(NamedTuple):
     converged: bool
 
 
-@inlined
+@inline
 def chord(polygon, x, s):
     """The part of the line x + t s that is in the polygon; x itself where the line misses it.
 
@@ -83,20 +83,20 @@ def chord(polygon, x, s):
     return SearchSegment(along(x, low, s), along(x, high, s), edge_low, edge_high)
 
 
-@inlined
+@inline
 def edge_segment(polygon, i):
     """The whole edge that starts at corner `i`, as a search segment (step 2, cases 2 and 3)."""
     j = i + 1 if i + 1 < polygon.stop else polygon.start
     return SearchSegment(row(polygon.corners, i), row(polygon.corners, j), i, i)
 
 
-@inlined
+@inline
 def flattened(v, normal):
     """v without its part along the normal: the search direction of step 2 (1) (ii)."""
     return along(v, -dot(v, normal), normal)
 
 
-@inlined
+@inline
 def projected_chord(polygon, edge, x):
     """The chord of the polygon along the projection of the other polygon's edge (step 2, case 2
     (ii)).
@@ -113,7 +113,7 @@ def projected_chord(polygon, edge, x):
     return found if found.edge_start >= 0 else SearchSegment(x, x, -1, -1)
 
 
-@inlined
+@inline
 def edge_at(t, segment):
     """The edge on which the point at place `t` of a search segment lies, -1 inside the polygon.
 
@@ -122,7 +122,7 @@ def edge_at(t, segment):
     return segment.edge_start if t == 0.0 else (segment.edge_end if t == 1.0 else -1)
 
 
-@inlined
+@inline
 def nearest_by_paper(a, b):
     """Steps 1 to 4 for two polygons.
 

@@ -9,7 +9,7 @@ Processing Letters 21, 55-61.
 
 from typing import NamedTuple
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, sub
 
 
@@ -23,13 +23,13 @@ class Closest(NamedTuple):
     u: float
 
 
-@inlined
+@inline
 def clamped(x):
     """The nearest number in [0, 1]."""
     return 0.0 if x < 0.0 else (1.0 if x > 1.0 else x)
 
 
-@inlined
+@inline
 def lumelsky(a, b, c, d):
     """The closest points of the segments a b and c d; a point is a segment of length zero.
 

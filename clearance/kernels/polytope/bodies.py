@@ -13,9 +13,9 @@ import ctypes
 import numba
 import numpy as np
 from numba import types
-from numba.core import cgutils
 from numba.extending import intrinsic
-from numba.np.arrayobj import populate_array
+
+from clearance.compile.numba_private import array_from, elements_at
 
 NUMBERS, INDICES = 0, 2
 
@@ -25,21 +25,10 @@ def _array_at(typing_context, rows, i, column, like):
     result = types.Array(like.dtype, 1, "C")
 
     def emit(context, builder, signature, values):
-        table = context.make_array(signature.args[0])(context, builder, values[0])
         at = builder.add(builder.mul(values[1], values[1].type(4)), values[2])
-        address = builder.load(cgutils.gep_inbounds(builder, table.data, at))
-        length = builder.load(
-            cgutils.gep_inbounds(builder, table.data, builder.add(at, at.type(1)))
-        )
-        made = context.make_array(result)(context, builder)
-        size = context.get_constant(
-            types.intp, context.get_abi_sizeof(context.get_data_type(like.dtype))
-        )
-        data = builder.inttoptr(address, made.data.type)
-        populate_array(
-            made, data=data, shape=[length], strides=[size], itemsize=size, meminfo=None
-        )
-        return made._getvalue()
+        both = elements_at(context, builder, signature.args[0], values[0], (at, builder.add(at, at.type(1))))
+        address, length = map(builder.load, both)
+        return array_from(context, builder, result, address, length)
 
     return result(rows, types.intp, types.intp, like), emit
 

@@ -9,7 +9,7 @@ Arrays as in `polytope.cut`. Not for: the order of the bodies (`query.cutting`).
 
 from __future__ import annotations
 
-from clearance.compile.jit import borrowing, spliced
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.polytope.bodies import INDICES, NUMBERS, array_at
 from clearance.kernels.polytope.cut import (
     CUT,
@@ -32,7 +32,7 @@ from clearance.kernels.polytope.cut import (
 from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, exit_in, is_in_ball
 
 
-@spliced
+@inline(one_caller=True)
 def plane_of(numbers, face, origin):
     """(normal, offset [m]) of a face's plane about `origin`."""
     row = HEAD + ROW * face
@@ -43,7 +43,7 @@ def plane_of(numbers, face, origin):
     return x, y, z, offset
 
 
-@spliced
+@inline(one_caller=True)
 def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp, base, work):
     """A face that has not cut yet and that `v` is above by more than `tolerance`, near `face`, or -1.
 
@@ -73,7 +73,7 @@ def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp
     return -1
 
 
-@spliced
+@inline(one_caller=True)
 def flood_level(spots, mesh, start, plane, noise, stamp, work):
     """A vertex above `start` next to the level ground about it, or -1; level means within `noise`."""
     level = over(spots, start, plane)
@@ -98,7 +98,7 @@ def flood_level(spots, mesh, start, plane, noise, stamp, work):
     return -1
 
 
-@spliced
+@inline(one_caller=True)
 def climb(spots, mesh, start, plane, noise, state, work):
     """The top vertex over the plane, uphill from `start`; level ground is searched by flooding.
 
@@ -113,7 +113,7 @@ def climb(spots, mesh, start, plane, noise, state, work):
     return top
 
 
-@spliced
+@inline(one_caller=True)
 def is_copy(spots, mesh, v, base):
     """True if the row before is alive, at the same place, and was found inside this body or under a patch."""
     u = v - 1
@@ -122,7 +122,7 @@ def is_copy(spots, mesh, v, base):
     return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
 
 
-@borrowing
+@kernel(reference_counts=False)
 def rooms_about(bodies, origin, rooms, numbers_like, indices_like):
     """Fills `rooms` [m]: how far the plane is through which the ray from each centroid to `origin` leaves."""
     for i in range(len(bodies)):
@@ -134,7 +134,7 @@ def rooms_about(bodies, origin, rooms, numbers_like, indices_like):
         rooms[i] = (1.0 - gauge) * numbers[HEAD + ROW * face + 7]
 
 
-@spliced
+@inline(one_caller=True)
 def cut_by_body(
     spots, mesh, state, work, rim, table, numbers, indices, origin, base, tolerance, noise
 ):
@@ -227,7 +227,7 @@ def cut_by_body(
     return CUT, n_cuts
 
 
-@borrowing
+@kernel(reference_counts=False)
 def cut_by_bodies(
     spots, mesh, state, work, rim, table, bodies, bases, turns, origin, tolerance, noise, sparse,
     numbers_like, indices_like,

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.jit import borrowing, kernel, spliced
+from clearance.compile.jit import inline, kernel
 
 CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
 N_FREE, STAMP, N_ROWS = 0, 1, 2
@@ -28,13 +28,13 @@ LATENT, WHOLE = 2, 3
 QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
 
 
-@spliced
+@inline(one_caller=True)
 def over(spots, v, plane):
     """[m] How far vertex `v` stands above the plane."""
     return plane[0] * spots[v, 0] + plane[1] * spots[v, 1] + plane[2] * spots[v, 2] - plane[3]
 
 
-@spliced
+@inline(one_caller=True)
 def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     """Number of connected vertices above the plane, from `top`; they are queued and marked `stamp`.
 
@@ -62,7 +62,7 @@ def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
     return n_above
 
 
-@spliced
+@inline(one_caller=True)
 def has_corner(indices, face, corner):
     """True if the face has the corner."""
     for at in range(indices[indices[2] + face], indices[indices[2] + face + 1]):
@@ -71,7 +71,7 @@ def has_corner(indices, face, corner):
     return False
 
 
-@spliced
+@inline(one_caller=True)
 def own_corner(indices, base, a, b, c):
     """The corner of the body that its planes `a`, `b`, `c` share, or -1 if they are not its or share none."""
     n = indices[0]
@@ -85,7 +85,7 @@ def own_corner(indices, base, a, b, c):
     return -1
 
 
-@spliced
+@inline(one_caller=True)
 def put_rim(
     spots, mesh, state, n_above, stamp, name, work, rim, table, numbers, indices, base, origin
 ):
@@ -136,7 +136,7 @@ def put_rim(
     return n_rim
 
 
-@spliced
+@inline(one_caller=True)
 def rim_is_one_ring(rim, n_rim, table, stamp):
     """True if the rim's edges follow each other through their planes in one ring."""
     i = 0
@@ -150,7 +150,7 @@ def rim_is_one_ring(rim, n_rim, table, stamp):
     return False
 
 
-@spliced
+@inline(one_caller=True)
 def swap_rows(state, mesh, n_above, n_rim, work):
     """Takes the rows of the new vertices from the free ones and frees those above the plane."""
     taken = min(n_rim, state[N_FREE])
@@ -162,7 +162,7 @@ def swap_rows(state, mesh, n_above, n_rim, work):
         state[N_FREE] += 1
 
 
-@spliced
+@inline(one_caller=True)
 def close_rim(mesh, rim, n_rim, table):
     """Links the new vertices to the outside and to each other."""
     for i in range(n_rim):
@@ -175,7 +175,7 @@ def close_rim(mesh, rim, n_rim, table):
         mesh[after, 2] = v
 
 
-@spliced
+@inline(one_caller=True)
 def cut_by_plane(
     spots,
     mesh,
@@ -210,7 +210,7 @@ def cut_by_plane(
     return CUT, n_rim
 
 
-@borrowing
+@kernel(reference_counts=False)
 def begin(spots, mesh, numbers, indices, corner, form, origin, base):
     """Puts a body's trivalent form (`corner`, `form`) into the first rows, about `origin`."""
     for v in range(len(corner)):
@@ -223,7 +223,7 @@ def begin(spots, mesh, numbers, indices, corner, form, origin, base):
         mesh[v, LOOKED] = 0
 
 
-@spliced
+@inline(one_caller=True)
 def close_up(spots, mesh, state, work):
     """Moves the rows in use together, in their order, so that later bodies walk over no free ones."""
     n_kept = 0

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from clearance.compile.jit import borrowing, spliced
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, exit_in
 
 TURN = 4
@@ -28,7 +28,7 @@ LEVEL = 12
 COLD, WARM, ON = 0, 1, 2
 
 
-@spliced
+@inline(one_caller=True)
 def invert(basis):
     """True if the faces' matrix could be inverted, by Gauss-Jordan with row pivoting."""
     a = basis[SCRATCH : SCRATCH + 4]
@@ -60,7 +60,7 @@ def invert(basis):
     return True
 
 
-@spliced
+@inline(one_caller=True)
 def solve(basis):
     """False if the faces' planes meet in no one point or a multiplier is below 0; else sets both."""
     if not invert(basis):
@@ -78,7 +78,7 @@ def solve(basis):
     return sound
 
 
-@spliced
+@inline(one_caller=True)
 def start_around(basis, names, reach):
     """A tetrahedron far around the origin; t at its middle is 1."""
     side = 1.0 / math.sqrt(3.0)
@@ -92,7 +92,7 @@ def start_around(basis, names, reach):
     solve(basis)
 
 
-@spliced
+@inline(one_caller=True)
 def put_face(basis, names, j, numbers, pose, away, body, face):
     """Puts a face at place `j` of the basis; `away` is from the origin to the body's centroid."""
     row = HEAD + ROW * face
@@ -110,7 +110,7 @@ def put_face(basis, names, j, numbers, pose, away, body, face):
     names[j] = (body << 32) + face
 
 
-@spliced
+@inline(one_caller=True)
 def leaving(basis, numbers, pose, face):
     """The place in the basis that the ratio test gives to a face, or -1."""
     row = HEAD + ROW * face
@@ -136,7 +136,7 @@ def leaving(basis, numbers, pose, face):
     return leave
 
 
-@spliced
+@inline(one_caller=True)
 def centre_of(numbers, pose, origin):
     """From the origin to the body's centroid in the world."""
     x, y, z = numbers[0], numbers[1], numbers[2]
@@ -147,7 +147,7 @@ def centre_of(numbers, pose, origin):
     )
 
 
-@spliced
+@inline(one_caller=True)
 def deepen(numbers, indices, pose, body, origin, basis, names, margin):
     """(settled, faces brought in): brings in a body's worst faces, `TURN` at most, in widths by `margin` worse."""
     away = centre_of(numbers, pose, origin)
@@ -173,7 +173,7 @@ def deepen(numbers, indices, pose, body, origin, basis, names, margin):
     return False, TURN
 
 
-@spliced
+@inline(one_caller=True)
 def recall(numbers, pose, body, origin, basis, names):
     """Puts the faces that the basis names of one body where they are now."""
     away = centre_of(numbers, pose, origin)
@@ -182,7 +182,7 @@ def recall(numbers, pose, body, origin, basis, names):
             put_face(basis, names, j, numbers, pose, away, body, names[j] & 0xFFFFFFFF)
 
 
-@borrowing
+@kernel(reference_counts=False)
 def deepen_two(
     numbers_a, indices_a, pose_a, a, numbers_b, indices_b, pose_b, b, origin, basis, names, margin,
     begin, passes,

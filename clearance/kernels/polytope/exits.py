@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel, spliced
+from clearance.compile.jit import inline, kernel
 
 HEAD = 16
 ROW = 8
@@ -32,7 +32,7 @@ BALL_SLACK = 4e-9
 """[-] How much less than its greatest possible radius the inner ball has: what lies in it is inside for all."""
 
 
-@spliced
+@inline(one_caller=True)
 def cell_at(x, y, z, k):
     """(cell, greatest coordinate's magnitude) of a direction in the round frame."""
     ax = abs(x)
@@ -52,7 +52,7 @@ def cell_at(x, y, z, k):
     return (side * k + i) * k + j, most
 
 
-@spliced
+@inline(one_caller=True)
 def cell_of(numbers, indices, x, y, z):
     """(cell, upper bound on the gauge) of the point (x, y, z) about the centroid."""
     u = numbers[3] * x + numbers[4] * y + numbers[5] * z
@@ -62,7 +62,7 @@ def cell_of(numbers, indices, x, y, z):
     return cell, most * numbers[HEAD + ROW * indices[0] + cell]
 
 
-@spliced
+@inline(one_caller=True)
 def is_in_ball(numbers, x, y, z):
     """True if (x, y, z) about the centroid lies in a ball of the round frame that is wholly inside the body."""
     u = numbers[3] * x + numbers[4] * y + numbers[5] * z
@@ -71,7 +71,7 @@ def is_in_ball(numbers, x, y, z):
     return u * u + v * v + w * w < numbers[14]
 
 
-@spliced
+@inline(one_caller=True)
 def exit_in(numbers, indices, cell, x, y, z):
     """(face, gauge): the face of the cell's list with the greatest n.v/w at (x, y, z) about the centroid."""
     best = -math.inf
@@ -87,7 +87,7 @@ def exit_in(numbers, indices, cell, x, y, z):
     return face, best
 
 
-@inlined
+@inline
 def clipped(ring, spare, n, sign, other):
     """Number of corners left of the cone over `ring[:n]` where ring[0] >= sign ring[other]."""
     n_kept = 0
@@ -110,7 +110,7 @@ def clipped(ring, spare, n, sign, other):
     return n_kept
 
 
-@inlined
+@inline
 def ring_on_side(corners, flat, begin, end, side, pad, ring, spare):
     """Number of corners of a face's projection to a side of the cube, as rows (s, t) of `ring`."""
     axis = side // 2
@@ -134,7 +134,7 @@ def ring_on_side(corners, flat, begin, end, side, pad, ring, spare):
     return n
 
 
-@inlined
+@inline
 def misses(ring, n, turn, pad, s, t, half):
     """True if a square about (s, t) lies wholly beyond one edge of the flat ring."""
     for i in range(n):
@@ -146,7 +146,7 @@ def misses(ring, n, turn, pad, s, t, half):
     return False
 
 
-@inlined
+@inline
 def area_sign(ring, n):
     """1 if the flat ring turns left, else -1."""
     twice = 0.0
@@ -156,7 +156,7 @@ def area_sign(ring, n):
     return 1.0 if twice >= 0.0 else -1.0
 
 
-@inlined
+@inline
 def cell_span(ring, n, column, pad, k):
     """The first and the last cell that the flat ring reaches in one coordinate."""
     low = math.inf
@@ -208,7 +208,7 @@ def exit_cells(corners, starts, flat, k, pad):
     return cells[:n_found], faces[:n_found]
 
 
-@inlined
+@inline
 def inner_radius_sq(numbers, n_faces, back, slack):
     """The square of the radius of the ball in the round frame that every plane leaves room for, less `slack`.
 

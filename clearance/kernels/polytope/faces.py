@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.compile.jit import borrowing, kernel, spliced
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.expansion import two_sum
 from clearance.kernels.polytope.cut import FIRST, PLANES, SEEN, USED, WHOLE
 from clearance.kernels.polytope.exits import HEAD, ROW
@@ -100,7 +100,7 @@ def face_areas(numbers, indices):
     return areas
 
 
-@spliced
+@inline(one_caller=True)
 def whole_face(numbers, areas, face, origin):
     """(volume, volume times centroid about `origin`) of the cone from `origin` over a body's face."""
     row = HEAD + ROW * face
@@ -114,7 +114,7 @@ def whole_face(numbers, areas, face, origin):
     return cone, x, y, z
 
 
-@spliced
+@inline(one_caller=True)
 def cone_over(places, o, u, w):
     """(volume, volume times centroid) of the tetrahedron of the origin and three vertices."""
     ax, ay, az = places[o, 0], places[o, 1], places[o, 2]
@@ -125,7 +125,7 @@ def cone_over(places, o, u, w):
     return cone, quarter * (ax + bx + cx), quarter * (ay + by + cy), quarter * (az + bz + cz)
 
 
-@borrowing
+@kernel(reference_counts=False)
 def trivalent_moments(
     places, mesh, n_rows, table, stamp, base_a, numbers_a, areas_a, base_b, numbers_b, areas_b, origin
 ):  # fmt: skip

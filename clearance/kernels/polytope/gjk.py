@@ -11,13 +11,13 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 SEPARATED, COMMON, STALLED = 0, 1, 2
 LIMIT = 128
 
 
-@inlined
+@inline
 def hill_climb(vertices, starts, neighbours, v, x, y, z):
     """The vertex farthest in direction (x, y, z), from vertex `v` upwards over the edges.
 
@@ -42,7 +42,7 @@ def support(vertices, starts, neighbours, v, direction):
     return hill_climb(vertices, starts, neighbours, v, direction[0], direction[1], direction[2])
 
 
-@inlined
+@inline
 def face_coefficients(gram, members, n, shares):
     """True if the affine hull of the simplex's `members` has its least point inside; sets `shares`.
 
@@ -82,7 +82,7 @@ def face_coefficients(gram, members, n, shares):
     return True
 
 
-@inlined
+@inline
 def tetrahedron_coefficients(points, shares):
     """True if the origin is in the tetrahedron; `shares` solves the paper's 4 x 4 system.
 
@@ -109,7 +109,7 @@ def tetrahedron_coefficients(points, shares):
     return True
 
 
-@inlined
+@inline
 def least_point(points, n, keep, shares, nearest):
     """Number of simplex points that carry the point of least norm; sets `keep`, `shares`, `nearest`."""
     trial = np.empty(4)

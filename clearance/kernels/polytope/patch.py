@@ -8,7 +8,7 @@ matched. Not for: deciding anything; if the edges do not match one to one, nothi
 
 from __future__ import annotations
 
-from clearance.compile.jit import borrowing, spliced
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.polytope.cut import (
     FIRST,
     FREE,
@@ -31,7 +31,7 @@ INSIDE = 1.0 - 1e-9
 """[-] Greatest gauge of a corner that counts as wholly inside: the rest are left to the seam."""
 
 
-@borrowing
+@kernel(reference_counts=False)
 def mark_patch(numbers_a, indices_a, numbers_b, indices_b, base, table, inside, in_patch):
     """Sets `in_patch` (n,) for the corners of faces of B wholly inside A; these faces become `LATENT`.
 
@@ -57,7 +57,7 @@ def mark_patch(numbers_a, indices_a, numbers_b, indices_b, base, table, inside, 
                 in_patch[indices_b[at]] = True
 
 
-@spliced
+@inline(one_caller=True)
 def is_under_patch(mesh, v, indices, base, in_patch):
     """True for a vertex over the patch or in one of its corners."""
     if mesh[v, 0] < 0:
@@ -71,7 +71,7 @@ def is_under_patch(mesh, v, indices, base, in_patch):
     return corner >= 0 and in_patch[corner]
 
 
-@spliced
+@inline(one_caller=True)
 def open_edges(mesh, state, stamp, n_gone, work, rim, table):
     """Number of edges that lead out of the marked vertices, or -1 if two lie on one plane."""
     n_rim = 0
@@ -98,7 +98,7 @@ def open_edges(mesh, state, stamp, n_gone, work, rim, table):
     return n_rim
 
 
-@spliced
+@inline(one_caller=True)
 def matched(corner, form, in_patch, base, rim, n_rim, table, stamp):
     """True if the patch's edges that lead out are those of `rim`, one to one."""
     n_out = 0
@@ -119,7 +119,7 @@ def matched(corner, form, in_patch, base, rim, n_rim, table, stamp):
     return n_out == n_rim
 
 
-@spliced
+@inline(one_caller=True)
 def rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows):
     """True if each vertex of the patch got its row, -1 for the others; the rows of those gone are freed first."""
     n_patch = 0
@@ -144,7 +144,7 @@ def rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows):
     return True
 
 
-@borrowing
+@kernel(reference_counts=False)
 def lay_patch(
     spots,
     mesh,

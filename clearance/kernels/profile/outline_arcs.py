@@ -9,10 +9,10 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 
-@inlined
+@inline
 def _run_arc(points, first, count, tolerance):
     """Whether one arc follows `count` edges from vertex `first`, and its bulge (0 for a line)."""
     n = len(points)
@@ -44,7 +44,7 @@ def _run_arc(points, first, count, tolerance):
     return True, math.tan(0.5 * math.atan(s * c))
 
 
-@inlined
+@inline
 def _follows(points, first, count, tolerance, s, c, ux, uy):
     """True if arc and edges are within `tolerance` of each other, vertex by vertex with the arc's height."""
     n = len(points)
@@ -103,7 +103,7 @@ def arcs_of_ring(points, tolerance):
     return starts[:found].copy(), bulges[:found].copy()
 
 
-@inlined
+@inline
 def _sharpest(points):
     n, best, least = len(points), 0, math.inf
     for i in range(n):

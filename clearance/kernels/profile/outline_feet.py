@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 RUN = 16
 """Pieces that share a box."""
@@ -38,14 +38,14 @@ class FlatPieces(NamedTuple):
     run_box: np.ndarray
 
 
-@inlined
+@inline
 def _box_gap_sq(box, k, x, y):
     dx = max(0.0, box[k, 0] - x, x - box[k, 2])
     dy = max(0.0, box[k, 1] - y, y - box[k, 3])
     return dx * dx + dy * dy
 
 
-@inlined
+@inline
 def _share_of(pieces, k, x, y):
     """The share of piece `k` at its point nearest to (x, y)."""
     sweep = pieces.sweep[k]
@@ -63,7 +63,7 @@ def _share_of(pieces, k, x, y):
     return min(1.0, max(0.0, turn / sweep))
 
 
-@inlined
+@inline
 def _point_at(pieces, k, share):
     if pieces.sweep[k] == 0.0:
         return (
@@ -78,7 +78,7 @@ def _point_at(pieces, k, share):
     )
 
 
-@inlined
+@inline
 def _squareness(pieces, k, share, ex, ey):
     """How far (ex, ey), from the piece's point at `share`, is beside its tangent there."""
     tx, ty = pieces.along[k, 0], pieces.along[k, 1]
@@ -95,7 +95,7 @@ def places_of(pieces, piece, share, out):
         out[i, 0], out[i, 1] = _point_at(pieces, piece[i], share[i])
 
 
-@inlined
+@inline
 def _nearest_run(pieces, x, y):
     nearest, least = 0, np.inf
     for run in range(len(pieces.run_box)):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 SAFE = 1e-9
 """[m] How much wider edges are drawn than they are: a thousand times the rounding of a coordinate near 1e4 m."""
@@ -31,19 +31,19 @@ class Raster(NamedTuple):
     covered: np.ndarray
 
 
-@inlined
+@inline
 def column_of(raster, x):
     """The column of pixels that x lies in."""
     return math.floor((x - raster.x) / raster.pixel)
 
 
-@inlined
+@inline
 def row_of(raster, y):
     """The row of pixels that y lies in."""
     return math.floor((y - raster.y) / raster.pixel)
 
 
-@inlined
+@inline
 def draw_edge(raster, ax, ay, bx, by, count, touched, steps):
     """Marks the pixels of an edge and, in each row that it crosses at mid-height, where the count changes."""
     if ay > by:
@@ -66,7 +66,7 @@ def draw_edge(raster, ax, ay, bx, by, count, touched, steps):
             steps[row, math.ceil((x - raster.x) / raster.pixel - 0.5)] += count
 
 
-@inlined
+@inline
 def add_inside(raster, first_row, last_row, first_column, last_column, touched, steps):
     """Marks what the edges drawn so far surround, and clears them."""
     for row in range(first_row, last_row + 1):
@@ -123,7 +123,7 @@ def row_sums(covered):
     return sums
 
 
-@inlined
+@inline
 def lies_covered(raster, sums, corners, n):
     """True if the convex polygon `corners[:n]` (counter-clockwise or not) lies in covered pixels alone."""
     low, high = corners[0, 1], corners[0, 1]

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.profile.swept_cover import (
     add_inside,
     column_of,
@@ -26,7 +26,7 @@ DEEPEST = 12
 """Most times that a triangle is quartered."""
 
 
-@inlined
+@inline
 def _crossing(p, q, level, out):
     """Writes where the segment p-q passes a height; the same bits whichever way it runs."""
     if p[2] > q[2]:
@@ -86,7 +86,7 @@ def add_cut_cover(raster, points, face_starts, face_vertices, closed):
         )  # fmt: skip
 
 
-@inlined
+@inline
 def _slab_points(six, reach, out):
     """Writes the corners, in the plane, of the hull of six points within `reach` of it; returns how many."""
     n = 0
@@ -102,7 +102,7 @@ def _slab_points(six, reach, out):
     return n
 
 
-@inlined
+@inline
 def _twist(six):
     """[m] a quarter of the greatest change of an edge: how far the hull may be from what the face sweeps."""
     worst = 0.0
@@ -115,7 +115,7 @@ def _twist(six):
     return 0.25 * math.sqrt(worst)
 
 
-@inlined
+@inline
 def _quarter(stack, at, six):
     """Puts the four similar parts of a triangle at two instants on the stack."""
     for part in range(4):

@@ -8,19 +8,19 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.profile.swept_cover import lies_covered
 
 MOST = 8
 """Corners of the largest polygon that is handed out here."""
 
 
-@inlined
+@inline
 def _turn(ax, ay, bx, by, cx, cy):
     return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
-@inlined
+@inline
 def hull_of(points, n, out):
     """Writes the convex hull of `points[:n]` counter-clockwise into `out`; returns its number of corners.
 
@@ -50,7 +50,7 @@ def hull_of(points, n, out):
     return k
 
 
-@inlined
+@inline
 def _is_slender(corners, n, width):
     """True if a polygon has less area than a strip of `width` along its longest side."""
     area, longest = 0.0, 0.0
@@ -63,7 +63,7 @@ def _is_slender(corners, n, width):
     return n < 3 or 0.5 * area <= width * longest
 
 
-@inlined
+@inline
 def fattened_hull(points, n, width, widened, out):
     """The hull, or where it is slenderer than `width` the hull of squares of that size about the points."""
     corners = hull_of(points, n, out)
@@ -77,7 +77,7 @@ def fattened_hull(points, n, width, widened, out):
     return hull_of(widened, 4 * few, out)
 
 
-@inlined
+@inline
 def _is_convex(four):
     """True if the loop 0, 2, 3, 1 turns one way only: what the edge sweeps then is its hull."""
     left = right = False
@@ -87,7 +87,7 @@ def _is_convex(four):
     return not (left and right)
 
 
-@inlined
+@inline
 def _twist(four):
     """[m] how far a point of the hull may be from what the edge sweeps: a quarter of the edge's change.
 
@@ -99,7 +99,7 @@ def _twist(four):
     return 0.25 * math.hypot(x, y)
 
 
-@inlined
+@inline
 def _part_of(points, k, a, b, low, high, four):
     """Writes the ends of part `low` to `high` (shares) of edge a-b at the instants k and k + 1."""
     for i in range(2):

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, spliced
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import SEARCH, Lent, apart, at_address, borrow, table_like
 from clearance.kernels.arithmetic.double_double import (
     FRAMES_AT_REST,
@@ -80,14 +80,14 @@ class Measured(NamedTuple):
     tally: Tally
 
 
-@inlined
+@inline
 def _in_world(frames, x):
     """A point seen from the origin of a, in the world."""
     t = frames.a.t
     return rounded(plus3(x, Wide3(wide(t.x), wide(t.y), wide(t.z))))
 
 
-@spliced
+@inline(one_caller=True)
 def _contact(a, b, frames, found, tally, table):
     face_a, face_b = found.face_a, found.face_b
     common = common_point_of(table, a, face_a, b, face_b, frames, found.meeting)
@@ -108,14 +108,14 @@ def _like():
     return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, asked, *searched
 
 
-@merged
+@inline(force=True)
 def _afresh(a, root_a, b, root_b, m):
     """What a search begins with that knows nothing: the bodies' centres."""
     p, q = box_of(a, root_a).centre, move(m, box_of(b, root_b).centre)
     return Near(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
 
 
-@merged
+@inline(force=True)
 def _begin(a, root_a, b, root_b, m, margin, asked):
     """What a search begins with: the faces that were nearest and what is seen of them, or the bodies' centres."""
     if asked.face_a >= 0:
@@ -213,7 +213,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     return Measured(hit, floor, error, refined.face_a, refined.face_b, tally)
 
 
-@spliced
+@inline(one_caller=True)
 def measure_pair(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
     """The same by address."""
     return at_address(

@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, spliced
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import WINDING_NUMBER, apart, at_address
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, size
 from clearance.kernels.arithmetic.lanes import WIDTH
@@ -50,13 +50,13 @@ EDGE_ON = 1e-9
 """[-] A triangle with an edge straight through the point, but for so much, counts as half of all directions."""
 
 
-@inlined
+@inline
 def _room(box, d, far):
     """[m] what rounding can move a point at `d` from the centre of a box, against its sides."""
     return LEAN * size(d) + ROUNDING * (far + size(box.centre) + size(box.half))
 
 
-@inlined
+@inline
 def in_box(surface, node, x, far):
     """True unless `x` is outside the node's box by more than rounding."""
     box = box_of(surface, node)
@@ -67,7 +67,7 @@ def in_box(surface, node, x, far):
     return abs(dot(box.z, d)) <= box.half.z + room
 
 
-@inlined
+@inline
 def _turn(a, b, x, exact):
     """1 or -1: how the points a, b and x, moved aside, turn seen along the ray; 0 if a and b are one there."""
     turn = turn_along(a, b, x, AXIS, exact)
@@ -78,7 +78,7 @@ def _turn(a, b, x, exact):
     return turn
 
 
-@inlined
+@inline
 def _crossing(a, b, c, x, exact):
     """1 or -1 if the ray from x leaves or enters through the triangle a b c, 0 if it misses it."""
     turn = _turn(a, b, x, exact)
@@ -87,7 +87,7 @@ def _crossing(a, b, c, x, exact):
     return turn if orient_posed(a, b, c, x, exact) == turn else 0
 
 
-@inlined
+@inline
 def _beside(exact, a, b, c, x):
     """True if the triangle is clearly beside or below the ray: told by the boxes of rounded coordinates."""
     for axis in range(3):
@@ -101,7 +101,7 @@ def _beside(exact, a, b, c, x):
     return False
 
 
-@inlined
+@inline
 def _ray_may_meet(surface, node, x, along_ray, far):
     """False only if the node's box is beside or behind the ray by more than rounding."""
     box = box_of(surface, node)
@@ -118,7 +118,7 @@ def _ray_may_meet(surface, node, x, along_ray, far):
     )
 
 
-@inlined
+@inline
 def _crossings(surface, face, side, x, exact):
     """The signed count of the triangles of a face's fan that the ray from x meets."""
     number = 0
@@ -132,7 +132,7 @@ def _crossings(surface, face, side, x, exact):
     return number
 
 
-@inlined
+@inline
 def solid_angle(a, b, c):
     """[rad] between 0 and 2 pi, of the triangle with corners at `a`, `b`, `c` from the origin.
 
@@ -146,7 +146,7 @@ def solid_angle(a, b, c):
     return 2.0 * math.atan2(volume, spread)
 
 
-@inlined
+@inline
 def _turns_of_caps(surface, body, x):
     """[turns] the solid angles of the body's caps from `x` in its frame, added up whatever way they face."""
     total = 0.0
@@ -157,7 +157,7 @@ def _turns_of_caps(surface, body, x):
     return total / (4.0 * math.pi)
 
 
-@inlined
+@inline
 def signed_turns_of_caps(surface, body, x):
     """[turns] the solid angle of the body's caps from `x` in its frame, positive where seen from behind."""
     total = 0.0
@@ -212,7 +212,7 @@ def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
     return number
 
 
-@spliced
+@inline(one_caller=True)
 def contained(a, body_a, b, body_b, frames, scratch, table):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, spliced
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.lanes import (
     WIDTH,
@@ -68,14 +68,14 @@ class Found(NamedTuple):
     tally: Tally
 
 
-@inlined
+@inline
 def nothing_yet(limit_sq):
     """The hit that any pair of points within the limit beats."""
     nowhere = Vec3(0.0, 0.0, 0.0)
     return Hit(limit_sq, 2**62, 2**62, nowhere, nowhere)
 
 
-@merged
+@inline(force=True)
 def _wait_for_near(a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut):
     """Lets the marked nodes of a group wait that may hold nearest points with a node of the other body.
 
@@ -105,7 +105,7 @@ def _wait_for_near(a, b, from_a, from_b, scratch, n_waiting, group, other, is_b,
     return n_waiting, marks, min(low, far), far
 
 
-@merged
+@inline(force=True)
 def _leave(scratch, n_left, group, other, marks, floor):
     """Notes an entry for the front; the number of them."""
     scratch.left[n_left, 0], scratch.left[n_left, 1], scratch.left[n_left, 2] = group, other, marks
@@ -113,13 +113,13 @@ def _leave(scratch, n_left, group, other, marks, floor):
     return n_left + (n_left <= LONGEST)  # one too many says that not all are there
 
 
-@inlined
+@inline
 def margin_of(slack):
     """[m] the rounding of a distance between two points of the bodies, with room."""
     return 4.0 * slack
 
 
-@merged
+@inline(force=True)
 def _nearest_last(scratch, n_waiting):
     """Puts the nearest of all node pairs that wait last."""
     bounds = scratch.bounds
@@ -130,7 +130,7 @@ def _nearest_last(scratch, n_waiting):
     swap(scratch, nearest, n_waiting - 1)
 
 
-@spliced
+@inline(one_caller=True)
 def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
     """Splits the front of a pair: what is still far stays in it, the rest waits.
 
@@ -172,7 +172,7 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
     return n_kept, n_waiting, n_nodes, floor
 
 
-@spliced
+@inline(one_caller=True)
 def descend(
     lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, parting, fronts, pair,
     moved, scratch, table,

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import WINDING_NUMBER, at_address
 from clearance.kernels.arithmetic.double_double import frames_of, size
 from clearance.kernels.arithmetic.vec3 import (
@@ -56,7 +56,7 @@ def generalized_windings(surface, points, poses, poses_of_points, least, most, t
             most[i] = max(most[i], number)
 
 
-@inlined
+@inline
 def _turns_at_most(holes, first, last, low, high, frame, frame_of_box):
     """[turns] no point of a box from `low` to `high` sees more through some holes; infinite if in one."""
     seen = 0.0
@@ -73,12 +73,12 @@ def _turns_at_most(holes, first, last, low, high, frame, frame_of_box):
     return seen / (4.0 * math.pi)
 
 
-@inlined
+@inline
 def _half(low, high):
     return Vec3(0.5 * (high[0] - low[0]), 0.5 * (high[1] - low[1]), 0.5 * (high[2] - low[2]))
 
 
-@inlined
+@inline
 def _is_beside(low, high, low_of_other, high_of_other, frame, frame_of_other):
     """True only if two boxes, each in a frame of its own, are beside each other along an axis of the first."""
     half, half_of_other = _half(low, high), _half(low_of_other, high_of_other)
@@ -124,7 +124,7 @@ def near_holes(holes, bounds, low, high, poses, poses_of_box, found):
         )
 
 
-@inlined
+@inline
 def _turns_of(triangles, x):
     """[turns] the magnitude of the solid angle of triangles (k, 3, 3) from `x`."""
     total = 0.0
@@ -135,7 +135,7 @@ def _turns_of(triangles, x):
     return abs(total) / (4.0 * math.pi)
 
 
-@inlined
+@inline
 def _all_wound(triangles, points, frame, frame_of_points):
     for k in range(len(points)):
         if not _turns_of(triangles, move_back(frame, move(frame_of_points, row(points, k)))) >= WOUND:
@@ -143,7 +143,7 @@ def _all_wound(triangles, points, frame, frame_of_points):
     return True
 
 
-@inlined
+@inline
 def _all_within(bounds, points, frame, frame_of_points):
     for k in range(len(points)):
         x = move_back(frame, move(frame_of_points, row(points, k)))

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, merged, shared
+from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.lanes import WIDTH
 
 POOL = 1 << 17
@@ -69,7 +69,7 @@ def no_fronts(n_pairs, pool):
     )
 
 
-@inlined
+@inline
 def is_worth_parting(fronts, pair):
     """True if it may take less to seek planes that part the bodies of a pair than to go on from its front.
 
@@ -81,7 +81,7 @@ def is_worth_parting(fronts, pair):
     return fronts.spans[pair, 4] < 0
 
 
-@inlined
+@inline
 def note_parting(fronts, pair, found, pause):
     """Notes whether planes part the bodies; if not, they are not sought for a while, each time a longer one.
 
@@ -96,21 +96,21 @@ def note_parting(fronts, pair, found, pause):
         spans[pair, 4] = spans[pair, 5]
 
 
-@inlined
+@inline
 def forget(fronts, pair):
     """Lets the next search of a pair begin at the roots, as if it were the first."""
     fronts.spans[pair, 1] = 0
     fronts.spans[pair, 4], fronts.spans[pair, 5] = 0, 0
 
 
-@merged
+@inline(force=True)
 def _copy(entries, floors, i, fronts, k):
     for column in range(3):
         fronts.entries[k, column] = entries[i, column]
     fronts.floors[k] = floors[i]
 
 
-@inlined
+@inline
 def _room_for(fronts, pair, n_kept, length):
     """Finds `length` places for a pair, moving the `n_kept` first of its front there; False if there are none."""
     spans = fronts.spans
@@ -133,7 +133,7 @@ def _room_for(fronts, pair, n_kept, length):
     return True
 
 
-@merged
+@inline(force=True)
 def keep(fronts, pair, n_kept, entries, floors, n_fresh):
     """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new entries."""
     length = n_kept + n_fresh

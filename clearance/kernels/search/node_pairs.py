@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import WIDTH, larger, marks_within, square_root
 from clearance.kernels.arithmetic.vec3 import Rigid, dot, inverse, move, sub
 from clearance.kernels.features.bounds import (
@@ -28,19 +28,19 @@ class View(NamedTuple):
     sight: Sight
 
 
-@merged
+@inline(force=True)
 def views_along(sight, m):
     """The view from the frame of a and that from b."""
     return View(m, sight), View(inverse(m), opposite(sight))
 
 
-@merged
+@inline(force=True)
 def views_of(best, m):
     """The views in which the best points so far part the bodies."""
     return views_along(sight_along(best.p, best.q, m), m)
 
 
-@merged
+@inline(force=True)
 def _seen(a, b, from_a, from_b, group, other, is_b):
     """The boxes of a group, that of a node of the other body, and the view from the group's body."""
     boxes, centres, boxes_across, centres_across = a.boxes, a.centres, b.boxes, b.centres
@@ -51,7 +51,7 @@ def _seen(a, b, from_a, from_b, group, other, is_b):
     return group_at(boxes, centres, group), box_at(boxes_across, centres_across, other), view
 
 
-@merged
+@inline(force=True)
 def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
 
@@ -64,13 +64,13 @@ def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
     return larger(in_sight, lower_bound_boxes(p, q, view.m, slack))
 
 
-@merged
+@inline(force=True)
 def _from_centres(p, q, view):
     """[m] from the centres of a group's boxes, in lanes, to that of a node of the other body; in their frame."""
     return sub(move(view.m, q.centre), p.centre)
 
 
-@merged
+@inline(force=True)
 def between_centres(a, b, from_a, from_b, group, other, is_b):
     """[m] from the centres of a group's boxes to that of a node of the other body, in lanes."""
     p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
@@ -78,7 +78,7 @@ def between_centres(a, b, from_a, from_b, group, other, is_b):
     return square_root(dot(d, d))
 
 
-@merged
+@inline(force=True)
 def _facing(a, b, from_a, from_b, group, other, is_b, slack):
     """How a group and a node of the other body face each other, and what is from centre to centre."""
     p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
@@ -88,28 +88,28 @@ def _facing(a, b, from_a, from_b, group, other, is_b, slack):
     return facing_of(cones, group, cones_across, other, view.m, slack), _from_centres(p, q, view)
 
 
-@merged
+@inline(force=True)
 def turned_away(a, b, from_a, from_b, group, other, is_b, slack):
     """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
     facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
     return marks_turned_away(facing, d)
 
 
-@merged
+@inline(force=True)
 def turned_away_while(a, b, from_a, from_b, group, other, is_b, slack, cos_turn, sin_turn, way):
     """The same at every instant of a motion about the views' `m`: see `while_moving`."""
     facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
     return marks_turned_away(while_moving(facing, cos_turn, sin_turn, way), d)
 
 
-@merged
+@inline(force=True)
 def _breadth(box):
     """Sum of the two smaller half sizes: what splitting can make smaller, also where faces are long."""
     half = box.half
     return half.x + half.y + half.z - max(half.x, max(half.y, half.z))
 
 
-@merged
+@inline(force=True)
 def opened(a, node_a, b, node_b):
     """What is looked at next of a node pair, not both leaves: (is of b, group, how many nodes, node across)."""
     if is_leaf(a, node_a) or (
@@ -119,7 +119,7 @@ def opened(a, node_a, b, node_b):
     return False, a.children[node_a, 0], a.children[node_a, 1], node_b
 
 
-@merged
+@inline(force=True)
 def pair_in_group(is_b, group, k, other):
     """Node `k` of a group and the node across, that of a first."""
     node = WIDTH * group + k

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import spliced
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import OVERLAP, Lent, apart, at_address, borrow, table_like
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
 from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, marks_within
@@ -78,7 +78,7 @@ def overlap(lent_a, root_a, lent_b, root_b, frames, slack, scratch, table):
     return Overlap(NO_MEETING, np.int64(-1), np.int64(-1), n_nodes, n_faces)
 
 
-@spliced
+@inline(one_caller=True)
 def overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch):
     """The same by address."""
     return at_address(

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
-from numba.core import types
 
-from clearance.compile.jit import borrowing, inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import lend
+from clearance.compile.numba_private import HeapHandle, HeapType, lay_on_heap
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.bounds import displacement, rounding_slack
@@ -60,24 +60,17 @@ class HeldPair(NamedTuple):
 
 
 if not numba.config.DISABLE_JIT:
-    from numba.experimental import structref
 
-    @structref.register
-    class HeldPairType(types.StructRef):
+    class HeldPairType(HeapType):
         """The compiler's type of a `HeldPair` that lies on the heap."""
 
-        def preprocess_fields(self, fields):
-            """Fields of literal type are fields of that type."""
-            return tuple((name, types.unliteral(kind)) for name, kind in fields)
-
-    class HeldPair(structref.StructRefProxy):
+    class HeldPair(HeapHandle):
         """The handle that Python has of a pair on the heap; fields as above."""
 
-    structref.define_boxing(HeldPairType, HeldPair)
-    structref.define_constructor(HeldPair, HeldPairType, _FIELDS)
+    lay_on_heap(HeldPairType, HeldPair, _FIELDS)
 
 
-@inlined
+@inline
 def _breadth(surface):
     """[m] the greatest extent of a body along an axis of its box."""
     half = box_of(surface, surface.roots[0]).half
@@ -93,7 +86,7 @@ def hold_pair(a, b, room, scratch):
     )  # fmt: skip
 
 
-@inlined
+@inline
 def _is_surely_rigid(pose):
     """True if a (4, 4) matrix is a rigid motion beyond doubt; False for NaN."""
     if not (pose[3, 0] == 0.0 and pose[3, 1] == 0.0 and pose[3, 2] == 0.0 and pose[3, 3] == 1.0):
@@ -120,7 +113,7 @@ class Known(NamedTuple):
     carried: np.ndarray
 
 
-@inlined
+@inline
 def _travel(a, b, known, pose_a, pose_b, frames):
     """[m] an upper bound on what the points of both bodies have moved in all, by the time of these poses.
 
@@ -136,7 +129,7 @@ def _travel(a, b, known, pose_a, pose_b, frames):
     return moved if known.carried[FLOOR] > moved else np.inf
 
 
-@inlined
+@inline
 def _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table):
     """The nearest points of a pair, as `measure_pair` gives them."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
@@ -178,7 +171,7 @@ def nearest_at_poses(held, poses_a, poses_b, checked, afresh, numbers, points, c
     return -1
 
 
-@borrowing
+@kernel(reference_counts=False)
 def _nearest(a, b, known, scratch, poses_a, poses_b, afresh, numbers, points, counts, table):
     """Fills a row for each pose."""
     lent_a, lent_b = lend(a), lend(b)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel, spliced
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import (
     POLYGONS,
     Lent,
@@ -50,7 +50,7 @@ class Answers(NamedTuple):
     exact: np.ndarray
 
 
-@inlined
+@inline
 def _empty_surface(n):
     """Room for one polygon of n vertices that owns all its features."""
     nodes, singles = np.empty((0, 3)), np.empty((0, 4), dtype=np.float32)
@@ -74,7 +74,7 @@ def _empty_surface(n):
     )  # fmt: skip
 
 
-@inlined
+@inline
 def _order(p, i, q, j):
     """-1, 0 or 1: the order of two points by their coordinates."""
     for axis in range(3):
@@ -83,7 +83,7 @@ def _order(p, i, q, j):
     return 0
 
 
-@inlined
+@inline
 def _first_corner(points):
     """The corner from which the polygon, read round, is least: the same one however it is rotated."""
     n = points.shape[0]
@@ -98,7 +98,7 @@ def _first_corner(points):
     return best
 
 
-@inlined
+@inline
 def _comes_first(p, first_p, q, first_q):
     """True if p is the first of the two, whichever way they are given."""
     n, m = p.shape[0], q.shape[0]
@@ -111,7 +111,7 @@ def _comes_first(p, first_p, q, first_q):
     return True
 
 
-@inlined
+@inline
 def _scale_of(ps, qs, origin):
     """The power of two that makes the greatest coordinate difference about 2^200.
 
@@ -129,7 +129,7 @@ def _scale_of(ps, qs, origin):
     return math.ldexp(1.0, k), math.ldexp(1.0, -k)
 
 
-@inlined
+@inline
 def _fill(surface, points, first, origin, scale):
     """Puts one polygon, read from its first corner, and its plane data into `surface`; its greatest reach."""
     n = points.shape[0]
@@ -155,7 +155,7 @@ def _fill(surface, points, first, origin, scale):
     return reach
 
 
-@spliced
+@inline(one_caller=True)
 def _measure(lent_a, lent_b, frames, margin, exact, table):
     """(distance, error, p, q, contact) of the two polygons that are filled in."""
     a, b = borrow(lent_a), borrow(lent_b)

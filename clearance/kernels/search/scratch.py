@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import merged, shared
+from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.predicates import Exact, room_for_exact
 from clearance.kernels.features.refine import Waiting, room_for_waiting
@@ -39,14 +39,14 @@ def new_scratch():
     )
 
 
-@merged
+@inline(force=True)
 def copy(scratch, i, k):
     """Lets what waits at place `i` wait at place `k` too."""
     scratch.nodes[k, 0], scratch.nodes[k, 1] = scratch.nodes[i, 0], scratch.nodes[i, 1]
     scratch.bounds[k] = scratch.bounds[i]
 
 
-@merged
+@inline(force=True)
 def swap(scratch, i, k):
     """Lets what waits at two places change them."""
     nodes, bounds = scratch.nodes, scratch.bounds
@@ -55,7 +55,7 @@ def swap(scratch, i, k):
     bounds[i], bounds[k] = bounds[k], bounds[i]
 
 
-@merged
+@inline(force=True)
 def wait(scratch, n_waiting, node_a, node_b, bound, first):
     """Lets a node pair wait among those from place `first` on, the nearest last; how many wait."""
     k = n_waiting

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import merged, spliced
+from clearance.compile.jit import inline
 from clearance.compile.kernel_table import PARTING, Lent, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, move, row, sub
@@ -66,7 +66,7 @@ class Parting(NamedTuple):
 NOTHING_PARTED = Parting(-math.inf, -math.inf, 0, 0, -1, -1)
 
 
-@merged
+@inline(force=True)
 def _nearest_on_edge(p, q):
     """(the point of an edge nearest to the origin, True for each end that it is of)."""
     inside, x = foot_inside(Vec3(0.0, 0.0, 0.0), p, q)
@@ -77,7 +77,7 @@ def _nearest_on_edge(p, q):
     return p, True, False
 
 
-@merged
+@inline(force=True)
 def _nearest_on_triangle(a, b, c):
     """(the point of a triangle nearest to the origin, True for each corner that it is of): Ericson 2005, 5.1.5."""
     ab, ac = sub(b, a), sub(c, a)
@@ -101,7 +101,7 @@ def _nearest_on_triangle(a, b, c):
     return best, of_a, of_b, of_c
 
 
-@merged
+@inline(force=True)
 def _kept(p, q, r, of_p, of_q, of_r):
     """Those of three points that are kept, in front: (how many, three points)."""
     if not of_q:
@@ -111,7 +111,7 @@ def _kept(p, q, r, of_p, of_q, of_r):
     return int(of_p) + int(of_q) + int(of_r), p, q, r
 
 
-@merged
+@inline(force=True)
 def _nearest_with(n, p, q, r, w):
     """The point nearest to the origin of a simplex of `n` points, 1 to 3, and a new one; the points that it is of.
 
@@ -137,7 +137,7 @@ def _like():
     return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST.m, hit, 0.0, 0.0, 0.0, new_scratch()
 
 
-@merged
+@inline(force=True)
 def _let_wait(n_a, n_b, floor, scratch):
     """Lets each pair of the leaves in both columns of `scratch.left` wait; how many they are."""
     n_waiting = 0
@@ -213,7 +213,7 @@ def part(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch)
     return Parting(-math.inf, -math.inf, 0, n_nodes, face_a, face_b)
 
 
-@spliced
+@inline(one_caller=True)
 def parting_of(table, lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch):
     """The same by address."""
     return at_address(

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import merged
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, lanes_at, marks_within
 from clearance.kernels.arithmetic.vec3 import Vec3, dot, row
 from clearance.kernels.features.bounds import box_reach
@@ -38,7 +38,7 @@ class Top(NamedTuple):
     corner: int
 
 
-@merged
+@inline(force=True)
 def _top_of_face(surface, face, u):
     """The `Top` of one face."""
     top = Top(-math.inf, face, 0)
@@ -49,20 +49,20 @@ def _top_of_face(surface, face, u):
     return top
 
 
-@merged
+@inline(force=True)
 def _top_known(surface, face, u):
     """The `Top` of a face, none for -1."""
     return _top_of_face(surface, face, u) if face >= 0 else Top(-math.inf, face, 0)
 
 
-@merged
+@inline(force=True)
 def _heights(surface, group, u):
     """[m] how far the boxes of a group reach along `u` at most, in lanes."""
     boxes = group_of(surface, group)
     return dot(u, boxes.centre) + box_reach(boxes, u)
 
 
-@merged
+@inline(force=True)
 def _turned_away(surface, group, u):
     """Bits of the nodes of a group that hold nothing which is farthest along a direction within `TILT` of `u`."""
     cones, first = surface.cones, CONE_ROWS * group
@@ -71,7 +71,7 @@ def _turned_away(surface, group, u):
     return marks_within(abs(dot(axis, u)) - cosine, -TILT)
 
 
-@merged
+@inline(force=True)
 def _open(surface, node, u, least, scratch, n_waiting):
     """Lets the children of a node wait that may reach so far [m], the highest last: (waiting, children)."""
     group, count = surface.children[node, 0], surface.children[node, 1]
@@ -85,7 +85,7 @@ def _open(surface, node, u, least, scratch, n_waiting):
     return n_waiting, count
 
 
-@merged
+@inline(force=True)
 def top_of(surface, root, u, face, room, most, column, scratch):
     """The `Top` of a body along a unit vector `u` of its frame, and the leaves that come near it.
 
@@ -121,7 +121,7 @@ def top_of(surface, root, u, face, room, most, column, scratch):
     return top, n_found, n_nodes
 
 
-@merged
+@inline(force=True)
 def high_corner(surface, root, u, face):
     """A corner that is high along `u`, perhaps not the `Top`, on one way down the tree; the nodes that it took."""
     top = _top_known(surface, face, u)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from clearance.compile.jit import merged, spliced
+from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import lane
 from clearance.kernels.mesh.surface import is_leaf
 from clearance.kernels.search.node_pairs import between_centres, opened, pair_in_group
@@ -12,7 +12,7 @@ GUESSES = 5
 """Node pairs that a search which knows nothing yet follows down to faces before it begins at the roots."""
 
 
-@merged
+@inline(force=True)
 def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
     """Puts a node pair among at most `most` from place `first` on, the nearest last; how many they are."""
     if n_found == most:
@@ -24,7 +24,7 @@ def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
     return wait(scratch, first + n_found, node_a, node_b, bound, first) - first
 
 
-@spliced
+@inline(one_caller=True)
 def guess(a, root_a, b, root_b, from_a, from_b, scratch):
     """Lets few pairs of leaves wait over the pair of roots: those whose centres are nearest, level by level.
 

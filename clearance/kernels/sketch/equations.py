@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 POINT_POINT = 1
 """|p - q| = value"""
@@ -37,7 +37,7 @@ IN_LINE = 11
 """A point lies on the line through two centres: its distance from that line is 0."""
 
 
-@inlined
+@inline
 def _distance(x, var, row, i, gradient, g):
     """|a - b| of the points in slots i..i+3; adds g times its derivative to `gradient`."""
     dx = x[var[row, i]] - x[var[row, i + 2]]
@@ -53,7 +53,7 @@ def _distance(x, var, row, i, gradient, g):
     return length
 
 
-@inlined
+@inline
 def _beside(x, var, row, gradient):
     """The distance of the point in slots 0, 1 from the line through those in 2, 3 and 4, 5; fills `gradient`."""
     wx, wy = x[var[row, 4]] - x[var[row, 2]], x[var[row, 5]] - x[var[row, 3]]
@@ -69,7 +69,7 @@ def _beside(x, var, row, gradient):
     return f
 
 
-@inlined
+@inline
 def evaluate(code, var, coef, value, x, row, gradient):
     """The residual of equation `row`; fills `gradient` (8,) with its derivatives by slot."""
     for k in range(8):

@@ -12,11 +12,11 @@ subgraphs.
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
 
 
-@inlined
+@inline
 def _hangs(row, v, line, ends, body_of, body):
     """Whether all ends of the edge other than v (and `line`, its direction) belong to the body."""
     for k in range(5):
@@ -26,7 +26,7 @@ def _hangs(row, v, line, ends, body_of, body):
     return True
 
 
-@inlined
+@inline
 def _hanging(v, line, ends, starts, rows, live, body_of, body, found):
     """Up to two edges that tie v to the body, in `found`; how many."""
     count = 0
@@ -37,7 +37,7 @@ def _hanging(v, line, ends, starts, rows, live, body_of, body, found):
     return count
 
 
-@inlined
+@inline
 def _grow(
     seeds, n_seeds, body, kind, ends, starts, rows, live, theta_of, free, body_of, log, n_log, found
 ):
@@ -146,7 +146,7 @@ def bodies(kind, ends, starts, rows, live, theta_of, free):
     return body_of, log[:n_log], body_start[: count + 1]
 
 
-@inlined
+@inline
 def assumed_bodies(kind, ends, starts, rows, live, body_of, n_bodies, turn, lack, home):
     """Makes bodies of homes of at least three points, each hung on those before it by at most two edges.
 
@@ -186,7 +186,7 @@ def assumed_bodies(kind, ends, starts, rows, live, body_of, n_bodies, turn, lack
     return log[:n_log], start[: count + 1]
 
 
-@inlined
+@inline
 def _augment(row, stamp, hold, ends, owner, capacity, paid, seen, came, queue):
     """Finds a freedom for an edge by moving others; True when it has one. `hold` maps vertices to
     nodes."""
@@ -224,7 +224,7 @@ def _augment(row, stamp, hold, ends, owner, capacity, paid, seen, came, queue):
     return False
 
 
-@inlined
+@inline
 def _move_payment(e, before, node, paid):
     """Takes edge e off the list of node `before` (-1: none) and puts it on that of `node`."""
     if before >= 0:

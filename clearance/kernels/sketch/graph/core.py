@@ -6,7 +6,7 @@ A part is what equations connect; a node is a rigid body or a single vertex. Not
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.union_find import find_root
 from clearance.kernels.sketch.graph.blocks import match
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
@@ -60,7 +60,7 @@ def components(kind, ends, theta_of, absolute):
     return part, count, hold
 
 
-@inlined
+@inline
 def turns_by_rule(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies, absolute):
     """The turn (v,) at which rules A and B take in every vertex of a core with freedom left, the conditions
     (v,) that are assumed for its node then, and its home (v,), a cluster that begins with an assumption.
@@ -113,7 +113,7 @@ def turns_by_rule(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies
     return turn, lack, home
 
 
-@inlined
+@inline
 def _by_turn(ends, turn):
     """The order of the edges by their last vertex' turn, and the edges with their last vertex first."""
     m = ends.shape[0]
@@ -132,7 +132,7 @@ def _by_turn(ends, turn):
     return np.argsort(late, kind="mergesort"), later
 
 
-@inlined
+@inline
 def matched_by_turn(ends, between, hold, capacity, turn, lack):
     """The node of every edge: those of rules A and B keep the freedom that they assume, if that works out."""
     order, later = _by_turn(ends, turn)
@@ -147,7 +147,7 @@ def matched_by_turn(ends, between, hold, capacity, turn, lack):
     return match(order, later, between, hold, capacity)
 
 
-@inlined
+@inline
 def _seeds(kind, ends, live, free, part, hold, best, turn):
     """The edge (parts,) whose ends begin every part that has no body to begin with: the first by turn."""
     n_parts = best.shape[0]
@@ -167,7 +167,7 @@ def _seeds(kind, ends, live, free, part, hold, best, turn):
     return seed
 
 
-@inlined
+@inline
 def bases(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies, turn):
     """Chooses the initial cluster of every part of the core: ground, body, or an edge's two ends.
 
@@ -210,7 +210,7 @@ def bases(kind, ends, live, free, part, n_parts, hold, body_of, n_bodies, turn):
     return held[:n_bodies], n_bodies, made
 
 
-@inlined
+@inline
 def nodes_of_core(kind, free, body_of, held, n_bodies):
     """Contracted nodes: (hold (v,), capacity (nodes,)); bodies first, then single vertices."""
     n = kind.shape[0]
@@ -232,7 +232,7 @@ def nodes_of_core(kind, free, body_of, held, n_bodies):
     return hold, capacity[:count]
 
 
-@inlined
+@inline
 def edges_between(ends, live, hold, body_of):
     """The live edges that are not inside one body or inside what is held."""
     out = np.zeros(ends.shape[0], np.uint8)
@@ -255,7 +255,7 @@ def edges_between(ends, live, hold, body_of):
     return out
 
 
-@inlined
+@inline
 def vertices_by_part(hold, node_part, body_of, n_clusters):
     """The vertices of every cluster, bodies' members together, as (starts, vertices)."""
     start = np.zeros(n_clusters + 1, np.int64)
@@ -274,7 +274,7 @@ def vertices_by_part(hold, node_part, body_of, n_clusters):
     return start, out
 
 
-@inlined
+@inline
 def rows_by_part(owner, between, node_part, n_clusters):
     """The rows that place every cluster as (starts, rows)."""
     start = np.zeros(n_clusters + 1, np.int64)

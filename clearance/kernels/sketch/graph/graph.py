@@ -10,7 +10,7 @@ is one equation.
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import LINEAR, RATIO
 
 X, Y, DIRECTION, OFFSET, RADIUS = 0, 1, 2, 3, 4
@@ -21,7 +21,7 @@ IN_GRAPH, MERGED, REPEATED, CONTRADICTED = 0, 1, 2, 3
 """What became of an equation: an edge, used by a merge, implied by merges, or contrary to them."""
 
 
-@inlined
+@inline
 def _root(parent, scale, shift, i):
     """The root r of i and the pair (a, b) with x_i = a x_r + b."""
     a, b = 1.0, 0.0
@@ -32,7 +32,7 @@ def _root(parent, scale, shift, i):
     return i, a, b
 
 
-@inlined
+@inline
 def _mergeable(code, var, role, row):
     """How many variables (1 or 2) a linear relation of directions, offsets or radii has; else 0."""
     if code[row] != LINEAR and code[row] != RATIO:

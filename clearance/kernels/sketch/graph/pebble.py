@@ -10,11 +10,11 @@ Source: Jacobs and Hendrickson 1997; Lee and Streinu 2008 for hypergraphs and ot
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.graph.graph import POINT
 
 
-@inlined
+@inline
 def _search(v, stamp, ends, paid_start, paid_next, pebbles, seen, came, via, queue):
     """Frees one pebble onto v by passing payments along; True when one was found.
 
@@ -42,7 +42,7 @@ def _search(v, stamp, ends, paid_start, paid_next, pebbles, seen, came, via, que
     return False
 
 
-@inlined
+@inline
 def _pass(v, w, paid_start, paid_next, pebbles, came, via):
     """Lets w pay for the edge it was reached by, that edge's payer for the one before, and so on to
     v."""

@@ -11,18 +11,18 @@ and offset, a circle's centre and radius) are ours.
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.graph.graph import GROUND, POINT, SIZE, SLIDE, TURN
 
 
-@inlined
+@inline
 def _freedom(kind):
     if kind == GROUND:
         return 3
     return 2 if kind == POINT else 1
 
 
-@inlined
+@inline
 def _collect(v, partner, starts, rows, live, found):
     """Fills `found` with the live edges of v and partner, each once; the count, or 4 when there are
     more."""
@@ -47,7 +47,7 @@ def _collect(v, partner, starts, rows, live, found):
     return count
 
 
-@inlined
+@inline
 def _independent(v, partner, found, count, kind, ends, absolute):
     """Whether the count of freedoms allows these edges at v (3 must remain for the part as a
     whole)."""
@@ -69,7 +69,7 @@ def _independent(v, partner, found, count, kind, ends, absolute):
     return total - count >= 3
 
 
-@inlined
+@inline
 def _joint_partner(v, kind, ends, starts, rows, live, slide_count, theta_of, degree, removed):
     """The vertex that v may only be placed with: a direction's one offset, a centre's own radius;
     or -1."""

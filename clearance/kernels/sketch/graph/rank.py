@@ -6,7 +6,7 @@ derivative at the solution does. Not for: whole parts (`clearance.sketch.freedom
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, TURN
 
@@ -15,7 +15,7 @@ ALIKE = 1e-12
 touches is marked as well."""
 
 
-@inlined
+@inline
 def _row(s, row, x, v, partner, size, gradient, out):
     """The derivative of an equation by the freedoms of v and its partner, as a unit vector in `out`."""
     evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)

@@ -10,13 +10,13 @@ Source: Kwon, Lee, Lee 2001, section 4.1; candidates for the least cycle: Horton
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 
 RULED = 100
 """Nodes of a core up to which the rules are applied: the search for cycles grows with the cube."""
 
 
-@inlined
+@inline
 def _labels(row_nodes, row, group, mine):
     """The distinct clusters of an equation, in `mine`; how many."""
     count = 0
@@ -34,7 +34,7 @@ def _labels(row_nodes, row, group, mine):
     return count
 
 
-@inlined
+@inline
 def _between(row_nodes, group, n):
     """How many equations join every two clusters (n, n), those of just the two."""
     out, mine = np.zeros((n, n), np.int64), np.empty(5, np.int64)
@@ -45,7 +45,7 @@ def _between(row_nodes, group, n):
     return out
 
 
-@inlined
+@inline
 def _freedom(inside, row_nodes, group, dof):
     """The freedom left in a set of clusters: their own less the equations among them."""
     total, mine = 0, np.empty(5, np.int64)
@@ -61,7 +61,7 @@ def _freedom(inside, row_nodes, group, dof):
     return total
 
 
-@inlined
+@inline
 def _basic(joined, dof):
     """Two or three clusters that the equations among them make rigid (Fig. 8 b, c, d); -1 pads."""
     n = dof.shape[0]
@@ -82,7 +82,7 @@ def _basic(joined, dof):
     return -1, -1, -1
 
 
-@inlined
+@inline
 def _tree(root, joined, came, depth):
     """Breadth first from a cluster: `came` and `depth` (n,), -1 where not reached."""
     n = joined.shape[0]
@@ -100,7 +100,7 @@ def _tree(root, joined, came, depth):
                 tail += 1
 
 
-@inlined
+@inline
 def rule_b(joined, row_nodes, group, dof):
     """Marks (n,) of the cycle of least freedom and most vertices; no mark where there is no cycle.
 
@@ -138,13 +138,13 @@ def rule_b(joined, row_nodes, group, dof):
     return best
 
 
-@inlined
+@inline
 def rule_a(joined):
     """Marks (n,) of everything: without a cycle no assumption can contradict another."""
     return np.ones(joined.shape[0], np.uint8)
 
 
-@inlined
+@inline
 def _under(inside, joined, dof):
     """The two marked clusters to merge with the fewest assumptions (Fig. 13 b, c, d); without a body,
     the two of an initial one (Fig. 13 a). -1 where nothing is joined."""
@@ -165,7 +165,7 @@ def _under(inside, joined, dof):
     return first, second
 
 
-@inlined
+@inline
 def _take_in(a, b, c, group, own, turn, now, missing, lacking):
     """Gives the nodes of the clusters a, b and c their turns, where a body starts it goes first; the next.
 

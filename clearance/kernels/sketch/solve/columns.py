@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT
 from clearance.kernels.sketch.solve.place import assign
 
 
-@inlined
+@inline
 def _column(s, i, first):
     """The column of variable i and its factor; -1 where it has none."""
     if i < 0 or s.vertex_of[i] < 0 or first[s.vertex_of[i]] < 0:

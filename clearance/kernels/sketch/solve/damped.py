@@ -10,13 +10,13 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch.solve.motion import keep, move, room, total_of
 
 
-@inlined
+@inline
 def nodes_of(s, vertices, rows, first, n):
     """Nodes (vertices or bodies) by first column: (ids by column, widths, nodes (m, 8) of every row)."""
     node_at = np.full(n, -1, np.int64)
@@ -41,7 +41,7 @@ def nodes_of(s, vertices, rows, first, n):
     return node_at, width, of_row
 
 
-@inlined
+@inline
 def incidence(of_row, count):
     """The rows of every node as (starts, rows); a row that names a node twice is listed twice."""
     start = np.zeros(count + 1, np.int64)
@@ -60,7 +60,7 @@ def incidence(of_row, count):
     return start, mine
 
 
-@inlined
+@inline
 def _breadth_first(root, of_row, start, mine, order, seen):
     """Fills `order` with all nodes, breadth first from `root`, then from what is left."""
     count = start.shape[0] - 1
@@ -87,7 +87,7 @@ def _breadth_first(root, of_row, start, mine, order, seen):
                     tail += 1
 
 
-@inlined
+@inline
 def narrow(vertices, first, n, node_at, width, of_row, start, mine):
     """Renumbers the columns in `first` so that the normal matrix is a narrow band; its half width.
 
@@ -118,7 +118,7 @@ def narrow(vertices, first, n, node_at, width, of_row, start, mine):
     return half, column
 
 
-@inlined
+@inline
 def _entries(s, row, x, first, body_of, pivot, gradient, column, value):
     """The derivative of an equation as (column, value) pairs, from its derivatives by slot; how many."""
     count = 0
@@ -150,7 +150,7 @@ def _entries(s, row, x, first, body_of, pivot, gradient, column, value):
     return count
 
 
-@inlined
+@inline
 def _normal(s, rows, x, first, body_of, pivot, band, right, gradient):
     """Fills the band (n, w) of the normal matrix's upper half and minus the gradient (n,)."""
     column, value = np.empty(24, np.int64), np.empty(24)
@@ -166,7 +166,7 @@ def _normal(s, rows, x, first, body_of, pivot, band, right, gradient):
                     band[column[p], column[q] - column[p]] += value[p] * value[q]
 
 
-@inlined
+@inline
 def _solve_band(band, right):
     """Solves the positive definite system in place by Cholesky's method; False when it is not definite."""
     n, w = band.shape
@@ -192,7 +192,7 @@ def _solve_band(band, right):
     return True
 
 
-@inlined
+@inline
 def descend_damped(
     s,
     vertices,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT
 from clearance.kernels.sketch.solve.motion import freedoms, move, pivots_of
@@ -37,7 +37,7 @@ FREED = 4
 """How many times more unknowns a cluster may have with its bodies' points free than with bodies."""
 
 
-@inlined
+@inline
 def _holds(s, edges, x, gradient, tolerance):
     """Whether every edge (-1 pads) already holds."""
     for row in edges:
@@ -48,7 +48,7 @@ def _holds(s, edges, x, gradient, tolerance):
     return True
 
 
-@inlined
+@inline
 def _base_of(s, plan, rows, inside):
     """The initial cluster, if that is all that these rows hang on; else -1. `inside` marks the cluster."""
     base = -1
@@ -64,7 +64,7 @@ def _base_of(s, plan, rows, inside):
     return base
 
 
-@inlined
+@inline
 def _freed(s, plan, vertices, rows, base, inside):
     """A cluster with the points of its bodies, and of the base, as (vertices, rows), inner rows and all.
 
@@ -103,7 +103,7 @@ def _freed(s, plan, vertices, rows, base, inside):
     return free[:n_free], out[:count]
 
 
-@inlined
+@inline
 def _put_back(s, plan, base, vertices, x, before, inside):
     """Moves the vertices rigidly so that the base lies where it was; how far it is off then [m].
 
@@ -139,7 +139,7 @@ def _put_back(s, plan, base, vertices, x, before, inside):
     return off
 
 
-@inlined
+@inline
 def _find_freed(
     s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, alone_in_part
 ):

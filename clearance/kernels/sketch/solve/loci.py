@@ -6,7 +6,7 @@ branch ever flips. Not for: placing (`sketch.solve.place`).
 
 import math
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import (
     CIRCLE_CIRCLE,
     LENGTHS,
@@ -23,7 +23,7 @@ GRAZING = 4e-13
 touching."""
 
 
-@inlined
+@inline
 def _unit_line(nx, ny, c):
     length = math.hypot(nx, ny)
     if length == 0.0:
@@ -31,14 +31,14 @@ def _unit_line(nx, ny, c):
     return 1, nx / length, ny / length, c / length
 
 
-@inlined
+@inline
 def _other(s, row, i, x):
     """The coordinates of the end of a point pair (slots 0..3) that is not point i."""
     k = 2 if s.var[row, 0] == i else 0
     return x[s.var[row, k]], x[s.var[row, k + 1]]
 
 
-@inlined
+@inline
 def _lengths_locus(s, row, i, x):
     """Where p may be for |p - q| = k |u - w| or |p - q| = k |p - w| (p at i, in either pair)."""
     k = s.value[row]
@@ -66,7 +66,7 @@ def _lengths_locus(s, row, i, x):
     return 2, (qx - k * k * wx) / g, (qy - k * k * wy) / g, radius
 
 
-@inlined
+@inline
 def locus(s, row, i, x):
     """Where the point at variable i may lie for equation `row`: (1, nx, ny, c), (2, cx, cy, r) or
     (0, ...)."""
@@ -108,7 +108,7 @@ def locus(s, row, i, x):
     return 1, cos, sin, cos * qx + sin * qy
 
 
-@inlined
+@inline
 def nearest_on(kind, a, b, c, px, py):
     """The nearest point of a locus to p, and whether there is one."""
     if kind == 1:
@@ -121,7 +121,7 @@ def nearest_on(kind, a, b, c, px, py):
     return c >= 0.0, a + c * dx / length, b + c * dy / length
 
 
-@inlined
+@inline
 def root_of(square, scale):
     """The square root, 0 for a negative number within rounding of `scale`, -1 otherwise."""
     if square >= 0.0:
@@ -129,7 +129,7 @@ def root_of(square, scale):
     return 0.0 if square >= -GRAZING * scale else -1.0
 
 
-@inlined
+@inline
 def _side(value, plus, minus):
     """Which of two solutions: the sketch's side, or the nearer one when the sketch lies on the
     border."""
@@ -138,7 +138,7 @@ def _side(value, plus, minus):
     return 1.0 if value > 0.0 else -1.0
 
 
-@inlined
+@inline
 def meet(k1, a1, b1, c1, k2, a2, b2, c2, sketch1, sketch2, px, py, turned):
     """The common point of two loci on the sketch's side (`turned` 1) or the other (-1). p: the point
     in the sketch."""

@@ -8,13 +8,13 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch.solve.place import assign
 
 
-@inlined
+@inline
 def columns(s, vertices, body_of, first):
     """Fills `first` (v,) with the first column of every vertex (of its body, if it has one); their
     number.
@@ -38,7 +38,7 @@ def columns(s, vertices, body_of, first):
     return count
 
 
-@inlined
+@inline
 def freedoms(s, vertices, body_of):
     """How many unknowns a cluster has; a body's members are listed together."""
     count, last = 0, -1
@@ -52,7 +52,7 @@ def freedoms(s, vertices, body_of):
     return count
 
 
-@inlined
+@inline
 def total_of(s, rows, x, gradient):
     """The sum of squared residuals."""
     total = 0.0
@@ -62,7 +62,7 @@ def total_of(s, rows, x, gradient):
     return total
 
 
-@inlined
+@inline
 def move(s, vertices, step, size, x, first, body_of, pivot):
     """Adds `size` times `step` to the vertices; bodies turn and shift exactly."""
     for v in vertices:  # offsets first: they need the directions before the turn
@@ -98,7 +98,7 @@ def move(s, vertices, step, size, x, first, body_of, pivot):
             pivot[b, 1] += size * step[first[v] + 1]
 
 
-@inlined
+@inline
 def keep(s, vertices, x, kept, back):
     """Copies the vertices' numbers into `kept`, or back from it; returns how many there are."""
     at = 0
@@ -121,7 +121,7 @@ def keep(s, vertices, x, kept, back):
     return at
 
 
-@inlined
+@inline
 def room(s, vertices):
     """How many numbers `keep` needs."""
     count = 0
@@ -130,7 +130,7 @@ def room(s, vertices):
     return count
 
 
-@inlined
+@inline
 def pivots_of(s, body_of, n_bodies, x):
     """The mean of every body's points (n_bodies, 2)."""
     out = np.zeros((n_bodies, 2))

@@ -9,14 +9,14 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch.solve.motion import columns, keep, move, room, total_of
 from clearance.kernels.sketch.solve.place import assign
 
 
-@inlined
+@inline
 def _spread(s, i, g, x, pivot, body, at, jacobian, row):
     """Adds g times the derivative of variable i by the columns from `at` on."""
     v = s.vertex_of[i]
@@ -42,7 +42,7 @@ def _spread(s, i, g, x, pivot, body, at, jacobian, row):
         jacobian[row, at + 2] -= g * (c * pivot[body, 0] + si * pivot[body, 1])
 
 
-@inlined
+@inline
 def assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient):
     """Fills residual (m,) and jacobian (m, n) of the equations; the sum of squares."""
     total = 0.0
@@ -60,7 +60,7 @@ def assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient):
     return total
 
 
-@inlined
+@inline
 def _eliminate(matrix, right):
     """Solves in place, by elimination with row pivots; an unknown whose pivot is lost in rounding is left at 0,
     so that a singular matrix gives neither an error nor a step to where rounding hides all errors."""
@@ -92,7 +92,7 @@ def _eliminate(matrix, right):
         right[k] /= matrix[k, k]
 
 
-@inlined
+@inline
 def descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
     """Moves the vertices until |residual| <= floor or nothing is gained; True when <= tolerance.
 
@@ -144,7 +144,7 @@ def descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longe
     return total <= tolerance * tolerance
 
 
-@inlined
+@inline
 def _shake(s, vertices, x, body_of, pivot, spread, state):
     """Moves every vertex (bodies as a whole) by up to `spread`, by a fixed sequence; its next
     state."""
@@ -171,7 +171,7 @@ def _shake(s, vertices, x, body_of, pivot, spread, state):
     return state
 
 
-@inlined
+@inline
 def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts):
     """Moves the vertices until their equations hold; True when they do to `tolerance`.
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import inlined
+from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import ACROSS, LINE_CIRCLE, MIDDLE_ON, evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SIZE, SLIDE, TURN
 from clearance.kernels.sketch.solve.loci import locus, meet, nearest_on, root_of
@@ -35,7 +35,7 @@ class System(NamedTuple):
     ends: np.ndarray
 
 
-@inlined
+@inline
 def assign(s, v, number, x):
     """Sets a class of directions, offsets or radii: its root and every merged variable."""
     for at in range(s.member_start[v], s.member_start[v + 1]):
@@ -43,7 +43,7 @@ def assign(s, v, number, x):
         x[i] = s.scale[i] * number + s.shift[i]
 
 
-@inlined
+@inline
 def _place_point(s, v, rows, count, x, sketch, turned):
     i = s.root[v]
     px, py = sketch[i], sketch[i + 1]
@@ -67,7 +67,7 @@ def _place_point(s, v, rows, count, x, sketch, turned):
     return good
 
 
-@inlined
+@inline
 def _place_number(s, v, row, x, gradient):
     """Places an offset or a radius, in which every equation is linear; a radius must not be
     negative."""
@@ -86,7 +86,7 @@ def _place_number(s, v, row, x, gradient):
     return True
 
 
-@inlined
+@inline
 def _line_condition(s, row, own, x):
     """(1, px, py, w) for n . p - d = w on the line at variables own, own + 1; (2, ux, uy, 0) for n
     || u."""
@@ -108,7 +108,7 @@ def _line_condition(s, row, own, x):
     return 1, px, py, sign * (w + s.shift[d])
 
 
-@inlined
+@inline
 def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
     """Gives the line at `own` the normal (nx, ny) and offset d; its direction stays near the
     sketch's."""
@@ -119,7 +119,7 @@ def _set_line(s, turn, slide, own, nx, ny, d, x, sketch):
         assign(s, slide, d, x)
 
 
-@inlined
+@inline
 def _place_line(s, turn, slide, rows, count, x, sketch, turned):
     """Places a line from at most two conditions; `slide` -1 places a direction alone (from one)."""
     own = s.root[slide] - 1 if slide >= 0 else s.root[turn]
@@ -170,7 +170,7 @@ def _place_line(s, turn, slide, rows, count, x, sketch, turned):
     return True
 
 
-@inlined
+@inline
 def place(s, v, partner, rows, x, sketch, gradient, turned):
     """Places vertex v, with its partner if any, from `rows` (-1 pads); False when there is no such
     place. `turned` -1 takes the branch on the other side than the sketch's, 1 the sketch's."""

@@ -7,13 +7,13 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.graph.graph import POINT, SIZE, TURN
 from clearance.kernels.sketch.solve.motion import columns, move, pivots_of
 from clearance.kernels.sketch.solve.search import next_share, solve_block
 
 
-@inlined
+@inline
 def _scatter(s, vertices, body_of, first, reach, step, state):
     """Fills `step` with any turn and a shift of up to `reach` for every body and vertex; the new state."""
     for v in vertices:
@@ -32,7 +32,7 @@ def _scatter(s, vertices, body_of, first, reach, step, state):
     return state
 
 
-@inlined
+@inline
 def _apart(s, vertices, x, y, size):
     """[m] the largest difference of two places of the cluster; directions as arcs at `size`."""
     gap = 0.0
@@ -47,7 +47,7 @@ def _apart(s, vertices, x, y, size):
     return gap
 
 
-@inlined
+@inline
 def _positive(s, vertices, x):
     """Whether every radius of the cluster is above 0."""
     for v in vertices:

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from clearance.compile.jit import inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, TURN
 from clearance.kernels.sketch.solve.damped import descend_damped, incidence, narrow, nodes_of
@@ -42,14 +42,14 @@ WORSE = 1.5
 """[-] How much larger the sum of squares may be after a kick that is kept."""
 
 
-@inlined
+@inline
 def next_share(state):
     """(state, uniform number in [0, 1)) of a linear congruential sequence."""
     state = (state * 6364136223846793005 + 1442695040888963407) & 0x7FFFFFFFFFFFFFFF
     return state, (state >> 22) / 2199023255552.0
 
 
-@inlined
+@inline
 def _violated(s, rows, x, of_row, state, gradient):
     """A node of an equation that does not hold, chosen with the error as weight; (state, node)."""
     whole = 0.0
@@ -75,7 +75,7 @@ def _violated(s, rows, x, of_row, state, gradient):
     return state, chosen
 
 
-@inlined
+@inline
 def _reach(s, rows, x, node, of_row, start, mine, otherwise):
     """The mean distance between the points of a node's equations; `otherwise` where there are none."""
     total, count = 0.0, 0
@@ -94,7 +94,7 @@ def _reach(s, rows, x, node, of_row, start, mine, otherwise):
     return total / count if total > 0.0 else otherwise
 
 
-@inlined
+@inline
 def _kick(node, ring, of_row, start, mine, reach, amount, column, width, is_turn, step, state):
     """Fills `step` with random moves of a node and of its neighbours up to `ring` equations away."""
     count = width.shape[0]
@@ -121,7 +121,7 @@ def _kick(node, ring, of_row, start, mine, reach, amount, column, width, is_turn
     return state
 
 
-@inlined
+@inline
 def _spacing(s, vertices, x):
     """A length for kicks where no equation has two points: the extent over the root of their number."""
     low, high, count = math.inf, -math.inf, 1
@@ -133,7 +133,7 @@ def _spacing(s, vertices, x):
     return (high - low) / math.sqrt(count) if count > 2 and high > low else 1.0
 
 
-@inlined
+@inline
 def search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks):
     """Moves the vertices of a large cluster until their equations hold; True when they do.
 

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.errors import unwritable
-from clearance.simulate.spool_folder import clear, own_folder, take_away
+from clearance.simulate.rows_folder import clear, own_folder, take_away
 
 SAVE_AFTER = 1.0
 """[s] between two states of a pass: so much work is lost at most. Writing one takes milliseconds."""
@@ -65,8 +65,8 @@ class Rows:
 
 
 @dataclass(eq=False)
-class Spool(Rows):
-    """Rows in a folder; made by `open_spool`.
+class ResumableRows(Rows):
+    """Rows in a folder; made by `open_resumable_rows`.
 
     Attributes:
         say: told, in one line, if a run goes on or starts anew.
@@ -122,7 +122,7 @@ class Spool(Rows):
             self._told = True
             n_done, n_all = spans[done - 1].stop, spans[-1].stop
             self.say(f"resuming: {n_done:,} of {n_all:,} steps are kept of an interrupted run")
-        return _SpooledLog(done, state, path, arrays)
+        return _ResumableLog(done, state, path, arrays)
 
     def let_go(self) -> None:
         for mapped in self._maps.values():
@@ -130,7 +130,7 @@ class Spool(Rows):
 
 
 @dataclass(eq=False)
-class _SpooledLog(PassLog):
+class _ResumableLog(PassLog):
     path: Path = Path()
     arrays: list[mmap.mmap] = field(default_factory=list)
     _saved: float = field(default_factory=time.monotonic)
@@ -148,22 +148,22 @@ class _SpooledLog(PassLog):
 
 
 @contextmanager
-def open_spool(place: Path, say: Callable[[str], None]) -> Iterator[Spool]:
-    """The spool in the folder `place`, for this process alone; taken away if the block is left without an error.
+def open_resumable_rows(place: Path, say: Callable[[str], None]) -> Iterator[ResumableRows]:
+    """The rows in the folder `place`, for this process alone; taken away if the block is left without an error.
 
     Raises:
         Unwritable: another run is writing there, something is there that we have not made, or there is no way or
             no room to write.
     """
     with own_folder(place):
-        spool = Spool(place, say)
+        rows = ResumableRows(place, say)
         try:
-            yield spool
+            yield rows
         except BaseException:
             if not any(place.glob("*.state")):  # nothing was worth keeping yet
-                spool.close()
+                rows.close()
             raise
-        spool.close()
+        rows.close()
 
 
 def let_go(mapped: mmap.mmap) -> None:

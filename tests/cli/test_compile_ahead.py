@@ -11,7 +11,7 @@ from pathlib import Path
 import numba
 import pytest
 
-from clearance import ahead
+from clearance.simulate.parts import usable_cores
 
 ROOT = Path(__file__).parents[2]
 
@@ -19,17 +19,17 @@ pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is com
 
 FROM_A_SECOND_PROCESS = """
 import json
-from clearance import ahead
+from clearance.cli import compile_ahead
 from clearance.compile import kernel_table
 from clearance.kernels.search import body_pair
 from clearance.kernels.search import separating_planes as parting
 from clearance.kernels.features import refine
-told = {"kept": [kernel_table.is_kept(place) for place in ahead.FIRST], "first": ahead.start()}
-for place in ahead.FIRST:
+told = {"kept": [kernel_table.is_kept(place) for place in compile_ahead.FIRST], "first": compile_ahead.start()}
+for place in compile_ahead.FIRST:
     kernel_table.compile_kernel(place)
 told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, refine.refine, parting.part)]
 told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, refine.refine, parting.part)]
-told["again"] = ahead._start_once.__wrapped__()
+told["again"] = compile_ahead._start_once.__wrapped__()
 print(json.dumps(told))
 """
 
@@ -63,7 +63,8 @@ from clearance.kernels.search import body_pair
 from clearance.kernels.features import common_point
 from clearance.kernels.features import meeting
 do = f"""import sys; sys.path[:] = {sys.path!r}
-from clearance.kernels.search import body_pair; from clearance.compile import kernel_table as t; t.compile_kernel(t.MEETING)"""
+from clearance.kernels.search import body_pair; from clearance.compile import kernel_table
+kernel_table.compile_kernel(kernel_table.MEETING)"""
 process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
 kernel_table.await_from(process, kernel_table.TOGETHER)
 kernel_table.compile_kernel(kernel_table.MEETING)
@@ -94,18 +95,18 @@ print(json.dumps([len(listened), compiled == [kernel_table.WINDING_NUMBER]]))
 
 ENDS_WITH_THE_FIRST = """
 import json, os, signal, sys
-from clearance import ahead
-process = ahead._second_process()
+from clearance.cli import compile_ahead
+process = compile_ahead._second_process()
 print(json.dumps(process.pid), flush=True)
 os.kill(os.getpid(), signal.SIGKILL)
 """
 
 WHERE_NO_PROCESS_STARTS = """
 import json, sys
-from clearance import ahead
+from clearance.cli import compile_ahead
 from clearance.compile import kernel_table
 sys.executable = "/nowhere/python"
-print(json.dumps([ahead.start(), len(kernel_table._elsewhere)]))
+print(json.dumps([compile_ahead.start(), len(kernel_table._elsewhere)]))
 """
 
 BEHIND_ONE_THAT_KEEPS_ITS_TURN = """
@@ -139,7 +140,7 @@ def told_by(script, folder, ends=0):
     return json.loads(done.stdout)
 
 
-@pytest.mark.skipif(ahead.usable_cores() < 2, reason="one core: nothing is compiled ahead")
+@pytest.mark.skipif(usable_cores() < 2, reason="one core: nothing is compiled ahead")
 def test_what_the_second_process_compiles_is_taken_and_not_made_again(tmp_path):
     told = told_by(FROM_A_SECOND_PROCESS, tmp_path)
     assert told["kept"] == [False, False, False]
@@ -179,6 +180,6 @@ def test_the_second_process_ends_with_a_first_that_is_killed(tmp_path):
         time.sleep(0.01)
 
 
-@pytest.mark.skipif(ahead.usable_cores() < 2, reason="one core: nothing is compiled ahead")
+@pytest.mark.skipif(usable_cores() < 2, reason="one core: nothing is compiled ahead")
 def test_where_no_process_can_be_started_all_is_left_to_the_first(tmp_path):
     assert told_by(WHERE_NO_PROCESS_STARTS, tmp_path) == [True, 0]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from clearance.compile import kernel_table
-from clearance.compile.jit import borrowing, inlined, kernel
+from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import MEETING, at_address, call
 from clearance.kernels.features import meeting
 from tests.reached import reached
@@ -73,7 +73,7 @@ def test_what_only_kernels_can_call_is_refused_to_python():
         rigid(np.eye(4))
 
 
-@inlined
+@inline
 def first_of(arrays):
     return arrays[0]
 
@@ -86,11 +86,11 @@ def test_an_array_is_not_handed_on_to_a_kernel_that_counts_no_references():
     def counting(arrays):
         return first_of(arrays)[0]
 
-    @borrowing
+    @kernel(reference_counts=False)
     def not_counting(arrays):
         return first_of(arrays)[0]
 
     arrays = (np.ones(2), np.zeros(2))
     assert counting(arrays) == 1.0
-    with pytest.raises(Exception, match="first_of returns an array to a kernel that is `borrowing`"):
+    with pytest.raises(Exception, match="first_of returns an array to a kernel without reference counts"):
         not_counting(arrays)

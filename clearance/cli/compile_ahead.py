@@ -2,8 +2,9 @@
 
 The compiler takes one function at a time in a process, which leaves all cores but one idle for half a minute. The
 second process fills the cache and says what it has filled in; who comes to a kernel that it is busy with waits for
-that word, or for its end (`kernel_table`). Two that start at once, as tests do, take turns. Not for: what belongs
-to one command alone.
+that word, or for its end (`kernel_table`). Two that start at once, as tests do, take turns. Only the command line
+starts it; a program that imports the package compiles in its own process. Not for: what belongs to one command
+alone.
 """
 
 from __future__ import annotations
@@ -19,9 +20,12 @@ from pathlib import Path
 
 import numba
 
+import clearance.kernels.motion.certify
+import clearance.kernels.search.body_pair  # noqa: F401 - both enter their kernels in the table
 from clearance.compile import kernel_table
 from clearance.compile.kernel_cache import cache_root
 from clearance.compile.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
+from clearance.simulate.parts import usable_cores
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 """Set in the environment of the second process, so that no other one follows whatever it comes to run."""
@@ -67,22 +71,15 @@ def _second_process() -> subprocess.Popen:
     Its stdin is a pipe that closes when this process ends, however that is, and it with it. It is in no terminal,
     which would stop it beside another run that waits for it.
     """
-    package = str(Path(__file__).parents[1])
+    package = str(Path(__file__).parents[2])
     found = [*filter(None, sys.path), *([] if package in sys.path else [package])]
-    script = f"import sys; sys.path[:] = {found!r}; from clearance.ahead import main; main()"
+    script = f"import sys; sys.path[:] = {found!r}; from clearance.cli.compile_ahead import main; main()"
     options = [*subprocess._args_from_interpreter_flags(), "-P"]
     return subprocess.Popen(
         [sys.executable, *options, "-c", script],
         env={**os.environ, IS_SECOND: "1"}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL, start_new_session=True,
     )  # fmt: skip
-
-
-def usable_cores() -> int:
-    """The cores that this process may run on."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def main() -> None:

@@ -1,0 +1,285 @@
+"""What we use of numba beyond its documented interface, all of it, with a test each (`tests/compile`).
+
+A new numba may change any of this in a minor version, so `pyproject.toml` bounds numba to the versions that these
+tests ran with. Not for: `numba.extending` and `numba.types`, which are documented.
+
+| here | of numba |
+|---|---|
+| `own_level` | `config.OPT` is read where LLVM's passes are chosen, under the compiler's lock |
+| `Kernel` | `CPUDispatcher`: `compile`, `get_call_template`; the flags of the caller; the option `_nrt` |
+| `KernelForKernels` | `CPUDispatcher`: `_insert`, `_compile_for_args` |
+| `KeptKernels` | `_Cache`; `CompileResult._reduce`, `_rebuild`; `magic_tuple` names the processor |
+| `entry_address`, `call_at`, `stop_if` | the calling convention |
+| `lend_tuple`, `borrow_tuple` | a tuple is a value that can lie on the stack |
+| `elements_at`, `array_from` | an array is a structure; its `data` is where the first element lies |
+| `HeapType`, `lay_on_heap` | `numba.experimental.structref` |
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import pickle
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+from llvmlite import ir
+from numba import config, types
+from numba.core import cgutils
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.imputils import impl_ret_borrowed
+from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.serialize import dumps
+from numba.core.targetconfig import ConfigStack
+from numba.experimental import structref
+from numba.np.arrayobj import populate_array
+
+OWN_LEVEL = 1
+"""LLVM's level for our functions: 40 % off the first run and 10 to 18 % off every later one (sweep, four scenes,
+three alternating runs against level 3). `NUMBA_OPT` in the environment overrules it."""
+
+_EMITTER_LEVEL = int(config.OPT)
+if not config.DISABLE_JIT:
+    cpu_target.target_context.codegen()  # is made now: at the process's level, and not at ours
+
+
+def levels() -> tuple[int, int]:
+    """The levels that our functions are optimised at, and that machine code is written at (the process's)."""
+    return (int(config.OPT) if "NUMBA_OPT" in os.environ else OWN_LEVEL), _EMITTER_LEVEL
+
+
+@contextmanager
+def own_level() -> Iterator[None]:
+    """Our level for what this thread compiles; other threads compile before or after, at theirs.
+
+    numba has no such setting for single functions: `codegen._pass_builder` reads `config.OPT` for each module. It
+    does so under the compiler's lock, which is held here too. Variables of the environment are read first, since
+    the compiler would do that in the middle.
+    """
+    with global_compiler_lock:
+        config.reload_config()
+        before = config.OPT
+        ours = config.OPT = type(before)(levels()[0])
+        try:
+            yield
+        finally:
+            if config.OPT is ours:
+                config.OPT = before
+
+
+@contextmanager
+def _no_collections() -> Iterator[None]:
+    """No collections of garbage, which walk all that the compiler holds: a tenth of its time."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
+
+
+class Kernel(CPUDispatcher):
+    """A function compiled at our level, in one form for all values of its arguments.
+
+    It is refused to callers that would lose count: a caller that counts no references must not be handed
+    arrays. One form of the function serves all callers, and with the counts of the one the other would free an
+    array that is in use, or never.
+    """
+
+    def compile(self, signature: object) -> object:
+        with own_level(), _no_collections():
+            return super().compile(signature)
+
+    def get_call_template(self, args: tuple, named: dict) -> tuple:
+        found = super().get_call_template(tuple(map(_whatever_its_value, args)), named)
+        flags = ConfigStack().top_or_none()
+        returned = [form.signature.return_type for form in self.overloads.values()]
+        if flags is not None and not flags.nrt and any(map(_holds_arrays, returned)):
+            raise TypeError(f"{self.py_func.__name__} returns an array to a kernel without reference counts")
+        return found
+
+
+class KernelForKernels(Kernel):
+    """A function without a way in from Python, which would take a third of the time to compile it.
+
+    A call from Python would go to no address; so it is refused.
+    """
+
+    def _insert(self, *entry: object) -> None:
+        """Nothing for Python to find."""
+
+    def _compile_for_args(self, *args: object, **named: object) -> None:
+        raise TypeError(f"{self.py_func.__module__}.{self.py_func.__name__} can be called by kernels only")
+
+
+def kernel_of(
+    function: Callable,
+    kind: type[Kernel] = Kernel,
+    *,
+    reference_counts: bool | None = None,
+    **options: object,
+) -> Kernel:
+    """The compiled form of a function, without the GIL and with numpy's division; numba's options for the rest.
+
+    Args:
+        reference_counts: whether it counts its references; None: as its first caller does.
+    """
+    options |= {"nopython": True, "boundscheck": None, "nogil": True, "error_model": "numpy"}
+    options["no_cfunc_wrapper"] = True
+    if kind is KernelForKernels:
+        options["no_cpython_wrapper"] = True
+    if reference_counts is not None:
+        options["_nrt"] = reference_counts
+    return kind(function, targetoptions=options)
+
+
+def _whatever_its_value(kind: types.Type) -> types.Type:
+    """The type of an argument without its value, which numba would compile a form of the function for."""
+    kind = types.unliteral(kind)
+    return types.int64 if kind == types.int32 else kind
+
+
+def _holds_arrays(kind: types.Type) -> bool:
+    if isinstance(kind, types.BaseTuple):
+        return any(map(_holds_arrays, kind))
+    return isinstance(kind, types.Array)
+
+
+class KeptKernels(_Cache):
+    """Where a dispatcher asks for compiled forms and leaves them: as bytes, which `read` and `write` keep.
+
+    A form goes by the name of its types, processor and settings (`read(named)`, `write(named, payload)`).
+    """
+
+    _enabled = True
+
+    @property
+    def cache_path(self) -> str:
+        return ""
+
+    def read(self, named: str) -> bytes | None:
+        raise NotImplementedError
+
+    def write(self, named: str, payload: Callable[[], bytes]) -> None:
+        raise NotImplementedError
+
+    def load_overload(self, sig: tuple, target_context: object) -> CompileResult | None:
+        if not self._enabled:
+            return None
+        target_context.refresh()
+        payload = self.read(_form(sig, target_context.codegen()))
+        if payload is None:
+            return None
+        try:
+            found = CompileResult._rebuild(target_context, *pickle.loads(payload))
+            return found if found.signature.args == tuple(sig) else None
+        except Exception:  # of another build of numba or LLVM: compiled again, and written over
+            return None
+
+    def save_overload(self, sig: tuple, data: CompileResult) -> None:
+        if self._enabled and not data.lifted and not data.library.has_dynamic_globals:
+            self.write(_form(sig, data.codegen), lambda: dumps(data._reduce()))
+
+    def enable(self) -> None:
+        self._enabled = True
+
+    def disable(self) -> None:
+        self._enabled = False
+
+    def flush(self) -> None:
+        """Nothing is held back."""
+
+
+_SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX")
+"""numba's settings that change the code of a kernel and are not in the description of its target."""
+
+
+def _form(sig: tuple, codegen: object) -> str:
+    settings = [int(getattr(config, name, 0) or 0) for name in _SETTINGS]
+    return repr((str(sig), codegen.magic_tuple(), levels(), settings))
+
+
+def plain(kind: types.Type) -> types.Type:
+    """The type without what the compiler knows of the value."""
+    if isinstance(kind, types.BaseTuple):
+        return types.BaseTuple.from_types(
+            tuple(plain(item) for item in kind), getattr(kind, "instance_class", None)
+        )
+    return types.unliteral(kind)
+
+
+def entry_address(function: Kernel, argument_types: tuple) -> tuple[int, types.Type]:
+    """Where the machine code of a compiled form begins, and the type of its result."""
+    compiled = function.overloads[argument_types]
+    address = compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+    return address, compiled.signature.return_type
+
+
+def call_at(context, builder, address, result: types.Type, arguments: Sequence[types.Type], values):
+    """Emits the call of a kernel by its address; what it raises is handed on."""
+    kind = context.call_conv.get_function_type(result, arguments)
+    place = builder.inttoptr(address, kind.as_pointer())
+    unpacked = cgutils.unpack_tuple(builder, values)
+    status, value = context.call_conv.call_function(builder, place, result, arguments, unpacked)
+    with cgutils.if_unlikely(builder, status.is_error):
+        context.call_conv.return_status_propagate(builder, status)
+    return value
+
+
+def stop_if(context, builder, test, error: type[Exception], *args: object) -> None:
+    """Emits a test after which the kernel ends with an error, or goes on."""
+    with builder.if_then(test, likely=False):
+        context.call_conv.return_user_exc(builder, error, args)
+
+
+def lend_tuple(context, builder, kind: types.Type, value):
+    """Emits the address of a tuple that is written down for as long as the caller runs."""
+    return builder.bitcast(cgutils.alloca_once_value(builder, value), context.get_value_type(kind))
+
+
+def borrow_tuple(context, builder, kind: types.Type, address):
+    """Emits the tuple at an address, whose arrays somebody else holds."""
+    place = builder.bitcast(address, context.get_value_type(kind).as_pointer())
+    return impl_ret_borrowed(context, builder, kind, builder.load(place))
+
+
+def elements_at(context, builder, kind: types.Array, array, indices: Sequence):
+    """Emits the addresses of numbers of an array, counted from its first: no check, no strides."""
+    first = context.make_array(kind)(context, builder, array).data
+    return [cgutils.gep_inbounds(builder, first, index) for index in indices]
+
+
+def array_from(context, builder, kind: types.Array, address, length):
+    """Emits an array of one axis over memory that somebody else holds."""
+    made = context.make_array(kind)(context, builder)
+    size = context.get_constant(types.intp, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
+    data = builder.inttoptr(address, made.data.type)
+    populate_array(made, data=data, shape=[length], strides=[size], itemsize=size, meminfo=None)
+    return made._getvalue()
+
+
+def llvm_function(builder, name: str, kind: ir.FunctionType):
+    """A function of LLVM's, by its name."""
+    return cgutils.get_or_insert_function(builder.module, kind, name)
+
+
+class HeapType(types.StructRef):
+    """The compiler's type of a structure that lies on the heap: one subclass each, at the top of a module."""
+
+    def preprocess_fields(self, fields):
+        """Fields of literal type are fields of that type."""
+        return tuple((name, types.unliteral(kind)) for name, kind in fields)
+
+
+HeapHandle = structref.StructRefProxy
+"""What Python has of a structure on the heap: a subclass of it each."""
+
+
+def lay_on_heap(kind: type[HeapType], handle: type, fields: Sequence[str]) -> None:
+    """Makes `handle(*fields)` in a kernel a structure of type `kind`."""
+    structref.register(kind)
+    structref.define_boxing(kind, handle)
+    structref.define_constructor(handle, kind, fields)
