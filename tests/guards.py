@@ -14,7 +14,15 @@ from contextlib import contextmanager
 from clearance.cli.compile_ahead import IS_SECOND
 from tests.marks import SHARED_CASES
 
-STARTS = {"subprocess.Popen", "os.fork", "os.forkpty", "os.exec", "os.posix_spawn", "os.spawn", "os.system"}
+STARTS = {
+    "subprocess.Popen",
+    "os.fork",
+    "os.forkpty",
+    "os.exec",
+    "os.posix_spawn",
+    "os.spawn",
+    "os.system",
+}
 _marks: frozenset[str] | None = None
 refused: list[str] = []
 """What the test that runs was refused."""
@@ -39,7 +47,11 @@ def guarded(marks: frozenset[str]) -> Iterator[None]:
 def _see(event: str, arguments: tuple) -> None:
     if _marks is None:
         return
-    if event in STARTS and not _marks & {"cold", "browser"} and not _compiles_ahead(event, arguments):
+    if (
+        event in STARTS
+        and not _marks & {"cold", "browser"}
+        and not _compiles_ahead(event, arguments)
+    ):
         _refuse(f"{event} without the mark cold or browser: {arguments[:2]}")
     elif event == "open" and "shared" not in _marks and _is_shared(arguments[0]):
         _refuse(f"{arguments[0]} is read without the mark shared")
@@ -51,7 +63,9 @@ def _compiles_ahead(event: str, arguments: tuple) -> bool:
 
 
 def _is_shared(path: object) -> bool:
-    return isinstance(path, str | os.PathLike) and os.fspath(path).startswith(f"{SHARED_CASES}{os.sep}")
+    return isinstance(path, str | os.PathLike) and os.fspath(path).startswith(
+        f"{SHARED_CASES}{os.sep}"
+    )
 
 
 def _refuse(deed: str) -> None:

@@ -62,7 +62,9 @@ def _start_once() -> bool:
 
 
 def _can_start() -> bool:
-    return bool(sys.executable) and not getattr(sys, "frozen", False) and IS_SECOND not in os.environ
+    return (
+        bool(sys.executable) and not getattr(sys, "frozen", False) and IS_SECOND not in os.environ
+    )
 
 
 def _second_process() -> subprocess.Popen:
@@ -73,7 +75,9 @@ def _second_process() -> subprocess.Popen:
     """
     package = str(Path(__file__).parents[2])
     found = [*filter(None, sys.path), *([] if package in sys.path else [package])]
-    script = f"import sys; sys.path[:] = {found!r}; from clearance.cli.compile_ahead import main; main()"
+    script = (
+        f"import sys; sys.path[:] = {found!r}; from clearance.cli.compile_ahead import main; main()"
+    )
     options = [*subprocess._args_from_interpreter_flags(), "-P"]
     return subprocess.Popen(
         [sys.executable, *options, "-c", script],

@@ -53,7 +53,9 @@ class Run:
         if moment is self.record.worst_sample:
             return row
         ends = {"link": moment.point_link, "obstacle": moment.point_obstacle}
-        told = {f"{body}_{axis}": x for body in ends for axis, x in zip("xyz", ends[body], strict=True)}
+        told = {
+            f"{body}_{axis}": x for body in ends for axis, x in zip("xyz", ends[body], strict=True)
+        }
         told |= {name: getattr(moment, name) for name in ("time", "clearance", "link", "obstacle")}
         status = status_of(moment.clearance, self.record.case.limits)
         return row | told | {"between": True, "status": status}

@@ -129,7 +129,9 @@ def _is_like(place: Path, like: os.stat_result) -> bool:
     if not stat.S_ISDIR(found.st_mode):
         raise _foreign(place, "a file is there")
     if (found.st_uid, stat.S_IMODE(found.st_mode)) != (like.st_uid, stat.S_IMODE(like.st_mode)):
-        raise _foreign(place, "a folder that is not as one of ours (another owner, or open to others) is there")
+        raise _foreign(
+            place, "a folder that is not as one of ours (another owner, or open to others) is there"
+        )
     return True
 
 
@@ -168,7 +170,9 @@ def _is_locked(lock: FileIO, place: Path) -> bool:
             valid="wait for it, or choose another folder",
         )
     try:
-        return os.path.samestat(os.fstat(lock.fileno()), os.stat(place / LOCK, follow_symlinks=False))
+        return os.path.samestat(
+            os.fstat(lock.fileno()), os.stat(place / LOCK, follow_symlinks=False)
+        )
     except FileNotFoundError:
         return False
 

@@ -11,7 +11,9 @@ ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "scripts" / "docs"
 PAGES = (ROOT / "README.md", *sorted(GUIDE.rglob("*.md")))
 
-_BLOCK = re.compile(r"^( *)```(\w*)(?: title=\"([^\"]+)\")?\n(.*?)^\1```$", re.DOTALL | re.MULTILINE)
+_BLOCK = re.compile(
+    r"^( *)```(\w*)(?: title=\"([^\"]+)\")?\n(.*?)^\1```$", re.DOTALL | re.MULTILINE
+)
 
 
 @dataclass(frozen=True)

@@ -147,5 +147,3 @@ def test_what_a_page_names_is_there(page):
     assert [path for path in MENTIONED.findall(text) if not (ROOT / path).exists()] == []
     links = [link for link in LINKED.findall(text) if "://" not in link and "pictures/" not in link]
     assert [link for link in links if not (page.parent / link).exists()] == []
-
-

@@ -244,7 +244,18 @@ def cut_by_bodies(
         numbers = array_at(bodies, turns[i], NUMBERS, numbers_like)
         indices = array_at(bodies, turns[i], INDICES, indices_like)
         status, _ = cut_by_body(
-            spots, mesh, state, work, rim, table, numbers, indices, origin, bases[turns[i]], tolerance, noise
+            spots,
+            mesh,
+            state,
+            work,
+            rim,
+            table,
+            numbers,
+            indices,
+            origin,
+            bases[turns[i]],
+            tolerance,
+            noise,
         )
         if status != CUT:
             return status, i

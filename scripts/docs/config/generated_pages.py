@@ -24,7 +24,17 @@ PICTURES = (
 )
 """Shown on the guide's pages as `pictures/NAME`."""
 
-LIBRARY_ORDER = ("run", "simulate", "world", "load", "query", "geometry", "planar", "sketch", "profiles")
+LIBRARY_ORDER = (
+    "run",
+    "simulate",
+    "world",
+    "load",
+    "query",
+    "geometry",
+    "planar",
+    "sketch",
+    "profiles",
+)
 """Rooms of the reference, the first asked for first; others follow by name."""
 
 
@@ -61,7 +71,10 @@ def _reference_pages() -> dict[str, str]:
         home = getattr(value, "__module__", None)
         if home is not None:
             names[home.split(".")[1]].append(f"{home}.{value.__qualname__}")
-    return {f"reference/{room}.md": _reference_page(room, names[room]) for room in sorted(names, key=_place)}
+    return {
+        f"reference/{room}.md": _reference_page(room, names[room])
+        for room in sorted(names, key=_place)
+    }
 
 
 def _place(room: str) -> tuple[int, str]:
