@@ -41,7 +41,9 @@ def require(extra: str, purpose: str) -> None:
     """
     for library in LIBRARIES[extra]:
         if not is_installed(library):
-            raise Unavailable(f"{purpose} needs {library}, which is not installed", valid=install(extra))
+            raise Unavailable(
+                f"{purpose} needs {library}, which is not installed", valid=install(extra)
+            )
 
 
 @contextmanager
@@ -57,4 +59,6 @@ def importing(extra: str, purpose: str) -> Iterator[None]:
         library = (error.name or "a library").partition(".")[0]
         missing = isinstance(error, ModuleNotFoundError)
         fault = "is not installed" if missing else f"cannot be imported ({error})"
-        raise Unavailable(f"{purpose} needs {library}, which {fault}", valid=install(extra)) from None
+        raise Unavailable(
+            f"{purpose} needs {library}, which {fault}", valid=install(extra)
+        ) from None

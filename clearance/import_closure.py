@@ -15,7 +15,9 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).parent
 
-_RUNNERS = frozenset({"import_module", "__import__", "exec", "eval", "reload", "run_path", "run_module"})
+_RUNNERS = frozenset(
+    {"import_module", "__import__", "exec", "eval", "reload", "run_path", "run_module"}
+)
 """Functions that import, or run, what their argument says."""
 
 _HOLDS_STATEMENTS = (ast.stmt, ast.ExceptHandler, ast.match_case)
@@ -72,7 +74,9 @@ def _imports(path: Path, package: Path) -> tuple[Path, ...]:
     found: list[Path] = []
     source = path.read_text(encoding="utf-8")
     runs_text = any(name in source for name in _RUNNERS)
-    for node in _at_run_time(ast.parse(source, str(path)), ast.AST if runs_text else _HOLDS_STATEMENTS):
+    for node in _at_run_time(
+        ast.parse(source, str(path)), ast.AST if runs_text else _HOLDS_STATEMENTS
+    ):
         if isinstance(node, ast.Import):
             for alias in node.names:
                 found += _files_of(alias.name.split("."), package, _place(node, path), alias.asname)
@@ -94,7 +98,9 @@ def _at_run_time(tree: ast.AST, kinds: type | tuple[type, ...]) -> Iterator[ast.
         if isinstance(node, ast.If) and _last_name(node.test) == "TYPE_CHECKING":
             waiting.extend(node.orelse)
         else:
-            waiting.extend(child for child in ast.iter_child_nodes(node) if isinstance(child, kinds))
+            waiting.extend(
+                child for child in ast.iter_child_nodes(node) if isinstance(child, kinds)
+            )
 
 
 def _called(call: ast.Call, path: Path, package: Path) -> list[Path]:
@@ -103,8 +109,14 @@ def _called(call: ast.Call, path: Path, package: Path) -> list[Path]:
     if name not in _RUNNERS or (name in ("exec", "eval") and not isinstance(call.func, ast.Name)):
         return []
     known = name == "import_module" and len(call.args) == 1 and not call.keywords
-    if not known or not isinstance(call.args[0], ast.Constant) or not isinstance(call.args[0].value, str):
-        raise UnknownImport(f"{_place(call, path)}: what {name}() imports or runs is not known without running it")
+    if (
+        not known
+        or not isinstance(call.args[0], ast.Constant)
+        or not isinstance(call.args[0].value, str)
+    ):
+        raise UnknownImport(
+            f"{_place(call, path)}: what {name}() imports or runs is not known without running it"
+        )
     return _files_of(call.args[0].value.split("."), package, _place(call, path), as_name="it")
 
 
@@ -135,7 +147,9 @@ def _files_of(parts: list[str], package: Path, place: str, as_name: str | None) 
     if parts[0] != package.name:
         return []
     if len(parts) == 1 and as_name in (None, "*"):
-        raise UnknownImport(f"{place}: {package.name} as a whole; import what is used of it, by its module")
+        raise UnknownImport(
+            f"{place}: {package.name} as a whole; import what is used of it, by its module"
+        )
     files = [_module_file(parts[:n], package) for n in range(1, len(parts) + 1)]
     if None in files:
         raise UnknownImport(f"{place}: there is no module {'.'.join(parts)}")

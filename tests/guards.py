@@ -13,7 +13,15 @@ from contextlib import contextmanager
 
 from tests.marks import SHARED_CASES
 
-STARTS = {"subprocess.Popen", "os.fork", "os.forkpty", "os.exec", "os.posix_spawn", "os.spawn", "os.system"}
+STARTS = {
+    "subprocess.Popen",
+    "os.fork",
+    "os.forkpty",
+    "os.exec",
+    "os.posix_spawn",
+    "os.spawn",
+    "os.system",
+}
 _marks: frozenset[str] | None = None
 refused: list[str] = []
 """What the test that runs was refused."""
@@ -45,7 +53,9 @@ def _see(event: str, arguments: tuple) -> None:
 
 
 def _is_shared(path: object) -> bool:
-    return isinstance(path, str | os.PathLike) and os.fspath(path).startswith(f"{SHARED_CASES}{os.sep}")
+    return isinstance(path, str | os.PathLike) and os.fspath(path).startswith(
+        f"{SHARED_CASES}{os.sep}"
+    )
 
 
 def _refuse(deed: str) -> None:

@@ -67,8 +67,12 @@ def spindle(radius: float, half_length: float, n: int) -> Polyhedron:
     rows = np.arange(n - 1)[:, None] * n
     between = np.concatenate(
         [
-            np.stack(np.broadcast_arrays(rows + k, rows + n + k, rows + n + ahead), -1).reshape(-1, 3),
-            np.stack(np.broadcast_arrays(rows + k, rows + n + ahead, rows + ahead), -1).reshape(-1, 3),
+            np.stack(np.broadcast_arrays(rows + k, rows + n + k, rows + n + ahead), -1).reshape(
+                -1, 3
+            ),
+            np.stack(np.broadcast_arrays(rows + k, rows + n + ahead, rows + ahead), -1).reshape(
+                -1, 3
+            ),
         ]
     )
     first = np.stack([np.full(n, n * n), k, ahead], 1)
@@ -115,7 +119,9 @@ def faces_of(shape: Polyhedron) -> list[list[int]]:
 def with_copies(shape: Polyhedron, faces: Sequence[int], *, turned_round: bool) -> Polyhedron:
     """The shape with some of its faces once more, each from another corner on."""
     copies = [np.roll(faces_of(shape)[face], 1 + face % 2) for face in faces]
-    return Polyhedron(shape.vertices, faces_of(shape) + [tuple(f[::-1] if turned_round else f) for f in copies])
+    return Polyhedron(
+        shape.vertices, faces_of(shape) + [tuple(f[::-1] if turned_round else f) for f in copies]
+    )
 
 
 def faces_below(surface: Surface) -> list[set[int]]:
@@ -145,30 +151,49 @@ def at(x: float = 0.0, y: float = 0.0, z: float = 0.0, turned: np.ndarray = AXES
 
 
 def flying(
-    name: str, shape: Polyhedron, obstacles: list[tuple[Polyhedron, np.ndarray]], positions: np.ndarray
+    name: str,
+    shape: Polyhedron,
+    obstacles: list[tuple[Polyhedron, np.ndarray]],
+    positions: np.ndarray,
 ) -> Case:
     """One body that goes anywhere: three slides [m], then turns about x, y and z [rad], columns of (n, 6)."""
     kinds = [JointKind.PRISMATIC] * 3 + [JointKind.CONTINUOUS] * 3
     joints = tuple(
-        Joint(f"j{i}", kind, f"l{i}", f"l{i + 1}", np.eye(4), AXES[i % 3]) for i, kind in enumerate(kinds)
+        Joint(f"j{i}", kind, f"l{i}", f"l{i + 1}", np.eye(4), AXES[i % 3])
+        for i, kind in enumerate(kinds)
     )
     links = tuple(f"l{i}" for i in range(7))
     return _case(name, Robot("flying", links, joints, (Body("l6", shape),)), obstacles, positions)
 
 
 def arm(
-    name: str, shapes: list[Polyhedron], obstacles: list[tuple[Polyhedron, np.ndarray]], positions: np.ndarray
+    name: str,
+    shapes: list[Polyhedron],
+    obstacles: list[tuple[Polyhedron, np.ndarray]],
+    positions: np.ndarray,
 ) -> Case:
     """Links of 0.25 m along x, one behind the other, their joints turning about z and y by turns."""
     n = len(shapes)
     joints = tuple(
         Joint(
-            f"j{i}", JointKind.CONTINUOUS, f"l{i}", f"l{i + 1}", at(0.25 * (i > 0)), AXES[1 + (i + 1) % 2]
+            f"j{i}",
+            JointKind.CONTINUOUS,
+            f"l{i}",
+            f"l{i + 1}",
+            at(0.25 * (i > 0)),
+            AXES[1 + (i + 1) % 2],
         )
         for i in range(n)
     )
-    bodies = tuple(Body(f"l{i + 1}", shape.transformed(at(0.125))) for i, shape in enumerate(shapes))
-    return _case(name, Robot("arm", tuple(f"l{i}" for i in range(n + 1)), joints, bodies), obstacles, positions)
+    bodies = tuple(
+        Body(f"l{i + 1}", shape.transformed(at(0.125))) for i, shape in enumerate(shapes)
+    )
+    return _case(
+        name,
+        Robot("arm", tuple(f"l{i}" for i in range(n + 1)), joints, bodies),
+        obstacles,
+        positions,
+    )
 
 
 def _case(
@@ -176,7 +201,9 @@ def _case(
 ) -> Case:
     names = tuple(joint.name for joint in robot.moving_joints)
     placed = PlacedRobot(robot, Trajectory(0.01 * np.arange(len(positions)), names, positions))
-    standing = tuple(Obstacle(Body(f"o{i}", shape), pose) for i, (shape, pose) in enumerate(obstacles))
+    standing = tuple(
+        Obstacle(Body(f"o{i}", shape), pose) for i, (shape, pose) in enumerate(obstacles)
+    )
     return Case(name, (placed,), standing)
 
 
@@ -186,7 +213,9 @@ def arm_among_obstacles(n: int = 32, n_steps: int = 300, coherent: bool = True) 
     The joints swing; where not `coherent`, they are anywhere at every step.
     """
     random = np.random.default_rng(8)
-    shapes = [spindle(0.06, 0.14, n) if i % 2 else torus(0.07, 0.03, 2 * n, n // 2) for i in range(7)]
+    shapes = [
+        spindle(0.06, 0.14, n) if i % 2 else torus(0.07, 0.03, 2 * n, n // 2) for i in range(7)
+    ]
     obstacles = []
     for i in range(20):
         shape = torus(0.12, 0.05, 2 * n, n // 2) if i % 2 else spindle(0.1, 0.2, n)
@@ -205,7 +234,9 @@ def linked_tori(across: int = 12, n_steps: int = 24) -> Case:
     share = np.linspace(0.0, 1.0, n_steps)[:, None]
     ring = torus(1.0, 0.25, 2 * across, across)
     upright = at(x=1.0, turned=np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]))
-    return flying("linked_tori", ring, [(ring, upright)], share * [0.02, 0.01, 0.02, 0.05, 0.04, 2.0])
+    return flying(
+        "linked_tori", ring, [(ring, upright)], share * [0.02, 0.01, 0.02, 0.05, 0.04, 2.0]
+    )
 
 
 def nested_shells(n_halvings: int = 2, n_steps: int = 24) -> Case:
@@ -217,7 +248,9 @@ def nested_shells(n_halvings: int = 2, n_steps: int = 24) -> Case:
     ]
     share = np.linspace(0.0, 1.0, n_steps)[:, None]
     positions = np.array([[0.004, -0.003, 0.005, 0.5, 0.3, 0.9]]) * share
-    return flying("nested_shells", ball(1.0, n_halvings), [(shape, np.eye(4)) for shape in hollow], positions)
+    return flying(
+        "nested_shells", ball(1.0, n_halvings), [(shape, np.eye(4)) for shape in hollow], positions
+    )
 
 
 def everything_equidistant(n: int = 12, n_steps: int = 24) -> Case:
@@ -240,9 +273,16 @@ def facing_plates(n: int = 12, n_steps: int = 24) -> Case:
     def bumps(up: float) -> Polyhedron:
         peak = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, up]]) / n
         sides = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-        places = np.stack([*np.meshgrid(np.arange(n), np.arange(n)), np.zeros((n, n))], -1).reshape(-1, 1, 3) / n
+        places = (
+            np.stack([*np.meshgrid(np.arange(n), np.arange(n)), np.zeros((n, n))], -1).reshape(
+                -1, 1, 3
+            )
+            / n
+        )
         points = (places + peak).reshape(-1, 3)
-        return Polyhedron.from_triangles(points, (5 * np.arange(n * n)[:, None, None] + sides).reshape(-1, 3))
+        return Polyhedron.from_triangles(
+            points, (5 * np.arange(n * n)[:, None, None] + sides).reshape(-1, 3)
+        )
 
     positions = np.zeros((n_steps, 6))
     positions[:, 0] = np.linspace(0.0, 3.0 / n, n_steps)
@@ -278,7 +318,9 @@ def random_robot(
         offset[:3, :3] = np.linalg.qr(rng.normal(size=(3, 3)))[0]
         offset[:3, :3] *= np.sign(np.linalg.det(offset[:3, :3]))
         offset[:3, 3] = rng.uniform(-1.0, 1.0, 3) * rng.choice(sizes)
-        kind = JointKind(rng.choice(["revolute", "continuous", "prismatic", "fixed"], p=[0.4, 0.1, 0.3, 0.2]))
+        kind = JointKind(
+            rng.choice(["revolute", "continuous", "prismatic", "fixed"], p=[0.4, 0.1, 0.3, 0.2])
+        )
         axis = rng.normal(size=3)
         axis /= np.linalg.norm(axis)
         before = [joint.name for joint in joints if joint.kind is not JointKind.FIXED]

@@ -15,7 +15,17 @@ from types import CodeType, FunctionType, ModuleType
 
 TESTS = Path(__file__).parent
 SHARED_CASES = TESTS.parents[1] / "shared" / "cases"
-PEERS = {"coal", "fcl", "klampt", "manifold3d", "pybullet", "shapely", "solvespace", "trimesh", "yourdfpy"}
+PEERS = {
+    "coal",
+    "fcl",
+    "klampt",
+    "manifold3d",
+    "pybullet",
+    "shapely",
+    "solvespace",
+    "trimesh",
+    "yourdfpy",
+}
 COLD_NAMES = {"fork", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME"}
 GLOBALS = {"LOAD_GLOBAL", "LOAD_NAME"}
 PARTS = {"LOAD_ATTR", "LOAD_METHOD", "LOAD_CONST", "KW_NAMES"}

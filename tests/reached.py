@@ -12,4 +12,6 @@ def reached(function):
     if numba.config.DISABLE_JIT:
         return function
     names = ", ".join(inspect.signature(function.py_func).parameters)
-    return numba.njit(error_model="numpy")(eval(f"lambda {names}: function({names})", {"function": function}))
+    return numba.njit(error_model="numpy")(
+        eval(f"lambda {names}: function({names})", {"function": function})
+    )

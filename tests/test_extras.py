@@ -66,7 +66,9 @@ assert run.summary["profiles"][0]["passed"]
 
 
 def test_distance_and_check_need_no_optional_library():
-    done = subprocess.run([sys.executable, "-c", LIBRARY_ALONE], cwd=ROOT, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", LIBRARY_ALONE], cwd=ROOT, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr
 
 
@@ -121,7 +123,10 @@ def test_each_door_says_which_extra_it_needs(hidden, tmp_path):
     kept = cl.check(CASE)
     assert refused_by(kept.save, tmp_path / "report").endswith("pip install 'clearance[report]'")
     assert not (tmp_path / "report").exists()
-    for option, extra in (({"cross_check": True}, "crosscheck"), ({"motion": "simulated"}, "simulate")):
+    for option, extra in (
+        ({"cross_check": True}, "crosscheck"),
+        ({"motion": "simulated"}, "simulate"),
+    ):
         with pytest.raises(cl.ClearanceError, match=rf"pip install 'clearance\[{extra}\]'"):
             cl.check(CASE, **option)
 

@@ -89,7 +89,9 @@ def _require_text(arguments: list[str]) -> None:
         if not _is_text(argument):
             from clearance.errors import BadSyntax
 
-            raise BadSyntax(f"{argument!a} is not UTF-8 text", valid="rename the file, or spell it in UTF-8")
+            raise BadSyntax(
+                f"{argument!a} is not UTF-8 text", valid="rename the file, or spell it in UTF-8"
+            )
 
 
 def _is_text(argument: str) -> bool:

@@ -114,7 +114,9 @@ def check(
     from clearance.load.case_file import load_case
 
     if samples_only and (certify or certify_mm is not None):
-        raise click.UsageError("--samples-only proves nothing; leave out --certify and --certify-mm")
+        raise click.UsageError(
+            "--samples-only proves nothing; leave out --certify and --certify-mm"
+        )
     _require_extras(out, cross_check, motion)
     require_folder_place(out)
     require_file_place(junit)
@@ -183,7 +185,9 @@ def _outputs(out: Path | None, junit: Path | None) -> list[Path]:
     if junit is None:
         return report
     if os.path.realpath(junit) in map(os.path.realpath, report):
-        raise Unwritable("is a file of the report", where=str(junit), valid="--junit needs another name")
+        raise Unwritable(
+            "is a file of the report", where=str(junit), valid="--junit needs another name"
+        )
     return [*report, junit]
 
 

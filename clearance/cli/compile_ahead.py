@@ -12,7 +12,6 @@ from __future__ import annotations
 import atexit
 import functools
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -63,7 +62,9 @@ def _start_once() -> bool:
 
 
 def _can_start() -> bool:
-    return bool(sys.executable) and not getattr(sys, "frozen", False) and IS_SECOND not in os.environ
+    return (
+        bool(sys.executable) and not getattr(sys, "frozen", False) and IS_SECOND not in os.environ
+    )
 
 
 def _second_process() -> subprocess.Popen:
@@ -74,7 +75,9 @@ def _second_process() -> subprocess.Popen:
     """
     package = str(Path(__file__).parents[2])
     found = [*filter(None, sys.path), *([] if package in sys.path else [package])]
-    script = f"import sys; sys.path[:] = {found!r}; from clearance.cli.compile_ahead import main; main()"
+    script = (
+        f"import sys; sys.path[:] = {found!r}; from clearance.cli.compile_ahead import main; main()"
+    )
     options = [*subprocess._args_from_interpreter_flags(), "-P"]
     return subprocess.Popen(
         [sys.executable, *options, "-c", script],
@@ -85,16 +88,14 @@ def _second_process() -> subprocess.Popen:
 
 def main() -> None:
     """The second process: compiles into the cache, after any other that does, and says so of each kernel."""
-    import fcntl
+    from filelock import FileLock, Timeout
 
     threading.Thread(target=_end_with_the_first, daemon=True).start()
     root = cache_root()
     assert root is not None
-    with open(root / "ahead.lock", "w") as lock, os.fdopen(os.dup(1), "w") as told:
+    turn = FileLock(root / "ahead.lock", timeout=LONGEST, fallback_to_soft=False)
+    with suppress(Timeout), turn, os.fdopen(os.dup(1), "w") as told:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        signal.alarm(LONGEST)  # ends this process
-        fcntl.flock(lock, fcntl.LOCK_EX)
-        signal.alarm(0)
         for place in ALL:
             kernel_table.compile_kernel(place)
             if not kernel_table.is_kept(place):

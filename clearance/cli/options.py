@@ -38,7 +38,9 @@ class OutputPath(click.Path):
     ) -> Path:
         """The path."""
         if not os.fspath(value):
-            self.fail("an empty path; a place to write is needed ('.' is the current folder)", param, ctx)
+            self.fail(
+                "an empty path; a place to write is needed ('.' is the current folder)", param, ctx
+            )
         return super().convert(value, param, ctx)
 
 

@@ -39,7 +39,9 @@ def kernel(function: Callable | None = None, *, reference_counts: bool = True) -
         return functools.partial(kernel, reference_counts=reference_counts)
     if config.DISABLE_JIT:
         return function
-    assert function.__closure__ is None, "what a closure holds is not in the name that it is kept under"
+    assert function.__closure__ is None, (
+        "what a closure holds is not in the name that it is kept under"
+    )
     compiled = kernel_of(function, reference_counts=reference_counts)
     compiled._cache = KernelCache(function, _source_key(Path(function.__code__.co_filename)))
     return compiled

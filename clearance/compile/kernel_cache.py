@@ -111,7 +111,9 @@ def _whole(path: Path) -> bytes | None:
         if not _is_ours_alone(path.parent.stat()):
             _warn(f"others own or can write {path.parent}, and what lies there is run")
             return None
-        descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0))
+        descriptor = os.open(
+            path, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
+        )
         with open(descriptor, "rb") as file:
             found = os.fstat(descriptor)
             if not stat.S_ISREG(found.st_mode) or not _is_ours_alone(found):

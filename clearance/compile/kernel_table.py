@@ -35,7 +35,18 @@ from clearance.compile.numba_private import (
     stop_if,
 )
 
-REFINE, REFINE_EVERY, MEETING, COMMON_POINT, WINDING_NUMBER, SEARCH, POLYGONS, PARTING, FEATURES, FANS = range(10)
+(
+    REFINE,
+    REFINE_EVERY,
+    MEETING,
+    COMMON_POINT,
+    WINDING_NUMBER,
+    SEARCH,
+    POLYGONS,
+    PARTING,
+    FEATURES,
+    FANS,
+) = range(10)
 CERTIFY, OVERLAP = 10, 11
 """The places of the table."""
 
@@ -90,7 +101,9 @@ def call(function: Callable, *args: object) -> object:
         except NotCompiled as missing:
             (place,) = missing.args
             if place == compiled:
-                raise TypeError(f"{_apart[place][0]} is called with other types than `like` says") from None
+                raise TypeError(
+                    f"{_apart[place][0]} is called with other types than `like` says"
+                ) from None
             compiled = place
             compile_kernel(place)
 
@@ -152,7 +165,8 @@ def _what_goes_with(place: int) -> list[int]:
 def _is_at_work_on(place: int) -> bool:
     """True if there is another process, and a kernel is the first of those that it still has to compile."""
     return any(
-        next((each for each in places if not is_kept(each)), None) == place for _, places in _elsewhere
+        next((each for each in places if not is_kept(each)), None) == place
+        for _, places in _elsewhere
     )
 
 
@@ -184,7 +198,9 @@ def _at_address(typing_context, table, place, result, args):
 
     def emit(context, builder, signature, values):
         index = 2 * place.literal_value
-        at, stamp_at = elements_at(context, builder, signature.args[0], values[0], (index, index + 1))
+        at, stamp_at = elements_at(
+            context, builder, signature.args[0], values[0], (index, index + 1)
+        )
         found = builder.load(stamp_at)
         is_other = builder.icmp_signed("!=", found, found.type(stamp))
         stop_if(context, builder, is_other, NotCompiled, place.literal_value)

@@ -98,7 +98,9 @@ class Kernel(CPUDispatcher):
         flags = ConfigStack().top_or_none()
         returned = [form.signature.return_type for form in self.overloads.values()]
         if flags is not None and not flags.nrt and any(map(_holds_arrays, returned)):
-            raise TypeError(f"{self.py_func.__name__} returns an array to a kernel without reference counts")
+            raise TypeError(
+                f"{self.py_func.__name__} returns an array to a kernel without reference counts"
+            )
         return found
 
 
@@ -112,7 +114,9 @@ class KernelForKernels(Kernel):
         """Nothing for Python to find."""
 
     def _compile_for_args(self, *args: object, **named: object) -> None:
-        raise TypeError(f"{self.py_func.__module__}.{self.py_func.__name__} can be called by kernels only")
+        raise TypeError(
+            f"{self.py_func.__module__}.{self.py_func.__name__} can be called by kernels only"
+        )
 
 
 def kernel_of(
@@ -255,7 +259,9 @@ def elements_at(context, builder, kind: types.Array, array, indices: Sequence):
 def array_from(context, builder, kind: types.Array, address, length):
     """Emits an array of one axis over memory that somebody else holds."""
     made = context.make_array(kind)(context, builder)
-    size = context.get_constant(types.intp, context.get_abi_sizeof(context.get_data_type(kind.dtype)))
+    size = context.get_constant(
+        types.intp, context.get_abi_sizeof(context.get_data_type(kind.dtype))
+    )
     data = builder.inttoptr(address, made.data.type)
     populate_array(made, data=data, shape=[length], strides=[size], itemsize=size, meminfo=None)
     return made._getvalue()

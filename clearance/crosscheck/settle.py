@@ -56,9 +56,13 @@ def _attained(
 ) -> bool:
     """True if two faces under our points are as near as we say."""
     sides = _placed_sides(pair, poses)
-    near = [_nearest_triangles(side, pose, x) for (side, pose), x in zip(sides, points, strict=True)]
+    near = [
+        _nearest_triangles(side, pose, x) for (side, pose), x in zip(sides, points, strict=True)
+    ]
     least = min(_distance_sq(pair, poses, (i, j)) for i in near[0] for j in near[1])
-    return not _exceeds(least, ours + tolerance) and (ours <= tolerance or _exceeds(least, ours - tolerance))
+    return not _exceeds(least, ours + tolerance) and (
+        ours <= tolerance or _exceeds(least, ours - tolerance)
+    )
 
 
 def _exceeds(distance_sq: object, length: float) -> bool:
@@ -69,7 +73,8 @@ def _exceeds(distance_sq: object, length: float) -> bool:
 def _distance_sq(pair: PeerPair, poses: np.ndarray, faces: tuple[int, int]):
     (link, link_pose), (obstacle, pose) = _placed_sides(pair, poses)
     return triangles_sq(
-        placed(link.soup.corners[faces[0]], link_pose), placed(obstacle.soup.corners[faces[1]], pose)
+        placed(link.soup.corners[faces[0]], link_pose),
+        placed(obstacle.soup.corners[faces[1]], pose),
     )
 
 

@@ -90,4 +90,6 @@ def _rimmed(shape: Polyhedron) -> tuple[np.ndarray, np.ndarray]:
     """(f,) how often each face counts, and (k, 3, 3) [m] the caps."""
     turns = shape.component_closed[shape.face_component].astype(np.int64)
     closing = closing_of(shape)
-    return (turns, np.empty((0, 3, 3))) if closing is None else (turns + closing.turns, closing.caps)
+    return (
+        (turns, np.empty((0, 3, 3))) if closing is None else (turns + closing.turns, closing.caps)
+    )

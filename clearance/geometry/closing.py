@@ -99,7 +99,9 @@ def loose_triangles(shape: Polyhedron) -> np.ndarray:
     ways = each_once(corners, starts, shape.face_component, loose, also_two_sided=True)
     used = np.flatnonzero((ways[ring.face] != 0) & (corners != corners[ring.ahead]))
     if len(used):
-        ways = ways * _alike(corners[used], corners[ring.ahead][used], ring.face[used], shape.n_faces)
+        ways = ways * _alike(
+            corners[used], corners[ring.ahead][used], ring.face[used], shape.n_faces
+        )
     way = ways[shape.triangle_faces]
     triangles = shape.triangles()
     triangles = np.where(way[:, None] < 0, triangles[:, ::-1], triangles)
@@ -174,7 +176,12 @@ def _rim(
     open_edges = np.repeat(np.arange(len(first)), np.abs(lacking))
     back = lacking[open_edges] > 0
     low, high = low[open_edges], high[open_edges]
-    return np.where(back, high, low), np.where(back, low, high), component[first[open_edges]], n_edges
+    return (
+        np.where(back, high, low),
+        np.where(back, low, high),
+        component[first[open_edges]],
+        n_edges,
+    )
 
 
 def _loops(tails: list[int], heads: list[int]) -> list[list[int]]:
@@ -223,12 +230,18 @@ def _fan(loop: np.ndarray) -> np.ndarray:
 def _area(loop: np.ndarray) -> float:
     """[m^2] the greatest area that a loop (n, 3) has in any projection: no surface that closes it has less."""
     fan = _fan(loop)
-    return 0.5 * float(np.linalg.norm(np.cross(fan[:, 1] - fan[:, 0], fan[:, 2] - fan[:, 0]).sum(axis=0)))
+    return 0.5 * float(
+        np.linalg.norm(np.cross(fan[:, 1] - fan[:, 0], fan[:, 2] - fan[:, 0]).sum(axis=0))
+    )
 
 
-def _areas(shape: Polyhedron, ways: np.ndarray, component: np.ndarray, n_components: int) -> np.ndarray:
+def _areas(
+    shape: Polyhedron, ways: np.ndarray, component: np.ndarray, n_components: int
+) -> np.ndarray:
     """(c,) [m^2] of the faces that count, of each component."""
     counts = ways[shape.triangle_faces] != 0
     a, b, c = (shape.vertices[shape.triangles()[counts, k]] for k in range(3))
     doubled = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return 0.5 * np.bincount(component[shape.triangle_faces[counts]], doubled, minlength=n_components)
+    return 0.5 * np.bincount(
+        component[shape.triangle_faces[counts]], doubled, minlength=n_components
+    )

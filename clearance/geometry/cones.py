@@ -31,7 +31,9 @@ STEPS = 8
 """Times that the axis of a cone is moved towards what is farthest from it."""
 
 
-def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles: np.ndarray) -> np.ndarray:
+def node_cones(
+    children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles: np.ndarray
+) -> np.ndarray:
     """(6 g, 4) `Surface.cones` from the axes (3, f) and half angles (f,) [rad] of the faces' cones.
 
     A cone stands for itself and its opposite, so that both sides of a thin wall have one in common. That of a node
@@ -42,7 +44,9 @@ def node_cones(children: np.ndarray, boxes: np.ndarray, axes: np.ndarray, angles
     angle, n_below = np.zeros(n_nodes), np.zeros(n_nodes, dtype=np.int64)
     above = list(_nodes_above_faces(children))
     for node, face in above:
-        np.maximum.at(angle, node, np.arccos(np.abs(_cosines(axis, node, axes, face))) + angles[face])
+        np.maximum.at(
+            angle, node, np.arccos(np.abs(_cosines(axis, node, axes, face))) + angles[face]
+        )
         n_below += np.bincount(node, minlength=n_nodes)
     few = (n_below > 1) & (n_below <= FEW)
     pairs = [np.stack([node, face])[:, few[node]] for node, face in above]
@@ -77,7 +81,9 @@ def _levels(children: np.ndarray) -> Iterator[np.ndarray]:
     inner = np.flatnonzero(children[:1, 1] > 0)
     while len(inner):
         yield inner
-        below = np.concatenate([WIDTH * children[inner[children[inner, 1] > k], 0] + k for k in range(WIDTH)])
+        below = np.concatenate(
+            [WIDTH * children[inner[children[inner, 1] > k], 0] + k for k in range(WIDTH)]
+        )
         inner = below[children[below, 1] > 0]
 
 
@@ -98,7 +104,12 @@ def _nodes_above_faces(children: np.ndarray) -> Iterator[tuple[np.ndarray, np.nd
 
 
 def face_cones(
-    ring: Ring, twin: np.ndarray, vertices: np.ndarray, corners: np.ndarray, normals: np.ndarray, bent: np.ndarray
+    ring: Ring,
+    twin: np.ndarray,
+    vertices: np.ndarray,
+    corners: np.ndarray,
+    normals: np.ndarray,
+    bent: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Axis (3, f) and half angle (f,) [rad] of the cone of each face, infinite where it has none.
 

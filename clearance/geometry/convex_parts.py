@@ -209,7 +209,11 @@ def _uncuttable(body: Polyhedron) -> str:
     """Why CoACD cannot cut a body, in a few words; nothing where it can."""
     if not decompose.available():
         return f"CoACD is not installed ({install('contact')})"
-    return "" if body.n_triangles <= MOST_CUT else f"of more than {MOST_CUT} triangles, which are not cut"
+    return (
+        ""
+        if body.n_triangles <= MOST_CUT
+        else f"of more than {MOST_CUT} triangles, which are not cut"
+    )
 
 
 def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:

@@ -69,7 +69,11 @@ def two_sided(
 
 
 def each_once(
-    corners: np.ndarray, starts: np.ndarray, component: np.ndarray, asked: np.ndarray, also_two_sided=False
+    corners: np.ndarray,
+    starts: np.ndarray,
+    component: np.ndarray,
+    asked: np.ndarray,
+    also_two_sided=False,
 ) -> np.ndarray:
     """(f,) 1 for the least of the faces with the same corners in components that are `asked` (k,) for, else 0.
 

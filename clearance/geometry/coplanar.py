@@ -119,7 +119,9 @@ def _grouped(
     flags = kernels.coplanar_twins(points, corners, axes, signs, twin)
     joined = np.flatnonzero(flags)
     group = joined_labels(len(corners), joined // 3, twin[joined] // 3)
-    leaders = np.unique(group, return_index=True)[1]  # one axis for each group: its first triangle's
+    leaders = np.unique(group, return_index=True)[
+        1
+    ]  # one axis for each group: its first triangle's
     proper = axes != kernels.DEGENERATE
     return _Faces(
         starts, flat, np.where(proper, group, -1), axes[leaders][group], signs[leaders][group]
@@ -160,7 +162,11 @@ def _selected(faces: _Faces, keep: np.ndarray) -> _Faces:
     sizes = np.diff(faces.starts)
     starts = np.concatenate([[0], np.cumsum(sizes[keep])])
     return _Faces(
-        starts, faces.flat[np.repeat(keep, sizes)], faces.group[keep], faces.axes[keep], faces.signs[keep]
+        starts,
+        faces.flat[np.repeat(keep, sizes)],
+        faces.group[keep],
+        faces.axes[keep],
+        faces.signs[keep],
     )
 
 
@@ -195,8 +201,17 @@ def _with_edges_removed(points: np.ndarray, faces: _Faces) -> _Faces:
     order = candidates[np.argsort(-((lengths / scale) ** 2).sum(axis=1), kind="stable")]
     parents = np.arange(len(faces.axes))
     kernels.merge_rings(
-        points, order, tails, ring.ahead, ring.behind, twin, ring.face,
-        faces.group, faces.axes, faces.signs, parents,
+        points,
+        order,
+        tails,
+        ring.ahead,
+        ring.behind,
+        twin,
+        ring.face,
+        faces.group,
+        faces.axes,
+        faces.signs,
+        parents,
     )
     return _read_back(faces, ring.ahead, twin, ring.face, parents)
 

@@ -26,7 +26,9 @@ def checked_vertices(given: np.ndarray) -> np.ndarray:
     try:
         vertices = np.array(given, dtype=np.float64, order="C")
     except (TypeError, ValueError):
-        raise BadShape("the vertices are not an array of numbers", valid="(n, 3) is needed") from None
+        raise BadShape(
+            "the vertices are not an array of numbers", valid="(n, 3) is needed"
+        ) from None
     if vertices.ndim != 2 or vertices.shape[1] != 3:
         raise BadShape(f"the vertices have shape {vertices.shape}", valid="(n, 3) is needed")
     finite = np.isfinite(vertices).all(axis=1)
@@ -128,7 +130,9 @@ def check_convex(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> 
     bad = _bends_inward(vertices, starts, flat, planes)
     bad |= ~planes.normals.any(axis=1) & (_warp(vertices, starts, flat, planes) > 1.0)
     if bad.any():
-        raise BadPolygon(f"polygon {int(np.argmax(bad))} is not convex", valid="convex polygons; split it")
+        raise BadPolygon(
+            f"polygon {int(np.argmax(bad))} is not convex", valid="convex polygons; split it"
+        )
 
 
 def _allowance(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> np.ndarray:
@@ -137,9 +141,7 @@ def _allowance(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> np
     return 16.0 * UNIT_ROUNDOFF * largest
 
 
-def _warp(
-    vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, planes: Planes
-) -> np.ndarray:
+def _warp(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, planes: Planes) -> np.ndarray:
     """(m,) how far vertices are off their face's plane (off its line without one), in units of what is allowed."""
     ring = rings_of(starts)
     offsets = vertices[flat] - planes.centres[ring.face]
@@ -174,4 +176,6 @@ def _bends_inward(
     allowed = FLATNESS * a * b + _allowance(vertices, starts, flat)[ring.face] * (a + b)
     turns = np.arctan2(bends, (arriving * leaving).sum(axis=1))
     around = np.add.reduceat(np.abs(turns), starts[:-1]) > 3.0 * np.pi
-    return (np.logical_or.reduceat(bends < -allowed, starts[:-1]) | around) & planes.normals.any(axis=1)
+    return (np.logical_or.reduceat(bends < -allowed, starts[:-1]) | around) & planes.normals.any(
+        axis=1
+    )

@@ -28,5 +28,7 @@ def file_reader() -> Reader:
         Unavailable: none was.
     """
     if not _attached:
-        raise Unavailable("no reader of mesh files is attached", valid="import clearance attaches one")
+        raise Unavailable(
+            "no reader of mesh files is attached", valid="import clearance attaches one"
+        )
     return _attached[0]

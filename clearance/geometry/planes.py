@@ -45,7 +45,9 @@ def planes_of(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> Pla
     spans = np.ldexp(spans, -np.repeat(exponents, sizes)[:, None])  # now of size 1/2 to 1, exactly
     means = np.add.reduceat(spans, starts[:-1], axis=0) / sizes[:, None]
     radii = np.sqrt(
-        np.maximum.reduceat(((spans - np.repeat(means, sizes, axis=0)) ** 2).sum(axis=1), starts[:-1])
+        np.maximum.reduceat(
+            ((spans - np.repeat(means, sizes, axis=0)) ** 2).sum(axis=1), starts[:-1]
+        )
     )
     areas = _area_vectors(spans, starts)
     lengths = np.sqrt((areas**2).sum(axis=1))

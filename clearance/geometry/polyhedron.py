@@ -47,7 +47,9 @@ def require_polyhedron(given: object, where: str) -> Polyhedron:
     return given
 
 
-_REMEDIES = "cl.Polyhedron(vertices, faces), cl.box and its like, or Polyhedron.from_trimesh make one"
+_REMEDIES = (
+    "cl.Polyhedron(vertices, faces), cl.box and its like, or Polyhedron.from_trimesh make one"
+)
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -162,7 +164,9 @@ class Polyhedron:
 
     def face(self, i_face: int) -> np.ndarray:
         """The (k, 3) corners [m] of one face, in order."""
-        return self.vertices[self.face_vertices[self.face_starts[i_face] : self.face_starts[i_face + 1]]]
+        return self.vertices[
+            self.face_vertices[self.face_starts[i_face] : self.face_starts[i_face + 1]]
+        ]
 
     def triangles(self) -> np.ndarray:
         """(n_triangles, 3) vertex indices: each face cut from its first vertex, faces in order."""
@@ -292,8 +296,14 @@ class Polyhedron:
             BadDimension: a factor that is zero or not finite, or is not one or three numbers.
         """
         factors = np.asarray(factor, dtype=np.float64)
-        if factors.shape not in ((), (1,), (3,)) or not np.isfinite(factors).all() or not factors.all():
-            raise BadDimension(f"scale is {factor!r:.60}", valid="one or three numbers other than 0")
+        if (
+            factors.shape not in ((), (1,), (3,))
+            or not np.isfinite(factors).all()
+            or not factors.all()
+        ):
+            raise BadDimension(
+                f"scale is {factor!r:.60}", valid="one or three numbers other than 0"
+            )
         factors = np.broadcast_to(factors, 3)
         vertices = self.vertices * factors
         if not np.isfinite(vertices).all():
@@ -313,7 +323,9 @@ class Polyhedron:
             raise EmptyMesh("there are no surfaces to join", valid="at least one")
         shifts = np.cumsum([0] + [len(part.vertices) for part in parts])
         corners = np.cumsum([0] + [len(part.face_vertices) for part in parts])
-        starts = [part.face_starts[:-1] + shift for part, shift in zip(parts, corners, strict=False)]
+        starts = [
+            part.face_starts[:-1] + shift for part, shift in zip(parts, corners, strict=False)
+        ]
         return Polyhedron._of_valid(
             np.concatenate([part.vertices for part in parts]),
             np.concatenate([*starts, corners[-1:]]),

@@ -122,7 +122,9 @@ def _numbers(given: Sequence[float], n: int, field: str) -> np.ndarray:
     except (TypeError, ValueError):
         raise BadShape(f"{given!r:.60} is not {n} numbers", where=field) from None
     if numbers.shape != (n,):
-        raise BadShape(f"shape {numbers.shape} is given", where=field, valid=f"{n} numbers are needed")
+        raise BadShape(
+            f"shape {numbers.shape} is given", where=field, valid=f"{n} numbers are needed"
+        )
     if not np.isfinite(numbers).all():
         raise NotFinite(f"{numbers.tolist()}", where=field, valid=f"{n} finite numbers are needed")
     return numbers

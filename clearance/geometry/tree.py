@@ -52,7 +52,9 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
 
 
 def _join(parts: Sequence[Surface]) -> Surface:
-    n_before = {name: _offsets([len(getattr(part, name)) for part in parts]) for name in Surface._fields}
+    n_before = {
+        name: _offsets([len(getattr(part, name)) for part in parts]) for name in Surface._fields
+    }
 
     def stacked(name: str, shift: str | None = None) -> np.ndarray:
         shifts = n_before[shift] if shift else None
@@ -109,18 +111,26 @@ def _joined_children(
 
 
 def _build(shape: Polyhedron) -> Surface:
-    vertices, weld = np.unique(shape.vertices + 0.0, axis=0, return_inverse=True)  # + 0.0: -0.0 is 0.0
+    vertices, weld = np.unique(
+        shape.vertices + 0.0, axis=0, return_inverse=True
+    )  # + 0.0: -0.0 is 0.0
     corners = weld.reshape(-1)[shape.face_vertices].astype(np.int64)
     starts = shape.face_starts.copy()
     ring = rings_of(starts)
-    normals, blunt, width = np.empty((shape.n_faces, 3)), np.empty(shape.n_faces), np.empty(shape.n_faces)
+    normals, blunt, width = (
+        np.empty((shape.n_faces, 3)),
+        np.empty(shape.n_faces),
+        np.empty(shape.n_faces),
+    )
     bent = np.empty(shape.n_faces, dtype=np.bool_)
     face_planes(vertices, starts, corners, normals, blunt, width, bent)
     first_corners, vertex_starts = _owned(corners, ring.face, shape.n_faces)
     edges = np.stack([corners, corners[ring.ahead]], axis=1)
     first_uses, edge_starts = _owned(edge_keys(*edges.T, len(vertices)), ring.face, shape.n_faces)
     owned_edges = np.sort(edges[first_uses], axis=1)
-    owned_edges, edge_starts = _with_diagonals(owned_edges, edge_starts, corners, ring.face, starts, bent)
+    owned_edges, edge_starts = _with_diagonals(
+        owned_edges, edge_starts, corners, ring.face, starts, bent
+    )
     twin = twins(*edges.T)
     copies = copies_of(corners, starts, ring, twin, bent)
     centres, boxes, children = _tree(vertices[corners], starts, copies.kept)
@@ -145,7 +155,9 @@ def _build(shape: Polyhedron) -> Surface:
         owns=_owns(first_corners, first_uses, ring.face, starts, bent),
         centres=centres,
         boxes=boxes,
-        cones=node_cones(children, boxes, *_cones(copies.kept, ring, twin, vertices, corners, normals, bent)),
+        cones=node_cones(
+            children, boxes, *_cones(copies.kept, ring, twin, vertices, corners, normals, bent)
+        ),
         children=children,
         roots=np.zeros(1, dtype=np.int64),
         probe_starts=np.array([0, len(probes)]),
@@ -169,7 +181,9 @@ def _corner_normals(vertices: np.ndarray, edges: np.ndarray, normals: np.ndarray
     return _unit(np.cross(vertices[edges[:, 1]] - vertices[edges[:, 0]], normals))
 
 
-def _owned(features: np.ndarray, face_of_corner: np.ndarray, n_faces: int) -> tuple[np.ndarray, np.ndarray]:
+def _owned(
+    features: np.ndarray, face_of_corner: np.ndarray, n_faces: int
+) -> tuple[np.ndarray, np.ndarray]:
     """The corners where features (vertices or edges, by number) first occur, and where each face's begin."""
     _, first = np.unique(features, return_index=True)
     first.sort()
@@ -195,7 +209,11 @@ def _with_diagonals(
 
 
 def _owns(
-    first_corners: np.ndarray, first_uses: np.ndarray, face: np.ndarray, starts: np.ndarray, bent: np.ndarray
+    first_corners: np.ndarray,
+    first_uses: np.ndarray,
+    face: np.ndarray,
+    starts: np.ndarray,
+    bent: np.ndarray,
 ) -> np.ndarray:
     """(f,) `Surface.owns`, from the corners whose vertex their face owns, and those where an edge of it starts."""
     place = np.arange(len(face)) - starts[face]
@@ -230,7 +248,9 @@ def _cones(
     return axes, angles
 
 
-def _tree(corner_points: np.ndarray, starts: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, ...]:
+def _tree(
+    corner_points: np.ndarray, starts: np.ndarray, faces: np.ndarray
+) -> tuple[np.ndarray, ...]:
     """Centres, boxes and children of the nodes of a tree over some of the faces."""
     most = most_groups(len(faces))
     centres = np.empty((3 * most, WIDTH))

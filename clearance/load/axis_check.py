@@ -86,7 +86,10 @@ class _Turn(NamedTuple):
 
     def is_away(self, box: np.ndarray, points: np.ndarray) -> bool:
         """True if one of the points is far from the box for a link of this size."""
-        return float(np.linalg.norm(points - np.clip(points, *box), axis=1).max()) > APART * self._length
+        return (
+            float(np.linalg.norm(points - np.clip(points, *box), axis=1).max())
+            > APART * self._length
+        )
 
     @property
     def _length(self) -> float:
@@ -108,7 +111,9 @@ def _other(reader: ShapeReader) -> UpAxis:
 
 def _has_tag(link: Element, reader: ShapeReader) -> bool:
     """True if a file that is measured lies otherwise by its tag."""
-    return any(_is_tagged(mesh, reader) for mesh in link.iterfind(f"{reader.kind(link)}/geometry/mesh"))
+    return any(
+        _is_tagged(mesh, reader) for mesh in link.iterfind(f"{reader.kind(link)}/geometry/mesh")
+    )
 
 
 def _is_tagged(mesh: Element, reader: ShapeReader) -> bool:

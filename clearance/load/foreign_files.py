@@ -11,8 +11,14 @@ from pathlib import PurePath
 from clearance.errors import BadSyntax
 
 _ADVICE = {
-    "urdf": ("a URDF robot", "name it in a case file: robot: {{urdf: {name}}}, beside scene and trajectory"),
-    "xacro": ("a xacro robot", "turn it into URDF with the xacro command, and name that in a case file"),
+    "urdf": (
+        "a URDF robot",
+        "name it in a case file: robot: {{urdf: {name}}}, beside scene and trajectory",
+    ),
+    "xacro": (
+        "a xacro robot",
+        "turn it into URDF with the xacro command, and name that in a case file",
+    ),
     "srdf": (
         "a MoveIt SRDF",
         "what it lets touch goes into the case file: allow: [[link, obstacle]]",

@@ -36,7 +36,9 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
     for i, (joint, master, _, position) in enumerate(masters[joint.name] for joint in joints):
         if joint.mimic is not None and master in fixed:
             joints[i] = _at_rest(joint, position)
-            notes.append(f"joint {joint.name!r} follows fixed joint {master!r} and stays at {position:g}")
+            notes.append(
+                f"joint {joint.name!r} follows fixed joint {master!r} and stays at {position:g}"
+            )
     return joints, notes
 
 
@@ -93,7 +95,9 @@ def _mimic(element: Element | None, kind: JointKind) -> Mimic | None:
     )
     for what, value in (("multiplier", mimic.multiplier), ("offset", mimic.offset)):
         if abs(value) > REACH:
-            raise BadDimension(f"{what} {value:g} is given", where="mimic", valid=f"{REACH:g} or less")
+            raise BadDimension(
+                f"{what} {value:g} is given", where="mimic", valid=f"{REACH:g} or less"
+            )
     return mimic
 
 

@@ -29,7 +29,11 @@ def case_schema() -> dict[str, Any]:
 
 
 def _or_path(mapping: dict[str, Any], what: str) -> dict[str, Any]:
-    path = {"type": "string", "minLength": 1, "description": f"path of {what}, relative to this file"}
+    path = {
+        "type": "string",
+        "minLength": 1,
+        "description": f"path of {what}, relative to this file",
+    }
     return {"anyOf": [mapping, path]}
 
 

@@ -98,9 +98,7 @@ def _from_variable(name: str) -> list[Path]:
 def _places(urdf_folder: Path, package_dirs: Sequence[Path]) -> str:
     n_above = len(Path(os.path.abspath(urdf_folder)).parents)
     dirs = ", ".join(repr(path.name or str(path)) for path in package_dirs) or "none are given"
-    variables = [
-        f"${name} ({os.environ.get(name) or 'not set'})" for name in _VARIABLES
-    ]
+    variables = [f"${name} ({os.environ.get(name) or 'not set'})" for name in _VARIABLES]
     return (
         f"in robot.package_dirs ({dirs}), in the URDF's folder and the {n_above} above it, "
         f"in {' and '.join(variables)}"

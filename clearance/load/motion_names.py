@@ -29,4 +29,6 @@ def note_on_joints_at_zero(robot: Robot, given: Iterable[str]) -> list[str]:
     left = [joint.name for joint in robot.moving_joints if joint.name not in known]
     if not left:
         return []
-    return [f"joints given neither by the trajectory nor by robot.joints stay at 0: {listed(left, 8)}"]
+    return [
+        f"joints given neither by the trajectory nor by robot.joints stay at 0: {listed(left, 8)}"
+    ]

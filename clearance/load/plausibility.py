@@ -64,7 +64,9 @@ def angle_notices(odd: Sequence[str]) -> list[Notice]:
 def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]:
     """A notice if meshes, given by name, are made larger than any unit asks for."""
     large = [(name, max(map(abs, scale))) for name, scale in scales]
-    odd = [f"the mesh is scaled by {scale:g} ({name})" for name, scale in large if scale >= LARGE_SCALE]
+    odd = [
+        f"the mesh is scaled by {scale:g} ({name})" for name, scale in large if scale >= LARGE_SCALE
+    ]
     if not odd:
         return []
     return [units(f"{listed(odd)}; lengths are in metres, and a file in millimetres needs 0.001")]

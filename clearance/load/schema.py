@@ -204,7 +204,9 @@ class Profile(Strict):
 
 def _known_kind(kind: str) -> str:
     if kind not in KINDS:
-        raise BadInput(f"{kind!r:.60} is given", valid=f"kinds of suspect input: {', '.join(KINDS)}")
+        raise BadInput(
+            f"{kind!r:.60} is given", valid=f"kinds of suspect input: {', '.join(KINDS)}"
+        )
     return kind
 
 

@@ -72,5 +72,10 @@ def _remedy(detail: dict) -> str:
         return f"{least or most} values are needed"
     if detail["type"] == "string_too_short":
         return "a text that is not empty is needed"
-    text = detail["msg"].replace("Input should be ", "").replace("a valid i", "an i").replace("a valid", "a")
+    text = (
+        detail["msg"]
+        .replace("Input should be ", "")
+        .replace("a valid i", "an i")
+        .replace("a valid", "a")
+    )
     return f"{text} is needed"

@@ -65,7 +65,9 @@ def read_trajectory(
     with at(shown):
         names = _header(opened)
         if joints_needed and len(names) == 1:
-            raise BadShape("there is no joint column", valid="time and at least one joint are needed")
+            raise BadShape(
+                "there is no joint column", valid="time and at least one joint are needed"
+            )
         joints = tuple(name for name in names if name != _TIME and not name.endswith(_VELOCITY))
         parts = [[_TIME], joints]
         if len(joints) < len(names) - 1:
@@ -79,7 +81,9 @@ def _columns(
     opened: Opener, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
 ) -> list[np.ndarray]:
     """For each of `parts` the (n, len(part)) columns of its names."""
-    most = n_bytes // (2 * len(names)) + 2  # a cell is a digit and a comma; what is not filled takes no memory
+    most = (
+        n_bytes // (2 * len(names)) + 2
+    )  # a cell is a digit and a comma; what is not filled takes no memory
     tables = [np.empty((most, len(part))) for part in parts]
     n_rows = 0
     for batch in _batches(opened, names):
@@ -91,7 +95,9 @@ def _columns(
     if not n_rows:
         raise _no_rows()
     for table in tables:
-        table.resize((n_rows, table.shape[1]), refcheck=False)  # gives the rest back, without a copy
+        table.resize(
+            (n_rows, table.shape[1]), refcheck=False
+        )  # gives the rest back, without a copy
     _refuse_not_finite(tables, parts, names, opened)
     return tables
 
@@ -152,7 +158,9 @@ def _batches(opened: Opener, names: list[str]) -> Iterator[pa.RecordBatch]:
         with opened() as file, _native(file) as stream:
             yield from arrow_csv.open_csv(stream, reading, convert_options=types)
     except pa.ArrowException as error:
-        raise _fault_in_rows(opened, names) or BadSyntax(f"not a table of numbers: {error}") from None
+        raise _fault_in_rows(opened, names) or BadSyntax(
+            f"not a table of numbers: {error}"
+        ) from None
 
 
 def _native(file: BinaryIO) -> pa.NativeFile:
@@ -210,7 +218,9 @@ def _refuse_not_finite(
     bad = []
     for table, part in zip(tables, parts, strict=True):
         least = np.flatnonzero(~np.isfinite(table).all(axis=1))[:1].tolist()
-        bad += [(row, names.index(part[i]), table[row, i]) for row in least for i in range(len(part))]
+        bad += [
+            (row, names.index(part[i]), table[row, i]) for row in least for i in range(len(part))
+        ]
     wrong = [(row, column, value) for row, column, value in bad if not np.isfinite(value)]
     if not wrong:
         return

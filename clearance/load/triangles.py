@@ -102,7 +102,9 @@ def without_copies(triangles: Triangles) -> tuple[Triangles, int]:
     order = np.lexsort((c, b, a))
     rows = np.stack([a, b, c], axis=1)[order]
     again = np.zeros(len(rows), dtype=bool)
-    again[order[1:]] = (rows[1:] == rows[:-1]).all(axis=1)  # lexsort is stable: the first of its kind stays
+    again[order[1:]] = (rows[1:] == rows[:-1]).all(
+        axis=1
+    )  # lexsort is stable: the first of its kind stays
     if not again.any():
         return triangles, 0
     return triangles._replace(corners=triangles.corners[~again]), int(again.sum())

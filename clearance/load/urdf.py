@@ -139,7 +139,11 @@ def _unseen(links: list[Element], geometry: Geometry) -> list[Notice]:
 
 def _bare(links: list[Element]) -> list[str]:
     """A note on links without any shape, which are frames."""
-    bare = [link.get("name") for link in links if link.find("collision") is None and link.find("visual") is None]
+    bare = [
+        link.get("name")
+        for link in links
+        if link.find("collision") is None and link.find("visual") is None
+    ]
     if not bare:
         return []
     count = "1 link" if len(bare) == 1 else f"{len(bare)} links"

@@ -32,7 +32,10 @@ _PRIMITIVES = {name: shape for name, shape in SHAPES.items() if shape.in_urdf}
 
 _NUMBERS: dict[str, dict[str, tuple[int, ...]]] = {
     **{
-        name: {key: (3,) if measure is Measure.SIZES else (1,) for key, measure in shape.dimensions.items()}
+        name: {
+            key: (3,) if measure is Measure.SIZES else (1,)
+            for key, measure in shape.dimensions.items()
+        }
         for name, shape in _PRIMITIVES.items()
     },
     "origin": {"xyz": (3,), "rpy": (3,)},
@@ -97,9 +100,7 @@ def number(element: Element, attribute: str, default: float | None = None) -> fl
     return value
 
 
-def numbers(
-    element: Element, attribute: str, default: tuple[float, ...] = ()
-) -> tuple[float, ...]:
+def numbers(element: Element, attribute: str, default: tuple[float, ...] = ()) -> tuple[float, ...]:
     """The numbers in an attribute of a checked document."""
     text = element.get(attribute)
     return default if text is None else tuple(map(float, text.split()))
@@ -132,7 +133,8 @@ def _root(data: bytes) -> Element:
     entity = next(root.iter(etree.Entity), None)
     if entity is not None:
         raise BadSyntax(
-            f"{entity.text} stands for something among the elements", valid="write out what it stands for"
+            f"{entity.text} stands for something among the elements",
+            valid="write out what it stands for",
         )
     if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter()):
         raise BadSyntax(

@@ -111,5 +111,9 @@ def _made(form: str, values) -> Curve:
         return make(**values)
     except ClearanceError:
         raise
-    except (TypeError, ValueError, OverflowError):  # text where numbers belong, lists of unlike lengths
+    except (
+        TypeError,
+        ValueError,
+        OverflowError,
+    ):  # text where numbers belong, lists of unlike lengths
         raise BadInput(f"{values!r:.60}", valid=f"numbers for {', '.join(needed)}") from None

@@ -48,7 +48,9 @@ def read_dxf(path: str) -> Curve:
             return _in_metres(ezdxf.readfile(str(file)))
         except ClearanceError:
             raise
-        except Exception as error:  # ezdxf raises whatever its parsing hits, also when an entity is asked
+        except (
+            Exception
+        ) as error:  # ezdxf raises whatever its parsing hits, also when an entity is asked
             raise BadSyntax(f"not a DXF drawing ({error!s:.120})", valid="a DXF file") from None
 
 

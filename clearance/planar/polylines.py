@@ -21,9 +21,7 @@ def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
     """Both directed searches, (2,) SEARCH_STATE and witnesses (2, 5), as those of other curves."""
     states, points = np.zeros(2, SEARCH_STATE), np.empty((2, 5))
     for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):
-        directed_polyline(
-            _segments(one), _segments(two), step[0], step[1], aim, states[k : k + 1]
-        )
+        directed_polyline(_segments(one), _segments(two), step[0], step[1], aim, states[k : k + 1])
         if states["lower"][k] > aim.limit:
             states["lower"][1 - k :] = states["lower"][k]
             break

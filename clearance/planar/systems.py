@@ -122,7 +122,14 @@ def _trimmed(way: _Way) -> tuple[np.ndarray, np.ndarray]:
 
 def _solved(way: _Way, parts: np.ndarray, other: np.ndarray, state: np.ndarray) -> np.ndarray:
     solve_directed(
-        arrays_of(way.one), parts, arrays_of(way.two), other, way.shift[0], way.shift[1], BUDGET, state
+        arrays_of(way.one),
+        parts,
+        arrays_of(way.two),
+        other,
+        way.shift[0],
+        way.shift[1],
+        BUDGET,
+        state,
     )
     return state
 

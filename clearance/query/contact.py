@@ -146,9 +146,15 @@ class BodyPair:
     def shared(self, b_from_a: np.ndarray) -> ClosedMesh | None:
         """What the meshes of two solids share, not both convex; None where that is not known."""
         try:
-            a = self.near_a if self.near_a and self.near_a.holds(self.b, inverse(b_from_a)) else self.parts_a
+            a = (
+                self.near_a
+                if self.near_a and self.near_a.holds(self.b, inverse(b_from_a))
+                else self.parts_a
+            )
             b = self.near_b if self.near_b and self.near_b.holds(self.a, b_from_a) else self.parts_b
-            solids = (one.solid if one.solid is not None else solid_of(one.outer[0]) for one in (a, b))
+            solids = (
+                one.solid if one.solid is not None else solid_of(one.outer[0]) for one in (a, b)
+            )
             one, other = solids
         except ClearanceError:
             return None
@@ -236,14 +242,21 @@ class _Placed:
     def _by_region(self) -> bool:
         """True where a body was not cut, and what both share is known."""
         is_rough = any(parts.rough for parts in self._both_parts)
-        return is_rough and self._both_closed and self._mesh_shared is not None and not self._mesh_shared.is_empty
+        return (
+            is_rough
+            and self._both_closed
+            and self._mesh_shared is not None
+            and not self._mesh_shared.is_empty
+        )
 
     def _through_region(self, proven: Ray) -> Ray:
         """The shortest way that the bodies confirm along what the region is thin in, or its normals."""
         region = self._region[0]
         thin = [Ray(self._thin.depth, way) for way in self._thin_ways()]
         rays = sorted([*thin, *ways_through(region)], key=lambda ray: ray.length)
-        found = shortened_through(self._padded(rays), proven.length, self._is_clear, self._still_shared)
+        found = shortened_through(
+            self._padded(rays), proven.length, self._is_clear, self._still_shared
+        )
         return found or self._confirmed([proven])
 
     def _still_shared(self, shift: np.ndarray, along: np.ndarray) -> float:

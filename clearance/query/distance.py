@@ -47,7 +47,9 @@ def distance(
     if _checked(method, tolerance) == "paper":
         require_polyhedron(a, "a"), require_polyhedron(b, "b")
         poses = [np.eye(4) if pose is None else validated_pose(pose) for pose in (pose_a, pose_b)]
-        return distance_paper(a, b, *poses, tolerance=NO_TOLERANCE if tolerance is None else tolerance)
+        return distance_paper(
+            a, b, *poses, tolerance=NO_TOLERANCE if tolerance is None else tolerance
+        )
     return room_for(a, b).nearest(pose_a, pose_b)
 
 

@@ -96,7 +96,10 @@ class Doubt:
         Where these are steps of a motion, loose faces are asked for now and then (`doubt.wound_by_loose`).
         """
         found = np.zeros(len(worlds_from_a), dtype=bool)
-        ways = (self._of_a, worlds_from_a, worlds_from_b), (self._of_b, worlds_from_b, worlds_from_a)
+        ways = (
+            (self._of_a, worlds_from_a, worlds_from_b),
+            (self._of_b, worlds_from_b, worlds_from_a),
+        )
         for sides, outer, inner in ways:
             for shell, part in sides:
                 if isinstance(shell, Loose):
@@ -119,8 +122,13 @@ def _sides(outer: Polyhedron, inner: Polyhedron) -> tuple[tuple[Shell | Loose, P
     shells, loose = _kept(_shells, outer, _shells_of), _kept(_loose, outer, _loose_of)
     parts = _kept(_parts, inner, _parts_of) if shells else ()
     pieces = _kept(_pieces, inner, _pieces_of) if loose else ()
-    of_shells = ((shell, part) for shell in shells for part in parts if shell.few or _may_hold(shell, part))
-    return (*of_shells, *((shell, part) for shell in loose for part in pieces if _may_hold(shell, part)))
+    of_shells = (
+        (shell, part) for shell in shells for part in parts if shell.few or _may_hold(shell, part)
+    )
+    return (
+        *of_shells,
+        *((shell, part) for shell in loose for part in pieces if _may_hold(shell, part)),
+    )
 
 
 def _may_hold(shell: Shell | Loose, part: Part) -> bool:
@@ -129,7 +137,9 @@ def _may_hold(shell: Shell | Loose, part: Part) -> bool:
     return bool(breadth <= np.linalg.norm(shell.bounds[1] - shell.bounds[0]))
 
 
-def _look(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray, found: np.ndarray) -> None:
+def _look(
+    shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray, found: np.ndarray
+) -> None:
     """Sets `found` (n,) where the part is in doubt, at poses (n, 4, 4) of the shell's body and of its own."""
     asked = _near_a_hole if shell.few else _within_bounds
     rows = np.flatnonzero(asked(shell, part, outer, inner) & ~found)
@@ -150,7 +160,10 @@ def _near_a_hole(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray)
 
 def _within_bounds(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
     """(n,) True where the outermost corners of the part are within the body's bounds."""
-    points = part.outermost @ np.swapaxes(inner[:, :3, :3], 1, 2) + (inner[:, :3, 3] - outer[:, :3, 3])[:, None]
+    points = (
+        part.outermost @ np.swapaxes(inner[:, :3, :3], 1, 2)
+        + (inner[:, :3, 3] - outer[:, :3, 3])[:, None]
+    )
     points = points @ outer[:, :3, :3]
     return ((points >= shell.bounds[0]) & (points <= shell.bounds[1])).all(axis=(1, 2))
 
@@ -174,10 +187,17 @@ def _shell(shape: Polyhedron, closing: Closing, few: bool) -> Shell:
     if not few:
         corners = closing.caps.reshape(-1, 3)
         surface = surface._replace(
-            turns=closing.turns.astype(np.int32), caps=corners, cap_starts=np.array([0, len(corners)])
+            turns=closing.turns.astype(np.int32),
+            caps=corners,
+            cap_starts=np.array([0, len(corners)]),
         )
-    fans = [closing.caps[start:end] for start, end in zip(closing.loops, closing.loops[1:], strict=False)]
-    return Shell(surface, few, shape.bounds, np.array([_ball_of(fan) for fan in (closing.caps, *fans)]))
+    fans = [
+        closing.caps[start:end]
+        for start, end in zip(closing.loops, closing.loops[1:], strict=False)
+    ]
+    return Shell(
+        surface, few, shape.bounds, np.array([_ball_of(fan) for fan in (closing.caps, *fans)])
+    )
 
 
 def _ball_of(fan: np.ndarray) -> tuple[float, ...]:
@@ -193,7 +213,10 @@ def _parts_of(shape: Polyhedron) -> tuple[Part, ...]:
     of_corner = np.repeat(shape.face_component, np.diff(shape.face_starts))
     order = np.argsort(of_corner, kind="stable")
     ends = np.flatnonzero(np.diff(of_corner[order])) + 1
-    return tuple(_part(shape.vertices[np.unique(rows)]) for rows in np.split(shape.face_vertices[order], ends))
+    return tuple(
+        _part(shape.vertices[np.unique(rows)])
+        for rows in np.split(shape.face_vertices[order], ends)
+    )
 
 
 def _pieces_of(shape: Polyhedron) -> tuple[Part, ...]:

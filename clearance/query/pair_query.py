@@ -110,20 +110,32 @@ class Query:
         Raises:
             BadPose, BadShape, NotFinite: the first that is not a rigid motion, or not as many of both.
         """
-        poses_a, poses_b = _poses(worlds_from_a, "worlds_from_a"), _poses(worlds_from_b, "worlds_from_b")
+        poses_a, poses_b = (
+            _poses(worlds_from_a, "worlds_from_a"),
+            _poses(worlds_from_b, "worlds_from_b"),
+        )
         lengths = {len(poses) for poses in (poses_a, poses_b) if len(poses) != 1}
         if len(lengths) > 1:
-            raise BadShape(f"{len(poses_a)} poses of a and {len(poses_b)} of b", valid="as many of each")
+            raise BadShape(
+                f"{len(poses_a)} poses of a and {len(poses_b)} of b", valid="as many of each"
+            )
         numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
         with self._alone() as pair:
             held = pair.held
-            if call(nearest_at_poses, held, poses_a, poses_b, False, False, numbers, points, counts) >= 0:
+            if (
+                call(
+                    nearest_at_poses, held, poses_a, poses_b, False, False, numbers, points, counts
+                )
+                >= 0
+            ):
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
                 call(nearest_at_poses, held, poses_a, poses_b, True, False, numbers, points, counts)
         distances = numbers[:, 0].copy()
         undecided = _undecided(pair, distances, poses_a, poses_b)
-        return NearestAtPoses(distances, points, counts[:, :2].copy(), numbers[:, 1].copy(), undecided)
+        return NearestAtPoses(
+            distances, points, counts[:, :2].copy(), numbers[:, 1].copy(), undecided
+        )
 
 
 def _undecided(
@@ -143,7 +155,9 @@ def _poses(given: np.ndarray | None, where: str) -> np.ndarray:
     try:
         poses = np.array(np.eye(4) if given is None else given, dtype=np.float64, order="C")
     except (TypeError, ValueError):
-        raise BadShape(f"{given!r:.60}", where=where, valid="an (n, 4, 4) array of numbers") from None
+        raise BadShape(
+            f"{given!r:.60}", where=where, valid="an (n, 4, 4) array of numbers"
+        ) from None
     if poses.ndim not in (2, 3) or poses.shape[-2:] != (4, 4):
         raise BadShape(f"shape {poses.shape}", where=where, valid="(n, 4, 4) or (4, 4) is needed")
     return poses.reshape(-1, 4, 4)

@@ -114,7 +114,9 @@ def checked_tolerance(tolerance: float) -> float:
         BadDimension: not a length above 0.
     """
     if not isinstance(tolerance, int | float) or not tolerance > 0.0:
-        raise BadDimension(f"tolerance is {tolerance!r:.60}", where="tolerance", valid="a length above 0 [m]")
+        raise BadDimension(
+            f"tolerance is {tolerance!r:.60}", where="tolerance", valid="a length above 0 [m]"
+        )
     return float(tolerance)
 
 

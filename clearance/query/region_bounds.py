@@ -79,7 +79,9 @@ def _middles_of_chords(corners: np.ndarray) -> np.ndarray:
     areas = np.linalg.norm(sides, axis=1)
     largest = np.argsort(-areas, kind="stable")[: CHORDS // 2]
     spread = np.arange(0, len(corners), max(1, len(corners) // (CHORDS - CHORDS // 2)))
-    chosen = [int(i) for i in dict.fromkeys([*largest.tolist(), *spread.tolist()]) if areas[i] > 0.0]
+    chosen = [
+        int(i) for i in dict.fromkeys([*largest.tolist(), *spread.tolist()]) if areas[i] > 0.0
+    ]
     found = []
     for i in chosen[:CHORDS]:
         start, inward = corners[i].mean(axis=0), -sides[i] / areas[i]

@@ -221,7 +221,9 @@ def sign_off(fields: dict[str, str] | None) -> Markup:
     heads = ("", "Name", "Date", "Signature")
     roles = {"Author": fields["author"], "Checked": "", "Approved": ""}
     rows = [
-        element("tr", element("th", role, scope="row"), element("td", name), *[element("td", "")] * 2)
+        element(
+            "tr", element("th", role, scope="row"), element("td", name), *[element("td", "")] * 2
+        )
         for role, name in roles.items()
     ]
     revision = element("p", f"Revision {fields['revision']}") if fields["revision"] else Markup("")

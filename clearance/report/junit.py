@@ -102,7 +102,9 @@ def _violated_between(record: Record) -> dict[tuple[str, str], str]:
         step = int(own[np.argmin(certificate.upper_bound[own])])
         moment = certificate.moment_of(step)
         if moment.clearance < record.case.limits.fail or moment.clearance <= 0.0:
-            found[moment.link, moment.obstacle] = f"{mm(moment.clearance)} mm at {moment_text(moment)}"
+            found[moment.link, moment.obstacle] = (
+                f"{mm(moment.clearance)} mm at {moment_text(moment)}"
+            )
     return found
 
 
@@ -110,11 +112,15 @@ def _pair(
     suite: ElementTree.Element, limits: Limits, minimum: PairMinimum, between: str | None
 ) -> None:
     case = _case(suite, minimum.link, f"{minimum.link} - {minimum.obstacle}")
-    text = f"at the samples {mm(minimum.clearance)} mm at step {minimum.step}, {seconds(minimum.time)}"
+    text = (
+        f"at the samples {mm(minimum.clearance)} mm at step {minimum.step}, {seconds(minimum.time)}"
+    )
     below = minimum.clearance < limits.fail or minimum.clearance <= 0.0
     if below or between is not None:
         told = text if between is None else f"{between}; {text}"
-        _tell(case, f"clearance {told}; the fail limit is {limit_mm(limits.fail)} mm", "LimitViolated")
+        _tell(
+            case, f"clearance {told}; the fail limit is {limit_mm(limits.fail)} mm", "LimitViolated"
+        )
     else:
         near = "near miss: " if minimum.clearance < limits.warn else ""
         _tell(case, f"{near}least clearance {text}", None)
@@ -156,7 +162,9 @@ def _notices(suite: ElementTree.Element, record: Record) -> None:
         fault = _FAULTS.get(notice.severity)
         if notice.severity is Severity.SUSPECT and notice.kind in record.case.accept:
             fault = None
-        _tell(_case(suite, str(notice.severity), f"{notice.kind}: {notice.text}"), notice.text, fault)
+        _tell(
+            _case(suite, str(notice.severity), f"{notice.kind}: {notice.text}"), notice.text, fault
+        )
 
 
 def _make_valid(root: ElementTree.Element) -> None:

@@ -20,12 +20,21 @@ def run_html(record: Record) -> str:
     verdict, limits = verdict_of(record), record.case.limits
     told = f"fail below {limit_mm(limits.fail)} mm, warn below {limit_mm(limits.warn)} mm"
     beside = [f"{name} not checked" for name in verdict.not_checked]
-    beside += [f"suspect {one.kind}: {one.text}" for one in verdict.suspects] + list(verdict.warnings)
+    beside += [f"suspect {one.kind}: {one.text}" for one in verdict.suspects] + list(
+        verdict.warnings
+    )
     return element(
         "div",
-        element("p", element("strong", f"{record.case.name}: {verdict.text()}"), f", {_worst(record)} ({told})"),
+        element(
+            "p",
+            element("strong", f"{record.case.name}: {verdict.text()}"),
+            f", {_worst(record)} ({told})",
+        ),
         element("ul", *[element("li", line) for line in beside]),
-        table(("Link", "Obstacle", ">mm", ">Step", ">s"), [_row(p) for p in record.pair_minima[:MOST_PAIRS]]),
+        table(
+            ("Link", "Obstacle", ">mm", ">Step", ">s"),
+            [_row(p) for p in record.pair_minima[:MOST_PAIRS]],
+        ),
     )
 
 

@@ -110,9 +110,7 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
     }
 
 
-def _pairs(
-    summary: dict[str, Any], replay: Replay, curves: PairCurves | None
-) -> dict[str, Any]:
+def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -> dict[str, Any]:
     """The least clearance of each pair with its line, and its curve if there is one."""
     index = {(body.kind, body.name): i for i, body in enumerate(replay.bodies)}
     pairs = [

@@ -81,7 +81,9 @@ def _beside(summary: dict[str, Any]) -> Markup:
         element("li", f"Suspect {one['kind']}: {one['text']}", class_="text-suspect")
         for one in summary["suspects"]
     ]
-    rows += [element("li", f"Violated: {text}", class_="text-violated") for text in summary["broken"]]
+    rows += [
+        element("li", f"Violated: {text}", class_="text-violated") for text in summary["broken"]
+    ]
     doubts = [summary["unproven"]] if summary["unproven"] else []
     doubts += [f"Warning: {text}" for text in summary["warnings"]]
     rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
@@ -225,7 +227,11 @@ def events(summary: dict[str, Any]) -> Markup:
     more = len(found) - len(rows)
     unlisted = summary["not_listed"]["events"]
     told = [f"{count(more, 'more event')} in summary.json."] if more else []
-    told += [f"{count(unlisted, 'more event')} follow from the status in steps.csv."] if unlisted else []
+    told += (
+        [f"{count(unlisted, 'more event')} follow from the status in steps.csv."]
+        if unlisted
+        else []
+    )
     if any(event["between"] for event in found):
         told.append("A step with + is the one before a moment between two steps.")
     notes = [element("p", text, class_="faint") for text in told]

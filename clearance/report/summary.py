@@ -202,7 +202,13 @@ def tessellation_bound(record: Record) -> float:
 
 def notes_of(record: Record) -> list[str]:
     robots = [note for motion in record.motions for note in motion.placed.robot.notes]
-    told = [*standing_hint(record), *record.case.notes, *robots, *record.notes, *record.contact_notes]
+    told = [
+        *standing_hint(record),
+        *record.case.notes,
+        *robots,
+        *record.notes,
+        *record.contact_notes,
+    ]
     return list(dict.fromkeys(told))
 
 

@@ -139,7 +139,9 @@ def _occurring(record: Record) -> str | None:
         return f"contact: {where}"
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
         if worst.clearance < limit:
-            return f"{mm(worst.clearance)} mm, below the {name} limit of {limit_mm(limit)} mm: {where}"
+            return (
+                f"{mm(worst.clearance)} mm, below the {name} limit of {limit_mm(limit)} mm: {where}"
+            )
     return None
 
 

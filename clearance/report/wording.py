@@ -123,7 +123,9 @@ def span_text(start: float, end: float) -> str:
 
 def certified_text(certified: dict) -> str:
     """What is proven of the continuous motion, as one sentence."""
-    way = {"linear": "linearly", "cubic": "on cubics through the given velocities"}[certified["joints"]]
+    way = {"linear": "linearly", "cubic": "on cubics through the given velocities"}[
+        certified["joints"]
+    ]
     proven = f"at least {mm(certified['lower_bound'])} mm at every moment, joints moving {way} between steps"
     if certified["upper_bound"] is None:  # only so much was asked, everywhere
         return proven

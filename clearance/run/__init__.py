@@ -81,5 +81,7 @@ def _loaded(path: str | PathLike[str]) -> Case:
     from clearance.load.case_file import load_case
 
     if not isinstance(path, str | PathLike):
-        raise BadInput(f"a {type(path).__name__} is given", valid="a Case, or the path of a case file")
+        raise BadInput(
+            f"a {type(path).__name__} is given", valid="a Case, or the path of a case file"
+        )
     return load_case(path)

@@ -117,7 +117,9 @@ def _measurement(plan: Plan, means: Means) -> Measurement:
     question = plan.question
     what = question.case, plan.motions, plan.pairs
     if question.method == "exact":
-        return measure(*what, question.need, jobs=means.jobs, progress=means.progress, kept=means.rows)
+        return measure(
+            *what, question.need, jobs=means.jobs, progress=means.progress, kept=means.rows
+        )
     from clearance.query.paper import NO_TOLERANCE
     from clearance.simulate.measure_paper import measure_paper
 

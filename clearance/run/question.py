@@ -43,22 +43,39 @@ class Question:
     paper_tolerance: float | None = None
 
     def __post_init__(self) -> None:
-        for what, valid in (("method", METHODS), ("motion", MOTIONS), ("need", NEEDS), ("contact", CONTACT)):
+        for what, valid in (
+            ("method", METHODS),
+            ("motion", MOTIONS),
+            ("need", NEEDS),
+            ("contact", CONTACT),
+        ):
             if getattr(self, what) not in valid:
                 given = getattr(self, what)
                 raise BadInput(f"unknown {what} {given!r}", valid=f"one of {', '.join(valid)}")
         _require_tolerance(self.paper_tolerance, self.method)
         if self.need != "steps" and self.method != "exact":
-            raise BadInput(f"method {self.method!r} measures every step", valid="need 'steps', or method 'exact'")
+            raise BadInput(
+                f"method {self.method!r} measures every step",
+                valid="need 'steps', or method 'exact'",
+            )
         if self.need in ("limit", "minimum") and self.cross_check:
-            raise BadInput(f"cross-check needs every step, not {self.need!r}", valid="need 'steps' or 'pairs'")
+            raise BadInput(
+                f"cross-check needs every step, not {self.need!r}", valid="need 'steps' or 'pairs'"
+            )
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
         object.__setattr__(self, "case", replace(self.case, notices=notices_of(self.case)))
 
     @property
     def of_rows(self) -> tuple[object, ...]:
         """What of it decides the rows that are measured and certified, beside the case."""
-        return self.need, self.method, self.motion, self.certify, self.certify_gap, self.paper_tolerance
+        return (
+            self.need,
+            self.method,
+            self.motion,
+            self.certify,
+            self.certify_gap,
+            self.paper_tolerance,
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +109,9 @@ def limited(case: Case, limits: Limits | None) -> Case:
     if limits is None:
         return case
     if not isinstance(limits, Limits):
-        raise BadInput(f"limits are {limits!r:.60}", valid="a Limits, as Limits(fail=0.005, warn=0.02)")
+        raise BadInput(
+            f"limits are {limits!r:.60}", valid="a Limits, as Limits(fail=0.005, warn=0.02)"
+        )
     return replace(case, limits=limits)
 
 

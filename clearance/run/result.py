@@ -53,7 +53,9 @@ class Run:
         if moment is self.record.worst_sample:
             return row
         ends = {"link": moment.point_link, "obstacle": moment.point_obstacle}
-        told = {f"{body}_{axis}": x for body in ends for axis, x in zip("xyz", ends[body], strict=True)}
+        told = {
+            f"{body}_{axis}": x for body in ends for axis, x in zip("xyz", ends[body], strict=True)
+        }
         told |= {name: getattr(moment, name) for name in ("time", "clearance", "link", "obstacle")}
         status = status_of(moment.clearance, self.record.case.limits)
         return row | told | {"between": True, "status": status}
@@ -86,8 +88,8 @@ class Run:
 
     @property
     def status(self) -> str:
-        """"clear", "near", "violated" or "contact", whichever is the worst; "violated" where a sweep does not keep
-        to a profile of the case; "suspect" where input is in doubt and the case does not accept it."""
+        """The worst of "clear", "near", "violated" and "contact"; "violated" where a sweep does not keep to a profile
+        of the case; "suspect" where input is in doubt and the case does not accept it."""
         return self.verdict.status
 
     @property

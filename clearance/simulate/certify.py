@@ -68,7 +68,9 @@ def certify_motion(
     gap, notices = _no_finer_than_rounding(case, motions, gap)
     kept, tally, bounds = kept or Rows(), _no_counts(), []
     question = _Question.of(found, case.limits, need, gap)
-    for i_robot in sorted({pair.i_robot for pair in pairs}):  # a robot may have nothing that is measured
+    for i_robot in sorted(
+        {pair.i_robot for pair in pairs}
+    ):  # a robot may have nothing that is measured
         motion = motions[i_robot]
         work = _Work.of(case, motion, pairs, i_robot, question)
         log = _Log(kept, f"certify{i_robot}", motion.n_steps, question)

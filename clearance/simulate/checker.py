@@ -94,7 +94,9 @@ class Checker:
 
     def __init__(self, case: Case) -> None:
         if not isinstance(case, Case):
-            raise BadInput(f"a {type(case).__name__} is given", valid="a Case, as `load_case` gives it")
+            raise BadInput(
+                f"a {type(case).__name__} is given", valid="a Case, as `load_case` gives it"
+            )
         self.case, self.notices = case, notices_of(case)
         pairs, _ = measured_pairs(case)
         self._doubts = [(pairs[i], i, doubt) for i, doubt in doubts_of(case, pairs).items()]
@@ -104,7 +106,9 @@ class Checker:
         self.joint_names = tuple(name for names in self._names for name in names)
         self._placing = _placing(case.robots, self._names)
         laid = lay_out(case, pairs)
-        no_rows = PairRows(np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3)))
+        no_rows = PairRows(
+            np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
+        )
         self._held = hold_scene(laid.surface, laid.world, no_rows, len(self._placing[0]))
         self._lock = threading.Lock()
         self._counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
@@ -161,12 +165,20 @@ class Checker:
         try:
             given = np.asarray(configuration, dtype=np.float64)
         except (TypeError, ValueError):
-            raise BadShape(f"{configuration!r:.60} is given", valid=self._wanted(n_dimensions)) from None
+            raise BadShape(
+                f"{configuration!r:.60} is given", valid=self._wanted(n_dimensions)
+            ) from None
         if given.ndim != n_dimensions or given.shape[-1] != len(self.joint_names):
-            raise BadShape(f"the shape is {given.shape}", where="configuration", valid=self._wanted(n_dimensions))
+            raise BadShape(
+                f"the shape is {given.shape}",
+                where="configuration",
+                valid=self._wanted(n_dimensions),
+            )
         if not (np.abs(given) <= REACH).all():
             raise NotFinite(
-                "a joint position is NaN or beyond any reach", where="configuration", valid=f"{REACH:g} or less"
+                "a joint position is NaN or beyond any reach",
+                where="configuration",
+                valid=f"{REACH:g} or less",
             )
         return given
 
@@ -174,7 +186,9 @@ class Checker:
         if set(given) != set(self.joint_names):
             missing = sorted(set(self.joint_names) ^ set(given))
             raise BadInput(
-                f"missing or unknown joints: {', '.join(missing)}", where="configuration", valid=self._wanted(1)
+                f"missing or unknown joints: {', '.join(missing)}",
+                where="configuration",
+                valid=self._wanted(1),
             )
         return [given[name] for name in self.joint_names]
 
@@ -191,7 +205,9 @@ class Checker:
         return positions
 
 
-def _placing(robots: Sequence[PlacedRobot], names: Sequence[tuple[str, ...]]) -> tuple[np.ndarray, list[int]]:
+def _placing(
+    robots: Sequence[PlacedRobot], names: Sequence[tuple[str, ...]]
+) -> tuple[np.ndarray, list[int]]:
     """(columns,) where the joints of all robots are that no configuration gives, and the columns that one does."""
     fixed, columns, n_before = [], [], 0
     for placed, given in zip(robots, names, strict=True):
@@ -205,9 +221,13 @@ def _placing(robots: Sequence[PlacedRobot], names: Sequence[tuple[str, ...]]) ->
 
 def _at_rest(placed: PlacedRobot) -> Motion:
     n_joints = len(placed.robot.moving_joints)
-    return Motion(replace(placed, trajectory=None), np.zeros(1), np.zeros((1, n_joints)), np.zeros(1))
+    return Motion(
+        replace(placed, trajectory=None), np.zeros(1), np.zeros((1, n_joints)), np.zeros(1)
+    )
 
 
 def _rows(n: int) -> StepRows:
     numbers, pair = np.empty((2, n)), np.empty(n, dtype=np.int64)
-    return StepRows(numbers[0], numbers[1], pair, np.empty((n, 2), dtype=np.int64), np.empty((n, 2, 3)))
+    return StepRows(
+        numbers[0], numbers[1], pair, np.empty((n, 2), dtype=np.int64), np.empty((n, 2, 3))
+    )

@@ -54,7 +54,9 @@ def find_contacts(
         work_out: of which rows depth, volume and way out are found with the run: the deepest moment of each of the
             "events", "every" one, or "none".
     """
-    touching = [block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))]
+    touching = [
+        block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))
+    ]
     steps = np.concatenate(touching)
     finder = _Finder(case, tuple(motions), tuple(pairs), steps, np.array(nearest[steps]), work_out)
     names = list(zip(*pair_names(case, pairs), strict=True))
@@ -134,7 +136,9 @@ class _Finder:
 
     def _near(self, pair: BodyPair, i_pair: int, steps: np.ndarray) -> BodyPair:
         """The pair with what of large solids can be reached in an event."""
-        few = np.unique(np.linspace(0, len(steps) - 1, min(len(steps), MOST_RATED)).round().astype(np.int64))
+        few = np.unique(
+            np.linspace(0, len(steps) - 1, min(len(steps), MOST_RATED)).round().astype(np.int64)
+        )
         return pair.near(self._poses(i_pair, steps[few])) if pair.is_rated_by_volume else pair
 
     def _rated(
@@ -152,7 +156,9 @@ class _Finder:
         b_from_a = self._poses(i_pair, np.array([step]))[0]
         near = distance(a, b, pose_a=b_from_a)
         self._tell(i_pair, why)
-        return bounded_contact(a, b, b_from_a, near.point_b, why).placed(self._obstacle(i_pair).world_from_body)
+        return bounded_contact(a, b, b_from_a, near.point_b, why).placed(
+            self._obstacle(i_pair).world_from_body
+        )
 
     def _asked(self, i_pair: int, b_from_a: np.ndarray) -> Contact:
         """The overlap in the obstacle's frame, from where rounding may part bodies that touch in the world."""

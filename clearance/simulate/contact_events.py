@@ -43,7 +43,9 @@ def events_of(steps: np.ndarray, pairs: np.ndarray) -> Iterator[Event]:
             yield Event(int(pairs[rows[0]]), rows)
 
 
-def deepest_of(n_steps: int, rated: Callable[[np.ndarray], np.ndarray], most: int = MOST_RATED) -> int:
+def deepest_of(
+    n_steps: int, rated: Callable[[np.ndarray], np.ndarray], most: int = MOST_RATED
+) -> int:
     """The place of greatest rating among so many of `n_steps` places, then among as many about it; the first.
 
     Args:

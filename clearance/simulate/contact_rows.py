@@ -23,7 +23,15 @@ MOST_REGIONS = 2000
 
 Progress = Callable[[int, int], None]
 
-_NUMBERS = ("penetration", "penetration_at_least", "volume", "volume_at_least", "direction", "centroid", "exact")
+_NUMBERS = (
+    "penetration",
+    "penetration_at_least",
+    "volume",
+    "volume_at_least",
+    "direction",
+    "centroid",
+    "exact",
+)
 _ROW = np.dtype(
     [
         ("notes", "i4"),
@@ -143,7 +151,9 @@ class ContactRows(Sequence[StepContact]):
     def _at(self, i: int) -> StepContact:
         step, i_pair = int(self.steps[i]), int(self.pairs[i])
         slot = int(self._slots[i])
-        again = None if 0 <= slot < len(self._regions) else lambda: self.finder.contact(step, i_pair)
+        again = (
+            None if 0 <= slot < len(self._regions) else lambda: self.finder.contact(step, i_pair)
+        )
         known = None if slot < 0 else self._known(slot)
         return StepContact(step, float(self.times[step]), *self.names[i_pair], known, again)
 
@@ -170,4 +180,8 @@ class _Some(Sequence[StepContact]):
 
     def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
         chosen = self.which[index]
-        return tuple(self.rows[int(i)] for i in chosen) if isinstance(index, slice) else self.rows[int(chosen)]
+        return (
+            tuple(self.rows[int(i)] for i in chosen)
+            if isinstance(index, slice)
+            else self.rows[int(chosen)]
+        )

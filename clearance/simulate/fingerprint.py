@@ -41,7 +41,12 @@ def fingerprint(
         for body in robot.bodies:
             digest.update(body.name.encode())
             _add_shape(digest, body.shape)
-        arrays = [motion.placed.world_from_base, *chain_arrays(robot), motion.times, motion.positions]
+        arrays = [
+            motion.placed.world_from_base,
+            *chain_arrays(robot),
+            motion.times,
+            motion.positions,
+        ]
         _add(digest, *arrays, motion.tracking_error)
         _add(digest, np.empty(0) if motion.velocities is None else motion.velocities)
         digest.update(repr((robot.link_names, robot.joints)).encode())

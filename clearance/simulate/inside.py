@@ -38,7 +38,11 @@ def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tup
                 found[i] = start + step
                 del waiting[i]
     return tuple(
-        Notice(Severity.SUSPECT, "inside", _text(names[0][i], names[1][i], step, motions[0].times[step]))
+        Notice(
+            Severity.SUSPECT,
+            "inside",
+            _text(names[0][i], names[1][i], step, motions[0].times[step]),
+        )
         for i, step in sorted(found.items())
     )
 

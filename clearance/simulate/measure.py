@@ -148,7 +148,18 @@ class _Sweep:
         counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         least_only = goal.lasting and not goal.each and goal.within[0] == np.inf
         first = FirstLook(_first_steps(len(steps)) if least_only else _NO_STEPS, FIRST_EFFORT)
-        call(sweep, self.layout.surface, self.layout.world, positions, numbers, goal, first, rows, found, counts)
+        call(
+            sweep,
+            self.layout.surface,
+            self.layout.world,
+            positions,
+            numbers,
+            goal,
+            first,
+            rows,
+            found,
+            counts,
+        )
         return counts
 
     def _run(
@@ -349,7 +360,9 @@ def _no_minima(n_pairs: int) -> Minima:
     if n_pairs == 0:
         return _NO_PAIRS
     return Minima(
-        np.full(n_pairs, np.inf), np.full(n_pairs, -1, dtype=np.int64), np.full((n_pairs, 2, 3), np.nan)
+        np.full(n_pairs, np.inf),
+        np.full(n_pairs, -1, dtype=np.int64),
+        np.full((n_pairs, 2, 3), np.nan),
     )
 
 

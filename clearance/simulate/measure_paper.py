@@ -42,7 +42,9 @@ def measure_paper(
     clearance, points = np.full(n_steps, np.inf), np.full((n_steps, 2, 3), np.nan)
     winner = np.zeros(n_steps, dtype=np.int64)
     minima = Minima(
-        np.full(len(pairs), np.inf), np.zeros(len(pairs), dtype=np.int64), np.full((len(pairs), 2, 3), np.nan)
+        np.full(len(pairs), np.inf),
+        np.zeros(len(pairs), dtype=np.int64),
+        np.full((len(pairs), 2, 3), np.nan),
     )
     tally: Counter[str] = Counter()
     for step in range(n_steps):
@@ -87,5 +89,9 @@ def _measured(case: Case, pair: Pair, world_from_link: np.ndarray, tolerance: fl
     obstacle = case.obstacles[pair.i_obstacle]
     i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
     return distance_paper(
-        link, obstacle.body.shape, world_from_link[i_link], obstacle.world_from_body, tolerance=tolerance
+        link,
+        obstacle.body.shape,
+        world_from_link[i_link],
+        obstacle.world_from_body,
+        tolerance=tolerance,
     )

@@ -188,7 +188,9 @@ def _repeated(names: Sequence[str], times: int) -> pa.DictionaryArray:
     """
     codes = {name: code for code, name in enumerate(dict.fromkeys(names))}
     indices = np.array([codes[name] for name in names], dtype=np.int32)
-    return pa.DictionaryArray.from_arrays(pa.array(np.tile(indices, times)), pa.array([*codes], pa.string()))
+    return pa.DictionaryArray.from_arrays(
+        pa.array(np.tile(indices, times)), pa.array([*codes], pa.string())
+    )
 
 
 @dataclass(frozen=True)

@@ -168,8 +168,14 @@ def replay_of(record: Record, max_frames: int = MAX_FRAMES, rows: Rows = IN_MEMO
     frames = Frames.of(record, kept, moments, rows)
     bodies, shapes, poses = _drawn_bodies(record, frames.positions)
     index = {(body.kind, body.name): i for i, body in enumerate(bodies)}
-    nearest = [(index.get(("link", a), -1), index.get(("obstacle", b), -1)) for a, b in frames.pairs]
-    place_of = {int(step): i for i, step in enumerate(frames.arrays["steps"]) if not frames.arrays["between"][i]}
+    nearest = [
+        (index.get(("link", a), -1), index.get(("obstacle", b), -1)) for a, b in frames.pairs
+    ]
+    place_of = {
+        int(step): i
+        for i, step in enumerate(frames.arrays["steps"])
+        if not frames.arrays["between"][i]
+    }
     return Replay(
         name=record.case.name,
         limits=(record.case.limits.fail, record.case.limits.warn),

@@ -77,7 +77,11 @@ def _thinned(rows: Sequence[StepContact], deepest: StepContact | None) -> list[S
 
 
 def _same(row: StepContact, other: StepContact | None) -> bool:
-    return other is not None and (row.step, row.link, row.obstacle) == (other.step, other.link, other.obstacle)
+    return other is not None and (row.step, row.link, row.obstacle) == (
+        other.step,
+        other.link,
+        other.obstacle,
+    )
 
 
 def _drawn(row: StepContact, frame: int) -> DrawnContact:

@@ -60,7 +60,10 @@ class Frames:
         ends = [(*moment.point_link, *moment.point_obstacle) for moment in moments]
         joined = {
             "steps": (kept, [moment.step for moment in moments]),
-            "times": (table["time"].to_numpy().astype(np.float64), [moment.time for moment in moments]),
+            "times": (
+                table["time"].to_numpy().astype(np.float64),
+                [moment.time for moment in moments],
+            ),
             "clearances": (least_of(table), clearances),
             "between": (np.zeros(len(kept), dtype=np.uint8), 1),
             "known": (known.astype(np.uint8), 1),
@@ -118,7 +121,9 @@ def _lines(record: Record, steps: pa.Table) -> np.ndarray:
 def codes_of(steps: pa.Table) -> np.ndarray:
     """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
     names = pa.array([str(status) for status in STATUSES])
-    return np.concatenate([_codes(part, names) for part in steps["status"].iterchunks()] or [_NO_CODES])
+    return np.concatenate(
+        [_codes(part, names) for part in steps["status"].iterchunks()] or [_NO_CODES]
+    )
 
 
 _NO_CODES = np.empty(0, dtype=np.uint8)

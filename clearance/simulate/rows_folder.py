@@ -12,13 +12,15 @@ import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from io import FileIO
 from pathlib import Path
-from typing import TextIO
+
+from filelock import lock_descriptor
 
 from clearance.errors import Unwritable, unwritable
 
 LOCK = "lock"
-MARK = "rows of an unfinished run of clearance check; the same command goes on with them\n"
+MARK = b"rows of an unfinished run of clearance check; the same command goes on with them\n"
 """The content of the lock: what has it, is of our user and can be read by nobody else was made here."""
 
 _BY_DESCRIPTOR = os.scandir in os.supports_fd and os.unlink in os.supports_dir_fd
@@ -69,9 +71,16 @@ def take_away(place: Path) -> None:
 
 def _is_marked(place: Path) -> bool:
     try:
-        return (place / LOCK).read_text(errors="replace") == MARK
+        with open(place / LOCK, "rb", buffering=0) as lock:
+            return _has_mark(lock)
     except OSError:
         return False
+
+
+def _has_mark(lock: FileIO) -> bool:
+    """Whether the file is one of ours; its first byte is left out, which Windows lets only who locks it read."""
+    lock.seek(1)
+    return lock.read(len(MARK)) == MARK[1:]
 
 
 def _is_taken(place: Path, held: ExitStack) -> bool:
@@ -81,7 +90,7 @@ def _is_taken(place: Path, held: ExitStack) -> bool:
         fresh = Path(tempfile.mkdtemp(prefix=f"{place.name}-", suffix=".new", dir=place.parent))
         try:
             like = fresh.lstat()
-            (fresh / LOCK).write_text(MARK)
+            (fresh / LOCK).write_bytes(MARK)
             if not _moved(fresh, place) and not _is_like(place, like):
                 return False
         finally:
@@ -120,11 +129,13 @@ def _is_like(place: Path, like: os.stat_result) -> bool:
     if not stat.S_ISDIR(found.st_mode):
         raise _foreign(place, "a file is there")
     if (found.st_uid, stat.S_IMODE(found.st_mode)) != (like.st_uid, stat.S_IMODE(like.st_mode)):
-        raise _foreign(place, "a folder that is not as one of ours (another owner, or open to others) is there")
+        raise _foreign(
+            place, "a folder that is not as one of ours (another owner, or open to others) is there"
+        )
     return True
 
 
-def _opened(place: Path, held: ExitStack) -> TextIO | None:
+def _opened(place: Path, held: ExitStack) -> FileIO | None:
     """The lock of a folder that we made; None if the folder is gone.
 
     Raises:
@@ -136,35 +147,34 @@ def _opened(place: Path, held: ExitStack) -> TextIO | None:
         if not os.path.lexists(place):
             return None
         raise _foreign(place, "a folder is there that no run of ours has made") from None
-    lock = held.enter_context(os.fdopen(descriptor, "r+", errors="replace"))
-    if lock.read(len(MARK) + 1) != MARK:
+    lock = held.enter_context(FileIO(descriptor, "r+"))
+    if not _has_mark(lock):
         raise _foreign(place, "a folder is there that no run of ours has made")
     return lock
 
 
-def _is_locked(lock: TextIO, place: Path) -> bool:
+def _is_locked(lock: FileIO, place: Path) -> bool:
     """Whether the lock is taken, and still that of `place`.
 
     Raises:
         Unwritable: another process has it.
     """
     try:
-        import fcntl
-
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        return os.path.samestat(os.fstat(lock.fileno()), os.stat(place / LOCK, follow_symlinks=False))
-    except ImportError:  # a system without such locks
+        is_ours = lock_descriptor(lock.fileno(), blocking=False)
+    except OSError:  # a file system without such locks
         return True
-    except FileNotFoundError:
-        return False
-    except BlockingIOError:
+    if not is_ours:
         raise Unwritable(
             "another run is writing its report there",
             where=str(place),
             valid="wait for it, or choose another folder",
-        ) from None
-    except OSError:  # a file system without such locks
-        return True
+        )
+    try:
+        return os.path.samestat(
+            os.fstat(lock.fileno()), os.stat(place / LOCK, follow_symlinks=False)
+        )
+    except FileNotFoundError:
+        return False
 
 
 def _foreign(place: Path, problem: str) -> Unwritable:

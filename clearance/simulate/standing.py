@@ -20,7 +20,9 @@ from clearance.world.pairs import measured_pairs
 
 def standing_contacts(record: Record) -> list[tuple[str, str]]:
     """(link, obstacle) of the measured pairs that touch at every moment, since their link never moves."""
-    if record.steps.num_rows < 2 or not (record.clearances <= 0.0).any():  # one step is not "at every moment"
+    if (
+        record.steps.num_rows < 2 or not (record.clearances <= 0.0).any()
+    ):  # one step is not "at every moment"
         return []
     case = record.case
     standing = [_standing_links(motion) for motion in record.motions]
@@ -48,7 +50,9 @@ def standing_hint(record: Record) -> list[str]:
     return [f"{told}; where that is meant, add to the case: allow: [{line}]"]
 
 
-def _touch(a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray) -> bool:
+def _touch(
+    a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray
+) -> bool:
     """True if two bodies touch; balls about their boxes that are apart decide without a search."""
     centres = [pose[:3, :3] @ shape.bounds.mean(axis=0) + pose[:3, 3]
                for shape, pose in ((a, world_from_a), (b, world_from_b))]  # fmt: skip

@@ -109,7 +109,9 @@ def _with_motion(
     return np.where(between, motion, own), between
 
 
-def _proven_columns(found: Measurement, certificate: Certificate, steps: slice) -> dict[str, pa.Array]:
+def _proven_columns(
+    found: Measurement, certificate: Certificate, steps: slice
+) -> dict[str, pa.Array]:
     """What is proven of the motion from each of `steps` to the next, and the least distance seen there."""
     seen = certificate.pair[steps] >= 0
     known = found.pair[steps.start : steps.stop + 1] >= 0
@@ -157,7 +159,11 @@ class PairMinima(Sequence[PairMinimum]):
 
     def __getitem__(self, index: int | slice) -> PairMinimum | tuple[PairMinimum, ...]:
         if "_rows" not in self.__dict__ and isinstance(index, slice):
-            if (index.start, index.step) == (None, None) and index.stop is not None and index.stop > 0:
+            if (
+                (index.start, index.step) == (None, None)
+                and index.stop is not None
+                and index.stop > 0
+            ):
                 return self._found(index.stop)[index]
         return self._rows[index]
 

@@ -78,7 +78,9 @@ class SketchResult:
         out = []
         for k in range(plan.dependent.size):
             rows = plan.circuit[plan.circuit_start[k] : plan.circuit_start[k + 1]]
-            names = dict.fromkeys(self.sketch._lists.constraints[o].name for o in owner[np.sort(rows)])
+            names = dict.fromkeys(
+                self.sketch._lists.constraints[o].name for o in owner[np.sort(rows)]
+            )
             out.append(list(names))
         return out
 

@@ -42,7 +42,9 @@ class Solver:
     def current(self) -> Problem:
         """The problem with the dimensions as they are now."""
         if self.stale:
-            self.problem = problem_of(self.tables, np.array(self.sketch._lists.numbers), self.problem)
+            self.problem = problem_of(
+                self.tables, np.array(self.sketch._lists.numbers), self.problem
+            )
             self.stale = False
         return self.problem
 

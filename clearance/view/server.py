@@ -38,7 +38,11 @@ class PageServer:
         app = tornado.web.Application(
             [
                 (f"/{secret}/", _Page, {**known, "content": page.encode(), "kind": "text/html"}),
-                (f"/{secret}/script.js", _Page, {**known, "content": script, "kind": "text/javascript"}),
+                (
+                    f"/{secret}/script.js",
+                    _Page,
+                    {**known, "content": script, "kind": "text/javascript"},
+                ),
                 (f"/{secret}/scene", _Scene, {**known, "messages": messages}),
             ],
             default_handler_class=_Nothing,
@@ -77,7 +81,10 @@ class _Guarded(tornado.web.RequestHandler):
 
     def prepare(self) -> None:
         origin = self.request.headers.get("Origin")
-        if self.request.headers.get_list("Host") != [self._host] or origin not in (None, f"http://{self._host}"):
+        if self.request.headers.get_list("Host") != [self._host] or origin not in (
+            None,
+            f"http://{self._host}",
+        ):
             raise tornado.web.HTTPError(403)
 
     def set_default_headers(self) -> None:

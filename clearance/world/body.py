@@ -45,7 +45,8 @@ class Obstacle:
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
             raise BadShape(
-                f"an obstacle of a {type(self.body).__name__}", valid="Obstacle(Body(name, shape), pose)"
+                f"an obstacle of a {type(self.body).__name__}",
+                valid="Obstacle(Body(name, shape), pose)",
             )
         with at(f"obstacle {self.name!r}"):
             object.__setattr__(self, "world_from_body", validated_pose(self.world_from_body))

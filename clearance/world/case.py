@@ -133,7 +133,8 @@ class PlacedRobot:
         """
         if self.trajectory is None:
             raise NoTrajectory(
-                f"robot {self.robot.name!r} has no trajectory", valid="case.with_trajectory(times, positions)"
+                f"robot {self.robot.name!r} has no trajectory",
+                valid="case.with_trajectory(times, positions)",
             )
         return self.trajectory
 

@@ -26,13 +26,17 @@ class Cubics(NamedTuple):
 def cubics_of(times: np.ndarray, positions: np.ndarray, velocities: np.ndarray) -> Cubics:
     """The cubics between n samples; shapes (n,) [s], (n, k) and (n, k)."""
     step, length = np.diff(positions, axis=0), np.diff(times)[:, None]
-    return Cubics(positions[:-1], step, length * velocities[:-1] - step, length * velocities[1:] - step)
+    return Cubics(
+        positions[:-1], step, length * velocities[:-1] - step, length * velocities[1:] - step
+    )
 
 
 def position_on(cubics: Cubics, share: np.ndarray) -> np.ndarray:
     """(n - 1, k) the positions at `share` (0 to 1) of each interval; shapes broadcast."""
     rest = 1.0 - share
-    return cubics.start + share * cubics.step + share * rest * (rest * cubics.e0 - share * cubics.e1)
+    return (
+        cubics.start + share * cubics.step + share * rest * (rest * cubics.e0 - share * cubics.e1)
+    )
 
 
 def extremes_between(

@@ -64,7 +64,11 @@ def _excesses(course: JointCourse, asked: Trajectory) -> list[_Excess]:
     n_beyond = int((at_samples > ROUNDING).sum())
     told = []
     if n_beyond:
-        where = f"in {n_beyond} of {len(at_samples)} steps" if course.i_column is not None else "all the time"
+        where = (
+            f"in {n_beyond} of {len(at_samples)} steps"
+            if course.i_column is not None
+            else "all the time"
+        )
         told.append(_excess(joint, at_samples, where))
     reached = extremes_of(course, asked)
     if reached is None:

@@ -107,7 +107,9 @@ def _behind_one_another(placed: Sequence[PlacedRobot], robots: Sequence[Links]) 
     return Links(*(np.concatenate(arrays) for arrays in zip(*shifted, strict=True)))
 
 
-def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray) -> np.ndarray:
+def moving_positions(
+    placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray
+) -> np.ndarray:
     """(n, k) positions of all moving joints from the (n, len(joint_names)) that are given by name.
 
     Joints that are not named take their value in `placed.fixed_positions`, else 0.
@@ -126,7 +128,9 @@ def moving_positions(placed: PlacedRobot, joint_names: tuple[str, ...], given: n
     return positions
 
 
-def moving_velocities(placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray) -> np.ndarray:
+def moving_velocities(
+    placed: PlacedRobot, joint_names: tuple[str, ...], given: np.ndarray
+) -> np.ndarray:
     """(n, k) velocities of all moving joints from those given by name; joints that are not named rest."""
     return moving_positions(replace(placed, fixed_positions={}), joint_names, given)
 

@@ -48,7 +48,9 @@ def masters_of(joints: Sequence[Joint]) -> dict[str, Follower]:
         while joint.name not in known and joint.mimic is not None:
             chain[joint.name] = joint
             joint = _followed(joint, chain, by_name)
-        _, master, factor, offset = known.setdefault(joint.name, Follower(joint, joint.name, 1.0, 0.0))
+        _, master, factor, offset = known.setdefault(
+            joint.name, Follower(joint, joint.name, 1.0, 0.0)
+        )
         for follower in reversed(chain.values()):
             mimic = follower.mimic
             factor, offset = mimic.multiplier * factor, mimic.multiplier * offset + mimic.offset

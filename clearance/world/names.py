@@ -7,7 +7,9 @@ from collections.abc import Sequence
 
 from clearance.errors import BadInput, DuplicateName, at
 
-_BIDIRECTIONAL = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
+_BIDIRECTIONAL = frozenset(
+    "\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069"
+)
 """Characters that turn the direction in which text is drawn, and so what it seems to say."""
 
 _FAULTS = {

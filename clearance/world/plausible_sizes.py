@@ -87,11 +87,22 @@ def _odd_origins(placed: PlacedRobot) -> list[str]:
         for joint in placed.robot.joints
     ]
     far += [
-        (float(np.linalg.norm(np.clip(0.0, *body.shape.bounds))), f"the shape of link {body.name!r}")
+        (
+            float(np.linalg.norm(np.clip(0.0, *body.shape.bounds))),
+            f"the shape of link {body.name!r}",
+        )
         for body in placed.robot.bodies
     ]
-    odd = [f"{what} stands {_metres(away)} m away" for away, what in _greatest(far) if away > FAR_ORIGIN]
-    return [f"{listed(odd)} from its link's frame; lengths are in metres, is this millimetres?"] if odd else []
+    odd = [
+        f"{what} stands {_metres(away)} m away"
+        for away, what in _greatest(far)
+        if away > FAR_ORIGIN
+    ]
+    return (
+        [f"{listed(odd)} from its link's frame; lengths are in metres, is this millimetres?"]
+        if odd
+        else []
+    )
 
 
 def _odd_links(placed: PlacedRobot) -> list[str]:
@@ -122,7 +133,9 @@ def _lengths_told(
     ]
 
 
-_TOO_LARGE = "lengths are in metres, is this millimetres (a mesh file in millimetres needs scale 0.001)?"
+_TOO_LARGE = (
+    "lengths are in metres, is this millimetres (a mesh file in millimetres needs scale 0.001)?"
+)
 _TOO_SMALL = "lengths are in metres, is it scaled by 0.001 though its file is in metres?"
 
 
@@ -163,7 +176,9 @@ def _odd_places(case: Case, frames: Sequence[Frame]) -> list[str]:
     far = []
     for obstacle in case.obstacles:
         gaps = [_gap(obstacle, frame.base) for frame in frames]
-        if not all(gap > FAR * max(1.0, frame.reach) for gap, frame in zip(gaps, frames, strict=True)):
+        if not all(
+            gap > FAR * max(1.0, frame.reach) for gap, frame in zip(gaps, frames, strict=True)
+        ):
             continue
         if min(gaps) > min(HALL, WALL * _length(obstacle.body)):
             far.append((min(gaps), obstacle.name))
@@ -175,7 +190,12 @@ def _odd_places(case: Case, frames: Sequence[Frame]) -> list[str]:
     if len(far) == len(case.obstacles) and base > FAR:
         apart = f"{_metres(far[-1][0])} m from the nearest obstacle"
         return [f"the robot's base stands {_metres(base)} m away, {apart}; {hint}"]
-    stand = listed([f"obstacle {name!r} stands {_metres(gap)} m away from the robot's base" for gap, name in far])
+    stand = listed(
+        [
+            f"obstacle {name!r} stands {_metres(gap)} m away from the robot's base"
+            for gap, name in far
+        ]
+    )
     return [f"{stand}; {hint}"]
 
 

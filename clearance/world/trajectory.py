@@ -62,7 +62,9 @@ class Trajectory:
         late = np.flatnonzero(np.diff(self.times) <= 0.0)
         if len(late):
             before, after = self.times[late[0] : late[0] + 2].tolist()
-            raise BadTime(f"time {after} follows {before}", valid="times must increase from sample to sample")
+            raise BadTime(
+                f"time {after} follows {before}", valid="times must increase from sample to sample"
+            )
 
     def _refuse_bad_velocities(self, velocities: np.ndarray) -> None:
         if velocities.shape != np.shape(self.positions):

@@ -81,4 +81,6 @@ def _pass(work: Callable[[], Any]) -> tuple[Pass, Any]:
 def _timing(passes: list[Pass], answer: Any) -> Timing:
     seconds = [each.total / each.n_times for each in passes]
     first = float(np.median([each.first for each in passes]))
-    return Timing(float(np.median(seconds)), min(seconds), max(seconds), first, len(seconds), answer)
+    return Timing(
+        float(np.median(seconds)), min(seconds), max(seconds), first, len(seconds), answer
+    )

@@ -42,7 +42,9 @@ def main() -> None:
     console = Console(width=None if sys.stdout.isatty() else 150)
     for line in [*inputs.absent_inputs(), *absent_peers(LIBRARIES)]:
         console.print(line, style="yellow", highlight=False)
-    names = asked.cases if asked.cases is not None else list(PUSHED) if inputs.SHARED.is_dir() else []
+    names = (
+        asked.cases if asked.cases is not None else list(PUSHED) if inputs.SHARED.is_dir() else []
+    )
     rows = [row_of(name, pushed(name), None if asked.no_peers else asked.seconds) for name in names]
     rows += [row_of(f"torus_{n}", through_torus(n), None) for n in asked.large]
     console.print(table_of(rows))
@@ -60,7 +62,9 @@ def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--cases", nargs="*", choices=list(PUSHED), default=None, metavar="NAME")
-    parser.add_argument("--large", nargs="*", type=int, default=[102_000, 490_000], metavar="TRIANGLES")
+    parser.add_argument(
+        "--large", nargs="*", type=int, default=[102_000, 490_000], metavar="TRIANGLES"
+    )
     parser.add_argument("--no-peers", action="store_true", help="do not ask other libraries")
     parser.add_argument("--csv", type=Path, help="write the rows here")
     parser.add_argument("--seconds", type=float, default=0.3, help="CPU a loop and case")

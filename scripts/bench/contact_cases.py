@@ -72,5 +72,7 @@ def torus(n_triangles: int, radius: float = 1.0, tube: float = 0.3) -> Polyhedro
     points = np.stack([away * np.cos(u), away * np.sin(u), tube * np.sin(v)], axis=-1)
     a, b = i * n + j, (i + 1) % (2 * n) * n + j
     c, d = (i + 1) % (2 * n) * n + (j + 1) % n, i * n + (j + 1) % n
-    faces = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
+    faces = np.concatenate(
+        [np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)]
+    )
     return Polyhedron(points.reshape(-1, 3), faces)

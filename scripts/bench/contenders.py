@@ -51,7 +51,9 @@ class Ours(_Posing):
 class Paper(Ours):
     """`clearance` by the first paper's method, its rules on or off."""
 
-    def __init__(self, tolerance: float = math.inf, rule_1: bool = True, rule_2: bool = True) -> None:
+    def __init__(
+        self, tolerance: float = math.inf, rule_1: bool = True, rule_2: bool = True
+    ) -> None:
         self._options = {"tolerance": tolerance, "rule_1": rule_1, "rule_2": rule_2}
         rules = [n for n, on in (("1", rule_1 and math.isfinite(tolerance)), ("2", rule_2)) if on]
         within = f" {tolerance * 1e3:g} mm" if "1" in rules else ""
@@ -132,7 +134,9 @@ class SampledScene:
     library = "points"
 
     def __init__(self, scene: Scene, n_points: int) -> None:
-        assert len(scene.index) == len(scene.links) * len(scene.obstacles), "one tree holds all pairs"
+        assert len(scene.index) == len(scene.links) * len(scene.obstacles), (
+            "one tree holds all pairs"
+        )
         self.name = SampledPoints(n_points).name
         self._scene = scene
         areas = np.array([area_of(link) for link in scene.links])

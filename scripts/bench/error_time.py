@@ -66,7 +66,9 @@ def main() -> None:
     if asked.steps:
         for scene in step_scenes(asked.scenes):
             if face_pairs(scene) > MOST_FACE_PAIRS:
-                console.print(f"left out: paper on {scene.name}, {face_pairs(scene)} face pairs a step")
+                console.print(
+                    f"left out: paper on {scene.name}, {face_pairs(scene)} face pairs a step"
+                )
             rows += measured_steps(scene, step_sample(scene, asked.steps), asked.seconds)
     console.print(table_of(totals(rows)))
     console.print(versions(), highlight=False)
@@ -103,7 +105,9 @@ def other_libraries() -> Iterable[PairPeer]:
 def measured_polygons(questions: Sequence[Question], seconds: float) -> list[dict]:
     """One row a family and method."""
     rows = our_batches(questions)
-    rows += asked_one_by_one("polygons", "clearance", "clearance one a call", questions, seconds, _ours)
+    rows += asked_one_by_one(
+        "polygons", "clearance", "clearance one a call", questions, seconds, _ours
+    )
     rows += asked_one_by_one("polygons", "clearance paper", "paper", questions, seconds, _paper)
     methods = [*other_libraries(), *(SampledPoints(10**k) for k in (3, 4)), BoundingSpheres()]
     for by in methods:
@@ -319,7 +323,17 @@ def table_of(rows: Sequence[dict]) -> Table:
     table = Table(title="run time against error (errors in parts of the size; steps: metres)")
     table.add_column("group", no_wrap=True)
     table.add_column("method", no_wrap=True)
-    names = ("us", "10th-90th", "median", "worst", "of distance", "false", "missed", "none", "asked")
+    names = (
+        "us",
+        "10th-90th",
+        "median",
+        "worst",
+        "of distance",
+        "false",
+        "missed",
+        "none",
+        "asked",
+    )
     for name in names:
         table.add_column(name, justify="right", no_wrap=True)
     for row in rows:

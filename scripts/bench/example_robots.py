@@ -33,7 +33,18 @@ from clearance.world.robot import Joint, Robot  # noqa: E402
 
 BROUGHT = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"
 
-COLUMNS = ("robot", "URDF", "links", "measured", "frames", "seen only", "notices", "notes", "exit", "verdict")
+COLUMNS = (
+    "robot",
+    "URDF",
+    "links",
+    "measured",
+    "frames",
+    "seen only",
+    "notices",
+    "notes",
+    "exit",
+    "verdict",
+)
 
 CASE = """robot: {{urdf: {urdf}, geometry: {geometry}, collada_up_axis: {axis}}}
 scene:
@@ -97,9 +108,15 @@ def row_of(urdf: Path, folder: Path) -> Row:
     code, verdict = answer(urdf, robot, geometry, axis)
     unseen = [notice for notice in robot.notices if notice.kind == "geometry"]
     n_seen = int(unseen[0].text.split()[0]) if unseen else 0
-    told = [f"{notice.kind} ({notice.severity})" for notice in robot.notices if notice.kind != "geometry"]
+    told = [
+        f"{notice.kind} ({notice.severity})"
+        for notice in robot.notices
+        if notice.kind != "geometry"
+    ]
     n_links, n_measured = len(robot.link_names), len(robot.bodies)
-    kinds = [f"geometry: {geometry}"] * (geometry != "collision") + [f"axis: {axis}"] * (axis != "ros")
+    kinds = [f"geometry: {geometry}"] * (geometry != "collision") + [f"axis: {axis}"] * (
+        axis != "ros"
+    )
     return Row(
         name,
         urdf.name,

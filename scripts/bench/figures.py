@@ -63,12 +63,16 @@ def draw_trajectory(rows: Sequence[dict], path: Path) -> None:
             )
         for i, name in enumerate(names):
             _span_of(axes, i, [row for row in shown if row["scene"] == name])
-        axes.set(xscale="log", xlabel="milliseconds of CPU a step (one thread)", yticks=range(len(names)))
+        axes.set(
+            xscale="log", xlabel="milliseconds of CPU a step (one thread)", yticks=range(len(names))
+        )
         axes.set_yticklabels(names)
         axes.set_ylim(len(names) - 0.5, -0.6)
         axes.grid(axis="x", color="#e4e4e4")
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
-        axes.set_title("The clearance of every step: ours and the peers' loops on the same meshes", loc="left")
+        axes.set_title(
+            "The clearance of every step: ours and the peers' loops on the same meshes", loc="left"
+        )
         _save(figure, path)
 
 
@@ -78,7 +82,9 @@ def _span_of(axes, height: int, rows: Sequence[dict]) -> None:
     if peers:
         axes.plot([min([ours, *peers]), max(peers)], [height, height], color="#cccccc", zorder=1)
         note = f"{min(peers) / ours:.1f} to {max(peers) / ours:.0f} times ours"
-        axes.annotate(note, (ours, height), (0, 9), textcoords="offset points", fontsize=7.5, color="#555555")
+        axes.annotate(
+            note, (ours, height), (0, 9), textcoords="offset points", fontsize=7.5, color="#555555"
+        )
 
 
 def draw_ratios(rows: Sequence[dict], path: Path) -> None:
@@ -96,17 +102,23 @@ def draw_ratios(rows: Sequence[dict], path: Path) -> None:
                 ratios = [
                     row["ratio_to_ours"]
                     for row in rows
-                    if row["scene"] == name and row["library"] != "clearance" and row["method"].endswith(endings)
+                    if row["scene"] == name
+                    and row["library"] != "clearance"
+                    and row["method"].endswith(endings)
                 ]
                 if ratios:
                     place = height + 0.26 * (i - 1)
-                    axes.barh(place, min(ratios), 0.24, color=colour, label=label if height == 0 else None)
+                    axes.barh(
+                        place, min(ratios), 0.24, color=colour, label=label if height == 0 else None
+                    )
                     axes.annotate(
                         f"{min(ratios):.3g}", (min(ratios), place), (3, 0), textcoords="offset points",
                         va="center", fontsize=7,
                     )  # fmt: skip
         axes.axvline(1.0, color="#c1121f", linewidth=1.2)
-        axes.set(xscale="log", xlabel="times our time a step (line: ours)", yticks=range(len(names)))
+        axes.set(
+            xscale="log", xlabel="times our time a step (line: ours)", yticks=range(len(names))
+        )
         axes.set_yticklabels(names)
         axes.set_ylim(len(names) - 0.4, -0.6)
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False, fontsize=8)
@@ -124,20 +136,34 @@ def draw_growth(rows: Sequence[dict], path: Path) -> None:
             sizes, spent = [row[what] for row in chosen], [row["ms_per_step"] for row in chosen]
             axes.plot(sizes, spent, "D-", color=COLOURS["clearance"], label="ours")
             if what == "triangles":
-                steepest = [spent[0] * 2.5 ** (math.log(size / sizes[0]) / math.log(16)) for size in sizes]
-                axes.plot(sizes, steepest, "--", color="#7a7a7a", label="2.5 times for 16 times the triangles")
+                steepest = [
+                    spent[0] * 2.5 ** (math.log(size / sizes[0]) / math.log(16)) for size in sizes
+                ]
+                axes.plot(
+                    sizes,
+                    steepest,
+                    "--",
+                    color="#7a7a7a",
+                    label="2.5 times for 16 times the triangles",
+                )
             axes.set(xscale="log", yscale="log", xlabel=label)
             axes.grid(color="#ececec")
             axes.legend(frameon=False, fontsize=8)
         both[0].set_ylabel("milliseconds of CPU a step")
-        figure.suptitle("How our time grows: seven links among 20 obstacles", x=0.01, ha="left", fontsize=10)
+        figure.suptitle(
+            "How our time grows: seven links among 20 obstacles", x=0.01, ha="left", fontsize=10
+        )
         _save(figure, path)
 
 
 def draw_error_time(rows: Sequence[dict], path: Path) -> None:
     """A panel a group: worst error against median time, a line down to the median error."""
     groups = [g for g in ("polygons", "bodies", "steps") if any(row["group"] == g for row in rows)]
-    titles = {"polygons": "polygon pairs", "bodies": "body pairs", "steps": "whole steps, shared cases"}
+    titles = {
+        "polygons": "polygon pairs",
+        "bodies": "body pairs",
+        "steps": "whole steps, shared cases",
+    }
     with plt.rc_context(STYLE):
         figure, panels = plt.subplots(
             len(groups), 1, figsize=(9.5, 5.0 * len(groups)), layout="constrained", squeeze=False
@@ -147,7 +173,11 @@ def draw_error_time(rows: Sequence[dict], path: Path) -> None:
             for row in chosen:
                 _draw_method(axes, row)
             unit = "[m]" if group == "steps" else "in parts of the size"
-            axes.set(xscale="log", yscale="log", xlabel=f"error {unit}: line from the median to the worst")
+            axes.set(
+                xscale="log",
+                yscale="log",
+                xlabel=f"error {unit}: line from the median to the worst",
+            )
             axes.set_ylabel("time a query [µs]")
             axes.set_xlim(FLOOR / 3, 1e3)
             axes.grid(color="#ececec")
@@ -155,7 +185,15 @@ def draw_error_time(rows: Sequence[dict], path: Path) -> None:
             figure.draw_without_rendering()
             _label(figure, axes, chosen)
         axes.plot([], [], "x", color="black", label="false contacts, number in brackets")
-        axes.plot([], [], "o", mfc="none", color="black", ms=10, label="missed contacts, number in brackets")
+        axes.plot(
+            [],
+            [],
+            "o",
+            mfc="none",
+            color="black",
+            ms=10,
+            label="missed contacts, number in brackets",
+        )
         axes.legend(loc="upper left", frameon=False, fontsize=8)
         _save(figure, path)
 
@@ -193,7 +231,12 @@ def _label(figure, axes, rows: Sequence[dict]) -> None:
             box = matplotlib.text.Text.get_window_extent(note, renderer)
             spot = (box.x0, box.y0 - 1, box.x1, box.y1 + 1)
             frame = axes.bbox
-            inside = frame.x0 < spot[0] and spot[2] < frame.x1 and frame.y0 < spot[1] and spot[3] < frame.y1
+            inside = (
+                frame.x0 < spot[0]
+                and spot[2] < frame.x1
+                and frame.y0 < spot[1]
+                and spot[3] < frame.y1
+            )
             if inside and not any(_overlap(spot, other) for other in taken):
                 best = spot
                 break
@@ -211,7 +254,11 @@ def _places():
 def _name_of(row: dict) -> str:
     faults = [
         f"{row[key]} {kind}"
-        for key, kind in (("false_contacts", "false"), ("missed_contacts", "missed"), ("no_answer", "unanswered"))
+        for key, kind in (
+            ("false_contacts", "false"),
+            ("missed_contacts", "missed"),
+            ("no_answer", "unanswered"),
+        )
         if row[key]
     ]
     return f"{row['method']} ({', '.join(faults)})" if faults else row["method"]
@@ -236,10 +283,22 @@ def draw_families(rows: Sequence[dict], path: Path) -> None:
         for row in chosen:
             i, j = families.index(row["family"]), methods.index(row["method"])
             worst[i, j] = max(row["error_worst"], FLOOR)
-            marks = [f"{n}{k}" for n, k in ((row["false_contacts"], "F"), (row["missed_contacts"], "M")) if n]
+            marks = [
+                f"{n}{k}"
+                for n, k in ((row["false_contacts"], "F"), (row["missed_contacts"], "M"))
+                if n
+            ]
             figures = f"{row['error_worst']:.0e}" if row["no_answer"] < row["asked"] else "none"
             colour = "black" if worst[i, j] < 1e-4 or math.isnan(worst[i, j]) else "white"
-            axes.text(j, i, " ".join([figures, *marks]), ha="center", va="center", fontsize=7, color=colour)
+            axes.text(
+                j,
+                i,
+                " ".join([figures, *marks]),
+                ha="center",
+                va="center",
+                fontsize=7,
+                color=colour,
+            )
         image = axes.pcolormesh(
             worst, norm=LogNorm(1e-17, 1.0), cmap="Reds", edgecolor="white", linewidth=1.0
         )

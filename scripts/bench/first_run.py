@@ -31,7 +31,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--cases", nargs="*", type=Path, default=None, metavar="FILE")
     parser.add_argument("--warm", type=int, default=3, help="warm runs a case")
-    parser.add_argument("--fresh", type=int, default=1, choices=(0, 1), help="0: no first run, the cache in use")
+    parser.add_argument(
+        "--fresh", type=int, default=1, choices=(0, 1), help="0: no first run, the cache in use"
+    )
     parser.add_argument("--csv", type=Path, help="write the rows here")
     asked = parser.parse_args()
     rows = []
@@ -42,7 +44,13 @@ def main() -> None:
             rows.append({"case": case.parent.name, "run": first, **ran(case, cache)})
             again = [ran(case, cache) for _ in range(asked.warm)]
             if again:
-                rows.append({"case": case.parent.name, "run": "warm", **min(again, key=lambda r: r["seconds"])})
+                rows.append(
+                    {
+                        "case": case.parent.name,
+                        "run": "warm",
+                        **min(again, key=lambda r: r["seconds"]),
+                    }
+                )
     console = Console(width=None if sys.stdout.isatty() else 132)
     console.print(table_of(rows))
     for line in lines_of(rows):
@@ -53,11 +61,15 @@ def main() -> None:
 
 def ran(case: Path, cache: str | None) -> dict[str, float]:
     """Seconds of one command; a verdict of 0 or 1 is an answer, anything else is not."""
-    threads = {k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")}  # as a user has them
+    threads = {
+        k: v for k, v in os.environ.items() if not k.endswith("_NUM_THREADS")
+    }  # as a user has them
     environment = threads if cache is None else {**threads, "NUMBA_CACHE_DIR": cache}
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
     command = [sys.executable, "-m", "clearance", "check", str(case)]
-    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
     seconds, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
     if done.returncode not in (0, 1):
         raise SystemExit(done.stderr)

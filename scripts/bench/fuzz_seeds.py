@@ -212,7 +212,9 @@ def _dxf() -> bytes:
     """Written by ezdxf, so that it has all the tables that a drawing needs."""
     import ezdxf
 
-    logging.getLogger("ezdxf").setLevel(logging.ERROR)  # R12 has no units, which it would tell each time
+    logging.getLogger("ezdxf").setLevel(
+        logging.ERROR
+    )  # R12 has no units, which it would tell each time
     drawing = ezdxf.new("R12")
     space = drawing.modelspace()
     space.add_line((0, 0), (2, 0))

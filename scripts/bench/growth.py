@@ -69,7 +69,9 @@ def main() -> None:
 
 def timed_rows(what: str, scenes: list[Scene], asked: argparse.Namespace) -> list[dict]:
     """A row a scene, in parts of the first."""
-    timings = interleaved([lambda scene=scene: run(scene, 1) for scene in scenes], asked.passes, asked.seconds)
+    timings = interleaved(
+        [lambda scene=scene: run(scene, 1) for scene in scenes], asked.passes, asked.seconds
+    )
     per_step = [t.median / scene.n_steps * 1e3 for t, scene in zip(timings, scenes, strict=True)]
     return [
         row_of(what, scene, 1, ms, ms / per_step[0], timing.answer)
@@ -112,7 +114,9 @@ def growth_lines(rows: list[dict]) -> list[str]:
     lines = []
     for few, many in zip(by_size, by_size[2:], strict=False):
         grown = many["ms_per_step"] / few["ms_per_step"]
-        lines.append(f"{few['triangles']} to {many['triangles']} triangles: {grown:.2f} times as long; target 2.5")
+        lines.append(
+            f"{few['triangles']} to {many['triangles']} triangles: {grown:.2f} times as long; target 2.5"
+        )
     two = next(row for row in rows if row["what"] == "threads" and row["threads"] == 2)
     return [*lines, f"2 threads: {two['ratio']:.2f} times as fast as 1; target 1.8"]
 
@@ -122,7 +126,9 @@ def memory_lines(finer: list[Scene], closer: list[Scene]) -> list[str]:
     lines = []
     for scene in finer:
         shapes = [solid.shape for solid in [*scene.links, *scene.obstacles]]
-        trees = sum(beside_the_mesh(surface_of(shape), shape) for shape in shapes) / scene.n_triangles
+        trees = (
+            sum(beside_the_mesh(surface_of(shape), shape) for shape in shapes) / scene.n_triangles
+        )
         joined = beside_the_mesh(lay_out(scene.case, scene.pairs).surface) / scene.n_triangles
         lines.append(
             f"{scene.n_triangles} triangles: {trees:.0f} bytes a triangle beside the mesh; target 400; "
@@ -130,13 +136,19 @@ def memory_lines(finer: list[Scene], closer: list[Scene]) -> list[str]:
         )
     for scene in closer:
         most = allocated(scene) / 1e6
-        lines.append(f"{scene.n_steps} steps: {most:.2f} MB allocated at most, rows and poses included")
+        lines.append(
+            f"{scene.n_steps} steps: {most:.2f} MB allocated at most, rows and poses included"
+        )
     return lines
 
 
 def beside_the_mesh(surface: Surface, shape: Polyhedron | None = None) -> int:
     """Bytes of a searchable form that are not in the mesh's own arrays."""
-    own = {id(array) for array in (shape.vertices, shape.face_starts, shape.face_vertices)} if shape else set()
+    own = (
+        {id(array) for array in (shape.vertices, shape.face_starts, shape.face_vertices)}
+        if shape
+        else set()
+    )
     arrays = {id(array): array for array in surface if id(array) not in own}
     return sum(array.nbytes for array in arrays.values())
 

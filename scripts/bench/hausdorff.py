@@ -16,7 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # so that it runs from the root without an installation
+sys.path.insert(
+    0, str(Path(__file__).parents[2])
+)  # so that it runs from the root without an installation
 
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff

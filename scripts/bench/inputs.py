@@ -166,9 +166,7 @@ def scene_from(
     )
 
 
-def _poses(
-    case: Case, motions: tuple[Motion, ...], movers: list[tuple[int, int]]
-) -> np.ndarray:
+def _poses(case: Case, motions: tuple[Motion, ...], movers: list[tuple[int, int]]) -> np.ndarray:
     by_robot = [motion.poses() for motion in motions]
     columns = []
     for i_robot, i_body in movers:

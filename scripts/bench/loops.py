@@ -122,7 +122,9 @@ class SortedPairs(AllPairs):
         self._fixed = np.array(
             [p[:3, :3] @ c + p[:3, 3] for (c, _), p in zip(fixed, scene.standing, strict=True)]
         )
-        self._reach = self._radii[scene.index[:, 0]] + np.array([r for _, r in fixed])[scene.index[:, 1]]
+        self._reach = (
+            self._radii[scene.index[:, 0]] + np.array([r for _, r in fixed])[scene.index[:, 1]]
+        )
 
     def _bounds(self, step: int) -> np.ndarray:
         poses, index = self._scene.poses[step], self._scene.index
@@ -206,7 +208,10 @@ class FclManagers:
         for i in range(len(scene.links)):
             facing.setdefault(tuple(scene.index[scene.index[:, 0] == i, 1].tolist()), []).append(i)
         self._groups = [
-            (self._manager([self._links[i] for i in links]), self._manager([obstacles[j] for j in them]))
+            (
+                self._manager([self._links[i] for i in links]),
+                self._manager([obstacles[j] for j in them]),
+            )
             for them, links in facing.items()
         ]
         self.counters = {"managers": 2 * len(self._groups)}

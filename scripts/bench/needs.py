@@ -76,7 +76,10 @@ def rows_of(scene: Scene, passes: int) -> list[dict]:
     if "FCL all pairs" in seconds:
         seconds["FCL all pairs"] *= scene.n_steps / N_ASKED
         seconds["FCL all pairs / pairs"] = seconds["FCL all pairs"] / seconds["pairs"]
-    return [row_of(scene, what, spent, seconds["steps"], tallies.get(what, {})) for what, spent in seconds.items()]
+    return [
+        row_of(scene, what, spent, seconds["steps"], tallies.get(what, {}))
+        for what, spent in seconds.items()
+    ]
 
 
 def row_of(scene: Scene, what: str, spent: float, steps: float, tally: dict) -> dict:
@@ -84,7 +87,13 @@ def row_of(scene: Scene, what: str, spent: float, steps: float, tally: dict) -> 
     ratio = spent if "/" in what else spent / steps
     counted = {name: tally.get(name, "") for name in COLUMNS[-3:]}
     seconds = "" if "/" in what else spent
-    return {"scene": scene.name, "what": what, "seconds": seconds, "ratio_to_steps": ratio, **counted}
+    return {
+        "scene": scene.name,
+        "what": what,
+        "seconds": seconds,
+        "ratio_to_steps": ratio,
+        **counted,
+    }
 
 
 def works_of(scene: Scene) -> dict[str, Callable[[], dict]]:
@@ -123,13 +132,17 @@ def line_of(what: str, target: str, rows: list[dict]) -> str:
 def table_of(rows: list[dict]) -> Table:
     """A row a scene, a column a kind of work, in parts of `steps`."""
     kinds = list(dict.fromkeys(row["what"] for row in rows))
-    table = Table(title="seconds in parts of those of `steps` (its column: ms a scene)", title_justify="left")
+    table = Table(
+        title="seconds in parts of those of `steps` (its column: ms a scene)", title_justify="left"
+    )
     table.add_column("scene", no_wrap=True)
     for kind in kinds:
         table.add_column(kind, justify="right")
     for scene in dict.fromkeys(row["scene"] for row in rows):
         of_scene = {row["what"]: row for row in rows if row["scene"] == scene}
-        cells = [f"{of_scene[kind]['ratio_to_steps']:.3g}" if kind in of_scene else "" for kind in kinds]
+        cells = [
+            f"{of_scene[kind]['ratio_to_steps']:.3g}" if kind in of_scene else "" for kind in kinds
+        ]
         table.add_row(scene, f"{of_scene['steps']['seconds'] * 1e3:.2f}", *cells[1:])
     return table
 

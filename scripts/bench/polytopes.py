@@ -18,7 +18,9 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # so that it runs from the root without an installation
+sys.path.insert(
+    0, str(Path(__file__).parents[2])
+)  # so that it runs from the root without an installation
 
 from clearance.geometry.polytope import Polytope
 from clearance.query.common_point import common_point

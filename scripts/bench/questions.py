@@ -51,7 +51,10 @@ class Question:
 def polygon_questions(n: int) -> list[Question]:
     """`n` pairs of each family of tests/strategies.py, families in turn."""
     by_family = [
-        [_polygon_question(name, p, q) for p, q in zip(*family(np.random.default_rng(5), n), strict=True)]
+        [
+            _polygon_question(name, p, q)
+            for p, q in zip(*family(np.random.default_rng(5), n), strict=True)
+        ]
         for name, family in FAMILIES.items()
     ]
     return [question for row in zip(*by_family, strict=True) for question in row]
@@ -61,7 +64,9 @@ def _polygon_question(family: str, p: np.ndarray, q: np.ndarray) -> Question:
     p, q = _from_least_corner(p), _from_least_corner(q)
     size = max(np.ptp(p, axis=0).max(), np.ptp(q, axis=0).max())
     true_sq = oracle.polygon_distance_sq(p, q)
-    return Question(family, fan("p", p), fan("q", q, True), np.eye(4), np.eye(4), float(size), true_sq)
+    return Question(
+        family, fan("p", p), fan("q", q, True), np.eye(4), np.eye(4), float(size), true_sq
+    )
 
 
 def _from_least_corner(polygon: np.ndarray) -> np.ndarray:
@@ -95,21 +100,29 @@ def body_questions(n: int) -> list[Question]:
     asked = []
     for i in range(n):
         for name, draw in families.items():
-            a, b = (solid(Body(part, shape), part == "b") for part, shape in zip("ab", draw(), strict=True))
+            a, b = (
+                solid(Body(part, shape), part == "b")
+                for part, shape in zip("ab", draw(), strict=True)
+            )
             asked.append(_body_question(random, name, a, b, touching=i % 4 == 3))
     asked.append(_body_question_at("rod in a bore", _rod(0.05), _bore(0.08), _lifted(0.01)))
     asked.append(_body_question_at("box in a box", _cube(0.2), _cube(1.0), _lifted(0.1)))
     return asked
 
 
-def _body_question(random: np.random.Generator, family: str, a: Solid, b: Solid, touching: bool) -> Question:
+def _body_question(
+    random: np.random.Generator, family: str, a: Solid, b: Solid, touching: bool
+) -> Question:
     """b at a random attitude, moved towards a until the wanted gap is left, or 2 mm into it."""
     pose = np.eye(4)
     pose[:3, :3] = rotations(random, 1)[0]
     toward = random.normal(size=3)
     toward /= np.linalg.norm(toward)
     wanted = 0.0 if touching else 10.0 ** random.uniform(-6.0, -0.5)
-    reach = 2.0 * (a.shape.bounds.ptp() if hasattr(a.shape.bounds, "ptp") else np.ptp(a.shape.bounds)) + 2.0
+    reach = (
+        2.0 * (a.shape.bounds.ptp() if hasattr(a.shape.bounds, "ptp") else np.ptp(a.shape.bounds))
+        + 2.0
+    )
     for _ in range(200):
         pose[:3, 3] = reach * toward
         gap = cl.distance(a.shape, b.shape, pose_b=pose).distance
@@ -151,7 +164,9 @@ def _rod(radius: float) -> Solid:
 
 
 def _bore(radius: float) -> Solid:
-    return solid(Body("bore", cl.pipe(inner_radius=radius, outer_radius=2 * radius, length=1.0)), True)
+    return solid(
+        Body("bore", cl.pipe(inner_radius=radius, outer_radius=2 * radius, length=1.0)), True
+    )
 
 
 def _cube(width: float) -> Solid:

@@ -67,7 +67,10 @@ def timed(ps: np.ndarray, qs: np.ndarray, calls: int) -> dict:
     answers = Answers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
     spent: dict[str, list[float]] = {"exact": [], "plain": []}
     for _ in range(calls):
-        for name, call in (("exact", lambda: _measured(ps, qs)), ("plain", lambda: plain(ps, qs, answers))):
+        for name, call in (
+            ("exact", lambda: _measured(ps, qs)),
+            ("plain", lambda: plain(ps, qs, answers)),
+        ):
             start = time.perf_counter_ns()
             call()
             spent[name].append((time.perf_counter_ns() - start) / k)
@@ -93,7 +96,12 @@ def main() -> None:
     rows = []
     for n, m in CORNERS:
         pairs = anywhere(np.random.default_rng(3), 6000 // (n + m) ** 2 + 20, n, m)
-        rows.append({"input": f"{n} and {m} corners", **timed(*map(np.ascontiguousarray, pairs), given.calls)})
+        rows.append(
+            {
+                "input": f"{n} and {m} corners",
+                **timed(*map(np.ascontiguousarray, pairs), given.calls),
+            }
+        )
         print(rows[-1], flush=True)
     for name, family in FAMILIES.items():
         if name != "many_sided":
@@ -101,7 +109,9 @@ def main() -> None:
             rows.append({"input": name, **timed(*map(np.ascontiguousarray, pairs), given.calls)})
             print(rows[-1], flush=True)
     ratios = [row["ratio"] for row in rows]
-    print(f"median ratio by corners {np.median(ratios[: len(CORNERS)]):.2f}, of all {np.median(ratios):.2f}")
+    print(
+        f"median ratio by corners {np.median(ratios[: len(CORNERS)]):.2f}, of all {np.median(ratios):.2f}"
+    )
     if given.out:
         with given.out.open("w", newline="", encoding="utf-8") as out:
             writer = csv.DictWriter(out, list(rows[0]), lineterminator="\n")

@@ -30,7 +30,16 @@ from clearance.world.body import Body
 from tests.made_cases import at, ball, torus
 from tests.strategies import rotations
 
-COLUMNS = ("pair", "library", "method", "triangles", "us", "us_least", "ratio_to_ours", "greatest_difference_m")
+COLUMNS = (
+    "pair",
+    "library",
+    "method",
+    "triangles",
+    "us",
+    "us_least",
+    "ratio_to_ours",
+    "greatest_difference_m",
+)
 
 Poses = np.ndarray
 """(n, 4, 4) `world_from_b` [m]; a stands."""
@@ -39,7 +48,9 @@ Poses = np.ndarray
 def anywhere(random: np.random.Generator, n: int) -> Poses:
     """Balls of radius 1 at gaps of 1 mm to 1 m, turned at random."""
     away = random.normal(size=(n, 3))
-    away *= (2.0 + 10.0 ** random.uniform(-3, 0, (n, 1))) / np.linalg.norm(away, axis=1, keepdims=True)
+    away *= (2.0 + 10.0 ** random.uniform(-3, 0, (n, 1))) / np.linalg.norm(
+        away, axis=1, keepdims=True
+    )
     return np.array([at(*x, turned=r) for x, r in zip(away, rotations(random, n), strict=True)])
 
 
@@ -49,7 +60,12 @@ def crossed(random: np.random.Generator, n: int) -> Poses:
     for _ in range(n):
         angle, roll = random.uniform(0.26, np.pi - 0.26), random.uniform(0, 2 * np.pi)
         gap = 10.0 ** random.uniform(-3, 0)
-        made.append(about_z(roll) @ at(0.2 + gap, 0, random.uniform(-0.5, 0.5)) @ about_x(angle) @ about_z(roll))
+        made.append(
+            about_z(roll)
+            @ at(0.2 + gap, 0, random.uniform(-0.5, 0.5))
+            @ about_x(angle)
+            @ about_z(roll)
+        )
     return np.array(made)
 
 
@@ -58,7 +74,11 @@ def linked(random: np.random.Generator, n: int) -> Poses:
     made = []
     for _ in range(n):
         moved = at(1.0 + random.uniform(-0.1, 0.1), *random.uniform(-0.1, 0.1, 2))
-        made.append(moved @ about_x(np.pi / 2 + random.uniform(-0.2, 0.2)) @ about_z(random.uniform(0, 6.28)))
+        made.append(
+            moved
+            @ about_x(np.pi / 2 + random.uniform(-0.2, 0.2))
+            @ about_z(random.uniform(0, 6.28))
+        )
     return np.array(made)
 
 
@@ -135,7 +155,9 @@ def rows_of(name: str, asked: argparse.Namespace) -> list[dict]:
             "us": timing.median / len(poses) * 1e6,
             "us_least": timing.least / len(poses) * 1e6,
             "ratio_to_ours": timing.median / ours.median,
-            "greatest_difference_m": float(np.abs(np.maximum(timing.answer, 0.0) - ours.answer).max()),
+            "greatest_difference_m": float(
+                np.abs(np.maximum(timing.answer, 0.0) - ours.answer).max()
+            ),
         }
         for method, timing in zip(ways, timings, strict=True)
     ]
@@ -149,7 +171,9 @@ def ways_of(a: Solid, b: Solid, poses: Poses) -> dict[str, Callable[[], np.ndarr
         "clearance: distance": lambda: np.array(
             [cl.distance(a.shape, b.shape, pose_b=pose).distance for pose in poses]
         ),
-        "clearance: Query.distance": lambda: np.array([query.distance(rest, pose).distance for pose in poses]),
+        "clearance: Query.distance": lambda: np.array(
+            [query.distance(rest, pose).distance for pose in poses]
+        ),
         "clearance: Query.distances": lambda: query.distances(rest, poses).distances,
     }
     for kind, module in ((Fcl, "fcl"), (Coal, "coal"), (Klampt, "klampt")):
@@ -175,11 +199,21 @@ def summary(rows: list[dict]) -> str:
     """A line a pair: the fastest peer, and how much longer it takes than each way of ours."""
     lines = []
     for name in dict.fromkeys(row["pair"] for row in rows):
-        ours = {row["method"]: row["us"] for row in rows if row["pair"] == name and row["library"] == "clearance"}
-        peers = {row["method"]: row["us"] for row in rows if row["pair"] == name and row["library"] != "clearance"}
+        ours = {
+            row["method"]: row["us"]
+            for row in rows
+            if row["pair"] == name and row["library"] == "clearance"
+        }
+        peers = {
+            row["method"]: row["us"]
+            for row in rows
+            if row["pair"] == name and row["library"] != "clearance"
+        }
         if peers:
             best = min(peers, key=peers.get)
-            told = ", ".join(f"{peers[best] / us:.2f} ({method.split()[-1]})" for method, us in ours.items())
+            told = ", ".join(
+                f"{peers[best] / us:.2f} ({method.split()[-1]})" for method, us in ours.items()
+            )
             lines.append(f"{name}: the fastest peer ({best.split(':')[0]}) takes times ours {told}")
     return "\n".join(lines)
 
@@ -193,7 +227,9 @@ def table_of(rows: list[dict]) -> Table:
         table.add_column(method, justify="right")
     for name in dict.fromkeys(row["pair"] for row in rows):
         found = {row["method"]: row["us"] for row in rows if row["pair"] == name}
-        table.add_row(name, *[f"{found[method]:.4g}" if method in found else "" for method in methods])
+        table.add_row(
+            name, *[f"{found[method]:.4g}" if method in found else "" for method in methods]
+        )
     return table
 
 

@@ -20,7 +20,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[2]))  # so that it runs from the root without an installation
+sys.path.insert(
+    0, str(Path(__file__).parents[2])
+)  # so that it runs from the root without an installation
 
 from clearance.sketch import Sketch
 from tests.sketch.drawn_randomly import drawing, tangencies

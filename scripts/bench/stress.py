@@ -54,11 +54,16 @@ class Tally:
         self.missed_contacts += bool(not contact and sq == 0)
         self.exact_decisions += bool(exact)
         self.by_certificate += proven
-        low, high = Fraction(answer) - Fraction(error_bound), Fraction(answer) + Fraction(error_bound)
+        low, high = (
+            Fraction(answer) - Fraction(error_bound),
+            Fraction(answer) + Fraction(error_bound),
+        )
         self.bounds_violated += bool(high * high < sq or (low > 0 and low * low > sq))
         if sq > Fraction(2) ** -900 and self.pairs % 8 == 1:
             error = oracle.error(answer, sq)
-            self.worst_relative_error = max(self.worst_relative_error, float(error / oracle.root(sq)))
+            self.worst_relative_error = max(
+                self.worst_relative_error, float(error / oracle.root(sq))
+            )
             if error:
                 self.ratios.append(float(Fraction(error_bound) / error))
 
@@ -107,7 +112,9 @@ def judge_bodies(tallies: dict[str, Tally], seed: int, n: int) -> None:
         tally, start = tallies.setdefault(name, Tally()), time.process_time()
         near = distance(a.shape, b.shape, pose_a=pose_a, pose_b=pose_b)
         sq = oracle.solid_distance_sq(a.vertices, a.faces, b.vertices, b.faces, pose_a, pose_b)
-        tally.add(near.distance, near.error_bound, near.contact, near.tally["exact_decisions"], sq, False)
+        tally.add(
+            near.distance, near.error_bound, near.contact, near.tally["exact_decisions"], sq, False
+        )
         tally.seconds += time.process_time() - start
 
 

@@ -22,7 +22,11 @@ class Part(NamedTuple):
 
 def part(random: np.random.Generator) -> Part:
     """A box, a wedge or a pyramid, 1e-3 to 2 wide, about the origin."""
-    size = 10.0 ** random.uniform(-3.0, 0.3, 3) if random.random() < 0.5 else random.choice([0.25, 0.5, 1.0], 3)
+    size = (
+        10.0 ** random.uniform(-3.0, 0.3, 3)
+        if random.random() < 0.5
+        else random.choice([0.25, 0.5, 1.0], 3)
+    )
     kind = random.integers(3)
     if kind == 0:
         corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
@@ -53,7 +57,13 @@ def body_pairs(random: np.random.Generator, n: int) -> Iterator[tuple]:
     """`n` tuples (family, a, b, pose_a, pose_b), families in turn."""
     for i in range(n):
         a, b = part(random), part(random)
-        name = ("bodies_apart", "bodies_square", "bodies_close", "bodies_far_away", "bodies_nested")[i % 5]
+        name = (
+            "bodies_apart",
+            "bodies_square",
+            "bodies_close",
+            "bodies_far_away",
+            "bodies_nested",
+        )[i % 5]
         square = name == "bodies_square"
         spread = {"bodies_close": 0.3, "bodies_nested": 0.02}.get(name, 1.5)
         pose_a, pose_b = pose(random, 0.3, square), pose(random, spread, square)

@@ -58,7 +58,9 @@ def main() -> None:
         console.print(table_of(scene, found))
         rows += found
     console.print(summary(rows), highlight=False)
-    console.print(f"{versions(LIBRARIES)}; {time.perf_counter() - started:.0f} s in all", highlight=False)
+    console.print(
+        f"{versions(LIBRARIES)}; {time.perf_counter() - started:.0f} s in all", highlight=False
+    )
     if asked.csv:
         write_csv(rows, COLUMNS, asked.csv)
     if asked.picture or asked.bars:
@@ -85,7 +87,9 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--bars", type=Path, help="draw the ratios here (.svg or .png)")
     parser.add_argument("--seconds", type=float, default=0.8, help="CPU a loop and scene")
     parser.add_argument("--passes", type=int, default=5)
-    parser.add_argument("--fault", type=float, default=1e-6, help="[m] beyond which a contact is false")
+    parser.add_argument(
+        "--fault", type=float, default=1e-6, help="[m] beyond which a contact is false"
+    )
     return parser.parse_args()
 
 
@@ -217,11 +221,15 @@ def summary(rows: list[dict]) -> str:
             )
     peers = [row for row in rows if row["library"] != "clearance"]
     slower = [f"{r['scene']} ({r['method']})" for r in peers if 0 < r["ratio_to_ours"] < 1.0]
-    lines.append(f"faster than ours: {', '.join(slower)}" if slower else "no peer is faster on any scene")
+    lines.append(
+        f"faster than ours: {', '.join(slower)}" if slower else "no peer is faster on any scene"
+    )
     return "\n".join(lines)
 
 
-def fastest_ratios(rows: list[dict], kinds: tuple[str, ...], ratio: str = "ratio_to_ours") -> list[float]:
+def fastest_ratios(
+    rows: list[dict], kinds: tuple[str, ...], ratio: str = "ratio_to_ours"
+) -> list[float]:
     """For each scene the least `ratio` of the loops whose name ends as one of `kinds`."""
     least: dict[str, float] = {}
     for row in rows:

@@ -48,7 +48,9 @@ def _names(package: Path, start: str = "rooms/a") -> set[str]:
     ],
 )
 def test_every_form_is_followed(tmp_path, form):
-    package = _package(tmp_path, **{"rooms/a": form, "rooms/b": "from clearance.rooms.c import name"})
+    package = _package(
+        tmp_path, **{"rooms/a": form, "rooms/b": "from clearance.rooms.c import name"}
+    )
     assert {"rooms/b", "rooms/c", "rooms/__init__"} <= _names(package)
 
 
@@ -101,5 +103,13 @@ def test_a_runs_fingerprint_covers_what_decides_its_rows():
     found = {path.relative_to(PACKAGE).as_posix() for path in fingerprint.sources()}
     names = {Path(name).stem for name in found}
     assert {"run/__init__.py", "run/answers.py", "tolerance.py", "import_closure.py"} <= found
-    assert {"kernel_table", "sweep", "certify", "lanes", "kinematic", "bullet", "measure_paper"} <= names
+    assert {
+        "kernel_table",
+        "sweep",
+        "certify",
+        "lanes",
+        "kinematic",
+        "bullet",
+        "measure_paper",
+    } <= names
     assert not {name for name in found if name.startswith(("report/", "view/", "load/"))}

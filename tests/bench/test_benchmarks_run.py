@@ -26,7 +26,9 @@ def rows_of(path: Path) -> list[dict]:
 
 def test_trajectory_agrees_with_every_peer(tmp_path):
     out = tmp_path / "rows.csv"
-    said = ran("trajectory.py", "--scenes", "box_box", "--seconds", 0.02, "--passes", 1, "--csv", out)
+    said = ran(
+        "trajectory.py", "--scenes", "box_box", "--seconds", 0.02, "--passes", 1, "--csv", out
+    )
     rows = rows_of(out)
     assert rows[0]["method"] == "clearance: steps" and float(rows[0]["ratio_to_ours"]) == 1.0
     assert all(float(row["ms_per_step"]) > 0.0 for row in rows)
@@ -37,7 +39,19 @@ def test_trajectory_agrees_with_every_peer(tmp_path):
 
 
 def test_error_time_finds_ours_exact_and_balls_wrong(tmp_path):
-    said = ran("error_time.py", "--polygons", 2, "--poses", 1, "--steps", 0, "--seconds", 0.02, "--out", tmp_path)
+    said = ran(
+        "error_time.py",
+        "--polygons",
+        2,
+        "--poses",
+        1,
+        "--steps",
+        0,
+        "--seconds",
+        0.02,
+        "--out",
+        tmp_path,
+    )
     rows = rows_of(tmp_path / "error_time.csv")
     ours = [row for row in rows if row["method"] == "clearance exact"]
     assert {row["group"] for row in ours} == {"polygons", "bodies"}
@@ -64,7 +78,19 @@ def test_polytopes_measures_ours_and_the_peers(tmp_path):
 @pytest.mark.parametrize("name", ["error_time.svg", "polygon_families.svg"])
 def test_pictures_are_drawn(tmp_path, name):
     pytest.importorskip("matplotlib")
-    ran("error_time.py", "--polygons", 1, "--poses", 0, "--steps", 0, "--seconds", 0.01, "--out", tmp_path)
+    ran(
+        "error_time.py",
+        "--polygons",
+        1,
+        "--poses",
+        0,
+        "--steps",
+        0,
+        "--seconds",
+        0.01,
+        "--out",
+        tmp_path,
+    )
     assert (tmp_path / name).read_text(encoding="utf-8").startswith("<?xml")
 
 

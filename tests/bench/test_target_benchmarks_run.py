@@ -14,7 +14,9 @@ ROOT = Path(__file__).parents[2]
 
 def rows_of(script: str, out: Path, *arguments: object) -> list[dict]:
     command = [sys.executable, ROOT / "scripts" / "bench" / script, "--csv", out, *arguments]
-    done = subprocess.run(list(map(str, command)), cwd=ROOT, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(
+        list(map(str, command)), cwd=ROOT, capture_output=True, text=True, timeout=300
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     with out.open(encoding="utf-8") as lines:
         return list(csv.DictReader(lines))
@@ -28,7 +30,17 @@ def test_worst_cases_agree_with_every_peer(tmp_path):
 
 
 def test_single_pairs_agree_with_every_peer(tmp_path):
-    given = ("--pairs", "spheres 320", "linked tori 1k", "--poses", 4, "--seconds", 0.01, "--passes", 1)
+    given = (
+        "--pairs",
+        "spheres 320",
+        "linked tori 1k",
+        "--poses",
+        4,
+        "--seconds",
+        0.01,
+        "--passes",
+        1,
+    )
     rows = rows_of("single_pairs.py", tmp_path / "rows.csv", *given)
     assert {"clearance: distance", "clearance: Query.distances"} <= {row["method"] for row in rows}
     assert max(float(row["greatest_difference_m"]) for row in rows) < 1e-12
@@ -44,7 +56,20 @@ def test_needs_are_held_against_steps(tmp_path):
 def test_growth_counts_more_work_for_more_triangles(tmp_path):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "growth.svg"
-    given = ("--fineness", 4, 8, "--steps", 20, 40, "--seconds", 0.01, "--passes", 1, "--picture", picture)
+    given = (
+        "--fineness",
+        4,
+        8,
+        "--steps",
+        20,
+        40,
+        "--seconds",
+        0.01,
+        "--passes",
+        1,
+        "--picture",
+        picture,
+    )
     rows = rows_of("growth.py", tmp_path / "rows.csv", *given)
     few, many = (row for row in rows if row["what"] == "triangles")
     assert int(many["triangles"]) == 4 * int(few["triangles"])
@@ -54,6 +79,8 @@ def test_growth_counts_more_work_for_more_triangles(tmp_path):
 
 def test_first_run_times_the_command(tmp_path):
     case = ROOT / "scenes" / "box_box" / "case.yaml"
-    rows = rows_of("first_run.py", tmp_path / "rows.csv", "--cases", case, "--fresh", 0, "--warm", 1)
+    rows = rows_of(
+        "first_run.py", tmp_path / "rows.csv", "--cases", case, "--fresh", 0, "--warm", 1
+    )
     assert [row["run"] for row in rows] == ["first of the case", "warm"]
     assert all(float(row["seconds"]) > 0.0 for row in rows)

@@ -102,7 +102,16 @@ cli.main()
 
 @pytest.mark.parametrize("limit", ["50", "150"])
 def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, limit):
-    command = [sys.executable, "-c", DISAGREEING, "check", "case.yaml", "--cross-check", "--fail-mm", limit]
+    command = [
+        sys.executable,
+        "-c",
+        DISAGREEING,
+        "check",
+        "case.yaml",
+        "--cross-check",
+        "--fail-mm",
+        limit,
+    ]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (3, "")
@@ -127,7 +136,9 @@ def test_a_killed_run_is_resumed_and_leaves_nothing_behind(folder):
     rows = (f"{i},{0.7 * (i % 1000) / 1000}" for i in range(20_000))
     (folder / "path.csv").write_text("time,rail\n" + "\n".join(rows) + "\n")
     command = [sys.executable, "-c", KILLED, "check", str(folder / "case.yaml"), "--out", "report"]
-    killed = subprocess.run(command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False)
+    killed = subprocess.run(
+        command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False
+    )
     assert killed.returncode == -signal.SIGKILL
     kept = folder / ".report.unfinished"
     assert list(kept.glob("*.state")) and not (folder / "report").exists()
@@ -230,9 +241,22 @@ def test_an_interrupted_run_leaves_the_older_report_as_it_was(folder):
     assert clearance(folder, "--out", "report").returncode == 0
     before = files(folder / "report")
     (folder / "path.csv").write_text(PATH.replace("0.7", "0.6"))
-    command = [sys.executable, "-c", INTERRUPTED, "check", "case.yaml", "--cross-check", "--out", "report"]
+    command = [
+        sys.executable,
+        "-c",
+        INTERRUPTED,
+        "check",
+        "case.yaml",
+        "--cross-check",
+        "--out",
+        "report",
+    ]
     done = subprocess.run(
-        command, cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True
+        command,
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
     )
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "interrupted\n")
     assert files(folder / "report") == before

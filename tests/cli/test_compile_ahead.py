@@ -109,6 +109,20 @@ sys.executable = "/nowhere/python"
 print(json.dumps([compile_ahead.start(), len(kernel_table._elsewhere)]))
 """
 
+BEHIND_ONE_THAT_KEEPS_ITS_TURN = """
+import json, os
+from filelock import FileLock
+from clearance import ahead
+from clearance.compile.kernel_cache import cache_root
+ahead.LONGEST = 0
+there, (end, kept_open) = os.dup(1), os.pipe()
+os.dup2(end, 0)  # the first process lives
+with FileLock(cache_root() / "ahead.lock"):
+    ahead.main()
+compiled = [place for place in ahead.ALL if ahead.kernel_table.is_kept(place)]
+os.write(there, json.dumps(compiled).encode())
+"""
+
 
 def told_by(script, folder, ends=0):
     """What a script prints in a process of its own with an empty cache, from a folder with a trap in it."""
@@ -150,6 +164,10 @@ def test_while_one_of_two_kernels_is_awaited_the_other_is_compiled(tmp_path):
 def test_what_takes_long_is_waited_for_until_that_process_has_ended(tmp_path):
     """However often it has had something else to say: no clock decides."""
     assert told_by(ONE_THAT_TAKES_LONG, tmp_path) == [1000, True]
+
+
+def test_a_second_process_whose_turn_never_comes_compiles_nothing(tmp_path):
+    assert told_by(BEHIND_ONE_THAT_KEEPS_ITS_TURN, tmp_path) == []
 
 
 @pytest.mark.skipif(not Path("/proc/self").exists(), reason="another way to list processes")

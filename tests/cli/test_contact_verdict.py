@@ -48,7 +48,12 @@ def test_the_files_have_depth_and_volume(folder):
     assert deepest["exact"] and deepest["volume_exact"]
     with (out / "steps.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    assert [row["penetration"] == "" for row in rows] == [True, True, False, True]  # the deepest moment only
+    assert [row["penetration"] == "" for row in rows] == [
+        True,
+        True,
+        False,
+        True,
+    ]  # the deepest moment only
     assert [float(row["clearance"]) for row in rows[1:3]] == [0.0, 0.0]
     assert len((out / "contacts.csv").read_text().splitlines()) == 3
 
@@ -63,12 +68,20 @@ def test_what_is_told_of_contacts_is_asked_for(folder, capsys):
     case = str(folder / "case.yaml")
     assert run(["check", case, "--contact", "none"]) == 1
     assert "deepest" not in capsys.readouterr().out
-    for how, empty in (("none", [True, True]), ("events", [True, False]), ("every", [False, False])):
+    for how, empty in (
+        ("none", [True, True]),
+        ("events", [True, False]),
+        ("every", [False, False]),
+    ):
         assert run(["check", case, "--contact", how, "--out", str(folder / how), "--quiet"]) == 1
         with (folder / how / "contacts.csv").open(newline="") as file:
             assert [row["penetration"] == "" for row in csv.DictReader(file)] == empty
         with (folder / how / "steps.csv").open(newline="") as file:
-            assert [row["penetration"] == "" for row in csv.DictReader(file)] == [True, *empty, True]
+            assert [row["penetration"] == "" for row in csv.DictReader(file)] == [
+                True,
+                *empty,
+                True,
+            ]
 
 
 def test_the_files_are_the_same_bytes_again(folder):

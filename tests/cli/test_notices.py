@@ -12,7 +12,16 @@ def asked(tmp_path, capsys):
 
     def ask(case: str, *options: str) -> str:
         path = write_case(tmp_path, case, trajectory="time,shoulder\n0,0\n900,0.5\n")
-        arguments = ["profile", "sweep", str(path), "--plane", "xy", "--out", str(tmp_path / "s.svg"), *options]
+        arguments = [
+            "profile",
+            "sweep",
+            str(path),
+            "--plane",
+            "xy",
+            "--out",
+            str(tmp_path / "s.svg"),
+            *options,
+        ]
         assert run(arguments) == 0
         return capsys.readouterr().err
 

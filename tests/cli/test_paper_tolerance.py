@@ -20,7 +20,15 @@ def checked(*arguments: str) -> subprocess.CompletedProcess:
 
 
 def test_the_tolerance_is_in_the_summary_and_the_report(tmp_path: Path) -> None:
-    done = checked("--method", "paper", "--paper-tolerance-mm", "2500", "--json", "--out", str(tmp_path / "out"))
+    done = checked(
+        "--method",
+        "paper",
+        "--paper-tolerance-mm",
+        "2500",
+        "--json",
+        "--out",
+        str(tmp_path / "out"),
+    )
     summary = json.loads(done.stdout)
     assert done.returncode == 0 and summary["paper_tolerance"] == 2.5
     page = (tmp_path / "out" / "report.html").read_text()
@@ -30,13 +38,21 @@ def test_the_tolerance_is_in_the_summary_and_the_report(tmp_path: Path) -> None:
 def test_a_report_without_one_says_so(tmp_path: Path) -> None:
     cl.check(cl.load_case(SCENE), method="paper").save(tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_text()
-    assert "with no tolerance for its first rejection rule" in page and "with its tolerance" not in page
+    assert (
+        "with no tolerance for its first rejection rule" in page
+        and "with its tolerance" not in page
+    )
 
 
 def test_what_is_farther_than_the_tolerance_is_left_out() -> None:
     case = cl.load_case(SCENE)
-    all_in, some = (cl.check(case, method="paper", paper_tolerance=t).record.tally for t in (100.0, 0.4))
-    assert all_in["cut_by_rule_1"] == 0 < some["cut_by_rule_1"] and some["measured"] < all_in["measured"]
+    all_in, some = (
+        cl.check(case, method="paper", paper_tolerance=t).record.tally for t in (100.0, 0.4)
+    )
+    assert (
+        all_in["cut_by_rule_1"] == 0 < some["cut_by_rule_1"]
+        and some["measured"] < all_in["measured"]
+    )
     with pytest.raises(cl.BadInput, match=r"a tolerance above 0\.01 m may do"):
         cl.check(case, method="paper", paper_tolerance=0.01)
 

@@ -67,7 +67,9 @@ def test_junit_over_an_input_is_refused(
     refused(["check", "case.yaml", "--junit", spelt(folder / name)], "which this run reads", capsys)
 
 
-def test_a_report_over_the_trajectory_is_refused(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_report_over_the_trajectory_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture
+) -> None:
     for out in (".", "../cell", str(folder)):
         refused(["check", "case.yaml", "--out", out], "steps.csv", capsys)
     Path("../out").mkdir()
@@ -88,7 +90,9 @@ def test_an_input_far_from_the_case_is_one_as_well(
 
 
 @pytest.mark.parametrize("option", ["--out", "--junit"])
-def test_an_empty_place_is_refused(folder: Path, capsys: pytest.CaptureFixture, option: str) -> None:
+def test_an_empty_place_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture, option: str
+) -> None:
     refused(["check", "case.yaml", option, ""], "an empty path", capsys)
 
 
@@ -116,7 +120,9 @@ def test_a_workspace_over_a_mesh_is_refused(folder: Path, capsys: pytest.Capture
 
 
 def test_a_profile_over_its_case_is_refused(folder: Path, capsys: pytest.CaptureFixture) -> None:
-    refused(["profile", "sweep", "case.yaml", "--out", "./case.yaml"], "which this run reads", capsys)
+    refused(
+        ["profile", "sweep", "case.yaml", "--out", "./case.yaml"], "which this run reads", capsys
+    )
     refused(["profile", "sweep", "case.yaml", "--out", ""], "an empty path", capsys)
 
 
@@ -134,9 +140,19 @@ def test_a_fit_over_its_sketch_or_its_outline_is_refused(
     refused([*given, ""], "an empty path", capsys)
 
 
-def test_a_comparison_over_an_outline_is_refused(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_comparison_over_an_outline_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture
+) -> None:
     for name in ("a.yaml", "comparison.json"):
         Path(name).write_text("not read before this is refused")
-    refused(["profile", "compare", "a.yaml", "a.yaml", "--out", "a.yaml"], "which this run reads", capsys)
-    refused(["profile", "compare", "a.yaml", "comparison.json", "--out", "."], "which this run reads", capsys)
+    refused(
+        ["profile", "compare", "a.yaml", "a.yaml", "--out", "a.yaml"],
+        "which this run reads",
+        capsys,
+    )
+    refused(
+        ["profile", "compare", "a.yaml", "comparison.json", "--out", "."],
+        "which this run reads",
+        capsys,
+    )
     refused(["profile", "compare", "a.yaml", "a.yaml", "--out", ""], "an empty path", capsys)

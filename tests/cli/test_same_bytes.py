@@ -18,7 +18,9 @@ FILL = ("17", "99")
 """What glibc fills memory with that it hands out; pyarrow is told to ask it. Elsewhere chance has to do."""
 
 
-@pytest.mark.parametrize("given", [("--need", "pairs", "--certify"), ("--need", "limit", "--jobs", "1")])
+@pytest.mark.parametrize(
+    "given", [("--need", "pairs", "--certify"), ("--need", "limit", "--jobs", "1")]
+)
 def test_every_file_of_a_report(tmp_path: Path, given: tuple[str, ...]) -> None:
     case = ROOT / "scenes" / "iiwa_pipe_rack" / "case.yaml"
     reports = []
@@ -44,5 +46,7 @@ def test_a_name_is_in_a_dictionary_once() -> None:
         assert chunk.dictionary.to_pylist() == names
     rows = every.table.to_pydict()
     assert rows["link"] == 3 * links and rows["obstacle"] == 3 * obstacles
-    assert rows["step"] == [0] * 4 + [1] * 4 + [2] * 4 and rows["clearance"] == list(np.arange(12.0))
+    assert rows["step"] == [0] * 4 + [1] * 4 + [2] * 4 and rows["clearance"] == list(
+        np.arange(12.0)
+    )
     assert pa.types.is_dictionary(every.table.schema.field("link").type)

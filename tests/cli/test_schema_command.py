@@ -24,10 +24,14 @@ def errors(capsys):
     printed = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator.check_schema(printed)
     validator = jsonschema.Draft202012Validator(printed)
-    return lambda text: [error.message for error in validator.iter_errors(YAML(typ="safe").load(text))]
+    return lambda text: [
+        error.message for error in validator.iter_errors(YAML(typ="safe").load(text))
+    ]
 
 
-CASES = [path for path in sorted(ROOT.glob("scenes/**/*.yaml")) if "trajectory:" in path.read_text()]
+CASES = [
+    path for path in sorted(ROOT.glob("scenes/**/*.yaml")) if "trajectory:" in path.read_text()
+]
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda path: f"{path.parent.name}/{path.stem}")

@@ -97,11 +97,15 @@ def test_who_stops_reading_is_told_by_141(folder: Path, given: str, limits: str)
     assert (done.returncode, done.stderr) == (141, b"")
 
 
-def test_what_is_written_is_not_mixed_with_what_libraries_print(folder: Path, tmp_path: Path) -> None:
+def test_what_is_written_is_not_mixed_with_what_libraries_print(
+    folder: Path, tmp_path: Path
+) -> None:
     """With a stream closed, the next file that is opened has its number."""
     code, told = ended(folder, f"clearance check case.yaml --quiet --out {tmp_path}/whole")
     assert (code, told) == (0, "")
-    code, told = ended(folder, f"clearance check case.yaml --quiet --out {tmp_path}/closed <&- >&- 2>&-")
+    code, told = ended(
+        folder, f"clearance check case.yaml --quiet --out {tmp_path}/closed <&- >&- 2>&-"
+    )
     assert (code, told) == (0, "")
     for path in (tmp_path / "whole").iterdir():
         assert (tmp_path / "closed" / path.name).read_bytes() == path.read_bytes()
@@ -119,9 +123,16 @@ cli.main()
 
 
 @pytest.mark.parametrize("quiet", [(), ("--quiet",)])
-def test_a_home_without_room_is_told_in_one_line_and_no_obstacle(folder: Path, quiet: tuple) -> None:
+def test_a_home_without_room_is_told_in_one_line_and_no_obstacle(
+    folder: Path, quiet: tuple
+) -> None:
     given = ["check", "case.yaml", *quiet]
-    settings = {"PYTHONPATH": str(ROOT), "HOME": "/dev/null", "XDG_CACHE_HOME": "", "NUMBA_CACHE_DIR": ""}
+    settings = {
+        "PYTHONPATH": str(ROOT),
+        "HOME": "/dev/null",
+        "XDG_CACHE_HOME": "",
+        "NUMBA_CACHE_DIR": "",
+    }
     done = subprocess.run(
         [sys.executable, "-c", BARELY_COMPILED, *given], cwd=folder, capture_output=True, text=True,
         env={**os.environ, **settings},
@@ -133,4 +144,7 @@ def test_a_home_without_room_is_told_in_one_line_and_no_obstacle(folder: Path, q
 
 
 def test_characters_that_a_terminal_lacks_stop_nothing(folder: Path) -> None:
-    assert ended(folder, "clearance check case.yaml >/dev/null", PYTHONIOENCODING="ascii") == (0, "")
+    assert ended(folder, "clearance check case.yaml >/dev/null", PYTHONIOENCODING="ascii") == (
+        0,
+        "",
+    )

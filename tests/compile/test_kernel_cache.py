@@ -80,7 +80,10 @@ def test_a_cache_can_be_put_elsewhere_and_nothing_there_changes_but_ours(home, m
     place.chmod(0o777)
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(place))
     assert [ran(), ran()] == [MADE, TAKEN]
-    assert kept(home).is_relative_to(place / "clearance") and stat.S_IMODE(place.stat().st_mode) == 0o777
+    assert (
+        kept(home).is_relative_to(place / "clearance")
+        and stat.S_IMODE(place.stat().st_mode) == 0o777
+    )
 
 
 def flipped(content: bytes, at: int) -> bytes:
@@ -192,7 +195,8 @@ def it_is_a_file(root: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="other rights")
 @pytest.mark.parametrize(
-    "spoil", [others_can_write_it, pytest.param(it_is_of_another_user, marks=ROOT_ONLY), it_is_a_file]
+    "spoil",
+    [others_can_write_it, pytest.param(it_is_of_another_user, marks=ROOT_ONLY), it_is_a_file],
 )
 def test_without_a_folder_to_trust_a_run_goes_on_and_says_so_once(home, spoil):
     ran()

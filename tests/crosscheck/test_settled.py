@@ -72,15 +72,21 @@ def test_a_wrong_answer_of_ours_is_never_settled(error: float) -> None:
 def test_a_nearer_pair_that_we_passed_over_is_never_settled() -> None:
     """Our answer is that of two faces that are there, our points are on them, and another pair is nearer."""
     positions = np.zeros((2, 6))
-    case = flying("two", ball(0.2, 1), [(ball(0.1, 1), at(1.0)), (ball(0.1, 1), at(0.0, 0.0, 0.8))], positions)
+    case = flying(
+        "two", ball(0.2, 1), [(ball(0.1, 1), at(1.0)), (ball(0.1, 1), at(0.0, 0.0, 0.8))], positions
+    )
     far = check(replace(case, obstacles=case.obstacles[:1]))
     found = cross_check(replace(far.record, case=case))
     assert len(found.disagreements) == 2 and found.n_settled == 0
 
 
 def needle(random: np.random.Generator, width: float) -> Polyhedron:
-    corners = np.array([(0, 0, 0), (1, 0, 0), (random.uniform(0.2, 0.8), width, 0), (0.5, 0, width)])
-    return Polyhedron(corners @ rotations(random, 1)[0].T, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+    corners = np.array(
+        [(0, 0, 0), (1, 0, 0), (random.uniform(0.2, 0.8), width, 0), (0.5, 0, width)]
+    )
+    return Polyhedron(
+        corners @ rotations(random, 1)[0].T, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+    )
 
 
 def test_points_on_needles_are_on_them() -> None:
@@ -90,11 +96,15 @@ def test_points_on_needles_are_on_them() -> None:
     for _ in range(150):
         width = 10.0 ** random.uniform(-10, -8)
         link, obstacle = needle(random, width), needle(random, width)
-        positions = np.concatenate([random.normal(scale=0.7, size=(3, 3)), random.uniform(-3, 3, (3, 3))], axis=1)
+        positions = np.concatenate(
+            [random.normal(scale=0.7, size=(3, 3)), random.uniform(-3, 3, (3, 3))], axis=1
+        )
         record = check(flying("needles", link, [(obstacle, np.eye(4))], positions)).record
         found = cross_check(record)
         assert found.agrees and found.worst_witness_error <= found.tolerance
-        in_floats.append(compare._Witnesses(peer_run.PeerRun(record)).errors().max() > found.tolerance)
+        in_floats.append(
+            compare._Witnesses(peer_run.PeerRun(record)).errors().max() > found.tolerance
+        )
     assert sum(in_floats) >= 1
 
 
@@ -106,6 +116,8 @@ def test_it_gives_up_where_nothing_is_settled(monkeypatch) -> None:
     steps = run.steps
     for name in ("clearance", "link_z"):
         shift = 1e-3
-        steps = steps.set_column(steps.column_names.index(name), name, [steps[name].to_numpy() + shift])
+        steps = steps.set_column(
+            steps.column_names.index(name), name, [steps[name].to_numpy() + shift]
+        )
     found = cross_check(replace(run.record, steps=steps))
     assert len(found.disagreements) == 4 and len(asked) <= 2

@@ -34,7 +34,9 @@ def test_a_link_left_out_of_one_robot_is_asked_of_the_other() -> None:
     case = two_robots(exclude_links=("l6",))
     run = cl.check(case, cross_check=True)
     assert run.cross_check.agrees
-    first, second = (replace(one, exclude_links=out) for one, out in zip(case.robots, [("l6",), ()], strict=True))
+    first, second = (
+        replace(one, exclude_links=out) for one, out in zip(case.robots, [("l6",), ()], strict=True)
+    )
     swapped = replace(case, robots=(first, second))
     assert cl.check(swapped, cross_check=True).cross_check.agrees
 

@@ -32,7 +32,9 @@ def area_vector(face: list[Vector]) -> Vector:
     """Twice the area vector."""
     total = (Fraction(0),) * 3
     for a, b in zip(face[1:], face[2:], strict=False):
-        total = tuple(t + c for t, c in zip(total, cross(minus(a, face[0]), minus(b, face[0])), strict=True))
+        total = tuple(
+            t + c for t, c in zip(total, cross(minus(a, face[0]), minus(b, face[0])), strict=True)
+        )
     return total
 
 
@@ -67,7 +69,8 @@ def areas_by_plane(shape: Polyhedron) -> Counter:
 
 def six_volumes(shape: Polyhedron) -> Fraction:
     return sum(
-        (dot(f[0], area_vector(f)) for f in (corners(shape, i) for i in range(shape.n_faces))), Fraction(0)
+        (dot(f[0], area_vector(f)) for f in (corners(shape, i) for i in range(shape.n_faces))),
+        Fraction(0),
     )
 
 

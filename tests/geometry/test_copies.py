@@ -19,9 +19,13 @@ TINY = ball(0.05, 1)
 
 @pytest.mark.parametrize("turned_round", [False, True])
 @pytest.mark.parametrize("every", [1, 3])
-def test_a_face_and_its_copies_have_one_leaf_and_the_same_answer(every: int, turned_round: bool) -> None:
+def test_a_face_and_its_copies_have_one_leaf_and_the_same_answer(
+    every: int, turned_round: bool
+) -> None:
     doubled = with_copies(BALL, list(range(0, BALL.n_faces, every)), turned_round=turned_round)
-    assert sorted(faces_below(surface_of(doubled))[surface_of(doubled).roots[0]]) == list(range(BALL.n_faces))
+    assert sorted(faces_below(surface_of(doubled))[surface_of(doubled).roots[0]]) == list(
+        range(BALL.n_faces)
+    )
     assert (surface_of(doubled).cones == surface_of(BALL).cones).all()
     random = np.random.default_rng(5)
     for turn in rotations(random, 10):
@@ -35,7 +39,9 @@ def test_a_face_and_its_copies_have_one_leaf_and_the_same_answer(every: int, tur
 
 def test_a_face_that_another_one_shares_two_corners_with_is_no_copy() -> None:
     corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1)]
-    fans = Polyhedron(np.array(corners, dtype=float), [(0, 1, 4), (0, 1, 2, 3), (0, 1, 2), (1, 0, 4), (0, 1, 4)])
+    fans = Polyhedron(
+        np.array(corners, dtype=float), [(0, 1, 4), (0, 1, 2, 3), (0, 1, 2), (1, 0, 4), (0, 1, 4)]
+    )
     leaves = faces_below(surface_of(fans))[surface_of(fans).roots[0]]
     assert sorted(leaves) == [0, 1, 2]
 
@@ -78,6 +84,10 @@ def test_both_sides_of_a_thin_wall_share_a_cone() -> None:
     surface = surface_of(shell)
     sines = surface.cones.reshape(-1, CONE_ROWS, WIDTH)[:, 4].reshape(-1)
     few = [node for node, below in enumerate(faces_below(surface)) if 1 < len(below) <= 40]
-    both = [node for node in few if len({face < BALL.n_faces for face in faces_below(surface)[node]}) == 2]
+    both = [
+        node
+        for node in few
+        if len({face < BALL.n_faces for face in faces_below(surface)[node]}) == 2
+    ]
     assert len(both) > 0.5 * len(few)
     assert (sines[both] < NO_CONE).mean() > 0.95

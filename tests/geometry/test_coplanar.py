@@ -59,7 +59,9 @@ def test_a_cube_of_twelve_triangles_has_six_faces():
 
 
 def test_a_grid_becomes_one_rectangle_whose_straight_corners_are_gone():
-    vertices, triangles = voxel_surface({(x, y, 0) for x in range(5) for y in range(3)}, [True, False])
+    vertices, triangles = voxel_surface(
+        {(x, y, 0) for x in range(5) for y in range(3)}, [True, False]
+    )
     shape = merged(vertices, triangles)
     assert shape.n_faces == 6 and len(shape.vertices) == 8
 
@@ -133,7 +135,12 @@ maps = maps.filter(lambda m: round(np.linalg.det(m)) > 0)
 
 
 @examples(80)
-@given(cells, st.lists(st.booleans(), min_size=1, max_size=7), maps, st.sampled_from([1.0, 2.0**-40, 1e6 + 0.1]))
+@given(
+    cells,
+    st.lists(st.booleans(), min_size=1, max_size=7),
+    maps,
+    st.sampled_from([1.0, 2.0**-40, 1e6 + 0.1]),
+)
 def test_the_points_stay_exactly_the_same(cells, diagonals, matrix, shift):
     vertices, triangles = voxel_surface(cells, diagonals)
     vertices = vertices @ matrix.T.astype(float) + (0.0 if shift < 1.0 else np.floor(shift))

@@ -38,5 +38,9 @@ def test_every_index_points_into_its_own_body() -> None:
     joined = join(shapes)
     for shape, root in zip(shapes, joined.roots, strict=True):
         group = root // WIDTH
-        assert np.array_equal(joined.centres[3 * group : 3 * group + 3], surface_of(shape).centres[:3])
-        assert np.array_equal(joined.boxes[12 * group : 12 * group + 12], surface_of(shape).boxes[:12])
+        assert np.array_equal(
+            joined.centres[3 * group : 3 * group + 3], surface_of(shape).centres[:3]
+        )
+        assert np.array_equal(
+            joined.boxes[12 * group : 12 * group + 12], surface_of(shape).boxes[:12]
+        )

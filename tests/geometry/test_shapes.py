@@ -184,7 +184,9 @@ def test_a_straight_path_is_the_straight_pipe_moved():
 
 
 def test_a_bend_on_whole_axes_has_the_right_volume():
-    shape = pipe(path=[[0, 0, 0], [1, 0, 0], [1, 1, 0]], bend_radius=0.3, inner_radius=0, outer_radius=0.1)
+    shape = pipe(
+        path=[[0, 0, 0], [1, 0, 0], [1, 1, 0]], bend_radius=0.3, inner_radius=0, outer_radius=0.1
+    )
     length = 2 * 0.7 + 0.3 * np.pi / 2
     assert 0.0 < shape.volume - np.pi * 0.01 * length < 2 * np.pi * 0.1 * length * shape.excess
 
@@ -212,12 +214,18 @@ BENT = {"path": [[0, 0, 0], [1, 0, 0], [1, 1, 0]], "inner_radius": 0.05, "outer_
         (lambda: pipe(inner_radius=-1, outer_radius=1, length=1), "inner_radius"),
         (lambda: pipe(inner_radius=1, outer_radius=1, length=1), "inner_radius"),
         (lambda: pipe(inner_radius=0.5, outer_radius=1), "length"),
-        (lambda: pipe(inner_radius=0.5, outer_radius=1, length=1, path=[[0, 0, 0], [1, 0, 0]]), "path"),
+        (
+            lambda: pipe(inner_radius=0.5, outer_radius=1, length=1, path=[[0, 0, 0], [1, 0, 0]]),
+            "path",
+        ),
         (lambda: pipe(**BENT), "bend_radius"),
         (lambda: pipe(**BENT, bend_radius=0.06), "bend_radius"),
         (lambda: pipe(**BENT, bend_radius=1.1), "path"),
         (lambda: pipe(**{**BENT, "path": [[0, 0, 0], [0, 0, 0]]}), "path"),
-        (lambda: pipe(**{**BENT, "path": [[0, 0, 0], [1, 0, 0], [0, 0, 0]]}, bend_radius=0.1), "path"),
+        (
+            lambda: pipe(**{**BENT, "path": [[0, 0, 0], [1, 0, 0], [0, 0, 0]]}, bend_radius=0.1),
+            "path",
+        ),
         (lambda: pipe(**{**BENT, "path": [[0, 0, 0]]}), "path"),
         (lambda: pipe(**{**BENT, "path": [[0, 0, 0], [1, np.nan, 0]]}), "path"),
     ],

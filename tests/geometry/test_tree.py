@@ -19,7 +19,10 @@ def soup(n: int) -> Polyhedron:
     return Polyhedron(corners.reshape(-1, 3), np.arange(3 * n).reshape(n, 3))
 
 
-SHAPES = [soup(n) for n in (1, 2, 3, 4, 5, 6, 9, 17, 64, 65, 300)] + [ball(1.0, 3), torus(1.0, 0.25, 40, 20)]
+SHAPES = [soup(n) for n in (1, 2, 3, 4, 5, 6, 9, 17, 64, 65, 300)] + [
+    ball(1.0, 3),
+    torus(1.0, 0.25, 40, 20),
+]
 
 
 def below(surface, node: int) -> list[int]:
@@ -40,7 +43,9 @@ def test_every_face_is_in_one_leaf_and_every_box_holds_its_faces(shape: Polyhedr
         group, k = divmod(node, WIDTH)
         axes, half = boxes[group, :9, k].reshape(3, 3), boxes[group, 9:, k]
         for face in below(surface, node):
-            corners = surface.face_vertices[surface.face_starts[face] : surface.face_starts[face + 1]]
+            corners = surface.face_vertices[
+                surface.face_starts[face] : surface.face_starts[face + 1]
+            ]
             away = surface.vertices[corners] - centres[group, :, k]
             assert (np.abs(np.linalg.solve(axes.T, away.T).T) <= half).all()
 

@@ -42,7 +42,8 @@ def _links(case: Case, step: int) -> dict:
     given = dict(zip(robot.trajectory.joint_names, robot.trajectory.positions[step], strict=True))
     poses = link_poses(robot.robot, robot.fixed_positions | given, robot.world_from_base)
     return {
-        body.name: (body.shape, placed(body.shape.vertices, poses[body.name])) for body in robot.robot.bodies
+        body.name: (body.shape, placed(body.shape.vertices, poses[body.name]))
+        for body in robot.robot.bodies
     }
 
 
@@ -57,7 +58,11 @@ def _by_bound(case: Case, links: dict, obstacles: dict) -> list[tuple[Fraction, 
     """The measured pairs and a lower bound of each, the least first."""
     pairs = [(case.robots[0].robot.bodies[p.i_body].name, case.obstacles[p.i_obstacle].name)
              for p in measured_pairs(case)[0]]  # fmt: skip
-    boxes = {name: _box(vertices) for group in (links, obstacles) for name, (_, vertices) in group.items()}
+    boxes = {
+        name: _box(vertices)
+        for group in (links, obstacles)
+        for name, (_, vertices) in group.items()
+    }
     return sorted((_gap(boxes[link], boxes[obstacle]), link, obstacle) for link, obstacle in pairs)
 
 

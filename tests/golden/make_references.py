@@ -60,7 +60,11 @@ def reference_of(path: Path) -> dict:
 def row(case: cl.Case, step: int) -> dict:
     """One step: its pairs of least clearance, and that clearance [m]."""
     least_sq, pairs = least_clearance_sq(case, step)
-    return {"step": step, "pairs": pairs, "clearance": decimal(oracle.root(least_sq, digits=DIGITS + 10))}
+    return {
+        "step": step,
+        "pairs": pairs,
+        "clearance": decimal(oracle.root(least_sq, digits=DIGITS + 10)),
+    }
 
 
 def decimal(number) -> str:

@@ -61,5 +61,7 @@ def test_the_nearest_pair_is_one_of_the_exact_ones(run_and_reference):
 
 
 def test_there_are_references_of_scenes_and_of_robots_from_packages():
-    cases = {json.loads(path.read_text(encoding="utf-8"))["case"].split("/")[0] for path in REFERENCES}
+    cases = {
+        json.loads(path.read_text(encoding="utf-8"))["case"].split("/")[0] for path in REFERENCES
+    }
     assert cases == {"scenes", "tests"}

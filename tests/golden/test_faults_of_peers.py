@@ -54,7 +54,9 @@ def test_overlapping_boxes_meet_in_a_point_of_both():
 
 
 def test_a_triangle_without_area_changes_nothing():
-    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5], [6, 6, 6], [7, 7, 7]], dtype=float)
+    vertices = np.array(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [5, 5, 5], [6, 6, 6], [7, 7, 7]], dtype=float
+    )
     with_needle = cl.Polyhedron(vertices, [[0, 1, 2], [3, 4, 5]])
     near = cl.distance(cl.sphere(0.5), with_needle, pose_a=shifted(0.2, 0.2, 2.5))
     assert near.face_b == 0

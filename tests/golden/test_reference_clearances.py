@@ -29,7 +29,9 @@ def run_and_reference(request):
 
 
 def excess_of(run, name):
-    bodies = [o.body for o in run.record.case.obstacles] + list(run.record.case.robots[0].robot.bodies)
+    bodies = [o.body for o in run.record.case.obstacles] + list(
+        run.record.case.robots[0].robot.bodies
+    )
     return next(body.shape.excess for body in bodies if body.name == name)
 
 
@@ -57,7 +59,9 @@ def test_contact_steps_agree(run_and_reference):
 
 def test_witness_points_realise_the_clearance(run_and_reference):
     run, _ = run_and_reference
-    columns = {name: run.steps[name].to_numpy() for name in run.steps.column_names if name[-2:-1] == "_"}
+    columns = {
+        name: run.steps[name].to_numpy() for name in run.steps.column_names if name[-2:-1] == "_"
+    }
     links = np.stack([columns[f"link_{axis}"] for axis in "xyz"], axis=1)
     obstacles = np.stack([columns[f"obstacle_{axis}"] for axis in "xyz"], axis=1)
     realised = np.linalg.norm(links - obstacles, axis=1)

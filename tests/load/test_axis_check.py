@@ -34,9 +34,13 @@ def shape(kind: str, file: str) -> str:
     return f'<{kind}><geometry><mesh filename="{file}"/></geometry></{kind}>'
 
 
-def load(folder, way="ros", geometry="collision", *, collision="bar.dae", visual="seen.stl", **files):
+def load(
+    folder, way="ros", geometry="collision", *, collision="bar.dae", visual="seen.stl", **files
+):
     """A robot of one bar below a base, and what stands at the bar's far end."""
-    files = {"seen.stl": binary_stl(BAR[CUBE_TRIANGLES])} | {k.replace("__", "."): v for k, v in files.items()}
+    files = {"seen.stl": binary_stl(BAR[CUBE_TRIANGLES])} | {
+        k.replace("__", "."): v for k, v in files.items()
+    }
     for name, data in files.items():
         (folder / name).write_bytes(data)
     bar = shape("collision", collision) + (shape("visual", visual) if visual else "")
@@ -91,9 +95,15 @@ def test_pictures_are_not_read_where_no_tag_turns_a_file(tmp_path):
 
 
 def test_a_case_chooses_the_way(tmp_path):
-    urdf = robot(link(shape("collision", "bar.dae"), "base"), link("", "tip"), joint("shoulder", "base", "tip"))
+    urdf = robot(
+        link(shape("collision", "bar.dae"), "base"),
+        link("", "tip"),
+        joint("shoulder", "base", "tip"),
+    )
     case = changed("arm.urdf", "arm.urdf, collada_up_axis: file")
     turned = load_small(tmp_path, case, urdf=urdf, bar__dae=dae(LYING)).robots[0].robot
     assert turned.bodies[0].shape.bounds[1].tolist() == BAR.max(axis=0).tolist()
-    with pytest.raises(BadInput, match=r"robot\.collada_up_axis: 'z' is given; 'ros' or 'file' is needed"):
+    with pytest.raises(
+        BadInput, match=r"robot\.collada_up_axis: 'z' is given; 'ros' or 'file' is needed"
+    ):
         load_small(tmp_path, changed("arm.urdf", "arm.urdf, collada_up_axis: z"))

@@ -160,7 +160,9 @@ def test_allow_takes_wildcards_and_names(tmp_path):
 def test_joints_that_nobody_names_are_zero_with_a_note(tmp_path):
     case = load_small(tmp_path, urdf=TWO_JOINTS)
     assert "stay at 0: lift" in case.notes[0]
-    case = load_small(tmp_path, changed("arm.urdf", "arm.urdf, joints: {lift: 0.05}"), urdf=TWO_JOINTS)
+    case = load_small(
+        tmp_path, changed("arm.urdf", "arm.urdf, joints: {lift: 0.05}"), urdf=TWO_JOINTS
+    )
     assert case.robots[0].fixed_positions == {"lift": 0.05}
     assert case.notes == ()
 
@@ -217,8 +219,13 @@ def test_loading_twice_gives_the_same(tmp_path):
 
 def test_author_and_revision_arrive_for_the_report(tmp_path):
     assert load_small(tmp_path).sign_off is None
-    signed = load_small(tmp_path, changed("limits:", "report: {author: J. Doe, revision: B}\nlimits:"))
+    signed = load_small(
+        tmp_path, changed("limits:", "report: {author: J. Doe, revision: B}\nlimits:")
+    )
     assert (signed.sign_off.author, signed.sign_off.revision) == ("J. Doe", "B")
-    assert load_small(tmp_path, changed("limits:", "report: {revision: B}\nlimits:")).sign_off.author == ""
+    assert (
+        load_small(tmp_path, changed("limits:", "report: {revision: B}\nlimits:")).sign_off.author
+        == ""
+    )
     with pytest.raises(UnknownKey, match="authors"):
         load_small(tmp_path, changed("limits:", "report: {authors: J. Doe}\nlimits:"))

@@ -75,7 +75,9 @@ def test_the_ros_way_obeys_the_unit_and_leaves_every_axis_where_it_is(axis):
     data = document('<unit meter="0.5"/>' + tag)
     mesh = mesh_from_bytes(data, "m.dae", up_axis="ros")
     assert mesh.shape.bounds.tolist() == [[0, 0, 0], [0.5, 1, 1.5]]
-    assert any("is ignored, as RViz and MoveIt do" in note for note in mesh.notes) == (axis != "Z_UP")
+    assert any("is ignored, as RViz and MoveIt do" in note for note in mesh.notes) == (
+        axis != "Z_UP"
+    )
     assert not any("turned from" in note and "not turned" not in note for note in mesh.notes)
 
 
@@ -221,7 +223,10 @@ XYZ = "".join(f'<param name="{name}" type="float"/>' for name in "XYZ")
 @pytest.mark.parametrize(
     ("accessor", "numbers"),
     [
-        (f'<accessor source="#pa" count="4" offset="2" stride="3">{XYZ}</accessor>', f"9 9 {WEDGE}"),
+        (
+            f'<accessor source="#pa" count="4" offset="2" stride="3">{XYZ}</accessor>',
+            f"9 9 {WEDGE}",
+        ),
         (
             f'<accessor source="#pa" count="4" stride="4">{XYZ}</accessor>',
             "0 0 0 7 1 0 0 7 0 2 0 7 0 0 3",
@@ -254,22 +259,56 @@ NODE = '<instance_geometry url="#g"/>'
 @pytest.mark.parametrize(
     ("data", "says"),
     [
-        (with_accessor(f'<accessor source="#pa" count="5" stride="3">{XYZ}</accessor>', WEDGE), "number 14"),
-        (with_accessor(f'<accessor source="#pa" count="4" stride="2">{XYZ}</accessor>', WEDGE), "stride 2"),
-        (with_accessor(f'<accessor source="#pa" count="-4" stride="3">{XYZ}</accessor>', WEDGE), "count -4"),
-        (with_accessor('<accessor source="#pa" count="4" stride="3"><param name="S"/></accessor>', WEDGE), "S"),
+        (
+            with_accessor(f'<accessor source="#pa" count="5" stride="3">{XYZ}</accessor>', WEDGE),
+            "number 14",
+        ),
+        (
+            with_accessor(f'<accessor source="#pa" count="4" stride="2">{XYZ}</accessor>', WEDGE),
+            "stride 2",
+        ),
+        (
+            with_accessor(f'<accessor source="#pa" count="-4" stride="3">{XYZ}</accessor>', WEDGE),
+            "count -4",
+        ),
+        (
+            with_accessor(
+                '<accessor source="#pa" count="4" stride="3"><param name="S"/></accessor>', WEDGE
+            ),
+            "S",
+        ),
         (document(Z_UP).replace(b'count="12"', b'count="13"'), "its count is 13"),
-        (document(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'), "its count is 5"),
-        (document(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")), "count is 2"),
+        (
+            document(Z_UP).replace(b'<triangles count="4"', b'<triangles count="5"'),
+            "its count is 5",
+        ),
+        (
+            document(Z_UP, primitives=primitive("polylist", 2, "<vcount>3</vcount><p>0 1 2</p>")),
+            "count is 2",
+        ),
         (document(Z_UP, primitives=primitive("polygons", 2, "<p>0 1 2</p>")), "its count is 2"),
         (document(Z_UP, primitives=primitive("triangles", 1, "")), "no <p>"),
         (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 -1</p>")), "vertex -1"),
-        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 4294967298</p>")), "vertex 4294967298"),
-        (document(Z_UP, primitives=primitive("triangles", 1, f"<p>0 1 {2**64}</p>")), "whole number"),
-        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")), "'1_0' is not a whole number"),
-        (document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")), "<p> holds <b>"),
         (
-            document(Z_UP, primitives=primitive("polygons", 1, "<ph><p>0 1 2</p><h>0 1 3</h></ph>")),
+            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 4294967298</p>")),
+            "vertex 4294967298",
+        ),
+        (
+            document(Z_UP, primitives=primitive("triangles", 1, f"<p>0 1 {2**64}</p>")),
+            "whole number",
+        ),
+        (
+            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 1_0</p>")),
+            "'1_0' is not a whole number",
+        ),
+        (
+            document(Z_UP, primitives=primitive("triangles", 1, "<p>0 1 2<b/> 3</p>")),
+            "<p> holds <b>",
+        ),
+        (
+            document(
+                Z_UP, primitives=primitive("polygons", 1, "<ph><p>0 1 2</p><h>0 1 3</h></ph>")
+            ),
             "holes (<ph>)",
         ),
         (document(Z_UP, vertices=WEDGE.replace("3", "3_0")), "'3_0' is not a number"),
@@ -282,14 +321,25 @@ NODE = '<instance_geometry url="#g"/>'
             "units of 1 and 0.5 m",
         ),
         (
-            document(Z_UP, nodes=f"<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix>{NODE}</node>"),
+            document(
+                Z_UP, nodes=f"<node><matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2</matrix>{NODE}</node>"
+            ),
             "<matrix>: the last row is [0.0, 0.0, 0.0, 2.0]; 0 0 0 1",
         ),
-        (document(Z_UP, nodes=f"<node><translate>1 0</translate>{NODE}</node>"), "<translate>: 2 numbers; 3"),
+        (
+            document(Z_UP, nodes=f"<node><translate>1 0</translate>{NODE}</node>"),
+            "<translate>: 2 numbers; 3",
+        ),
         (document(Z_UP, nodes=f"<node><scale>1 nan 1</scale>{NODE}</node>"), "not finite"),
         (document(Z_UP, nodes=f"<node><rotate>0 0 0 9</rotate>{NODE}</node>"), "a direction"),
-        (document(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1), "entities"),
-        (document(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"), "nested more than 100 deep"),
+        (
+            document(Z_UP).replace(b"<COLLADA", b'<!DOCTYPE a [<!ENTITY a "b">]><COLLADA', 1),
+            "entities",
+        ),
+        (
+            document(Z_UP, nodes=f"{'<node>' * 120}{NODE}{'</node>' * 120}"),
+            "nested more than 100 deep",
+        ),
     ],
 )
 def test_what_would_be_another_surface_is_refused(data, says):
@@ -302,11 +352,14 @@ def test_what_would_be_another_surface_is_refused(data, says):
 def tenfold(n_levels: int) -> bytes:
     """Nodes of which each places the one below it ten times."""
     library = f'<node id="n0">{NODE}</node>' + "".join(
-        f'<node id="n{k + 1}">{f"""<instance_node url="#n{k}"/>""" * 10}</node>' for k in range(n_levels)
+        f'<node id="n{k + 1}">{f"""<instance_node url="#n{k}"/>""" * 10}</node>'
+        for k in range(n_levels)
     )
     nodes = f'<node><instance_node url="#n{n_levels}"/></node>'
     text = document(Z_UP, nodes=nodes).decode()
-    return text.replace("<library_visual", f"<library_nodes>{library}</library_nodes><library_visual", 1).encode()
+    return text.replace(
+        "<library_visual", f"<library_nodes>{library}</library_nodes><library_visual", 1
+    ).encode()
 
 
 def test_nodes_that_place_each_other_tenfold_are_counted():

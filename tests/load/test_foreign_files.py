@@ -24,7 +24,11 @@ points:
 PLANNING_SCENE = "name: x\nworld:\n  collision_objects:\n  - id: box\n"
 
 GIVEN = [
-    ("arm.urdf", ARM, "this is a URDF robot, not a case file; name it in a case file: robot: {urdf: arm.urdf}"),
+    (
+        "arm.urdf",
+        ARM,
+        "this is a URDF robot, not a case file; name it in a case file: robot: {urdf: arm.urdf}",
+    ),
     ("arm.xacro", ARM.replace("<link", "<xacro:arm/><link", 1), "xacro command"),
     ("arm.srdf", SRDF, "this is a MoveIt SRDF, not a case file; .*allow: "),
     ("world.sdf", SDF, "this is an SDF world or model"),
@@ -50,9 +54,21 @@ def test_what_is_no_case_file_is_told_what_it_is(tmp_path, name, content, says):
 @pytest.mark.parametrize(
     ("case", "says", "files"),
     [
-        (changed("urdf: arm.urdf", "urdf: w.sdf"), "robot.urdf: w.sdf: this is an SDF", {"w__sdf": SDF}),
-        (changed("urdf: arm.urdf", "urdf: a.srdf"), "a.srdf: this is a MoveIt SRDF", {"a__srdf": SRDF}),
-        (changed("file: path.csv", "file: p.yaml"), "p.yaml: this is a ROS Joint", {"p__yaml": JOINT_TRAJECTORY}),
+        (
+            changed("urdf: arm.urdf", "urdf: w.sdf"),
+            "robot.urdf: w.sdf: this is an SDF",
+            {"w__sdf": SDF},
+        ),
+        (
+            changed("urdf: arm.urdf", "urdf: a.srdf"),
+            "a.srdf: this is a MoveIt SRDF",
+            {"a__srdf": SRDF},
+        ),
+        (
+            changed("file: path.csv", "file: p.yaml"),
+            "p.yaml: this is a ROS Joint",
+            {"p__yaml": JOINT_TRAJECTORY},
+        ),
         (
             CASE.partition("scene:")[0] + "scene: t.scene\ntrajectory: path.csv\n",
             "t.scene: this is a MoveIt scene, not a scene",

@@ -39,7 +39,13 @@ def test_a_cube_is_a_cube():
 
 @pytest.mark.parametrize(
     ("kind", "normalized", "divisor"),
-    [("<u2", True, 65535), ("<u1", True, 255), ("<i2", True, 32767), ("<i1", True, 127), ("<u2", False, 1)],
+    [
+        ("<u2", True, 65535),
+        ("<u1", True, 255),
+        ("<i2", True, 32767),
+        ("<i1", True, 127),
+        ("<u2", False, 1),
+    ],
 )
 def test_quantized_positions_are_decoded(kind, normalized, divisor):
     most = np.iinfo(kind).max
@@ -122,14 +128,18 @@ def test_node_transforms_are_applied_and_mirrors_keep_faces_outward():
     child = {"mesh": 0, "rotation": [0, 0, np.sqrt(0.5), np.sqrt(0.5)], "scale": [2, 3, -4]}
     matrix = np.eye(4)
     matrix[:3, 3] = [10, 20, 30]
-    document = changed(DOCUMENT, "nodes", [{"children": [1], "matrix": matrix.T.ravel().tolist()}, child])
+    document = changed(
+        DOCUMENT, "nodes", [{"children": [1], "matrix": matrix.T.ravel().tolist()}, child]
+    )
     mesh = load(document)
     assert mesh.shape.bounds == pytest.approx(np.array([[8.5, -32, 19], [11.5, -28, 21]]))
     assert signed_volume(mesh.shape) == pytest.approx(24)
 
 
 def test_points_and_lines_are_no_surface_and_data_may_be_embedded():
-    document = changed(DOCUMENT, "meshes", 0, "primitives", [*DOCUMENT["meshes"][0]["primitives"]] * 1)
+    document = changed(
+        DOCUMENT, "meshes", 0, "primitives", [*DOCUMENT["meshes"][0]["primitives"]] * 1
+    )
     document["meshes"][0]["primitives"].append({"attributes": {"POSITION": 0}, "mode": 1})
     uri = "data:application/octet-stream;base64," + base64.b64encode(BINARY).decode()
     document["buffers"][0]["uri"] = uri
@@ -148,7 +158,10 @@ DEEP = [{"children": [i + 1]} for i in range(150)] + [{"mesh": 0}]
     [
         (changed(DOCUMENT, REQUIRED, ["KHR_draco_mesh_compression"]), "requires the extension"),
         (changed(DOCUMENT, REQUIRED, ["VENDOR_shapes"]), "requires the extension 'VENDOR_shapes'"),
-        (changed(DOCUMENT, *PRIMITIVE, "extensions", DRACO), "KHR_draco_mesh_compression, which is not read"),
+        (
+            changed(DOCUMENT, *PRIMITIVE, "extensions", DRACO),
+            "KHR_draco_mesh_compression, which is not read",
+        ),
         (changed(DOCUMENT, "bufferViews", 0, "extensions", MESHOPT), "EXT_meshopt_compression"),
         (changed(DOCUMENT, "nodes", 0, "extensions", INSTANCES), "EXT_mesh_gpu_instancing"),
         (changed(DOCUMENT, "nodes", 0, "skin", 0), "skinned geometry"),

@@ -17,7 +17,11 @@ def test_pipes_and_devices_are_refused_without_waiting(tmp_path, name):
     os.mkfifo(tmp_path / "pipe")
     path = tmp_path / name
     files = InputFiles(tmp_path)
-    for read in (lambda: read_bytes(path, name), lambda: files.read(path), lambda: files.unread(path)):
+    for read in (
+        lambda: read_bytes(path, name),
+        lambda: files.read(path),
+        lambda: files.unread(path),
+    ):
         with pytest.raises(MissingFile, match="is a pipe or a device; a path to a file on disk"):
             read()
 

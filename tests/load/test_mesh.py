@@ -79,7 +79,10 @@ def test_zero_area_triangles_go_only_where_their_neighbours_cover_them():
     whisker = [[[2, 0, 0], [3, 0, 0], [4, 0, 0]]]
     mesh = mesh_from_bytes(binary_stl(np.concatenate([CUBE_CORNERS, whisker])), "m.stl")
     assert mesh.shape.bounds[1].tolist() == [4, 0.5, 0.5]
-    assert "1 triangle has no area; 1 is kept as a face, because nothing else covers it" in mesh.notes[0]
+    assert (
+        "1 triangle has no area; 1 is kept as a face, because nothing else covers it"
+        in mesh.notes[0]
+    )
 
 
 def test_a_mesh_with_each_triangle_once_for_each_side_is_said_to_hold_nothing():
@@ -274,7 +277,9 @@ def test_a_cavity_stays_a_cavity():
 
 
 def test_of_several_parts_those_that_are_inside_out_are_counted():
-    corners = np.concatenate([CUBE_CORNERS, CUBE_CORNERS[:, ::-1] + 3.0, CUBE_CORNERS[:, ::-1] + 6.0])
+    corners = np.concatenate(
+        [CUBE_CORNERS, CUBE_CORNERS[:, ::-1] + 3.0, CUBE_CORNERS[:, ::-1] + 6.0]
+    )
     mesh = mesh_from_bytes(binary_stl(corners), "m.stl")
     assert mesh.notes == ("2 of its 3 parts were inside out and are turned round",)
     assert signed_volume(mesh.shape) == pytest.approx(3.0)
@@ -318,20 +323,30 @@ def test_a_face_once_for_each_side_is_no_copy():
 def test_open_surfaces_are_noted_and_parts_are_counted():
     assert mesh_from_bytes(binary_stl(CUBE_CORNERS[1:]), "m.stl").notes == (OPEN,)
     two = np.concatenate([CUBE_CORNERS[1:], CUBE_CORNERS + 3.0])
-    assert mesh_from_bytes(binary_stl(two), "m.stl").notes == ("1 of its 2 parts is open: it has no inside",)
+    assert mesh_from_bytes(binary_stl(two), "m.stl").notes == (
+        "1 of its 2 parts is open: it has no inside",
+    )
 
 
 def test_obj_lines_end_where_lines_end_and_numbers_are_numbers():
     data = "v 0 0 0 # a\u2028v 9 9 9\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".encode()
     assert triangles_from_bytes(data, "m.obj").corners.tolist() == [[0, 1, 2]]
-    for old, new in [(b"v 1 0 0", b"v 1_0 0 0"), (b"f 1 2 3", b"f 1 2 0_3"), (b"v 0 1", b"v 0 \xd9\xa1")]:
+    for old, new in [
+        (b"v 1 0 0", b"v 1_0 0 0"),
+        (b"f 1 2 3", b"f 1 2 0_3"),
+        (b"v 0 1", b"v 0 \xd9\xa1"),
+    ]:
         with pytest.raises(BadSyntax, match="line"):
             mesh_from_bytes(data.replace(old, new), "m.obj")
 
 
 @pytest.mark.parametrize(
     ("line", "says"),
-    [("call other.obj", "other files"), ("bzp 1 2 3", "free-form"), ("face 1 2 3", "'face 1 2 3' cannot be read")],
+    [
+        ("call other.obj", "other files"),
+        ("bzp 1 2 3", "free-form"),
+        ("face 1 2 3", "'face 1 2 3' cannot be read"),
+    ],
 )
 def test_obj_lines_that_may_hold_faces_are_refused(line, says):
     with pytest.raises(BadSyntax, match=f"line 4.*{says}|{says}"):

@@ -39,17 +39,25 @@ def escaped(name: str) -> str:
 @pytest.mark.parametrize("name", BAD)
 def test_a_name_from_any_file_shows_what_it_holds_or_is_refused(name):
     places = {
-        "case": lambda: validated(Obstacle, {"name": name, "box": {"size": [1.0, 1.0, 1.0]}}, "case.yaml"),
+        "case": lambda: validated(
+            Obstacle, {"name": name, "box": {"size": [1.0, 1.0, 1.0]}}, "case.yaml"
+        ),
         "csv": lambda: parse_trajectory(f'time,"{name}"\n0,0\n'.encode(), "path.csv"),
     }
-    if "no character" not in BAD[name] or ord(name[1]) == 0xFDD0:  # XML refuses U+FFFE and U+FFFF itself
+    if (
+        "no character" not in BAD[name] or ord(name[1]) == 0xFDD0
+    ):  # XML refuses U+FFFE and U+FFFF itself
         written = escaped(name)
         places |= {
-            "link": lambda: parse_document(f'<robot name="r"><link name="{written}"/></robot>'.encode()),
+            "link": lambda: parse_document(
+                f'<robot name="r"><link name="{written}"/></robot>'.encode()
+            ),
             "joint": lambda: parse_document(
                 f'<robot name="r"><link name="a"/><joint name="{written}" type="fixed"/></robot>'.encode()
             ),
-            "robot": lambda: parse_document(f'<robot name="{written}"><link name="a"/></robot>'.encode()),
+            "robot": lambda: parse_document(
+                f'<robot name="{written}"><link name="a"/></robot>'.encode()
+            ),
             "mesh": lambda: parse_document(
                 f'<robot name="r"><link name="a"><collision><geometry><mesh filename="{written}"/>'
                 "</geometry></collision></link></robot>".encode()

@@ -12,10 +12,19 @@ from tests.load.making import CUBE, CUBE_TRIANGLES, signed_volume
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 
 
-def header(kind, n_points, *, coordinates="double", element="face", n_faces=12, more="", newline="\n"):
+def header(
+    kind, n_points, *, coordinates="double", element="face", n_faces=12, more="", newline="\n"
+):
     lines = ["ply", f"format {kind} 1.0", "comment made by a test", f"element vertex {n_points}"]
-    lines += [f"property {coordinates} {axis}" for axis in "xyz"] + [line for line in [more] if line]
-    lines += [f"element {element} {n_faces}", "property list uchar int vertex_indices", "end_header", ""]
+    lines += [f"property {coordinates} {axis}" for axis in "xyz"] + [
+        line for line in [more] if line
+    ]
+    lines += [
+        f"element {element} {n_faces}",
+        "property list uchar int vertex_indices",
+        "end_header",
+        "",
+    ]
     return newline.join(lines).encode()
 
 
@@ -43,7 +52,9 @@ FORMS = [
 
 
 @pytest.mark.parametrize("write", FORMS)
-@pytest.mark.parametrize("faces", [CUBE_TRIANGLES.tolist(), QUADS, [*QUADS[:5], [1, 5, 7], [1, 7, 3]]])
+@pytest.mark.parametrize(
+    "faces", [CUBE_TRIANGLES.tolist(), QUADS, [*QUADS[:5], [1, 5, 7], [1, 7, 3]]]
+)
 def test_a_cube_is_a_cube_in_every_form(write, faces):
     mesh = mesh_from_bytes(write(faces), "m.ply")
     assert (mesh.n_triangles, mesh.shape.n_faces, signed_volume(mesh.shape)) == (12, 6, 1)
@@ -114,7 +125,10 @@ def test_a_ply_file_that_is_cut_off_anywhere_is_refused(write, faces):
         (text_ply(QUADS).replace(b"-0.5", b"-0.5 1", 1), "row 0 has 4 numbers"),
         (text_ply(QUADS).replace(b"double z", b"double w"), "no vertex property 'z'"),
         (text_ply(QUADS).replace(b"double z", b"double y"), "'y' is there twice"),
-        (text_ply(QUADS).replace(b"double z", b"triple z"), "the PLY header has the line 'property triple z'"),
+        (
+            text_ply(QUADS).replace(b"double z", b"triple z"),
+            "the PLY header has the line 'property triple z'",
+        ),
         (text_ply(QUADS).replace(b"vertex_indices", b"texcoord"), "0 lists of vertex indices"),
         (text_ply(QUADS).replace(b"uchar int", b"uchar float"), "vertex indices are fractions"),
         (text_ply(QUADS).replace(b"format ascii", b"format binary"), "not a PLY file"),

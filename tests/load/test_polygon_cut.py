@@ -16,7 +16,9 @@ DART = np.array([[0, 0], [2, 2], [0, 1], [-2, 2]], dtype=float)
 def cut_polygons(vertices, polygons):
     """(m, 3) the triangles of polygons that are given one by one."""
     corners = np.array([i for polygon in polygons for i in polygon], dtype=np.int64)
-    return cut_rings(vertices, corners, np.array([len(polygon) for polygon in polygons], dtype=np.int64))
+    return cut_rings(
+        vertices, corners, np.array([len(polygon) for polygon in polygons], dtype=np.int64)
+    )
 
 
 def placed(flat, axes=(0, 1)):
@@ -98,7 +100,9 @@ def comb(n):
     return np.concatenate([[[-1.0, -1.0], [n, -1.0]], teeth[::-1]])
 
 
-@pytest.mark.parametrize("shape", [star(1600), comb(1600), star(1600)[::-1], np.roll(comb(900), 7, axis=0)])
+@pytest.mark.parametrize(
+    "shape", [star(1600), comb(1600), star(1600)[::-1], np.roll(comb(900), 7, axis=0)]
+)
 def test_faces_of_very_many_corners_are_covered(shape):
     points = placed(shape, (2, 0))
     vectors = area_vectors(points, cut_polygons(points, [list(range(len(points)))]))

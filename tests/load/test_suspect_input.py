@@ -78,7 +78,9 @@ def test_kinds_of_suspect_input_are_accepted_by_name(tmp_path):
     assert load_small(tmp_path).accept == ()
     case = load_small(tmp_path, CASE + "accept: [units, limits, axis, inside]\n")
     assert case.accept == ("units", "limits", "axis", "inside")
-    with pytest.raises(BadInput, match=r"accept\[1\]: 'unit' is given; .*units, limits, axis, inside"):
+    with pytest.raises(
+        BadInput, match=r"accept\[1\]: 'unit' is given; .*units, limits, axis, inside"
+    ):
         load_small(tmp_path, CASE + "accept: [limits, unit]\n")
 
 
@@ -99,7 +101,11 @@ def test_limits_and_radii_in_millimetres_are_suspect(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "says"),
     [
-        ("urdf: arm.urdf", "urdf: arm.urdf, base: {rpy: [0, 0, 90]}", "base has an angle of 90 rad"),
+        (
+            "urdf: arm.urdf",
+            "urdf: arm.urdf, base: {rpy: [0, 0, 90]}",
+            "base has an angle of 90 rad",
+        ),
         ("urdf: arm.urdf", "urdf: arm.urdf, base: {rpy: [0, 0, 5]}", "base has an angle of 5 rad"),
         ("urdf: arm.urdf", "urdf: arm.urdf, base: {xyz: [-1200, 0, 0]}", "base stands 1200 m away"),
         ("xyz: [2, 0, 0]", "rpy: [0, -45, 0]", "obstacle 'post' has an angle of 45 rad"),
@@ -158,12 +164,16 @@ def test_the_usual_is_not_suspect(tmp_path):
 )
 def test_origins_in_other_units_are_suspect(tmp_path, old, new, says):
     assert old in ARM
-    told = [text for _, kind, text in found(tmp_path, urdf=ARM.replace(old, new)) if kind == "units"]
+    told = [
+        text for _, kind, text in found(tmp_path, urdf=ARM.replace(old, new)) if kind == "units"
+    ]
     assert sum(says in text for text in told) == 1, told
 
 
 def test_a_link_whose_mesh_is_scaled_into_nothing_is_suspect(tmp_path):
-    text = only_suspect(tmp_path, urdf=ARM.replace('"upper.stl"', '"upper.stl" scale="1e-3 1e-3 1e-3"'))
+    text = only_suspect(
+        tmp_path, urdf=ARM.replace('"upper.stl"', '"upper.stl" scale="1e-3 1e-3 1e-3"')
+    )
     assert "link 'upper' is 0.001 m long where the robot reaches" in text
 
 
@@ -184,7 +194,9 @@ def test_time_in_milliseconds_is_suspect(tmp_path):
 
 def mimic(text: str) -> str:
     """The small arm whose flange follows its shoulder."""
-    return TWO_JOINTS.replace('<limit lower="0" upper="0.1"/>', f'<limit lower="0" upper="0.1"/>{text}')
+    return TWO_JOINTS.replace(
+        '<limit lower="0" upper="0.1"/>', f'<limit lower="0" upper="0.1"/>{text}'
+    )
 
 
 def test_joints_that_follow_are_held_against_their_limits_too(tmp_path):

@@ -93,8 +93,16 @@ def test_numbers_are_read_to_the_last_bit():
         ("time,a/velocity\n0,1\n", MissingKey, "'a', which has no column"),
         ("time,a,time/velocity\n0,1,1\n", MissingKey, "'time', which has no column"),
         ("time,a,a/velocity/velocity\n0,1,1\n", MissingKey, "'a/velocity', which has no column"),
-        ("time,a,b,b/velocity\n0,1,1,1\n", MissingKey, "joint 'a' has no column 'a/velocity', joint 'b'"),
-        ("time,a,a/velocity,a/velocity\n0,1,1,1\n", DuplicateName, "column 'a/velocity' is there twice"),
+        (
+            "time,a,b,b/velocity\n0,1,1,1\n",
+            MissingKey,
+            "joint 'a' has no column 'a/velocity', joint 'b'",
+        ),
+        (
+            "time,a,a/velocity,a/velocity\n0,1,1,1\n",
+            DuplicateName,
+            "column 'a/velocity' is there twice",
+        ),
         ("time,a,a/velocity\n0,1,1\n1,1,nan\n", NotFinite, "line 3: nan in column 'a/velocity'"),
         ("time,a,a/velocity\n0,1,x\n", BadSyntax, "line 2: 'x' in column 'a/velocity'"),
         ("time,a,a/velocity\n0,1,1\n0,1,1\n", BadTime, "line 3: time 0.0 follows 0.0"),

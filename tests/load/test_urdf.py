@@ -84,7 +84,9 @@ def test_visual_geometry_when_asked(tmp_path):
 
 def test_origins_turn_by_roll_pitch_yaw_about_fixed_axes(tmp_path):
     origin = '<origin xyz="1 2 3" rpy="0.3 -0.4 0.5"/>'
-    arm = load_urdf(tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", origin)))
+    arm = load_urdf(
+        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", "fixed", origin))
+    )
 
     def turn(axis, angle):
         i, k = [(1, 2), (2, 0), (0, 1)][axis]
@@ -184,7 +186,9 @@ def test_a_fixed_joint_that_mimics_is_fixed(tmp_path):
     ],
 )
 def test_limits(tmp_path, kind, inner, limits):
-    arm = load_urdf(tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", kind, inner)))
+    arm = load_urdf(
+        tmp_path, robot(link("", "a"), link("", "b"), joint("j", "a", "b", kind, inner))
+    )
     assert (arm.joints[0].lower, arm.joints[0].upper) == limits
 
 
@@ -247,7 +251,11 @@ def test_a_default_namespace_changes_nothing(tmp_path):
     elements = link(BOX, "a"), link(BOX, "b"), joint("j", "a", "b")
     plain = robot(*elements)
     named = plain.replace("<robot ", '<robot xmlns="http://drake.mit.edu" ', 1)
-    prefixed = plain.replace("<", "<u:").replace("<u:/", "</u:").replace("<u:robot ", '<u:robot xmlns:u="urn:u" ')
+    prefixed = (
+        plain.replace("<", "<u:")
+        .replace("<u:/", "</u:")
+        .replace("<u:robot ", '<u:robot xmlns:u="urn:u" ')
+    )
     expected = load_urdf(tmp_path, plain)
     for text in (named, prefixed):
         found = load_urdf(tmp_path, text)
@@ -280,7 +288,9 @@ def test_a_chain_of_thousands_of_links_and_followers_is_read(tmp_path):
     follows = '<origin xyz="0 0 0.001"/><mimic joint="j{}" multiplier="1" offset="0.001"/>'
     links = [link(BOX, f"l{i}") for i in (0, n)] + [link("", f"l{i}") for i in range(1, n)]
     joints = [joint("j0", "l0", "l1")]
-    joints += [joint(f"j{i}", f"l{i}", f"l{i + 1}", inner=follows.format(i - 1)) for i in range(1, n)]
+    joints += [
+        joint(f"j{i}", f"l{i}", f"l{i + 1}", inner=follows.format(i - 1)) for i in range(1, n)
+    ]
     joints.reverse()  # those that follow come before what they follow
     arm = load_urdf(tmp_path, robot(*links, *joints))
     assert arm.link_names == tuple(f"l{i}" for i in range(n + 1))

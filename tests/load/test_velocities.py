@@ -22,7 +22,9 @@ def notes(positions, velocities, kind=JointKind.REVOLUTE):
     columns = [np.array(values, dtype=float)[:, None] for values in (positions, velocities)]
     asked = Trajectory(np.arange(len(positions), dtype=float), ("elbow",), *columns)
     placed = PlacedRobot(robot, asked)
-    return [notice.text for notice in (*notices_on_motion(placed), *notices_on_joints(placed, "warn"))]
+    return [
+        notice.text for notice in (*notices_on_motion(placed), *notices_on_joints(placed, "warn"))
+    ]
 
 
 def test_a_cubic_that_leaves_the_limits_between_samples_is_told():
@@ -83,5 +85,7 @@ def test_a_velocity_of_a_joint_that_the_robot_lacks_is_refused(tmp_path):
     with pytest.raises(UnknownJoint, match="unknown joint 'elbow'"):
         load_case(path)
     path = write_case(tmp_path, trajectory="time,shoulder,sholder/velocity\n0,0,0\n")
-    with pytest.raises(MissingKey, match=r"path.csv.*'sholder', which has no column; did you mean 'shoulder'"):
+    with pytest.raises(
+        MissingKey, match=r"path.csv.*'sholder', which has no column; did you mean 'shoulder'"
+    ):
         load_case(path)

@@ -70,7 +70,10 @@ def _motion(joint, position: Fraction) -> Pose:
     sine, cosine = sine_and_cosine(position) if kind != "fixed" else (Fraction(0), Fraction(1))
     across = [[0, -z, y], [z, 0, -x], [-y, x, 0]]
     turned = [
-        [cosine * (i == j) + sine * across[i][j] + (1 - cosine) * axis[i] * axis[j] for j in range(3)]
+        [
+            cosine * (i == j) + sine * across[i][j] + (1 - cosine) * axis[i] * axis[j]
+            for j in range(3)
+        ]
         for i in range(3)
     ]
     return [[*row, Fraction(0)] for row in turned]
@@ -78,7 +81,10 @@ def _motion(joint, position: Fraction) -> Pose:
 
 def _times(one: Pose, two: Pose) -> Pose:
     product = [[sum(row[k] * two[k][j] for k in range(3)) for j in range(4)] for row in one]
-    return [[*map(_on_grid, row[:3]), _on_grid(row[3] + pose[3])] for row, pose in zip(product, one, strict=True)]
+    return [
+        [*map(_on_grid, row[:3]), _on_grid(row[3] + pose[3])]
+        for row, pose in zip(product, one, strict=True)
+    ]
 
 
 def _along(row: list[Fraction], point: list[Fraction]) -> Fraction:

@@ -16,7 +16,9 @@ def drawing(tmp_path, unit, draw=lambda space: space.add_line((0, 0), (2, 1))):
     return str(tmp_path / "d.dxf")
 
 
-@pytest.mark.parametrize(("unit", "metres"), [(0, 1.0), (6, 1.0), (4, 1e-3), (1, 0.0254), (5, 0.01)])
+@pytest.mark.parametrize(
+    ("unit", "metres"), [(0, 1.0), (6, 1.0), (4, 1e-3), (1, 0.0254), (5, 0.01)]
+)
 def test_the_unit_of_the_header_is_obeyed(tmp_path, unit, metres):
     curve = Curve.from_dxf(drawing(tmp_path, unit))
     assert curve.box == pytest.approx(np.array([[0, 0], [2 * metres, metres]]))

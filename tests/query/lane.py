@@ -16,7 +16,15 @@ from tests.reached import reached
 from tests.strategies import BOX_FACES, FAMILIES, rotations
 
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-NAMES = ("anywhere", "needles", "coplanar", "shared_edge", "vertex_on_face", "parallel_faces", "crossing_plates")
+NAMES = (
+    "anywhere",
+    "needles",
+    "coplanar",
+    "shared_edge",
+    "vertex_on_face",
+    "parallel_faces",
+    "crossing_plates",
+)
 
 
 def told(near):
@@ -28,7 +36,9 @@ def told(near):
 def polygon_answers(n):
     """`n` pairs a family."""
     pairs = [
-        pair for name in NAMES for pair in zip(*FAMILIES[name](np.random.default_rng(41), n), strict=True)
+        pair
+        for name in NAMES
+        for pair in zip(*FAMILIES[name](np.random.default_rng(41), n), strict=True)
     ]
     return [told(polygon_distance(p, q)) for p, q in pairs]
 
@@ -129,9 +139,16 @@ def main():
     if sys.argv[1] == "rules":
         told_now = {"all": body_answers(12), "without": answers_without_rules(12)}
     elif sys.argv[1] == "meetings":
-        told_now = {"meetings": meetings(12), "bounds": out_of_bounds_is_seen(), "compiled": n_compiled()}
+        told_now = {
+            "meetings": meetings(12),
+            "bounds": out_of_bounds_is_seen(),
+            "compiled": n_compiled(),
+        }
     else:
-        told_now = {"polygons": polygon_answers(int(sys.argv[2])), "bounds": out_of_bounds_is_seen()}
+        told_now = {
+            "polygons": polygon_answers(int(sys.argv[2])),
+            "bounds": out_of_bounds_is_seen(),
+        }
     print(json.dumps(told_now))
 
 

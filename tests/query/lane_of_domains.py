@@ -48,14 +48,20 @@ def polytope() -> list:
         a, b = (cl.Polytope(random.normal(size=(9, 3)) + [i * shift, 0.0, 0.0]) for i in range(2))
         region = cl.intersect([a, b])
         depth = cl.penetration(a, b)
-        found.append([_bits(a.volume), _bits(region.volume), _bits(depth.depth), _bits(depth.at_least)])
+        found.append(
+            [_bits(a.volume), _bits(region.volume), _bits(depth.depth), _bits(depth.at_least)]
+        )
     return found
 
 
 def hausdorff() -> list:
     """Polylines, cubics and arcs, and whether they keep within a limit."""
     bent = np.array([[0.0, 0.0], [1.0, 0.8], [2.0, -0.7], [3.0, 0.1]])
-    curves = [cl.Curve.polyline(bent), cl.Curve.bezier(bent), cl.Curve.arc([1.5, 0.0], 1.4, 0.2, 2.9)]
+    curves = [
+        cl.Curve.polyline(bent),
+        cl.Curve.bezier(bent),
+        cl.Curve.arc([1.5, 0.0], 1.4, 0.2, 2.9),
+    ]
     found = []
     for a in curves:
         for b in curves:
@@ -88,7 +94,9 @@ def _two_links() -> cl.Case:
 def _flight() -> cl.Case:
     positions = np.linspace([-0.4, 0.0, 0.02, 0.0, 0.0, 0.0], [0.4, 0.05, 0.0, 0.5, 1.0, 0.3], 5)
     bar = cl.box((0.3, 0.02, 0.02))
-    return flying("flight", bar, [(cl.pipe(inner_radius=0.2, outer_radius=0.25, length=0.1), at())], positions)
+    return flying(
+        "flight", bar, [(cl.pipe(inner_radius=0.2, outer_radius=0.25, length=0.1), at())], positions
+    )
 
 
 def _bits(value: object) -> object:

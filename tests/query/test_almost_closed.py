@@ -30,7 +30,14 @@ def faulty(shape: Polyhedron, fault: str, face: int) -> Polyhedron:
     return Polyhedron(shape.vertices, other[fault])
 
 
-FAULTS = ("twice", "twice, from another corner on", "missing", "turned", "every third turned", "every third twice")
+FAULTS = (
+    "twice",
+    "twice, from another corner on",
+    "missing",
+    "turned",
+    "every third turned",
+    "every third twice",
+)
 
 
 @pytest.mark.parametrize("fault", FAULTS)
@@ -74,8 +81,13 @@ def test_what_is_in_the_hole_is_undecided_by_name() -> None:
     for share, expected in ((0.6, "yes"), (0.98, "undecided"), (1.0, "undecided"), (1.3, "no")):
         near = distance(outer, box((0.01, 0.01, 0.01)), pose_b=at(*(share * middle)))
         assert (near.inside, near.contact) == (expected, expected == "yes"), share
-    many = Query(outer, box((0.01, 0.01, 0.01))).distances(None, [at(*(s * middle)) for s in (0.6, 0.98, 1.3)])
-    assert many.undecided.tolist() == [False, True, False] and many.distances[1] > 0.0 == many.distances[0]
+    many = Query(outer, box((0.01, 0.01, 0.01))).distances(
+        None, [at(*(s * middle)) for s in (0.6, 0.98, 1.3)]
+    )
+    assert (
+        many.undecided.tolist() == [False, True, False]
+        and many.distances[1] > 0.0 == many.distances[0]
+    )
 
 
 def test_a_rod_through_the_hole_is_never_said_to_be_outside() -> None:
@@ -87,7 +99,10 @@ def test_a_rod_through_the_hole_is_never_said_to_be_outside() -> None:
     x /= np.linalg.norm(x)
     turn = np.column_stack([x, np.cross(z, x), z])
     rod = box((0.01, 0.01, 1.0))
-    ways = [distance(outer, rod, pose_b=at(*middle, turned=turn * way)) for way in ([1, 1, 1], [1, -1, -1])]
+    ways = [
+        distance(outer, rod, pose_b=at(*middle, turned=turn * way))
+        for way in ([1, 1, 1], [1, -1, -1])
+    ]
     assert sorted(near.inside for near in ways) == ["undecided", "yes"]
 
 
@@ -116,7 +131,9 @@ def test_caps_close_what_they_are_said_to_close() -> None:
     for fault in FAULTS:
         outer = faulty(BALL, fault, 5)
         closing = closing_of(outer)
-        faces = [f[:: int(way)] for f, way in zip(faces_of(outer), closing.turns, strict=True) if way]
+        faces = [
+            f[:: int(way)] for f, way in zip(faces_of(outer), closing.turns, strict=True) if way
+        ]
         corners = np.concatenate([outer.vertices, closing.caps.reshape(-1, 3)])
         caps = (len(outer.vertices) + np.arange(3 * len(closing.caps))).reshape(-1, 3).tolist()
         for point in random.uniform(-1.2, 1.2, (5, 3)):
@@ -132,7 +149,10 @@ def test_depth_and_volume_are_found_of_what_is_almost_closed() -> None:
 def test_solids_of_patches_that_do_not_meet_and_two_sided_ones_are_undecided_by_name() -> None:
     faces = faces_of(BALL)
     patches = Polyhedron.merged(
-        [Polyhedron(BALL.vertices, faces[::2]), Polyhedron(np.nextafter(BALL.vertices, 9.0), faces[1::2])]
+        [
+            Polyhedron(BALL.vertices, faces[::2]),
+            Polyhedron(np.nextafter(BALL.vertices, 9.0), faces[1::2]),
+        ]
     )
     sided = Polyhedron(BALL.vertices, [*faces, *(face[::-1] for face in faces)])
     for outer in (patches, sided):

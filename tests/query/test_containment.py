@@ -21,7 +21,9 @@ from tests.made_cases import torus
 from tests.strategies import BOX_FACES, QUARTER_TURNS, poses, rotations
 
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
-OCTAHEDRON = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float)
+OCTAHEDRON = np.array(
+    [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float
+)
 OCTAHEDRON_FACES = [
     (0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5),
 ]  # fmt: skip
@@ -46,7 +48,12 @@ def at(x, y, z):
 def test_rays_through_corners_and_edges_are_no_special_case(turn):
     """Over an octahedron's tip all rays along an axis meet a corner, over its edges an edge."""
     outer, tiny = Polyhedron(4.0 * OCTAHEDRON, OCTAHEDRON_FACES), cube(0.125)
-    for x, y, z in [(0.125, 0.125, 0.125), (1.125, 0.125, 0.125), (0.125, 0.125, 5.125), (0.125, 5.0, 0.125)]:
+    for x, y, z in [
+        (0.125, 0.125, 0.125),
+        (1.125, 0.125, 0.125),
+        (0.125, 0.125, 5.125),
+        (0.125, 5.0, 0.125),
+    ]:
         pose = at(*(turn @ (x, y, z)))
         near = distance(outer, tiny, pose_b=pose)
         sq = oracle.solid_distance_sq(
@@ -101,9 +108,12 @@ def test_both_poses_are_taken_exactly():
         pose_a[:3, 3] = random.normal(size=3)
         face_point = np.array([1.0, *random.uniform(-0.9, 0.9, 2)])
         pose_b[:3, 3] = pose_a[:3, :3] @ face_point + pose_a[:3, 3]
-        if oracle.polyhedron_distance_sq(
-            CORNERS, BOX_FACES, CORNERS * 2.0**-60, BOX_FACES, pose_a, pose_b
-        ) == 0:
+        if (
+            oracle.polyhedron_distance_sq(
+                CORNERS, BOX_FACES, CORNERS * 2.0**-60, BOX_FACES, pose_a, pose_b
+            )
+            == 0
+        ):
             continue
         found = call(is_contained, a, b, pose_a, pose_b)
         corner = [pose_b[:3, 3].tolist()[k] for k in range(3)]

@@ -141,7 +141,9 @@ def test_near_parallel_segments_of_the_field():
     q = np.array([[0.012676, -0.000689, -0.000999], [0.012859, -0.000687, -0.001034]])
     near = polygon_distance(p[[0, 1, 1]], q[[0, 1, 1]])
     assert near.distance == pytest.approx(8.968156938e-5, rel=1e-9)
-    assert oracle.error(near.distance, oracle.segment_distance_sq(*p, *q)) <= Fraction(near.error_bound)
+    assert oracle.error(near.distance, oracle.segment_distance_sq(*p, *q)) <= Fraction(
+        near.error_bound
+    )
 
 
 @pytest.mark.parametrize("gap", [1e-6, 1e-5])
@@ -149,7 +151,9 @@ def test_near_parallel_segments_of_the_field():
 def test_a_needle_over_a_face_is_no_contact(gap, edge):
     """FCL, Coal and Klampt answer 0 in metres: their triangle kernel has an absolute threshold."""
     face = edge * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
-    needle = np.array([[0.0, 0.0, gap], [0.0, edge * 1e-3, gap + edge], [edge * 1e-3, 0.0, gap + edge]])
+    needle = np.array(
+        [[0.0, 0.0, gap], [0.0, edge * 1e-3, gap + edge], [edge * 1e-3, 0.0, gap + edge]]
+    )
     near = polygon_distance(face, needle)
     assert not near.contact
     assert near.distance == gap

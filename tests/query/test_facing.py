@@ -48,7 +48,9 @@ def all_turned_away(a, b, pose_a, pose_b, of_a, of_b):
     """Fills, for each pair of nodes (i, j) that are apart, if i is left out from j, and j from i."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    from_a, from_b = views_along(sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m)
+    from_a, from_b = views_along(
+        sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
+    )
     for i in range(len(a.children)):
         for j in range(len(b.children)):
             bounds = bounds_of_group(a, b, from_a, from_b, i // WIDTH, j, False, ALL, slack, np.inf)
@@ -91,7 +93,9 @@ def copied(random):
     """Some faces twice, some of these the other way round."""
     shape = dented(random)
     again = [face for face in faces_of(shape) if random.random() < 0.4]
-    return Polyhedron(shape.vertices, faces_of(shape) + [face[:: random.choice([-1, 1])] for face in again])
+    return Polyhedron(
+        shape.vertices, faces_of(shape) + [face[:: random.choice([-1, 1])] for face in again]
+    )
 
 
 def thin_shell(random):
@@ -102,13 +106,17 @@ def thin_shell(random):
 def some_turned_round(random):
     shape = dented(random)
     turned = random.random(shape.n_faces) < 0.1
-    faces = [face[::-1] if round_ else face for face, round_ in zip(faces_of(shape), turned, strict=True)]
+    faces = [
+        face[::-1] if round_ else face for face, round_ in zip(faces_of(shape), turned, strict=True)
+    ]
     return Polyhedron(shape.vertices, faces)
 
 
 def dented_ring(random):
     shape = torus(1.0, 0.3, 9, 5)
-    return corners_moved(shape, shape.vertices + random.normal(scale=0.08, size=shape.vertices.shape))
+    return corners_moved(
+        shape, shape.vertices + random.normal(scale=0.08, size=shape.vertices.shape)
+    )
 
 
 def squeezed(random, height):
@@ -190,7 +198,9 @@ def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
     """As `all_turned_away`, in all of a motion about these poses, also where nodes are not apart."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    from_a, from_b = views_along(sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m)
+    from_a, from_b = views_along(
+        sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
+    )
     motion = np.cos(turn), np.sin(turn), way
     for i in range(len(a.children)):
         for j in range(len(b.children)):
@@ -205,7 +215,9 @@ def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
     st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),
     st.sampled_from([0.5, 1.0, 2.0, 10.0]), st.floats(0.0, 0.25), st.floats(0.0, 0.3),
 )  # fmt: skip
-def test_what_holds_them_at_some_instant_is_not_turned_away_while_moving(seed, kind_a, kind_b, reach, turn, way):
+def test_what_holds_them_at_some_instant_is_not_turned_away_while_moving(
+    seed, kind_a, kind_b, reach, turn, way
+):
     """Seen from the middle of a motion, at an instant at which the first body is turned and shifted."""
     random = np.random.default_rng(seed)
     a, b = KINDS[kind_a](random), KINDS[kind_b](random)
@@ -216,7 +228,9 @@ def test_what_holds_them_at_some_instant_is_not_turned_away_while_moving(seed, k
     push = random.normal(size=3)
     shift = way * push / np.linalg.norm(push)
     pose_a = at(*(leant @ middle[:3, 3] + shift), leant @ middle[:3, :3])
-    farthest = np.linalg.norm((a.vertices @ (pose_a - middle)[:3, :3].T) + (pose_a - middle)[:3, 3], axis=1).max()
+    farthest = np.linalg.norm(
+        (a.vertices @ (pose_a - middle)[:3, :3].T) + (pose_a - middle)[:3, 3], axis=1
+    ).max()
     owners = owners_of_the_nearest(a, b, pose_a, pose_b)
     if owners is None:
         return
@@ -293,13 +307,18 @@ def test_a_cone_holds_the_normals_round_what_its_faces_own():
             at_vertex.setdefault(int(v), []).append(face)
     n_cones = 0
     for node, below in enumerate(faces_below(surface)):
-        axis, cosine, sine = rows[node // WIDTH, :3, node % WIDTH], *rows[node // WIDTH, 3:5, node % WIDTH]
+        axis, cosine, sine = (
+            rows[node // WIDTH, :3, node % WIDTH],
+            *rows[node // WIDTH, 3:5, node % WIDTH],
+        )
         if sine == np.float32(NO_CONE):
             continue
         n_cones += bool(below)
         for face in below:
             assert surface.normals[face] @ axis >= cosine
-            for v in surface.owned_vertices[surface.vertex_starts[face] : surface.vertex_starts[face + 1]]:
+            for v in surface.owned_vertices[
+                surface.vertex_starts[face] : surface.vertex_starts[face + 1]
+            ]:
                 assert (surface.normals[at_vertex[int(v)]] @ axis >= cosine).all()
     assert n_cones > shape.n_faces
 
@@ -318,7 +337,9 @@ def test_a_face_that_hardly_turns_at_a_corner_has_no_cone():
     faces[right].append(len(vertices) - 1)
     surface = surface_of(Polyhedron(np.array(vertices), faces))
     sines = surface.cones.reshape(-1, CONE_ROWS, WIDTH)[:, 4].reshape(-1)
-    of_face = {int(first): node for node, (first, count) in enumerate(surface.children) if count == 0}
+    of_face = {
+        int(first): node for node, (first, count) in enumerate(surface.children) if count == 0
+    }
     without = {face for face, node in of_face.items() if sines[node] == np.float32(NO_CONE)}
     assert {left, right} <= without
     assert n + 1 not in without and 5 * n + 5 not in without

@@ -43,5 +43,7 @@ sys.exit(failed)
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
 def test_a_child_asks_the_query_that_another_thread_was_asking() -> None:
     """The time limit only ends a child that hangs."""
-    done = subprocess.run([sys.executable, "-c", PROGRAM], timeout=300, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM], timeout=300, capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stderr

@@ -40,7 +40,9 @@ def spike_over_edge(random, inner, skew, share=None, height=None):
     Args:
         share: of the edge, from its outer end on. height: [m] of the tip.
     """
-    top = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [*inner, 0], [0, 0, -1]], dtype=float)
+    top = np.array(
+        [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [*inner, 0], [0, 0, -1]], dtype=float
+    )
     spike = SPIKE_CORNERS * random.uniform(0.1, 1.0)
     share = random.uniform(0.1, 0.9) if share is None else share
     height = 10.0 ** random.uniform(-16.5, -1) if height is None else height
@@ -64,7 +66,11 @@ def ridges_nearly_parallel(random):
     """(a, b, pose_a, pose_b): top edges that cross, turned very little, at an end of one of them or nearly."""
     a, b = ridge(random), ridge(random) * [1, 1, -1]
     height, turn_by = 10.0 ** random.uniform(-6, -1), 10.0 ** random.uniform(-9, -2)
-    cross_at = a[random.integers(2)] + [random.choice([-1, 0, 1]) * 10.0 ** random.uniform(-17, -1), 0, 0]
+    cross_at = a[random.integers(2)] + [
+        random.choice([-1, 0, 1]) * 10.0 ** random.uniform(-17, -1),
+        0,
+        0,
+    ]
     b = b - [random.uniform(-0.5, 0.0), 0, 0]
     turn, shift = rotations(random, 1)[0], random.uniform(-1, 1, 3)
     c, s = np.cos(turn_by), np.sin(turn_by)
@@ -85,15 +91,25 @@ def spike_at(random, shape, foot, upward, height):
     across /= np.linalg.norm(across)
     upright = np.stack([across, np.cross(upward, across), upward], axis=1)
     pose_a = posed(random, turn @ upright, turn @ (np.asarray(foot) + height * upward) + shift)
-    return shuffled(random, spike, SPIKE), shuffled(random, *shape), pose_a, posed(random, turn, shift)
+    return (
+        shuffled(random, spike, SPIKE),
+        shuffled(random, *shape),
+        pose_a,
+        posed(random, turn, shift),
+    )
 
 
 def box_with_corners_along_edges(random):
     """Over a top face with corners in the middle of its edges, turned and rounded: no longer one plane."""
-    ring = np.array([[-1, -1], [0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0]], dtype=float)
+    ring = np.array(
+        [[-1, -1], [0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0]], dtype=float
+    )
     corners = np.vstack([np.column_stack([ring, np.full(8, z)]) for z in (0.5, -0.5)])
     sides = [(j + 8, k + 8, k, j) for j, k in zip(range(8), [*range(1, 8), 0], strict=True)]
-    shape = corners @ rotations(random, 1)[0].T, [tuple(range(8)), tuple(range(8, 16))[::-1], *sides]
+    shape = (
+        corners @ rotations(random, 1)[0].T,
+        [tuple(range(8)), tuple(range(8, 16))[::-1], *sides],
+    )
     first, second = shape[0][[k := random.integers(8), (k + 1) % 8]]
     share = random.uniform(0, 1)
     upward = shape[0][0] - shape[0][8]
@@ -110,14 +126,19 @@ def face_with_a_ridge(random):
     corners = np.array([[0, 0, 0], [0.5, -aside, -down], [1, 0, 0], [0.5, 1, 0], [0.3, 0.2, -1]])
     shape = corners, [(0, 4, 1), (1, 4, 2), (2, 4, 3), (3, 4, 0), (0, 1, 2, 3)]
     lean = random.uniform(0.0, 1.2)
-    foot, upward = (random.uniform(0.3, 0.7), 0.0, 0.0), np.array([0.0, -np.sin(lean), np.cos(lean)])
+    foot, upward = (
+        (random.uniform(0.3, 0.7), 0.0, 0.0),
+        np.array([0.0, -np.sin(lean), np.cos(lean)]),
+    )
     return spike_at(random, shape, foot, upward, 10.0 ** random.uniform(-6, -1))
 
 
 def face_that_bends_inward(random):
     """Over a face with a corner that turns the wrong way by less than is refused, beyond the line of an edge."""
     inward, share = 10.0 ** random.uniform(-12, -9.5), random.uniform(0, 1)
-    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 0.5, 0], [1 + inward, 1, 0], [0, 1, 0], [0.5, 0.5, -1]])
+    corners = np.array(
+        [[0, 0, 0], [1, 0, 0], [1, 0.5, 0], [1 + inward, 1, 0], [0, 1, 0], [0.5, 0.5, -1]]
+    )
     sides = [(k, j, 5) for j, k in zip(range(5), [1, 2, 3, 4, 0], strict=True)]
     foot = (1.0 + inward * share * random.uniform(0, 1), 0.5 + 0.5 * share, 0.0)
     shape = corners, [*sides, tuple(np.roll(range(5), random.integers(5)).tolist())]
@@ -132,7 +153,9 @@ def cases():
 
     def over_a_needles_corner(random):
         inner = random.uniform(-0.5, 0.5), -1.0 + 10.0 ** random.uniform(-9, -8.5)
-        return spike_over_edge(random, inner, 0.0, share=1.0, height=10.0 ** random.uniform(-10, -8.5))
+        return spike_over_edge(
+            random, inner, 0.0, share=1.0, height=10.0 ** random.uniform(-10, -8.5)
+        )
 
     def by_the_rim(random):
         return random.uniform(-0.5, 0.5), -1.0 + 10.0 ** random.uniform(-9, -1)
@@ -183,7 +206,11 @@ def test_what_begins_where_it_last_ended_finds_the_same(gap):
         near = cl.distance(one, other, pose_a=pose_a, pose_b=pose_b)
         sq = oracle.polyhedron_distance_sq(*a, *b, pose_a, pose_b)
         assert oracle.error(kept.distance, sq) <= Fraction(kept.error_bound)
-        assert (kept.distance, kept.face_a, kept.face_b) == (near.distance, near.face_a, near.face_b)
+        assert (kept.distance, kept.face_a, kept.face_b) == (
+            near.distance,
+            near.face_a,
+            near.face_b,
+        )
 
 
 def test_a_face_with_the_same_corner_twice_is_in_one_plane_only_if_all_of_it_is():

@@ -27,9 +27,17 @@ def agree(one, other):
     return abs(one.distance - other.distance) <= one.error_bound + other.error_bound
 
 
-@given(boxes(), boxes(), poses(), st.sampled_from(QUARTER_TURNS), st.tuples(QUARTERS, QUARTERS, QUARTERS))
+@given(
+    boxes(),
+    boxes(),
+    poses(),
+    st.sampled_from(QUARTER_TURNS),
+    st.tuples(QUARTERS, QUARTERS, QUARTERS),
+)
 @examples(60)
-def test_a_motion_that_floats_hold_exactly_changes_nothing_but_the_last_bit(a, b, pose, turn, shift):
+def test_a_motion_that_floats_hold_exactly_changes_nothing_but_the_last_bit(
+    a, b, pose, turn, shift
+):
     """A quarter turn of both bodies; a shift too where it rounds no coordinate."""
     one, other = Polyhedron(*a), Polyhedron(*b)
     motion = np.eye(4)
@@ -149,10 +157,16 @@ def test_the_same_bytes_from_several_threads(n_threads):
 
 @pytest.mark.parametrize("n_threads", [2, 4])
 def test_batches_give_the_same_bytes_from_several_threads(n_threads):
-    batches = [FAMILIES[name](np.random.default_rng(22), 40) for name in sorted(FAMILIES) if name != "many_sided"]
+    batches = [
+        FAMILIES[name](np.random.default_rng(22), 40)
+        for name in sorted(FAMILIES)
+        if name != "many_sided"
+    ]
     alone = [polygon_distances(*batch).tobytes() for batch in batches]
     with ThreadPoolExecutor(n_threads) as pool:
-        assert [d.tobytes() for d in pool.map(lambda batch: polygon_distances(*batch), batches)] == alone
+        assert [
+            d.tobytes() for d in pool.map(lambda batch: polygon_distances(*batch), batches)
+        ] == alone
 
 
 def _some_boxes(random):

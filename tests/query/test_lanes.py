@@ -29,7 +29,9 @@ def plain(answers):
 
 def test_with_every_index_checked(tmp_path):
     """Its own cache folder, so that nothing compiled without checks is used; level 0 to compile quickly."""
-    found = run_lane("meetings", NUMBA_BOUNDSCHECK="1", NUMBA_OPT="0", NUMBA_CACHE_DIR=str(tmp_path))
+    found = run_lane(
+        "meetings", NUMBA_BOUNDSCHECK="1", NUMBA_OPT="0", NUMBA_CACHE_DIR=str(tmp_path)
+    )
     assert found["bounds"], "indices were not checked"
     assert found["compiled"] == 1, "the kernel was not compiled there"
     assert found["meetings"] == plain(lane.meetings(12))

@@ -29,7 +29,9 @@ def poses(n):
 def test_an_answer_does_not_depend_on_what_was_asked_before():
     a, b = ball(1.0, 2), cl.box((1.0, 0.5, 0.2))
     again = [told(cl.distance(a, b, pose_b=pose)) for pose in poses(40)]
-    fresh = [told(cl.distance(ball(1.0, 2), cl.box((1.0, 0.5, 0.2)), pose_b=pose)) for pose in poses(40)]
+    fresh = [
+        told(cl.distance(ball(1.0, 2), cl.box((1.0, 0.5, 0.2)), pose_b=pose)) for pose in poses(40)
+    ]
     assert again == fresh
     assert {near[10] for near in again} == {True, False}
 
@@ -51,7 +53,9 @@ def test_more_pairs_than_are_held_are_answered():
     boxes = [cl.box((1.0, 1.0, 1.0 + 0.001 * i)) for i in range(HELD + 3)]
     for _ in range(2):
         found = [cl.distance(boxes[0], other, pose_b=at(0.0, 0.0, 3.0)).distance for other in boxes]
-        assert np.allclose(found, [2.0 - 0.0005 * i for i in range(len(boxes))], rtol=0.0, atol=1e-15)
+        assert np.allclose(
+            found, [2.0 - 0.0005 * i for i in range(len(boxes))], rtol=0.0, atol=1e-15
+        )
 
 
 def test_a_solid_that_is_let_go_takes_its_room_along():

@@ -37,15 +37,15 @@ BODIES = {
 }
 
 
-SLIVER = Polyhedron(
-    [[0, 0, 0], [1, 0, 0], [0.5, 1, 1], [0, -3e-6, 1e-5]], [(0, 1, 2), (0, 3, 1)]
-)
+SLIVER = Polyhedron([[0, 0, 0], [1, 0, 0], [0.5, 1, 1], [0, -3e-6, 1e-5]], [(0, 1, 2), (0, 3, 1)])
 """An edge with a face so slender that it has no plane in the search."""
 
 
 def in_triangles(shape: Polyhedron) -> Polyhedron:
     faces = np.split(shape.face_vertices, shape.face_starts[1:-1])
-    return Polyhedron(shape.vertices, [(f[0], f[i], f[i + 1]) for f in faces for i in range(1, len(f) - 1)])
+    return Polyhedron(
+        shape.vertices, [(f[0], f[i], f[i + 1]) for f in faces for i in range(1, len(f) - 1)]
+    )
 
 
 def of_face(items, starts, face):
@@ -56,9 +56,18 @@ def answers(a, b, poses, *, afresh):
     """(distance, bound, points, faces) at all poses, as one array of bits; how many face pairs were measured."""
     held = hold_pair(a, b, ROOM, new_scratch())
     n = len(poses)
-    numbers, points, counts = np.empty((n, 2)), np.empty((n, 2, 3)), np.empty((n, 5), dtype=np.int64)
-    assert call(nearest_at_poses, held, np.eye(4)[None], poses, False, afresh, numbers, points, counts) == -1
-    return b"".join(x.tobytes() for x in (numbers, points, counts[:, :2].copy())), int(counts[:, 3].sum())
+    numbers, points, counts = (
+        np.empty((n, 2)),
+        np.empty((n, 2, 3)),
+        np.empty((n, 5), dtype=np.int64),
+    )
+    assert (
+        call(nearest_at_poses, held, np.eye(4)[None], poses, False, afresh, numbers, points, counts)
+        == -1
+    )
+    return b"".join(x.tobytes() for x in (numbers, points, counts[:, :2].copy())), int(
+        counts[:, 3].sum()
+    )
 
 
 def around(random, n, least, most):

@@ -39,7 +39,9 @@ def walk(random, n, size, reach):
             pose = placed(random, reach)
         pose = pose @ turned(random.normal(size=3), size * random.normal())
         pose[:3, 3] = np.clip(pose[:3, 3] + size * random.normal(size=3), -reach, reach)
-        pose[:3, :3] = np.linalg.qr(pose[:3, :3])[0] * np.sign(np.diag(np.linalg.qr(pose[:3, :3])[1]))
+        pose[:3, :3] = np.linalg.qr(pose[:3, :3])[0] * np.sign(
+            np.diag(np.linalg.qr(pose[:3, :3])[1])
+        )
         walked.append(pose)
     return np.array(walked)
 
@@ -51,7 +53,11 @@ def bent_pipe():
 
 def cup():
     """A concave body of five plates that touch."""
-    plates = [((0.6, 0.6, 0.05), (0, 0, -0.3)), ((0.05, 0.6, 0.6), (0.3, 0, 0)), ((0.05, 0.6, 0.6), (-0.3, 0, 0))]
+    plates = [
+        ((0.6, 0.6, 0.05), (0, 0, -0.3)),
+        ((0.05, 0.6, 0.6), (0.3, 0, 0)),
+        ((0.05, 0.6, 0.6), (-0.3, 0, 0)),
+    ]
     plates += [((0.6, 0.05, 0.6), (0, 0.3, 0)), ((0.6, 0.05, 0.6), (0, -0.3, 0))]
     made = []
     for size, centre in plates:
@@ -88,7 +94,9 @@ def test_answers_are_those_of_single_questions(pair, size, reach):
     random = np.random.default_rng(5)
     query = cl.Query(*pair)
     contacts = []
-    for pose_a, pose_b in zip(walk(random, 60, size, reach), walk(random, 60, size, reach), strict=True):
+    for pose_a, pose_b in zip(
+        walk(random, 60, size, reach), walk(random, 60, size, reach), strict=True
+    ):
         near = query.distance(pose_a, pose_b)
         assert_same(near, cl.distance(*pair, pose_a=pose_a, pose_b=pose_b))
         contacts.append(near.contact)
@@ -120,7 +128,9 @@ def test_swapped_bodies_are_as_far_apart(pair):
     assert np.array_equal(one.distances == 0.0, other.distances == 0.0)
 
 
-@given(boxes(), boxes(), st.lists(st.tuples(poses(), poses(), st.booleans()), min_size=2, max_size=6))
+@given(
+    boxes(), boxes(), st.lists(st.tuples(poses(), poses(), st.booleans()), min_size=2, max_size=6)
+)
 @examples(40)
 def test_boxes_anywhere_and_back_again(a, b, asked):
     one, other = cl.Polyhedron(*a), cl.Polyhedron(*b)
@@ -129,7 +139,9 @@ def test_boxes_anywhere_and_back_again(a, b, asked):
         if nudged:
             pose_a = pose_a.copy()
             pose_a[0, 3] += 2.0**-20
-        assert_same(query.distance(pose_a, pose_b), cl.distance(one, other, pose_a=pose_a, pose_b=pose_b))
+        assert_same(
+            query.distance(pose_a, pose_b), cl.distance(one, other, pose_a=pose_a, pose_b=pose_b)
+        )
 
 
 def test_what_comes_near_after_a_long_way_is_seen():
@@ -151,7 +163,9 @@ def test_poses_near_the_last_ones_take_less_work():
     asked = [query.distance(None, pose).tally for pose in walked]
     alone = [cl.distance(a, b, pose_b=pose).tally for pose in walked]
     assert asked[0] == alone[0]
-    assert sum(tally["nodes"] for tally in asked[1:]) < 0.5 * sum(tally["nodes"] for tally in alone[1:])
+    assert sum(tally["nodes"] for tally in asked[1:]) < 0.5 * sum(
+        tally["nodes"] for tally in alone[1:]
+    )
 
 
 def test_a_body_that_stands_is_given_once_or_not_at_all():
@@ -160,7 +174,11 @@ def test_a_body_that_stands_is_given_once_or_not_at_all():
     walked[:, 0, 3] = [1.75, 1.0, 0.1]
     query = cl.Query(a, b)
     expected = [1.0, 0.25, 0.0]
-    for rows in (query.distances(None, walked), query.distances(np.eye(4), walked), query.distances(walked)):
+    for rows in (
+        query.distances(None, walked),
+        query.distances(np.eye(4), walked),
+        query.distances(walked),
+    ):
         assert rows.distances.tolist() == expected
         assert rows.points.shape == (3, 2, 3)
         assert rows.faces.shape == (3, 2)
@@ -177,9 +195,18 @@ def test_poses_of_any_layout_are_taken_and_compile_nothing_new():
     n_compiled = len(getattr(nearest_at_poses, "signatures", ()))
     frozen = pose.copy()
     frozen.flags.writeable = False
-    for given_pose in (frozen, np.asfortranarray(pose), pose.tolist(), pose.astype(np.float32), pose[::1, :]):
+    for given_pose in (
+        frozen,
+        np.asfortranarray(pose),
+        pose.tolist(),
+        pose.astype(np.float32),
+        pose[::1, :],
+    ):
         assert query.distance(given_pose).distance == 1.0
-        assert query.distances(np.tile(given_pose, (2, 1, 1)), pose).distances.tolist() == [0.0, 0.0]
+        assert query.distances(np.tile(given_pose, (2, 1, 1)), pose).distances.tolist() == [
+            0.0,
+            0.0,
+        ]
     standing = np.broadcast_to(pose, (2, 4, 4))
     assert query.distances(standing).distances.tolist() == [1.0, 1.0]
     assert len(getattr(nearest_at_poses, "signatures", ())) == n_compiled
@@ -257,4 +284,6 @@ def test_a_query_lets_go_of_its_memory():
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     for _ in range(300):
         cl.Query(a, b).distance()
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000  # kB; a query holds 500
+    assert (
+        resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000
+    )  # kB; a query holds 500

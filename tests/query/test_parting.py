@@ -57,7 +57,17 @@ def partings(a, b, poses, points, limits, out, waiting, table):
         q = Vec3(points[i, 1, 0], points[i, 1, 1], points[i, 1, 2])
         begin = Hit(np.inf, 2**62, 2**62, p, q)
         found = parting_of(
-            table, lent_a, root_a, lent_b, root_b, frames.m, begin, limits[i], margin, slack, scratch
+            table,
+            lent_a,
+            root_a,
+            lent_b,
+            root_b,
+            frames.m,
+            begin,
+            limits[i],
+            margin,
+            slack,
+            scratch,
         )
         out[i, 0], out[i, 1], out[i, 2] = found.floor, found.beyond, margin
         for k in range(found.n_waiting):
@@ -85,7 +95,9 @@ def test_what_is_farthest_along_a_direction_is_found(kind: str) -> None:
     shape = SHAPES[kind](random)
     surface = surface_of(shape)
     corners = shape.vertices[np.unique(shape.face_vertices)]
-    directions = np.concatenate([random.normal(size=(200, 3)), np.eye(3), -np.eye(3), shape.normals[:40]])
+    directions = np.concatenate(
+        [random.normal(size=(200, 3)), np.eye(3), -np.eye(3), shape.normals[:40]]
+    )
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     n = len(directions)
     rooms = random.choice([1e-12, 1e-9, 1e-6], n)
@@ -101,7 +113,9 @@ def test_what_is_farthest_along_a_direction_is_found(kind: str) -> None:
             continue
         tall = surface.vertices @ directions[i] >= heights[i] - 1e-14
         owners = {f for f in range(len(starts) - 1) if tall[owned[starts[f] : starts[f + 1]]].any()}
-        assert owners <= {*leaves[i].tolist()}  # each farthest corner is there with the face that answers for it
+        assert owners <= {
+            *leaves[i].tolist()
+        }  # each farthest corner is there with the face that answers for it
 
 
 @pytest.mark.parametrize("kind_b", SHAPES)
@@ -111,17 +125,25 @@ def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> N
     a, b = SHAPES[kind_a](random), SHAPES[kind_b](random)
     n = 40
     places = random.normal(size=(n, 3))
-    places *= random.choice([1.2, 1.8, 2.2, 2.5, 4.0], (n, 1)) / np.linalg.norm(places, axis=1)[:, None]
-    poses = np.array([at(*place, turned=turn) for place, turn in zip(places, rotations(random, n), strict=True)])
+    places *= (
+        random.choice([1.2, 1.8, 2.2, 2.5, 4.0], (n, 1)) / np.linalg.norm(places, axis=1)[:, None]
+    )
+    poses = np.array(
+        [at(*place, turned=turn) for place, turn in zip(places, rotations(random, n), strict=True)]
+    )
     truths = [cl.distance(a, b, pose_b=pose) for pose in poses]
     points = np.array([[random.normal(size=3) * 0.1, pose[:3, 3]] for pose in poses])
-    limits = np.array([random.choice([math.inf, 0.5 * near.distance, 0.99 * near.distance]) for near in truths])
+    limits = np.array(
+        [random.choice([math.inf, 0.5 * near.distance, 0.99 * near.distance]) for near in truths]
+    )
     out, waiting = np.empty((n, 3)), np.full((n, 144, 2), -1)
     call(partings, surface_of(a), surface_of(b), poses, points, limits, out, waiting)
     for i, near in enumerate(truths):
         floor, beyond, margin = out[i]
         if i < 4:
-            exact = oracle.polyhedron_distance_sq(a.vertices, faces_of(a), b.vertices, faces_of(b), None, poses[i])
+            exact = oracle.polyhedron_distance_sq(
+                a.vertices, faces_of(a), b.vertices, faces_of(b), None, poses[i]
+            )
             assert floor <= float(oracle.root(exact)) or near.contact
         if near.contact:
             assert floor <= 0.0
@@ -145,9 +167,20 @@ def test_where_hulls_are_as_far_apart_as_bodies_they_are_parted(
 ) -> None:
     points = np.array([[[0.1, 0.0, 0.0], pose[:3, 3]]])
     out, waiting = np.empty((1, 3)), np.full((1, 144, 2), -1)
-    call(partings, surface_of(a), surface_of(b), pose[None], points, np.array([math.inf]), out, waiting)
+    call(
+        partings,
+        surface_of(a),
+        surface_of(b),
+        pose[None],
+        points,
+        np.array([math.inf]),
+        out,
+        waiting,
+    )
     assert (waiting[0, 0, 0] >= 0) == is_parted
-    assert (out[0, 0] == pytest.approx(cl.distance(a, b, pose_b=pose).distance, rel=1e-9)) == is_parted
+    assert (
+        out[0, 0] == pytest.approx(cl.distance(a, b, pose_b=pose).distance, rel=1e-9)
+    ) == is_parted
 
 
 @kernel

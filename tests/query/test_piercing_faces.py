@@ -34,11 +34,15 @@ def test_contact_of_a_piercing_face_is_exact(seed, n_corners, beside, outside, s
     out = at - face.mean(axis=0)
     at = at + (1.0 if outside else -1.0) * beside * out / max(np.linalg.norm(out), 1e-300)
     direction = rng.normal(size=3)
-    piercing = np.array([at - direction, at + rng.uniform(0.5, 2.0) * direction, at + 3.0 * rng.normal(size=3)])
+    piercing = np.array(
+        [at - direction, at + rng.uniform(0.5, 2.0) * direction, at + 3.0 * rng.normal(size=3)]
+    )
     shift = away * rng.integers(-4, 5, 3)
     face, piercing = face + shift, piercing + shift
     found = polygon_distance(face, piercing), polygon_distance(piercing, face)
     truth = polygon_distance_sq(face, piercing)
     for answer in found:
         assert answer.contact == (truth == 0)
-        assert answer.distance == pytest.approx(float(truth) ** 0.5, rel=1e-12, abs=1e-15 * (1.0 + 4.0 * away))
+        assert answer.distance == pytest.approx(
+            float(truth) ** 0.5, rel=1e-12, abs=1e-15 * (1.0 + 4.0 * away)
+        )

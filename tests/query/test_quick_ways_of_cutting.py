@@ -46,7 +46,9 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
 def test_the_ball_touches_the_nearest_plane_of_a_cube():
     cube = Polytope(np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T * 1.0)
     packed, numbers = cube.packed, cube.packed.numbers
-    assert reached(is_in_ball)(packed, 1.0 - 1e-8, 0, 0) and not reached(is_in_ball)(packed, 1.0 - 1e-9, 0, 0)
+    assert reached(is_in_ball)(packed, 1.0 - 1e-8, 0, 0) and not reached(is_in_ball)(
+        packed, 1.0 - 1e-9, 0, 0
+    )
     assert not reached(is_in_ball)(packed, 0.6, 0.6, 0.6)
     assert numbers[HEAD + INVERSE_WIDTH] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
 
@@ -128,7 +130,9 @@ def test_bodies_cut_in_one_call_are_cut_as_one_by_one(room, monkeypatch):
     task = Task.about(bodies, common_point(bodies).point)
     one_by_one = Cutting(task, task.order[0])
     assert all(one_by_one.by(k) for k in task.order[1:])
-    monkeypatch.setattr(cutting, "ROOM", room)  # 1: the call stops where the rows are full, and goes on
+    monkeypatch.setattr(
+        cutting, "ROOM", room
+    )  # 1: the call stops where the rows are full, and goes on
     at_once = Cutting(task, task.order[0])
     n_first = len(at_once.spots)
     assert at_once.by(*task.order[1:])

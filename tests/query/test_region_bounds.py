@@ -66,7 +66,9 @@ def test_rough_bounds_hold_those_of_cut_bodies_apart(seed):
     if not near.contact:
         pytest.skip("apart")
     rough, fine = (
-        BodyPair(a, b, *(convex_parts(body, rough=is_rough) for body in (a, b))).contact(pose, near.point_b)
+        BodyPair(a, b, *(convex_parts(body, rough=is_rough) for body in (a, b))).contact(
+            pose, near.point_b
+        )
         for is_rough in (True, False)
     )
     assert rough.penetration_at_least <= fine.penetration * (1.0 + 1e-9)
@@ -98,13 +100,17 @@ def test_no_hull_is_made_of_a_large_concave_body(monkeypatch):
     """Its hull would take seconds, its faces against all triangles minutes."""
     made = []
     real = Polytope.__init__
-    monkeypatch.setattr(Polytope, "__init__", lambda self, points: made.append(len(points)) or real(self, points))
+    monkeypatch.setattr(
+        Polytope, "__init__", lambda self, points: made.append(len(points)) or real(self, points)
+    )
     ball, other, pose = _dented_ball(110), cl.box((0.2, 0.3, 0.4)), np.eye(4)
     assert len(ball.vertices) > 20_000
     pose[0, 3] = 0.45
     near = cl.distance(other, ball, pose_a=pose)
     found = cl.contact(other, ball, pose_a=pose)
-    rough = BodyPair(other, ball, convex_parts(other), convex_parts(ball, rough=True)).contact(pose, near.point_b)
+    rough = BodyPair(other, ball, convex_parts(other), convex_parts(ball, rough=True)).contact(
+        pose, near.point_b
+    )
     assert max(made) < 10_000
     for one in (found, rough):
         assert 0.0 < one.penetration_at_least <= one.penetration < 0.3
@@ -112,7 +118,11 @@ def test_no_hull_is_made_of_a_large_concave_body(monkeypatch):
 
 @pytest.mark.parametrize("seed", range(10))
 def test_an_envelope_holds_its_points(seed):
-    points = np.random.default_rng(seed).normal(size=(300, 3)) * [1.0, 0.3, 0.01] + [10.0, 0.0, -5.0]
+    points = np.random.default_rng(seed).normal(size=(300, 3)) * [1.0, 0.3, 0.01] + [
+        10.0,
+        0.0,
+        -5.0,
+    ]
     rows = envelope(points).half_spaces
     assert (points @ rows[:, :3].T + rows[:, 3]).max() <= 1e-11
 
@@ -145,7 +155,9 @@ def _dented_ball(n):
     radius = 0.5 - 0.15 * np.exp(-((v / 0.3) ** 2))
     ring = np.stack([np.cos(u), np.sin(u)], axis=1)
     levels = zip(radius, v, strict=True)
-    rows = [np.column_stack([r * np.cos(t) * ring, np.full(2 * n, r * np.sin(t))]) for r, t in levels]
+    rows = [
+        np.column_stack([r * np.cos(t) * ring, np.full(2 * n, r * np.sin(t))]) for r, t in levels
+    ]
     points = np.concatenate([*rows, [[0.0, 0.0, -0.5], [0.0, 0.0, 0.5]]])
     k, south, north = np.arange(2 * n), len(points) - 2, len(points) - 1
     ahead = (k + 1) % (2 * n)

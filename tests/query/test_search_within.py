@@ -68,7 +68,9 @@ def test_what_a_search_within_a_limit_says_is_true(kind_a, kind_b):
         a, b = SHAPES[kind_a](random), SHAPES[kind_b](random)
         poses, moved = wandering(random, 40)
         truth = np.array([cl.distance(a, b, pose_b=pose).distance for pose in poses])
-        limits = truth * random.choice([0.3, 0.9, 0.999, 1.0 - 1e-5, 1.0 + 1e-12, 1.01, 2.0], len(poses))
+        limits = truth * random.choice(
+            [0.3, 0.9, 0.999, 1.0 - 1e-5, 1.0 + 1e-12, 1.01, 2.0], len(poses)
+        )
         wanted = limits * random.choice([0.5, 0.99, 1.0], len(poses))
         seeds = random.integers(-1, [a.n_faces, b.n_faces], (len(poses), 2))
         seeds[(seeds < 0).any(axis=1)] = NO_FACE
@@ -76,7 +78,12 @@ def test_what_a_search_within_a_limit_says_is_true(kind_a, kind_b):
         out = np.empty((len(poses), 2))
         call(searches, surface_of(a), surface_of(b), poses, limits, wanted, seeds, moved, out)
         free = truth > 0.0
-        (found, proven), truth, limits, wanted = out[free].T, truth[free], limits[free], wanted[free]
+        (found, proven), truth, limits, wanted = (
+            out[free].T,
+            truth[free],
+            limits[free],
+            wanted[free],
+        )
         assert (proven <= truth).all()
         assert (found[wanted >= truth] == truth[wanted >= truth]).all()
         assert np.isinf(found[wanted < truth * (1.0 - 1e-12)]).all()

@@ -18,7 +18,9 @@ STAR = [[math.cos(4 * math.pi * k / 5), math.sin(4 * math.pi * k / 5), 0] for k 
 BOW = [[0, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]
 
 
-@pytest.mark.parametrize("given", [3, None, "box.stl", np.eye(3), HULL], ids=lambda x: type(x).__name__)
+@pytest.mark.parametrize(
+    "given", [3, None, "box.stl", np.eye(3), HULL], ids=lambda x: type(x).__name__
+)
 @pytest.mark.parametrize("swapped", [False, True])
 @pytest.mark.parametrize("ask", ["distance", "contact", "Query", "paper"])
 def test_what_is_no_polyhedron(ask: str, swapped: bool, given: object) -> None:
@@ -50,7 +52,9 @@ def test_what_is_no_polytope(given: object) -> None:
 
 
 @pytest.mark.parametrize("method", ["exact", "paper"])
-@pytest.mark.parametrize("bad", [DART, DART[::-1], BOW, STAR], ids=["dart", "backward", "bow", "star"])
+@pytest.mark.parametrize(
+    "bad", [DART, DART[::-1], BOW, STAR], ids=["dart", "backward", "bow", "star"]
+)
 def test_polygons_that_are_not_convex(bad: list, method: str) -> None:
     for ask, where in (
         (lambda: cl.polygon_distance(bad, SQUARE, method=method), "p"),
@@ -68,7 +72,9 @@ def test_polygons_of_any_size_with_corners_in_line_or_twice_are_measured() -> No
     for size in (1e-150, 1e-9, 1.0, 1e9, 1e150):
         for p in (SQUARE, PENTAGON, [*SQUARE, [0, 0.5, 0]], [*SQUARE, [0, 1, 0]]):
             away = np.multiply(p, size) + [0, 0, 2.0 * size]
-            assert cl.polygon_distance(np.multiply(p, size), away).distance == pytest.approx(2.0 * size)
+            assert cl.polygon_distance(np.multiply(p, size), away).distance == pytest.approx(
+                2.0 * size
+            )
 
 
 def test_a_tolerance_belongs_to_the_paper() -> None:

@@ -131,7 +131,9 @@ def test_a_file_that_only_the_older_report_had_goes(tmp_path):
         if foreign:
             (folder / foreign).write_text("mine")
         fill_folder(folder, two_files("new"), OWN)
-        assert sorted(contents(folder)) == sorted(filter(None, [foreign, "steps.csv", "summary.json"]))
+        assert sorted(contents(folder)) == sorted(
+            filter(None, [foreign, "steps.csv", "summary.json"])
+        )
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="kills a process of its own")

@@ -57,10 +57,26 @@ def test_a_cross_check_that_disagrees_fails(tmp_path):
 def test_profiles_and_notices_are_cases_of_their_own(tmp_path):
     """The one that is not kept fails, the one that is passes; suspect input fails, a warning does not."""
     floor = ProfileAnswer(
-        "floor", "xy", None, "outside", 0.02, False, False, -0.003, 1e-4, (0, 0), (0, 0), "fore", 7, ""
+        "floor",
+        "xy",
+        None,
+        "outside",
+        0.02,
+        False,
+        False,
+        -0.003,
+        1e-4,
+        (0, 0),
+        (0, 0),
+        "fore",
+        7,
+        "",
     )
     door = dataclasses.replace(floor, name="door", passed=True, gap=0.03)
-    notices = (Notice(Severity.SUSPECT, "units", "post.stl"), Notice(Severity.WARNING, "geometry", "antenna"))
+    notices = (
+        Notice(Severity.SUSPECT, "units", "post.stl"),
+        Notice(Severity.WARNING, "geometry", "antenna"),
+    )
     suite = suite_of(tmp_path, profiles=(floor, door), notices=notices)
     assert failed(suite) == {"verdict", "gripper - post", "floor", "units: post.stl"}
     assert {"door", "geometry: antenna"} <= {case.get("name") for case in suite.findall("testcase")}
@@ -68,7 +84,9 @@ def test_profiles_and_notices_are_cases_of_their_own(tmp_path):
 
 def test_names_that_xml_has_no_room_for_are_escaped(tmp_path):
     made = record()
-    minimum = dataclasses.replace(made.pair_minima[0], link="arm\uffff\x1b[31m", obstacle="post\ud800")
+    minimum = dataclasses.replace(
+        made.pair_minima[0], link="arm\uffff\x1b[31m", obstacle="post\ud800"
+    )
     write_junit(dataclasses.replace(made, pair_minima=(minimum,)), tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").getroot().find("testsuite")
     names = {case.get("name") for case in suite.findall("testcase")}

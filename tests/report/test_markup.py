@@ -26,7 +26,9 @@ def test_markup_is_taken_as_it_is_and_numbers_as_text():
 
 
 def test_markup_in_an_attribute_is_text():
-    assert element("p", title=Markup('<i class="x">')) == '<p title="&lt;i class=&#34;x&#34;&gt;"></p>'
+    assert (
+        element("p", title=Markup('<i class="x">')) == '<p title="&lt;i class=&#34;x&#34;&gt;"></p>'
+    )
 
 
 def test_names_of_attributes_lose_their_underscores_and_none_is_left_out():

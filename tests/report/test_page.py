@@ -102,7 +102,9 @@ def test_bands_that_no_screen_can_tell_apart_are_one():
 
 def test_author_and_revision_stand_in_the_header_with_fields_to_sign():
     run = record()
-    signed = dataclasses.replace(run, case=dataclasses.replace(run.case, sign_off=SignOff("J. <Doe>", "B")))
+    signed = dataclasses.replace(
+        run, case=dataclasses.replace(run.case, sign_off=SignOff("J. <Doe>", "B"))
+    )
     text = own_text(page_of(summary_of(signed), replay_of(signed)))
     assert text.count("J. &lt;Doe&gt;") == 2 and "Revision B" in text
     for role in ("Author", "Checked", "Approved", "Signature"):
@@ -113,7 +115,9 @@ def test_author_and_revision_stand_in_the_header_with_fields_to_sign():
 def test_pairs_without_a_curve_of_their_own_have_their_line():
     run = record()
     page = page_of(summary_of(run), replay_of(run))
-    data = json.loads(re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)[1])
+    data = json.loads(
+        re.search(r'<script id="data" type="application/json">(.*?)</script>', page, re.DOTALL)[1]
+    )
     assert data["curves"] is None and len(data["pairs"]) == len(run.pair_minima)
     names = [[data["bodies"][i]["name"] for i in pair["bodies"]] for pair in data["pairs"]]
     assert names == [[one.link, one.obstacle] for one in run.pair_minima]

@@ -215,7 +215,9 @@ def crowded(tmp_path_factory) -> Page:
 def test_nothing_is_clipped_and_wide_tables_scroll_in_their_own_box(crowded, width, theme):
     page = crowded
     page.call(
-        "Emulation.setEmulatedMedia", media="", features=[{"name": "prefers-color-scheme", "value": theme}]
+        "Emulation.setEmulatedMedia",
+        media="",
+        features=[{"name": "prefers-color-scheme", "value": theme}],
     )
     page.open(page.report, "window.clearance", width=width, height=900)
     page.settle()
@@ -242,7 +244,9 @@ def test_the_replay_opens_at_the_moment_between_two_steps_with_its_bodies_marked
     state = page.run("window.clearance.state()")
     assert (state["step"], state["nearest"]) == (worst["step"], [worst["link"], worst["obstacle"]])
     text = page.run("document.getElementById('readout').textContent")
-    assert "contact" in text and f"between the steps {worst['step']} and {worst['step'] + 1}" in text
+    assert (
+        "contact" in text and f"between the steps {worst['step']} and {worst['step'] + 1}" in text
+    )
     dip = page.run("Math.min(...document.getElementById('curve').data[0].y)")
     assert dip == 0.0
     page.run("window.clearance.showFrame(0)")
@@ -266,7 +270,16 @@ def hand_among_boxes() -> Case:
     """A chain of 43 boxes that turns a little; one box flies through an obstacle between steps 3 and 4."""
     names = ["base", *(f"finger_{i // 3}_phalanx_link_{i}" for i in range(43))]
     joints = tuple(
-        Joint(f"j{i}", JointKind.REVOLUTE, names[i], names[i + 1], at(x=0.05), np.array([0.0, 0, 1]), -3, 3)
+        Joint(
+            f"j{i}",
+            JointKind.REVOLUTE,
+            names[i],
+            names[i + 1],
+            at(x=0.05),
+            np.array([0.0, 0, 1]),
+            -3,
+            3,
+        )
         for i in range(43)
     )
     shape = cl.box((0.04, 0.03, 0.03))
@@ -281,4 +294,6 @@ def hand_among_boxes() -> Case:
         for i, pose in enumerate(poses)
     )
     placed = PlacedRobot(robot, asked)
-    return Case("a hand of 43 links among 60 things", (placed,), obstacles, sign_off=SignOff("J. Doe", "B"))
+    return Case(
+        "a hand of 43 links among 60 things", (placed,), obstacles, sign_off=SignOff("J. Doe", "B")
+    )

@@ -37,7 +37,8 @@ def made(limits=NO_LIMITS, notices=(), accept=(), **changes) -> Record:
         return whole
     steps = whole.steps.slice(0, 8)
     motions = tuple(
-        dataclasses.replace(one, times=one.times[:8], positions=one.positions[:8]) for one in whole.motions
+        dataclasses.replace(one, times=one.times[:8], positions=one.positions[:8])
+        for one in whole.motions
     )
     case = dataclasses.replace(whole.case, accept=tuple(accept))
     minima = tuple(one for one in whole.pair_minima if one.step < 8)
@@ -74,10 +75,18 @@ def printed(one: Record) -> list[str]:
 def test_every_answer_says_the_same(name, tmp_path):
     one, status, exit_code = CASES[name]
     verdict = verdict_of(one)
-    assert (verdict.status, verdict.exit_code, verdict.passed) == (status, exit_code, exit_code == 0)
+    assert (verdict.status, verdict.exit_code, verdict.passed) == (
+        status,
+        exit_code,
+        exit_code == 0,
+    )
     run, summary = Run(one), summary_of(one)
     assert (run.status, run.passed, run.verdict) == (status, exit_code == 0, verdict)
-    assert (summary["verdict"], summary["passed"], summary["exit_code"]) == (status, verdict.passed, exit_code)
+    assert (summary["verdict"], summary["passed"], summary["exit_code"]) == (
+        status,
+        verdict.passed,
+        exit_code,
+    )
     assert summary["verdict_text"] == verdict.text() and "at the samples only" in verdict.text()
     assert summary["basis"] == "samples" and summary["not_checked"] == ["self-collision"]
     write_junit(one, tmp_path / "junit.xml")
@@ -85,10 +94,15 @@ def test_every_answer_says_the_same(name, tmp_path):
     assert (int(suite.get("failures")) == 0) == verdict.passed
     whole = suite.find("testcase[@classname='verdict']")
     assert (whole.find("failure") is None) == verdict.passed
-    told = whole.find("failure").get("message") if not verdict.passed else whole.findtext("system-out")
+    told = (
+        whole.find("failure").get("message") if not verdict.passed else whole.findtext("system-out")
+    )
     assert "at the samples only" in told and "self-collision not checked" in told
     headline, second, *_ = printed(one)
-    assert headline.startswith(verdict.text(str.upper)) and second.strip() == "self-collision not checked"
+    assert (
+        headline.startswith(verdict.text(str.upper))
+        and second.strip() == "self-collision not checked"
+    )
     page = page_of(summary, replay_of(one))
     badge = page.split('class="verdict')[1].split("</p>")[0]
     assert "at the samples only" in badge and "Self-collision not checked" in page
@@ -101,7 +115,9 @@ def test_a_suspect_run_still_shows_its_number_and_what_it_would_be():
     headline, *rest = printed(one)
     assert headline.startswith("SUSPECT (would be CLEAR at the samples only)")
     assert "least clearance" in headline
-    assert any("suspect" in line and "589 m" in line and "--accept units" in line for line in rest[:2])
+    assert any(
+        "suspect" in line and "589 m" in line and "--accept units" in line for line in rest[:2]
+    )
     page = page_of(summary_of(one), replay_of(one))
     assert "589 m" in page.split("<main>")[0]
 
@@ -124,7 +140,9 @@ def test_notices_of_measuring_count_as_those_of_loading():
 
 
 def test_a_peer_that_disagrees_is_in_the_headline():
-    assert printed(CASES["disputed"][0])[0].startswith("CLEAR at the samples only, but python-fcl disagrees")
+    assert printed(CASES["disputed"][0])[0].startswith(
+        "CLEAR at the samples only, but python-fcl disagrees"
+    )
 
 
 BOX = Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml"
@@ -135,11 +153,15 @@ BOX = Path(__file__).parents[2] / "scenes" / "box_box" / "case.yaml"
 def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail, tmp_path):
     """0.03495 is above what occurs between the steps (34.98 mm) by no sample, but below what can be proven."""
     run = cl.check(cl.load_case(BOX), need=need, limits=Limits(fail, max(fail, 0.02)))
-    assert run.passed == (fail == 0.0 or (fail == 0.03495 and run.certificate.lower_bound.min() >= fail))
+    assert run.passed == (
+        fail == 0.0 or (fail == 0.03495 and run.certificate.lower_bound.min() >= fail)
+    )
     assert run.save(str(tmp_path / "out")) == tmp_path / "out"
     write_junit(run.record, tmp_path / "junit.xml")
     suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
-    failed = {case.get("classname") for case in suite.iter("testcase") if case.find("failure") is not None}
+    failed = {
+        case.get("classname") for case in suite.iter("testcase") if case.find("failure") is not None
+    }
     assert ("verdict" in failed) == (not run.passed)
     assert ("certificate" in failed) == (not run.passed)
     assert bool(failed) == (not run.passed)

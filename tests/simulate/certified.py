@@ -22,6 +22,8 @@ def assert_never_above_samples(run, finer, n_worst):
     n_intervals = len(certificate.lower_bound) - 1
     worst = np.argsort(certificate.lower_bound[:-1])[:n_worst]
     for first in {*worst.tolist(), *rng.choice(n_intervals, n_worst).tolist()}:
-        sampled = cl.check(finer(run.record.case, first, 1000), certify=False).record.clearances.min()
+        sampled = cl.check(
+            finer(run.record.case, first, 1000), certify=False
+        ).record.clearances.min()
         assert certificate.lower_bound[first] <= sampled
         assert sampled <= certificate.upper_bound[first] + 1e-4

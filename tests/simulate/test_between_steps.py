@@ -23,16 +23,24 @@ POST_X = 0.75
 def sweeping(positions, post_height=1.0, limits=LIMITS, velocities=None) -> Case:
     """An arm of two links that turns level about z; a post stands 0.75 m before it, a wall behind it."""
     joints = (
-        Joint("shoulder", JointKind.REVOLUTE, "base", "upper", at(z=0.5), np.array([0.0, 0, 1]), -3, 3),
-        Joint("elbow", JointKind.REVOLUTE, "upper", "fore", at(x=0.5), np.array([0.0, 0, 1]), -3, 3),
+        Joint(
+            "shoulder", JointKind.REVOLUTE, "base", "upper", at(z=0.5), np.array([0.0, 0, 1]), -3, 3
+        ),
+        Joint(
+            "elbow", JointKind.REVOLUTE, "upper", "fore", at(x=0.5), np.array([0.0, 0, 1]), -3, 3
+        ),
     )
     upper = cl.box((0.5, 0.05, 0.05)).transformed(at(x=0.25))
     fore = cl.box((0.4, 0.04, 0.04)).transformed(at(x=0.2))
-    robot = Robot("arm", ("base", "upper", "fore"), joints, (Body("upper", upper), Body("fore", fore)))
+    robot = Robot(
+        "arm", ("base", "upper", "fore"), joints, (Body("upper", upper), Body("fore", fore))
+    )
     positions = np.array(positions, dtype=float)
     times = 2.0 * np.arange(len(positions))
     asked = Trajectory(times, ("shoulder", "elbow"), positions, velocities)
-    post = Obstacle(Body("post", cl.box((0.05, 0.05, post_height))), at(POST_X, 0.0, 0.5 * post_height))
+    post = Obstacle(
+        Body("post", cl.box((0.05, 0.05, post_height))), at(POST_X, 0.0, 0.5 * post_height)
+    )
     wall = Obstacle(Body("wall", cl.box((0.05, 0.5, 1.0))), at(-0.75, 0.0, 0.5))
     return Case("sweep", (PlacedRobot(robot, asked),), (post, wall), limits)
 
@@ -69,12 +77,19 @@ def test_what_is_named_really_occurs_there():
     run = cl.check(case)
     moment = run.certificate.worst
     assert run.status == "violated" and moment is run.record.worst
-    assert moment.clearance == pytest.approx(0.003, abs=1e-4) and run.certificate.lower_bound[0] > 0.002
+    assert (
+        moment.clearance == pytest.approx(0.003, abs=1e-4)
+        and run.certificate.lower_bound[0] > 0.002
+    )
     share = moment.time / 2.0
     assert moment.positions[0] == pytest.approx([-1.0 + 2.0 * share, 0.0])
     there = cl.check(sweeping([moment.positions[0]], post_height=PAST))
     assert there.worst["clearance"] == pytest.approx(moment.clearance, abs=1e-12)
-    assert (there.worst["link"], there.worst["obstacle"]) == (moment.link, moment.obstacle) == ("fore", "post")
+    assert (
+        (there.worst["link"], there.worst["obstacle"])
+        == (moment.link, moment.obstacle)
+        == ("fore", "post")
+    )
     apart = np.linalg.norm(np.subtract(moment.point_link, moment.point_obstacle))
     assert apart == pytest.approx(moment.clearance, abs=1e-12)
 
@@ -127,7 +142,12 @@ def test_a_step_below_a_limit_makes_no_other_step_of_a_minimum_violated():
     case = sweeping([[-1.0, 0.0], [0.0, 0.0], [1.0, 0.0], [1.1, 0.0]], PAST)
     run = cl.check(case, need="minimum")
     assert run.status == "violated"
-    assert [row["status"] == "violated" for row in run.steps.to_pylist()] == [False, True, False, False]
+    assert [row["status"] == "violated" for row in run.steps.to_pylist()] == [
+        False,
+        True,
+        False,
+        False,
+    ]
 
 
 def test_the_replay_stops_at_the_moment_with_the_right_bodies():
@@ -162,7 +182,11 @@ def test_neither_threads_nor_parts_change_the_moment(jobs, longest, monkeypatch)
     known = run.record.worst
     assert (known.step, known.link, known.obstacle) == (3, "fore", "post")
     again = cl.check(sweeping(positions, PAST), jobs=3 - jobs).record.worst
-    assert (known.time, known.clearance, known.point_link) == (again.time, again.clearance, again.point_link)
+    assert (known.time, known.clearance, known.point_link) == (
+        again.time,
+        again.clearance,
+        again.point_link,
+    )
 
 
 def test_a_paper_run_is_of_the_samples():

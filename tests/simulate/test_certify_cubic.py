@@ -34,7 +34,9 @@ def one_joint_case(kind, shape, obstacle, pose, velocities):
     speeds = np.array(velocities, dtype=float)[:, None]
     asked = Trajectory(np.arange(n_steps, dtype=float), ("joint",), np.zeros((n_steps, 1)), speeds)
     standing = (Obstacle(Body("post", obstacle), pose),)
-    return Case("crossing", (PlacedRobot(robot, asked),), standing, accept=("units",))  # velocities by intent
+    return Case(
+        "crossing", (PlacedRobot(robot, asked),), standing, accept=("units",)
+    )  # velocities by intent
 
 
 def linear(case):
@@ -74,7 +76,11 @@ def test_a_bar_that_swings_into_the_post_is_contact_though_both_samples_are_clea
 def test_a_slide_that_overshoots_comes_as_near_as_the_closed_form_says():
     box, plate = cl.box((0.1, 0.1, 0.1)), cl.box((1.0, 1.0, 0.02))
     case = one_joint_case(
-        JointKind.PRISMATIC, box, plate, placed_at(z=0.05 + 0.25 + 0.002 + 0.01), [1.0, -1.0, 0.5, 0.0]
+        JointKind.PRISMATIC,
+        box,
+        plate,
+        placed_at(z=0.05 + 0.25 + 0.002 + 0.01),
+        [1.0, -1.0, 0.5, 0.0],
     )
     found = certificate_of(case)
     heights = np.array([0.25, 0.0, 0.5 * 4 / 27])  # q = v s (1 - s)^2 is highest at s = 1/3
@@ -109,7 +115,9 @@ def gripper_case():
     rng = np.random.default_rng(11)
     positions = np.cumsum(rng.uniform(-0.4, 0.4, (5, 2)), axis=0) * [1.0, 0.2]
     velocities = rng.uniform(-2.0, 2.0, (5, 2)) * [1.0, 0.2]
-    asked = Trajectory(np.array([0.0, 0.5, 1.3, 1.7, 2.9]), ("turn", "reach"), positions, velocities)
+    asked = Trajectory(
+        np.array([0.0, 0.5, 1.3, 1.7, 2.9]), ("turn", "reach"), positions, velocities
+    )
     posts = tuple(
         Obstacle(Body(name, cl.box((0.1, 0.1, 1.0))), placed_at(x=x, y=y, turned=0.3))
         for name, x, y in (("left", 0.6, 0.9), ("right", 0.3, -1.0))
@@ -131,7 +139,11 @@ def thinned_scene(name):
 
 @pytest.fixture(
     scope="module",
-    params=[gripper_case, lambda: thinned_scene("box_pipe"), lambda: thinned_scene("iiwa_pipe_rack")],
+    params=[
+        gripper_case,
+        lambda: thinned_scene("box_pipe"),
+        lambda: thinned_scene("iiwa_pipe_rack"),
+    ],
     ids=["gripper", "box_pipe", "iiwa_pipe_rack"],
 )
 def certified(request):
@@ -178,7 +190,11 @@ def test_the_summary_says_on_what_path_it_is_proven(certified):
 
 def test_an_overshoot_beyond_all_reach_is_refused():
     far = one_joint_case(
-        JointKind.PRISMATIC, cl.box((0.1, 0.1, 0.1)), cl.box((0.1, 0.1, 0.1)), placed_at(x=5.0), [1e8, 0.0]
+        JointKind.PRISMATIC,
+        cl.box((0.1, 0.1, 0.1)),
+        cl.box((0.1, 0.1, 0.1)),
+        placed_at(x=5.0),
+        [1e8, 0.0],
     )
     with pytest.raises(BadDimension, match="link 'tool'"):
         cl.check(far, certify=True)

@@ -68,7 +68,9 @@ def test_the_bound_holds_for_dented_bodies_that_turn(seed):
     turns = random.uniform(-0.3, 0.3, (8, 3)).cumsum(axis=0)
     gap = 10.0 ** random.uniform(-4, -2)
     away = np.column_stack([np.linspace(-0.05, 0.05, 8), np.full(8, 0.28 + gap), np.zeros(8)])
-    one, other = (dented(np.random.default_rng(s), 2, depth=0.4, radius=0.1) for s in (seed, seed + 100))
+    one, other = (
+        dented(np.random.default_rng(s), 2, depth=0.4, radius=0.1) for s in (seed, seed + 100)
+    )
     case = flying("turning", one, [(other, np.eye(4))], np.hstack([away, turns]))
     run = cl.check(case, certify=True)
     assert run.record.clearances.min() > 0.0
@@ -79,14 +81,18 @@ def test_the_bound_holds_for_dented_bodies_that_turn(seed):
 def crossing(thickness, start, end, obstacle=None):
     """A cube of 20 mm on its way past or through a plate across x."""
     plate = obstacle or cl.box((thickness, 0.5, 0.5))
-    return flying("crossing", cl.box((0.02, 0.02, 0.02)), [(plate, np.eye(4))], np.array([start, end]))
+    return flying(
+        "crossing", cl.box((0.02, 0.02, 0.02)), [(plate, np.eye(4))], np.array([start, end])
+    )
 
 
 @pytest.mark.parametrize("thickness", [1e-2, 1e-4, 1e-7])
 @pytest.mark.parametrize("turn", [0.0, 1.0, 3.0])
 def test_what_tunnels_is_found(thickness, turn):
     """Clear at both ends; in between the cube goes through, turning or not."""
-    run = cl.check(crossing(thickness, [-0.3, 0, 0, 0, 0, 0], [0.4, 0.05, 0, turn, -turn, turn]), certify=True)
+    run = cl.check(
+        crossing(thickness, [-0.3, 0, 0, 0, 0, 0], [0.4, 0.05, 0, turn, -turn, turn]), certify=True
+    )
     assert (run.record.clearances > 0.0).all()
     assert run.status == "contact" and not run.passed
     assert run.record.certificate.lower_bound[0] == 0.0

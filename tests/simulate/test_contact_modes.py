@@ -29,7 +29,9 @@ def sliding(shape, way=WAY):
     path = Trajectory(np.arange(float(len(way))), ("rail",), np.array(way)[:, None])
     pose = np.eye(4)
     pose[0, 3] = 0.99 - 0.105
-    return Case("slide", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", shape), pose),))
+    return Case(
+        "slide", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", shape), pose),)
+    )
 
 
 def wall():
@@ -40,7 +42,16 @@ def wall():
 
 def channel():
     """The wall with a groove in its far side: concave, far from where the cube is."""
-    outline = [(0.0, -0.5), (0.2, -0.5), (0.2, -0.2), (0.1, -0.2), (0.1, 0.2), (0.2, 0.2), (0.2, 0.5), (0.0, 0.5)]
+    outline = [
+        (0.0, -0.5),
+        (0.2, -0.5),
+        (0.2, -0.2),
+        (0.1, -0.2),
+        (0.1, 0.2),
+        (0.2, 0.2),
+        (0.2, 0.5),
+        (0.0, 0.5),
+    ]
     vertices = np.array([(x, y, z) for z in (-0.5, 0.5) for x, y in outline])
     top = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 7), (4, 5, 7), (5, 6, 7)]
     faces = [*(t[::-1] for t in top), *(tuple(i + 8 for i in t) for t in top)]
@@ -77,7 +88,9 @@ def test_what_is_worked_out_is_none_the_deepest_moments_or_all(asked, shape):
         assert len(run.record.worked_out) == len(asked) == n_asked
     assert [step for step, _ in found["none"]] == [2, 3, 4, 5, 8]
     assert found["events"] == [(2, False), (3, False), (4, True), (5, False), (8, True)]
-    assert all(known for _, known in found["every"]) and not any(known for _, known in found["none"])
+    assert all(known for _, known in found["every"]) and not any(
+        known for _, known in found["none"]
+    )
 
 
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
@@ -135,7 +148,9 @@ def test_beyond_the_budget_there_are_bounds_and_it_is_said(monkeypatch, asked):
 
 def test_progress_is_told_event_by_event():
     told = []
-    cl.check(sliding(wall())).record.work_out_contacts(lambda done, total: told.append((done, total)))
+    cl.check(sliding(wall())).record.work_out_contacts(
+        lambda done, total: told.append((done, total))
+    )
     assert told == [(1, 2), (2, 2)]
 
 
@@ -180,7 +195,9 @@ def test_a_link_in_the_wall_of_a_ring_is_deepest_in_its_middle():
     robot = Robot("cart", ("ground", "cube"), (joint,), (Body("cube", cl.box((0.4, 0.4, 0.4))),))
     way = np.linspace(0.0, 2.0, 101)
     path = Trajectory(way, ("rail",), way[:, None])
-    case = Case("ring", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("ring", shape), np.eye(4)),))
+    case = Case(
+        "ring", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("ring", shape), np.eye(4)),)
+    )
     (row,) = cl.check(case).record.worked_out
     assert 0.9 <= way[row.step] <= 1.1
     assert 0.0 < row.known.penetration_at_least <= row.known.penetration <= 0.52

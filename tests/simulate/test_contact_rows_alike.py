@@ -38,7 +38,9 @@ def ball_through_wall():
     pose = np.eye(4)
     pose[:3, :3] = [[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]]
     pose[:3, 3] = [0.7, 0.05, 0.02]
-    return Case("ball", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", channel()), pose),))
+    return Case(
+        "ball", (PlacedRobot(robot, path, np.eye(4)),), (Obstacle(Body("wall", channel()), pose),)
+    )
 
 
 @pytest.mark.parametrize("need", ["steps", "limit"])
@@ -82,7 +84,9 @@ def test_rows_of_a_real_robot_are_those_of_sweeps_that_start_there():
     touching = np.flatnonzero(whole.clearance == 0.0)
     assert len(touching) > 30
     for step in touching:
-        assert np.array_equal(measured(case, motion, np.array([step])).points[0], whole.points[step])
+        assert np.array_equal(
+            measured(case, motion, np.array([step])).points[0], whole.points[step]
+        )
 
 
 def test_the_point_of_a_contact_is_that_of_a_single_question():
@@ -94,7 +98,9 @@ def test_the_point_of_a_contact_is_that_of_a_single_question():
         pair = pairs[found.pair[step]]
         body, obstacle = robot.bodies[pair.i_body], case.obstacles[pair.i_obstacle]
         pose = motion.poses(step, step + 1)[0, robot.link_names.index(body.name)]
-        alone = cl.distance(body.shape, obstacle.body.shape, pose_a=pose, pose_b=obstacle.world_from_body)
+        alone = cl.distance(
+            body.shape, obstacle.body.shape, pose_a=pose, pose_b=obstacle.world_from_body
+        )
         assert alone.contact
         assert np.allclose(found.points[step], [alone.point_a, alone.point_b], rtol=0.0, atol=1e-12)
 
@@ -102,6 +108,8 @@ def test_the_point_of_a_contact_is_that_of_a_single_question():
 def test_of_several_pairs_in_contact_the_least_is_named():
     case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
     motion = kinematic_motion(case.robots[0])
-    steps, every = (measured(case, motion, np.arange(motion.n_steps), need) for need in ("steps", "pairs"))
+    steps, every = (
+        measured(case, motion, np.arange(motion.n_steps), need) for need in ("steps", "pairs")
+    )
     for step in np.flatnonzero(steps.clearance == 0.0):
         assert steps.pair[step] == np.flatnonzero(every.every[step] == 0.0)[0]

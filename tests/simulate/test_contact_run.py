@@ -91,7 +91,11 @@ def test_the_shared_region_lies_in_the_carton(shelf):
 
 
 def test_what_stands_for_a_body_reaches_the_notes(shelf):
-    told = [note for note in shelf.record.contact_notes if note.startswith("contact: panda_leftfinger: ")]
+    told = [
+        note
+        for note in shelf.record.contact_notes
+        if note.startswith("contact: panda_leftfinger: ")
+    ]
     assert len(told) == 1 and "its hull stands for it" in told[0]
 
 
@@ -220,5 +224,7 @@ def test_regions_that_were_not_kept_are_found_again(
         assert (kept.found.region.vertices == again.found.region.vertices).all()
     assert few.record.contacts[3].numbers.region.is_empty
     deepest = few.record.deepest
-    assert deepest.numbers.penetration == max(row.numbers.penetration for row in few.record.contacts)
+    assert deepest.numbers.penetration == max(
+        row.numbers.penetration for row in few.record.contacts
+    )
     assert (few.record.contacts.steps == [row.step for row in few.record.contacts]).all()

@@ -30,7 +30,9 @@ SHAPE = box((0.3, 0.1, 0.2))
 def drifts(surface, chain, link, poses, swing, bend, direction):
     pose = rigid(poses[link])
     drift = drift_of(surface, surface.roots[0], chain, link, poses, swing, bend, pose)
-    along = drift_of_box_along(box_of(surface, 0), Vec3(direction[0], direction[1], direction[2]), drift)
+    along = drift_of_box_along(
+        box_of(surface, 0), Vec3(direction[0], direction[1], direction[2]), drift
+    )
     return drift_of_box(box_of(surface, 0), drift), along
 
 
@@ -74,7 +76,13 @@ def test_the_bound_of_a_slide_is_exact():
     chain = Chain(np.eye(4), *chain_arrays(robot))
     poses = np.tile(np.eye(4), (2, 1, 1))
     bound, along = drifts(
-        surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), np.zeros(2), np.array([0.0, 1.0, 0.0])
+        surface_of(SHAPE),
+        chain,
+        1,
+        poses,
+        np.array([0.0, 0.25]),
+        np.zeros(2),
+        np.array([0.0, 1.0, 0.0]),
     )
     assert bound == pytest.approx(0.25, rel=1e-11)
     assert along == 0.0
@@ -85,8 +93,6 @@ def test_a_bend_is_added_to_the_slide_in_every_direction():
     chain = Chain(np.eye(4), *chain_arrays(robot))
     poses, bend = np.tile(np.eye(4), (2, 1, 1)), np.array([0.0, 0.125])
     sideways = np.array([0.0, 1.0, 0.0])
-    bound, along = drifts(
-        surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), bend, sideways
-    )
+    bound, along = drifts(surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), bend, sideways)
     assert bound == pytest.approx(0.375, rel=1e-11)
     assert along == pytest.approx(0.125, rel=1e-11)

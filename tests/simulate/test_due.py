@@ -30,16 +30,22 @@ def swaying_arm(random: np.random.Generator) -> Case:
     some = [shapes[kind]() for kind in random.choice(list(shapes), n_links + random.integers(1, 5))]
     around = random.choice([0.35, 0.8])
     obstacles = [
-        (shape, at(*around * random.normal(size=3), turned=rotations(random, 1)[0])) for shape in some[n_links:]
+        (shape, at(*around * random.normal(size=3), turned=rotations(random, 1)[0]))
+        for shape in some[n_links:]
     ]
     warn = random.choice([1e-3, 0.02, 0.1, 0.4])
-    return replace(arm("swaying", some[:n_links], obstacles, positions), limits=Limits(warn / 2.0, warn))
+    return replace(
+        arm("swaying", some[:n_links], obstacles, positions), limits=Limits(warn / 2.0, warn)
+    )
 
 
 @pytest.mark.parametrize("seed", range(40))
 def test_bodies_with_clocks_of_their_own_miss_nothing(seed):
     case = swaying_arm(np.random.default_rng(seed))
-    runs = {need: cl.check(case, need=need, jobs=1, certify=False) for need in ("steps", "limit", "minimum")}
+    runs = {
+        need: cl.check(case, need=need, jobs=1, certify=False)
+        for need in ("steps", "limit", "minimum")
+    }
     truth = runs["steps"].steps["clearance"].to_numpy()
     told = runs["limit"].steps["clearance"].to_numpy()
     known = ~np.isnan(told)

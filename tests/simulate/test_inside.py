@@ -29,7 +29,11 @@ WAY = np.linspace((-0.3, 0.1, 0.0), (0.3, 0.1, 0.2), 30)
 @pytest.mark.parametrize("fault", ["twice", "missing", "turned"])
 def test_a_robot_wholly_inside_is_in_contact_whatever_is_asked(fault: str, need: str) -> None:
     faces = faces_of(BALL)
-    faces = {"twice": [*faces, faces[9]], "missing": faces[1:], "turned": [faces[0][::-1], *faces[1:]]}[fault]
+    faces = {
+        "twice": [*faces, faces[9]],
+        "missing": faces[1:],
+        "turned": [faces[0][::-1], *faces[1:]],
+    }[fault]
     run = moved(LINK, WAY, Polyhedron(BALL.vertices, faces), need=need)
     assert run.status == "contact" and not run.passed and run.worst["clearance"] == 0.0
     assert run.record.notices == ()
@@ -46,7 +50,9 @@ def test_where_the_hole_decides_the_pair_is_suspect_by_name_and_first_step() -> 
     run = moved(LINK, np.linspace(3.0, 1.0, 21)[:, None] * middle, outer)
     (notice,) = run.record.notices
     assert (notice.severity, notice.kind) == (Severity.SUSPECT, "inside")
-    assert notice.text.startswith("link l6 may be inside obstacle o0, or round it, at 0.200 s (step 20)")
+    assert notice.text.startswith(
+        "link l6 may be inside obstacle o0, or round it, at 0.200 s (step 20)"
+    )
     assert moved(LINK, np.linspace(3.0, 1.5, 21)[:, None] * middle, outer).record.notices == ()
 
 
@@ -58,7 +64,9 @@ def test_larger_holes_make_it_suspect_and_sheets_do_not() -> None:
         assert moved(LINK, WAY, shape).record.notices == ()
 
 
-@pytest.mark.parametrize("name", ["linked_tori", "nested_shells", "everything_equidistant", "facing_plates"])
+@pytest.mark.parametrize(
+    "name", ["linked_tori", "nested_shells", "everything_equidistant", "facing_plates"]
+)
 def test_closed_and_open_surfaces_have_no_notices(name: str) -> None:
     case = WORST[name]()
     assert cl.check(case).record.notices == ()
@@ -80,7 +88,9 @@ def apart(shape: Polyhedron, scatter: float) -> Polyhedron:
     corners = shape.vertices[np.concatenate(faces)]
     corners = corners + np.random.default_rng(3).uniform(-scatter, scatter, corners.shape)
     ends = np.cumsum([len(face) for face in faces])
-    return Polyhedron(corners, [list(range(e - len(f), e)) for e, f in zip(ends, faces, strict=True)])
+    return Polyhedron(
+        corners, [list(range(e - len(f), e)) for e, f in zip(ends, faces, strict=True)]
+    )
 
 
 def halves(scale: float) -> Polyhedron:
@@ -98,8 +108,12 @@ def with_t_junctions() -> Polyhedron:
         for side in (-2.0, 2.0):
             cuts = np.linspace(-2.0, 2.0, 2 + axis + (side > 0.0))
             for low, high in zip(cuts, cuts[1:], strict=False):
-                wall = np.array([[side, low, -2], [side, high, -2], [side, high, 2], [side, low, 2]])
-                faces.append(list(range(len(corners), len(corners) + 4))[:: 1 if side > 0.0 else -1])
+                wall = np.array(
+                    [[side, low, -2], [side, high, -2], [side, high, 2], [side, low, 2]]
+                )
+                faces.append(
+                    list(range(len(corners), len(corners) + 4))[:: 1 if side > 0.0 else -1]
+                )
                 corners += np.roll(wall, axis, axis=1).tolist()
     return Polyhedron(np.array(corners), faces)
 
@@ -122,10 +136,14 @@ CRACKED = {
 
 @pytest.mark.parametrize("need", ["steps", "minimum"])
 @pytest.mark.parametrize("kind", CRACKED)
-def test_a_solid_with_cracks_or_two_sides_is_suspect_round_a_robot_and_inside_one(kind: str, need: str) -> None:
+def test_a_solid_with_cracks_or_two_sides_is_suspect_round_a_robot_and_inside_one(
+    kind: str, need: str
+) -> None:
     run = moved(LINK, WAY, CRACKED[kind], need=need)
     assert run.status == "suspect" and not run.passed
-    assert [(notice.severity, notice.kind) for notice in run.record.notices] == [(Severity.SUSPECT, "inside")]
+    assert [(notice.severity, notice.kind) for notice in run.record.notices] == [
+        (Severity.SUSPECT, "inside")
+    ]
     assert moved(CRACKED[kind], WAY, LINK).status == "suspect"
     assert moved(LINK, WAY + [9.0, 0.0, 0.0], CRACKED[kind]).record.notices == ()
 
@@ -143,7 +161,9 @@ def test_bowls_bins_and_tubes_round_a_robot_are_quiet() -> None:
     bowl = Polyhedron(BALL.vertices, [f for f in faces if BALL.vertices[f].mean(axis=0)[2] < 0.0])
     cube = cl.box((4.0, 4.0, 4.0))
     up = cube.vertices[:, 2].max()
-    bin_ = Polyhedron(cube.vertices, [f for f in faces_of(cube) if (cube.vertices[f][:, 2] < up).any()])
+    bin_ = Polyhedron(
+        cube.vertices, [f for f in faces_of(cube) if (cube.vertices[f][:, 2] < up).any()]
+    )
     turns = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
     ring = np.stack([np.cos(turns), np.sin(turns)], axis=1)
     ends = np.concatenate([np.insert(ring, 2, z, axis=1) for z in (-3.0, 3.0)])

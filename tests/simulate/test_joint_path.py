@@ -20,7 +20,9 @@ def part(path, step, link, low, high):
 
 
 def path_of(positions, velocities, times):
-    columns = [np.reshape(np.array(values, dtype=float), (-1, 1)) for values in (positions, velocities)]
+    columns = [
+        np.reshape(np.array(values, dtype=float), (-1, 1)) for values in (positions, velocities)
+    ]
     return JointPath(np.array(times, dtype=float), *columns)
 
 
@@ -40,13 +42,17 @@ def test_the_motion_stays_within_swing_and_bend(seed, size, speed, depth):
     rng = np.random.default_rng(seed)
     start = rng.uniform(0, 100)
     path = path_of(
-        size * rng.uniform(-1, 1, 2), speed * rng.uniform(-1, 1, 2), [start, start + rng.uniform(1e-3, 2)]
+        size * rng.uniform(-1, 1, 2),
+        speed * rng.uniform(-1, 1, 2),
+        [start, start + rng.uniform(1e-3, 2)],
     )
     i = int(rng.integers(0, 2**depth))
     low, high = i / 2**depth, (i + 1) / 2**depth
     found = part(path, 0, 0, low, high)
     middle, half = Fraction(low + high) / 2, Fraction(high - low) / 2
-    slack = Fraction(2.0**-51) * Fraction(max(abs(path.positions[:, 0])))  # rounding of the sum itself
+    slack = Fraction(2.0**-51) * Fraction(
+        max(abs(path.positions[:, 0]))
+    )  # rounding of the sum itself
     for t in map(Fraction, (-1, -0.75, -0.3, 0, 0.25, 0.6, 1)):
         rest = hermite(path, middle + half * t) - Fraction(found.middle)
         rest -= t / Fraction(OUTWARD) * Fraction(found.swing)

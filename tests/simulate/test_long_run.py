@@ -110,9 +110,13 @@ def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
     for count in counts:
         with pytest.raises(Interrupted):
             progress = stopping_at(count)
-            answer(case, tmp_path / "kept", said, jobs=1 + count % 2, progress=progress, **ASKED[name])
+            answer(
+                case, tmp_path / "kept", said, jobs=1 + count % 2, progress=progress, **ASKED[name]
+            )
     with pytest.raises(Interrupted), open_resumable_rows(tmp_path / "kept", said.append) as kept:
-        cl.check(case, kept=kept, **ASKED[name])  # all is measured, and then the report is interrupted
+        cl.check(
+            case, kept=kept, **ASKED[name]
+        )  # all is measured, and then the report is interrupted
         raise Interrupted
     assert answer(case, tmp_path / "kept", said, jobs=1, **ASKED[name]) == memory
     assert len(said) == 1 + len(counts) and all(line.startswith("resuming: ") for line in said)
@@ -159,7 +163,9 @@ def nudged(case: Case, what: str) -> Case:
     if what == "obstacle":
         pose = obstacle.world_from_body.copy()
         pose[0, 3] += 1e-15
-        return replace(case, obstacles=(replace(obstacle, world_from_body=pose), *case.obstacles[1:]))
+        return replace(
+            case, obstacles=(replace(obstacle, world_from_body=pose), *case.obstacles[1:])
+        )
     positions = placed.trajectory.positions.copy()
     positions[-1, 0] = np.nextafter(positions[-1, 0], 1.0)
     moved = replace(placed, trajectory=replace(placed.trajectory, positions=positions))
@@ -210,13 +216,18 @@ def test_a_killed_process_is_resumed(tmp_path: Path) -> None:
 def test_a_second_run_to_the_same_place_is_refused(tmp_path: Path) -> None:
     place = tmp_path / "kept"
     with open_resumable_rows(place, print):
-        with pytest.raises(Unwritable, match="another run is writing"), open_resumable_rows(place, print):
+        with (
+            pytest.raises(Unwritable, match="another run is writing"),
+            open_resumable_rows(place, print),
+        ):
             pass
         assert place.is_dir()
     assert not place.exists()
 
 
-def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(case: Case, tmp_path: Path) -> None:
+def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(
+    case: Case, tmp_path: Path
+) -> None:
     with open_resumable_rows(tmp_path / "kept", print) as kept:
         run = cl.check(case, kept=kept)
     assert list(run.record.pair_minima) == list(cl.check(case).record.pair_minima)
@@ -237,7 +248,10 @@ def test_a_full_disk_is_told_before_anything_is_mapped(
 
 
 def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="refused"), open_resumable_rows(tmp_path / "kept", print) as kept:
+    with (
+        pytest.raises(ValueError, match="refused"),
+        open_resumable_rows(tmp_path / "kept", print) as kept,
+    ):
         kept.ask("question")
         kept.array("steps.clearance", (100,))
         raise ValueError("refused")

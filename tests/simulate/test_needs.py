@@ -19,7 +19,10 @@ SCENES = Path(__file__).parents[2] / "scenes"
 @pytest.fixture(scope="module", params=["box_pipe", "panda_shelf", "hot_cell"])
 def runs(request: pytest.FixtureRequest) -> dict[str, cl.Run]:
     case = cl.load_case(SCENES / request.param / "case.yaml")
-    return {need: cl.check(case, need=need, certify=False) for need in ("steps", "pairs", "limit", "minimum")}
+    return {
+        need: cl.check(case, need=need, certify=False)
+        for need in ("steps", "pairs", "limit", "minimum")
+    }
 
 
 def test_pairs_have_the_same_steps_and_their_least_is_the_step(runs: dict[str, cl.Run]) -> None:
@@ -32,7 +35,9 @@ def test_pairs_have_the_same_steps_and_their_least_is_the_step(runs: dict[str, c
 
 def test_pair_minima_are_the_least_of_the_matrix(runs: dict[str, cl.Run]) -> None:
     lazy, known = runs["steps"].record.pair_minima, runs["pairs"].record.pair_minima
-    first = [lazy[:most] for most in (1, 2, 5, 1000)]  # before all are known: only these are measured
+    first = [
+        lazy[:most] for most in (1, 2, 5, 1000)
+    ]  # before all are known: only these are measured
     assert list(lazy) == list(known)
     assert first == [known[:most] for most in (1, 2, 5, 1000)]
     every = runs["pairs"].pairs.to_pydict()
@@ -49,7 +54,9 @@ def test_the_minimum_is_that_of_all_steps(runs: dict[str, cl.Run]) -> None:
     assert runs["minimum"].steps["clearance"].null_count == runs["steps"].steps.num_rows - 1
 
 
-def test_below_the_limit_all_is_known_and_elsewhere_the_bound_holds(runs: dict[str, cl.Run]) -> None:
+def test_below_the_limit_all_is_known_and_elsewhere_the_bound_holds(
+    runs: dict[str, cl.Run],
+) -> None:
     truth = runs["steps"].steps["clearance"].to_numpy()
     table = runs["limit"].steps
     found = table["clearance"].to_numpy()
@@ -62,7 +69,9 @@ def test_below_the_limit_all_is_known_and_elsewhere_the_bound_holds(runs: dict[s
 
 
 @pytest.mark.parametrize("need", ["limit", "minimum"])
-def test_bounds_of_unknown_steps_are_never_above_the_truth(runs: dict[str, cl.Run], need: str) -> None:
+def test_bounds_of_unknown_steps_are_never_above_the_truth(
+    runs: dict[str, cl.Run], need: str
+) -> None:
     truth = runs["steps"].steps["clearance"].to_numpy()
     bound = runs[need].steps["lower_bound"].to_numpy()
     assert (bound <= truth).all()
@@ -105,7 +114,10 @@ def test_a_pair_of_which_nothing_has_moved_is_not_asked_again(
     positions = np.stack([np.where(np.arange(60) < 20, 0.0, swing)] * 2 + [swing], axis=1)
     positions[30:, :2] = positions[29, :2]
     shapes = [spindle(0.05, 0.1, 6)] * 3
-    near, far = (torus(0.12, 0.05, 12, 6), at(0.3, 0.25, 0.2)), (spindle(0.1, 0.2, 6), at(0.5, -0.4, 0.3))
+    near, far = (
+        (torus(0.12, 0.05, 12, 6), at(0.3, 0.25, 0.2)),
+        (spindle(0.1, 0.2, 6), at(0.5, -0.4, 0.3)),
+    )
     case = arm("resting", shapes, [near, far], positions)
     run = cl.check(case, need=need, certify=False)
     tally = run.record.tally
@@ -121,9 +133,14 @@ def test_a_pair_of_which_nothing_has_moved_is_not_asked_again(
 
 def test_parts_hold_every_row_once() -> None:
     for n_rows in (1, 2, 127, 128, 129, 255, 256, 257, 512, 513, 1000, 12345):
-        for sparse, longest in ((False, parts.LONGEST_PART), (True, parts.SPARSE * parts.LONGEST_PART)):
+        for sparse, longest in (
+            (False, parts.LONGEST_PART),
+            (True, parts.SPARSE * parts.LONGEST_PART),
+        ):
             spans = parts.parts(n_rows, sparse=sparse)
-            assert [i for span in spans for i in range(span.start, span.stop)] == list(range(n_rows))
+            assert [i for span in spans for i in range(span.start, span.stop)] == list(
+                range(n_rows)
+            )
             assert max(span.stop - span.start for span in spans) <= longest
 
 

@@ -11,7 +11,12 @@ import pytest
 import clearance as cl
 
 SHARED = Path(__file__).parents[3] / "shared" / "cases"
-CASES = ("fetch_cage_planned", "kuka_iiwa_valve_wall", "lbr_puzzle_grinder", "panda_bookshelf_thin_planned")
+CASES = (
+    "fetch_cage_planned",
+    "kuka_iiwa_valve_wall",
+    "lbr_puzzle_grinder",
+    "panda_bookshelf_thin_planned",
+)
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -27,7 +32,9 @@ def runs(request):
 def cut_to(placed, n_steps):
     """A placed robot that stops after so many steps."""
     asked = placed.trajectory
-    kept = replace(asked, times=asked.times[:n_steps], positions=asked.positions[:n_steps], velocities=None)
+    kept = replace(
+        asked, times=asked.times[:n_steps], positions=asked.positions[:n_steps], velocities=None
+    )
     return replace(placed, trajectory=kept)
 
 

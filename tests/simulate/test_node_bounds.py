@@ -60,7 +60,9 @@ def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, fac
             boxes[i, j] = lower_bound_boxes(p, q, frames.m, slack)
             in_sight[i, j] = lower_bound_boxes_in_sight(p, q, sight) - slack
             alike[i, j] = boxes[i, j]
-            alike[i, j] -= lane(lower_bound_boxes(group_of(a, i // WIDTH), q, frames.m, slack), i % WIDTH)
+            alike[i, j] -= lane(
+                lower_bound_boxes(group_of(a, i // WIDTH), q, frames.m, slack), i % WIDTH
+            )
     for i in range(len(a.normals)):
         for j in range(len(b.normals)):
             faces[i, j] = lower_bound_faces_in_sight(a, i, b, j, sight) - slack
@@ -72,7 +74,9 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
     """Fills what the search takes as the bound of each node pair, with the group of the one and the other side."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    sight = sight_along(Vec3(0.0, 0.0, 0.0), Vec3(direction[0], direction[1], direction[2]), frames.m)
+    sight = sight_along(
+        Vec3(0.0, 0.0, 0.0), Vec3(direction[0], direction[1], direction[2]), frames.m
+    )
     from_a, from_b = views_along(sight, frames.m)
     for i in range(len(a.children)):
         for j in range(len(b.children)):
@@ -136,7 +140,10 @@ def exact_distances_sq(a, b, pose_a, pose_b):
     """Fractions, a row a face of a."""
     ours, theirs = (posed(shape.vertices, at) for shape, at in ((a, pose_a), (b, pose_b)))
     return [
-        [oracle.polygon_distance_sq(ours[3 * i : 3 * i + 3], theirs[3 * j : 3 * j + 3]) for j in range(b.n_faces)]
+        [
+            oracle.polygon_distance_sq(ours[3 * i : 3 * i + 3], theirs[3 * j : 3 * j + 3])
+            for j in range(b.n_faces)
+        ]
         for i in range(a.n_faces)
     ]
 
@@ -155,7 +162,9 @@ def is_at_most(bound, distance_sq):
     st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.sampled_from(KINDS),
     st.sampled_from([0.0, 1e-7, 1.0, 4.0, 1e5]), st.booleans(),
 )  # fmt: skip
-def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, kind_b, reach, turned):
+def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(
+    seed, kind_a, kind_b, reach, turned
+):
     random = np.random.default_rng(seed)
     a, b = triangles(random, 3, kind_a), triangles(random, 3, kind_b)
     pose_a, pose_b = pose(random, reach, turned), pose(random, reach, turned)
@@ -164,7 +173,9 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, ki
     faces = np.empty((3, 3))
     direction = random.normal(size=3) if turned else np.eye(3)[random.integers(3)]
     bounds_of_nodes(one, two, pose_a, pose_b, direction, boxes, in_sight, alike, faces)
-    bounds_of_groups(one, two, pose_a, pose_b, direction, random.choice([0.0, 1.0, np.inf]), of_a, of_b)
+    bounds_of_groups(
+        one, two, pose_a, pose_b, direction, random.choice([0.0, 1.0, np.inf]), of_a, of_b
+    )
     truth = exact_distances_sq(a, b, pose_a, pose_b)
     for i, below_a in enumerate(faces_below(one)):
         for j, below_b in enumerate(faces_below(two)):
@@ -208,7 +219,10 @@ def test_balls_are_enough_over_a_board():
     over = np.eye(4)
     over[:3, 3] = 4.0, -3.0, 2.15
     poses = np.array([np.eye(4), over])
-    surface, world = join([board, small]), World(np.array([-1, -1]), poses, np.array([[0, 1]]), NO_LINKS)
+    surface, world = (
+        join([board, small]),
+        World(np.array([-1, -1]), poses, np.array([[0, 1]]), NO_LINKS),
+    )
     assert body_bound_of(surface, world, 1.8) == pytest.approx(2.1 - 0.1 * 3**0.5, abs=1e-4)
     assert body_bound_of(surface, world, 1.95) == pytest.approx(2.0, abs=1e-4)
 
@@ -236,14 +250,25 @@ def test_edges_that_cross_are_told_apart_across_both():
     boxes, in_sight, alike = np.empty((3, 4, 4))
     faces = np.empty((1, 1))
     bounds_of_nodes(
-        surface_of(a), surface_of(b), np.eye(4), np.eye(4), np.array([1.0, 0, 0]), boxes, in_sight, alike, faces
+        surface_of(a),
+        surface_of(b),
+        np.eye(4),
+        np.eye(4),
+        np.array([1.0, 0, 0]),
+        boxes,
+        in_sight,
+        alike,
+        faces,
     )
     assert faces[0, 0] == pytest.approx(0.01, abs=1e-12)
 
 
 @examples(100)
 @given(
-    st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.sampled_from([0.0, 1e-9, 1e-3, 1.0, 1e4]), st.booleans()
+    st.integers(0, 2**32 - 1),
+    st.sampled_from(KINDS),
+    st.sampled_from([0.0, 1e-9, 1e-3, 1.0, 1e4]),
+    st.booleans(),
 )
 def test_no_corner_moves_farther_than_its_bound(seed, kind, reach, turned):
     """The displacement is convex over the faces, so the corners decide; poses are taken number by number."""
@@ -263,7 +288,9 @@ def test_no_corner_moves_farther_than_its_bound(seed, kind, reach, turned):
     st.integers(0, 2**32 - 1), st.sampled_from(KINDS[:5]), st.sampled_from(KINDS[:5]),
     st.sampled_from([0.0, 1e-3, 0.1, 3.0]), st.sampled_from(["minimum", "limit"]),
 )  # fmt: skip
-def test_no_bound_carried_from_step_to_step_is_above_the_exact_distance(seed, kind_a, kind_b, stride, need):
+def test_no_bound_carried_from_step_to_step_is_above_the_exact_distance(
+    seed, kind_a, kind_b, stride, need
+):
     random = np.random.default_rng(seed)
     link, obstacles = triangles(random, 2, kind_a), [triangles(random, 2, kind_b) for _ in range(2)]
     standing = [pose(random, 3.0, True) for _ in obstacles]

@@ -36,8 +36,12 @@ def lists_of(order, n_bodies):
 def test_each_list_is_in_order_and_holds_its_pairs(seed):
     random = np.random.default_rng(seed)
     n_bodies, n_pairs = int(random.integers(1, 6)), int(random.integers(1, 60))
-    body_pairs = np.column_stack([random.integers(0, n_bodies, n_pairs), np.full(n_pairs, n_bodies)])
-    bounds = random.choice([random.normal(size=n_pairs), random.integers(0, 4, n_pairs).astype(float)])
+    body_pairs = np.column_stack(
+        [random.integers(0, n_bodies, n_pairs), np.full(n_pairs, n_bodies)]
+    )
+    bounds = random.choice(
+        [random.normal(size=n_pairs), random.integers(0, 4, n_pairs).astype(float)]
+    )
     order = room_for_order(n_bodies, n_pairs)
     ordered(body_pairs, bounds, order)
     for _ in range(50):

@@ -43,13 +43,28 @@ def spinning(turns, multiplier=None, velocities=None):
     hand = Joint("hand", JointKind.CONTINUOUS, "base", "tool", np.eye(4))
     links, joints = ("base", "tool"), (hand,)
     if multiplier is not None:
-        joints += (Joint("gear", JointKind.REVOLUTE, "base", "wheel", np.eye(4), mimic=Mimic("hand", multiplier)),)
+        joints += (
+            Joint(
+                "gear",
+                JointKind.REVOLUTE,
+                "base",
+                "wheel",
+                np.eye(4),
+                mimic=Mimic("hand", multiplier),
+            ),
+        )
         links += ("wheel",)
     robot = Robot("robot", links, joints, (Body("tool", cl.box((0.1, 0.1, 0.1))),))
-    asked = Trajectory(np.array([0.0, 1.0]), ("hand",), 2 * np.pi * np.array([[0.0], [turns]]), velocities)
+    asked = Trajectory(
+        np.array([0.0, 1.0]), ("hand",), 2 * np.pi * np.array([[0.0], [turns]]), velocities
+    )
     pose = np.eye(4)
     pose[0, 3] = 1.0
-    return Case("spin", (PlacedRobot(robot, asked),), (Obstacle(Body("post", cl.box((0.1, 0.1, 0.1))), pose),))
+    return Case(
+        "spin",
+        (PlacedRobot(robot, asked),),
+        (Obstacle(Body("post", cl.box((0.1, 0.1, 0.1))), pose),),
+    )
 
 
 @pytest.mark.parametrize(

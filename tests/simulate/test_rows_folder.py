@@ -72,7 +72,7 @@ def a_folder_with_an_empty_lock(place: Path) -> None:
 
 def a_folder_with_a_lock_elsewhere(place: Path) -> None:
     a_folder_with_files(place)
-    (place.parent / "lock elsewhere").write_text(MARK)
+    (place.parent / "lock elsewhere").write_bytes(MARK)
     (place / LOCK).symlink_to(place.parent / "lock elsewhere")
 
 
@@ -107,7 +107,10 @@ def test_what_we_have_not_made_is_refused_and_left_as_it_is(
     place = tmp_path / ".out.unfinished"
     plant(place)
     before = everything(tmp_path)
-    with pytest.raises(Unwritable, match="move it away") as caught, open_resumable_rows(place, print) as kept:
+    with (
+        pytest.raises(Unwritable, match="move it away") as caught,
+        open_resumable_rows(place, print) as kept,
+    ):
         kept.ask("another question")
     assert str(place) in str(caught.value)
     assert everything(tmp_path) == before
@@ -150,14 +153,19 @@ def test_of_two_runs_that_start_at_once_one_is_refused(
         return found
 
     monkeypatch.setattr(rows_folder.os.path, "lexists", seen_too_early)
-    with pytest.raises(Unwritable, match="another run is writing"), open_resumable_rows(place, print):
+    with (
+        pytest.raises(Unwritable, match="another run is writing"),
+        open_resumable_rows(place, print),
+    ):
         pass
-    assert (place / LOCK).read_text() == MARK
+    assert (place / LOCK).read_bytes() == MARK
     ways[0].__exit__(None, None, None)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_taken_away_is_gone_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_folder_taken_away_is_gone_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A process killed while it takes files away leaves nothing where the next run looks."""
     seen = []
     rmtree = shutil.rmtree

@@ -22,7 +22,9 @@ from tests.made_cases import random_robot
 
 SCENES = Path(__file__).parents[2] / "scenes"
 SHAPE = box((0.3, 0.1, 0.2))
-ASIDE = np.block([[np.eye(3), np.array([[0.4], [0.0], [-0.2]])], [np.zeros((1, 3)), np.ones((1, 1))]])
+ASIDE = np.block(
+    [[np.eye(3), np.array([[0.4], [0.0], [-0.2]])], [np.zeros((1, 3)), np.ones((1, 1))]]
+)
 
 
 @kernel
@@ -47,7 +49,10 @@ def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:
 @given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]))
 def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     rng = np.random.default_rng(seed)
-    placed = [placed_at(rng, random_robot(rng, n_joints, sizes=(0.0, 0.5, 50.0), mimics=0.4)) for _ in range(2)]
+    placed = [
+        placed_at(rng, random_robot(rng, n_joints, sizes=(0.0, 0.5, 50.0), mimics=0.4))
+        for _ in range(2)
+    ]
     moving = [len(one.robot.moving_joints) for one in placed]
     first = rng.uniform(-4.0, 4.0, sum(moving)) * rng.choice([1.0, 1e3])
     positions = first + size * rng.uniform(-1.0, 1.0, (20, sum(moving)))
@@ -68,7 +73,10 @@ def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
     offset = np.diag([1.0 + 4.9e-7] * 3 + [1.0])
     offset[0, 3] = 0.5
     axis = np.array([0.0, 0.0, 1.0])
-    joints = [Joint(f"j{i}", JointKind("fixed"), f"l{i}", f"l{i + 1}", offset, axis) for i in range(1, 200)]
+    joints = [
+        Joint(f"j{i}", JointKind("fixed"), f"l{i}", f"l{i + 1}", offset, axis)
+        for i in range(1, 200)
+    ]
     joints.insert(0, Joint("j0", JointKind("revolute"), "l0", "l1", np.eye(4), axis))
     robot = Robot("chain", tuple(f"l{i}" for i in range(201)), tuple(joints), ())
     placed = PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
@@ -83,8 +91,12 @@ def test_the_bound_is_not_idle():
     """One joint that turns the body about an axis through it, seen to first order; and one that slides it."""
     for kind, arm in (("revolute", np.hypot(0.15, 0.05)), ("prismatic", 1.0)):
         joint = Joint("j", JointKind(kind), "a", "b", np.eye(4), np.array([0.0, 0.0, 1.0]))
-        placed = PlacedRobot(Robot("r", ("a", "b"), (joint,), ()), Trajectory(np.zeros(1), (), np.zeros((1, 0))))
-        bound = ways(surface_of(SHAPE), np.array([1]), joined_links([placed]), np.array([[0.0], [0.01]]))
+        placed = PlacedRobot(
+            Robot("r", ("a", "b"), (joint,), ()), Trajectory(np.zeros(1), (), np.zeros((1, 0)))
+        )
+        bound = ways(
+            surface_of(SHAPE), np.array([1]), joined_links([placed]), np.array([[0.0], [0.01]])
+        )
         assert bound[1] == pytest.approx(0.01 * arm, rel=1e-4)
 
 
@@ -99,10 +111,17 @@ def test_a_finer_motion_takes_few_more_looks(name, need):
     (placed,) = case.robots
     asked = placed.trajectory
     times = np.linspace(asked.times[0], asked.times[-1], 16 * (asked.n_steps - 1) + 1)
-    positions = np.column_stack([np.interp(times, asked.times, column) for column in asked.positions.T])
-    finer = replace(placed, trajectory=replace(asked, times=times, positions=positions, velocities=None))
+    positions = np.column_stack(
+        [np.interp(times, asked.times, column) for column in asked.positions.T]
+    )
+    finer = replace(
+        placed, trajectory=replace(asked, times=times, positions=positions, velocities=None)
+    )
     case = replace(case, robots=(finer,))
-    whole, found = cl.check(case, jobs=1, certify=False), cl.check(case, need=need, jobs=1, certify=False)
+    whole, found = (
+        cl.check(case, jobs=1, certify=False),
+        cl.check(case, need=need, jobs=1, certify=False),
+    )
     share = 0.5 if (name, need) == ("panda_shelf", "limit") else 0.6
     assert found.record.tally["steps_passed_over"] > share * len(times)
     truth, told = whole.steps["clearance"].to_numpy(), found.steps["clearance"].to_numpy()

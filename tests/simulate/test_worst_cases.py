@@ -70,7 +70,9 @@ def test_brute_force_over_all_polygons_says_the_same(run):
     step = SOME_STEPS[1]
     links, obstacles = placed_bodies(run, step)
     (nearest, least) = min(pair_rows(run, step).items(), key=lambda entry: entry[1])
-    a, b = (corners_in_world(side, name) for name, side in zip(nearest, (links, obstacles), strict=True))
+    a, b = (
+        corners_in_world(side, name) for name, side in zip(nearest, (links, obstacles), strict=True)
+    )
     rows, columns = np.divmod(np.arange(len(a) * len(b)), len(b))
     brute = cl.polygon_distances(a[rows], b[columns]).min()
     assert least == pytest.approx(brute, abs=1e-14)
@@ -87,7 +89,11 @@ def test_needs_and_threads_agree(run, need, jobs, monkeypatch):
     found = cl.check(case, need=need, jobs=jobs, certify=False).steps
     clearances = found["clearance"].to_numpy()
     known = ~np.isnan(clearances)
-    must_know = {"steps": truth >= 0.0, "limit": truth < limit, "minimum": np.arange(len(truth)) == truth.argmin()}
+    must_know = {
+        "steps": truth >= 0.0,
+        "limit": truth < limit,
+        "minimum": np.arange(len(truth)) == truth.argmin(),
+    }
     assert known[must_know[need]].all()
     assert (clearances[known] == truth[known]).all()
     if need != "steps":

@@ -64,7 +64,9 @@ def test_a_long_strip_has_a_narrow_band():
     n = 2 * vertices.size
     node_at, width, of_row = reached(sketch_damped.nodes_of)(s, vertices, rows, first, n)
     start, mine = reached(sketch_damped.incidence)(of_row, width.size)
-    half, column = reached(sketch_damped.narrow)(vertices, first, n, node_at, width, of_row, start, mine)
+    half, column = reached(sketch_damped.narrow)(
+        vertices, first, n, node_at, width, of_row, start, mine
+    )
     assert sorted(column) == list(range(0, n, 2))  # a permutation of the points
     assert half <= 16  # a ring folded twice: four points abreast
     for a, b in edges:

@@ -53,7 +53,9 @@ def test_it_holds_after_solving(kind, k):
 def test_derivatives_match_differences(kind, k):
     s, _c, _ = made(kind, k)
     t = tables_of(s)
-    x = np.array(s._lists.numbers) + np.random.default_rng(1).uniform(-0.3, 0.3, len(s._lists.numbers))
+    x = np.array(s._lists.numbers) + np.random.default_rng(1).uniform(
+        -0.3, 0.3, len(s._lists.numbers)
+    )
     _, slots = gradients(t.code, t.var, t.coef, t.value, x)
     analytic = np.zeros((t.code.size, x.size))
     for row, var in enumerate(t.var):

@@ -117,7 +117,9 @@ class Builder:
     def shake(self, off):
         numbers = self.s._lists.numbers
         for k in range(len(numbers)):
-            numbers[k] += self.random.uniform(-off, off) * (0.1 if self.s._lists.roles[k] == 2 else 1.0)
+            numbers[k] += self.random.uniform(-off, off) * (
+                0.1 if self.s._lists.roles[k] == 2 else 1.0
+            )
 
 
 def _height(p, line):
@@ -199,7 +201,9 @@ def test_under_constrained(count, seed, missing):
         )
     random = np.random.default_rng(seed)
     for k in range(len(t._lists.numbers)):
-        t._lists.numbers[k] += random.uniform(-0.01, 0.01) * (0.1 if t._lists.roles[k] == 2 else 1.0)
+        t._lists.numbers[k] += random.uniform(-0.01, 0.01) * (
+            0.1 if t._lists.roles[k] == 2 else 1.0
+        )
     result = t.solve()
     free, _ = _checked(t, result)
     assert result.freedom == free

@@ -155,7 +155,12 @@ def test_the_rod_reaches_from_point_to_point_in_every_direction():
     assert np.abs(np.column_stack([middles - half, middles + half]) - lines).max() < 3e-9
 
 
-ENDS = {signal.SIGINT: 0, signal.SIGTERM: 0, signal.SIGHUP: -signal.SIGHUP, signal.SIGKILL: -signal.SIGKILL}
+ENDS = {
+    signal.SIGINT: 0,
+    signal.SIGTERM: 0,
+    signal.SIGHUP: -signal.SIGHUP,
+    signal.SIGKILL: -signal.SIGKILL,
+}
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGHUP"), reason="other signals")

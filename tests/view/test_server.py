@@ -84,7 +84,9 @@ def test_only_the_loopback_address_listens(server):
 )  # fmt: skip
 def test_a_foreign_host_or_origin_is_refused(server, place, headers):
     headers = {name: text.format(port=server.port) for name, text in headers.items()}
-    assert status(server.url + place, **headers) in ((400, 403) if headers.get("Host") == "" else (403,))
+    assert status(server.url + place, **headers) in (
+        (400, 403) if headers.get("Host") == "" else (403,)
+    )
     if place == "scene":
         assert received(server, **headers) in (400, 403)
 
@@ -105,7 +107,9 @@ def test_two_servers_have_two_secrets(server):
     assert other.url.split("/")[3] != server.url.split("/")[3]
 
 
-TRAP = "import pathlib; pathlib.Path(__file__).with_suffix('.trapped').touch(); raise SystemExit(99)\n"
+TRAP = (
+    "import pathlib; pathlib.Path(__file__).with_suffix('.trapped').touch(); raise SystemExit(99)\n"
+)
 TRAPPED = ("zmq", "tornado", "meshcat", "click", "numpy", "umsgpack", "IPython", "PIL")
 
 

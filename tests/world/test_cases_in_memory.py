@@ -42,13 +42,17 @@ def made_again(case):
         fixed_positions=placed.fixed_positions,
         exclude_links=placed.exclude_links,
     )
-    standing = tuple(cl.Obstacle(cl.Body(o.name, o.body.shape), o.world_from_body) for o in case.obstacles)
+    standing = tuple(
+        cl.Obstacle(cl.Body(o.name, o.body.shape), o.world_from_body) for o in case.obstacles
+    )
     return cl.Case("again", (robot,), standing, limits=case.limits, allow=case.allow)
 
 
 def test_a_case_from_memory_has_the_answers_of_the_file(given):
     asked = given.robots[0].trajectory
-    case = made_again(given).with_trajectory(asked.times, asked.positions, joint_names=asked.joint_names)
+    case = made_again(given).with_trajectory(
+        asked.times, asked.positions, joint_names=asked.joint_names
+    )
     mine, theirs = cl.check(case, certify=False), cl.check(given, certify=False)
     assert mine.steps.equals(theirs.steps)
 

@@ -43,7 +43,9 @@ def test_positions_and_extremes_are_those_of_the_spline(seed):
 
 
 def test_a_throw_goes_as_high_as_it_must():
-    least, greatest = extremes_between(np.array([0.0, 2.0]), np.zeros((2, 1)), np.array([[3.0], [-3.0]]))
+    least, greatest = extremes_between(
+        np.array([0.0, 2.0]), np.zeros((2, 1)), np.array([[3.0], [-3.0]])
+    )
     assert (least[0, 0], greatest[0, 0]) == (0.0, 1.5)
 
 

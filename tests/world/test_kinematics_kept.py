@@ -18,5 +18,7 @@ def test_velocities_are_found_without_another_robot_in_the_cache() -> None:
     kinematics.positions_by_link(robot, moving)
     kept = kinematics._moving_links.cache_info()
     assert (kept.misses, kept.currsize) == (1, 1)
-    rate = kinematics.positions_by_link(robot, moving) - kinematics.positions_by_link(robot, np.zeros_like(moving))
+    rate = kinematics.positions_by_link(robot, moving) - kinematics.positions_by_link(
+        robot, np.zeros_like(moving)
+    )
     assert np.allclose(kinematics.velocities_by_link(robot, moving), rate, rtol=0, atol=1e-15)

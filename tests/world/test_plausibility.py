@@ -26,11 +26,16 @@ def moved(x: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
 def arm(size: float = 0.3, origin: str = "arm.stl", **joint) -> Robot:
     """A base and an upper arm half a metre on."""
     elbow = Joint("elbow", JointKind.REVOLUTE, "base", "upper", moved(0.0, 0.0, 0.5))
-    bodies = Body("base", box((0.3, 0.3, 0.3)), "box"), Body("upper", box((size, size, size)), origin)
+    bodies = (
+        Body("base", box((0.3, 0.3, 0.3)), "box"),
+        Body("upper", box((size, size, size)), origin),
+    )
     return Robot("arm", ("base", "upper"), (replace(elbow, **joint),), bodies)
 
 
-def case_of(robot=None, obstacle=None, pose=None, positions=(0.0, 0.5), times=(0.0, 1.0), **more) -> Case:
+def case_of(
+    robot=None, obstacle=None, pose=None, positions=(0.0, 0.5), times=(0.0, 1.0), **more
+) -> Case:
     asked = Trajectory(np.array(times), ("elbow",), np.array(positions)[:, None])
     body = Body("block", obstacle or box((0.2, 0.2, 0.2)))
     placed = PlacedRobot(robot or arm(), asked)
@@ -92,7 +97,9 @@ def test_joints_beyond_their_limits():
     with pytest.raises(BadInput, match=r"limits\.joints is 'stop'; 'warn' or 'fail'"):
         notices_of(case_of(limits=Limits(joints="stop")))
     strict = Limits(joints="fail")
-    assert told(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [("violated", "joint limits")]
+    assert told(case_of(limited, positions=(0.0, 1.2), limits=strict)) == [
+        ("violated", "joint limits")
+    ]
 
 
 def test_a_robot_of_which_nothing_is_asked_is_looked_at_too():
@@ -142,7 +149,11 @@ def test_joints_that_follow_each_other_in_memory_are_refused():
         return Joint(name, JointKind.REVOLUTE, parent, child, np.eye(4), mimic=Mimic(other))
 
     for joints, fault, words in [
-        ([follows("j", "k", "a", "b"), follows("k", "j", "b", "c")], BadInput, "joints follow each other"),
+        (
+            [follows("j", "k", "a", "b"), follows("k", "j", "b", "c")],
+            BadInput,
+            "joints follow each other",
+        ),
         ([follows("j", "gone", "a", "b")], UnknownJoint, "unknown joint 'gone'"),
     ]:
         names = ("a", "b", "c")[: len(joints) + 1]
@@ -164,6 +175,10 @@ def test_a_turn_that_follows_out_of_the_world_is_refused():
     turning = tuple(replace(joint, kind=JointKind.REVOLUTE) for joint in joints)
     robot = replace(chain(2), joints=turning)
     asked = Trajectory(np.array([0.0, 1.0]), ("j0",), np.array([[0.0], [0.5]]))
-    case = Case("made", (PlacedRobot(robot, asked),), (Obstacle(Body("b", box((1.0, 1.0, 1.0))), moved(3.0)),))
+    case = Case(
+        "made",
+        (PlacedRobot(robot, asked),),
+        (Obstacle(Body("b", box((1.0, 1.0, 1.0))), moved(3.0)),),
+    )
     with pytest.raises(BadDimension, match=r"joint 'j1' stands 1e\+160 rad beyond"):
         check(case)

@@ -11,7 +11,12 @@ from clearance.geometry.shapes.round import capsule, cylinder, sphere
 from clearance.geometry.shapes.shape import Measure, Shape
 
 _LENGTH, _OR_ZERO = Measure.LENGTH, Measure.LENGTH_OR_ZERO
-_BENT = {"length": _LENGTH, "sections": Measure.SIDES, "path": Measure.POINTS, "bend_radius": _LENGTH}
+_BENT = {
+    "length": _LENGTH,
+    "sections": Measure.SIDES,
+    "path": Measure.POINTS,
+    "bend_radius": _LENGTH,
+}
 
 SHAPES = {
     "box": Shape(box, "A box about its centre.", {"size": Measure.SIZES}, in_urdf=True),
@@ -36,7 +41,9 @@ SHAPES = {
         in_urdf=True,
         radius="radius",
     ),
-    "sphere": Shape(sphere, "A ball about its centre.", {"radius": _LENGTH}, in_urdf=True, radius="radius"),
+    "sphere": Shape(
+        sphere, "A ball about its centre.", {"radius": _LENGTH}, in_urdf=True, radius="radius"
+    ),
 }
 """Every shape that files can name, by its name."""
 

@@ -69,7 +69,9 @@ def mitred(
     tangents = np.concatenate([[0.0], radius * np.tan(0.5 * turns), [0.0]])
     _check_fit(np.linalg.norm(np.diff(points, axis=0), axis=1), tangents, radius)
     # excess in bends is 2 (B + R) (1 / cos(step / 2) - 1) to first order; see NOTES.md
-    allowed = 0.49 * min(tolerance, 4.0 * (radius - outer_radius)) / (2.0 * (radius + 2.0 * outer_radius))
+    allowed = (
+        0.49 * min(tolerance, 4.0 * (radius - outer_radius)) / (2.0 * (radius + 2.0 * outer_radius))
+    )
     most = 2.0 * np.arccos(1.0 / (1.0 + allowed))
     if turns.max() / most > MOST_SECTIONS:
         raise BadDimension(
@@ -96,7 +98,9 @@ def _joints(
     step = turn / n_pieces
     centre = corner - radius * np.tan(0.5 * turn) * arriving + radius * inward
     angles = (np.arange(n_pieces) + 0.5)[:, None] * step
-    return centre + radius / np.cos(0.5 * step) * (np.sin(angles) * arriving - np.cos(angles) * inward)
+    return centre + radius / np.cos(0.5 * step) * (
+        np.sin(angles) * arriving - np.cos(angles) * inward
+    )
 
 
 def _checked_path(path: np.ndarray) -> np.ndarray:
@@ -106,16 +110,22 @@ def _checked_path(path: np.ndarray) -> np.ndarray:
         points = np.zeros(0)
     if points.ndim != 2 or points.shape[1:] != (3,) or len(points) < 2:
         raise BadDimension(
-            f"path of shape {points.shape}", where="path", valid="two or more points of three numbers [m]"
+            f"path of shape {points.shape}",
+            where="path",
+            valid="two or more points of three numbers [m]",
         )
     if not np.isfinite(points).all():
         i_bad = int(np.argmin(np.isfinite(points).all(axis=1)))
-        raise BadDimension(f"point {i_bad} is {points[i_bad].tolist()}", where="path", valid="finite")
+        raise BadDimension(
+            f"point {i_bad} is {points[i_bad].tolist()}", where="path", valid="finite"
+        )
     same = (points[1:] == points[:-1]).all(axis=1)
     if same.any():
         i_bad = int(np.argmax(same))
         raise BadDimension(
-            f"points {i_bad} and {i_bad + 1} are equal", where="path", valid="each point once in a row"
+            f"points {i_bad} and {i_bad + 1} are equal",
+            where="path",
+            valid="each point once in a row",
         )
     return points
 
@@ -123,7 +133,9 @@ def _checked_path(path: np.ndarray) -> np.ndarray:
 def _checked_bend_radius(bend_radius: float | None, outer_radius: float) -> float:
     if bend_radius is None:
         raise BadDimension(
-            "the path has corners and bend_radius is missing", where="bend_radius", valid="a radius [m]"
+            "the path has corners and bend_radius is missing",
+            where="bend_radius",
+            valid="a radius [m]",
         )
     radius = positive(bend_radius, "bend_radius")
     if radius <= outer_radius:

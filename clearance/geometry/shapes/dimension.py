@@ -20,7 +20,9 @@ def positive(value: float, field: str) -> float:
     """
     number = _number(value, field)
     if not 0.0 < number < np.inf:
-        raise BadDimension(f"{number:.9g} is given", where=field, valid="a finite number above 0 [m]")
+        raise BadDimension(
+            f"{number:.9g} is given", where=field, valid="a finite number above 0 [m]"
+        )
     return number
 
 
@@ -28,7 +30,9 @@ def at_least_zero(value: float, field: str) -> float:
     """The value as a float, 0 or more."""
     number = _number(value, field)
     if not 0.0 <= number < np.inf:
-        raise BadDimension(f"{number:.9g} is given", where=field, valid="a finite number, 0 or more [m]")
+        raise BadDimension(
+            f"{number:.9g} is given", where=field, valid="a finite number, 0 or more [m]"
+        )
     return number
 
 
@@ -65,11 +69,15 @@ def sections_for(radius: float, tolerance: float, sections: int | None) -> int:
     if sections is not None:
         if not isinstance(sections, int | np.integer) or not 3 <= sections <= MOST_SECTIONS:
             raise BadDimension(
-                f"{sections!r:.60} is given", where="sections", valid=f"a whole number, 3 to {MOST_SECTIONS}"
+                f"{sections!r:.60} is given",
+                where="sections",
+                valid=f"a whole number, 3 to {MOST_SECTIONS}",
             )
         return int(sections)
     with np.errstate(over="ignore"):
-        ratio = 0.999999 * positive(tolerance, "tolerance") / radius  # leaves room for the push by ulps
+        ratio = (
+            0.999999 * positive(tolerance, "tolerance") / radius
+        )  # leaves room for the push by ulps
     ratio = min(ratio, 1e300)  # of a radius of 1e-320 it overflows
     # cos(x) = 1 / (1 + ratio), written as sin(x / 2)^2 so that a small ratio keeps its digits
     half_angle = 2.0 * np.arcsin(np.sqrt(0.5 * ratio / (1.0 + ratio)))

@@ -54,10 +54,19 @@ def pipe(
         raise BadDimension(f"{given} of length and path given", valid="one of them is needed")
     if path is None:
         if bend_radius is not None:
-            raise BadDimension("bend_radius is given without path", valid="a straight pipe has no bends")
-        return _straight(inner, outer, positive(length, "length"), sections_for(outer, tolerance, sections))
-    return _bent(inner, outer, mitred(path, bend_radius, outer, positive(tolerance, "tolerance")),
-                 sections, tolerance)
+            raise BadDimension(
+                "bend_radius is given without path", valid="a straight pipe has no bends"
+            )
+        return _straight(
+            inner, outer, positive(length, "length"), sections_for(outer, tolerance, sections)
+        )
+    return _bent(
+        inner,
+        outer,
+        mitred(path, bend_radius, outer, positive(tolerance, "tolerance")),
+        sections,
+        tolerance,
+    )
 
 
 def _straight(inner: float, outer: float, length: float, n: int) -> Polyhedron:

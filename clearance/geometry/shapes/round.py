@@ -36,7 +36,9 @@ def cylinder(
     n = sections_for(radius, tolerance, sections)
     ring = ring_around(radius, n)
     vertices, faces = stacked(np.stack([ring, ring]), np.array([-0.5, 0.5]) * length)
-    return Polyhedron(vertices, faces, excess=_farthest_outside(vertices, radius, 0.5 * length, False))
+    return Polyhedron(
+        vertices, faces, excess=_farthest_outside(vertices, radius, 0.5 * length, False)
+    )
 
 
 def sphere(radius: float, tolerance: float = TESSELLATION) -> Polyhedron:
@@ -65,7 +67,10 @@ def _ball(radius: float, half: float, n: int, upper: np.ndarray) -> Polyhedron:
     """The faceted capsule with caps `upper` (k, 2): ring radius and height of a unit half, bottom first."""
     radii = np.concatenate([upper[:, 0][::-1], upper[:, 0]]) * radius
     heights = np.concatenate([-half - radius * upper[::-1, 1], half + radius * upper[:, 1]])
-    heights[0], heights[-1] = -np.nextafter(half + radius, np.inf), np.nextafter(half + radius, np.inf)
+    heights[0], heights[-1] = (
+        -np.nextafter(half + radius, np.inf),
+        np.nextafter(half + radius, np.inf),
+    )
     vertices, faces = stacked(family_around(radii, n), heights)
     return Polyhedron(vertices, faces, excess=_farthest_outside(vertices, radius, half, True))
 

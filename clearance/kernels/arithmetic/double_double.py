@@ -268,7 +268,9 @@ def frames_of(world_from_a, world_from_b):
     """The frames of two bodies at given poses (`Rigid`)."""
     a, b = world_from_a, world_from_b
     shift = difference(b.t, a.t)
-    return Frames(a, b, relative(a, b), shift, defect_of(a) + defect_of(b), is_still(a), is_still(b))
+    return Frames(
+        a, b, relative(a, b), shift, defect_of(a) + defect_of(b), is_still(a), is_still(b)
+    )
 
 
 @inline

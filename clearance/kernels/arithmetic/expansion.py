@@ -161,7 +161,9 @@ def orient3d(a, b, c, d, terms):
     if p_exact and q_exact and r_exact:
         return sign_of(terms, _determinant3(p, q, r, terms, 0))
     minus_d = (-d[0], -d[1], -d[2])
-    n = _determinant3(a, b, c, terms, 0)  # det [a-d; b-d; c-d] is the sum of these four, by linearity
+    n = _determinant3(
+        a, b, c, terms, 0
+    )  # det [a-d; b-d; c-d] is the sum of these four, by linearity
     n = _determinant3(minus_d, b, c, terms, n)
     n = _determinant3(a, minus_d, c, terms, n)
     n = _determinant3(a, b, minus_d, terms, n)

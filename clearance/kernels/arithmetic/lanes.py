@@ -215,7 +215,12 @@ if numba.config.DISABLE_JIT:
         """One of the four."""
         return lanes[place]
 else:
-    square_root, larger, where_positive, marks_within = _square_root, _larger, _where_positive, _marks_within
+    square_root, larger, where_positive, marks_within = (
+        _square_root,
+        _larger,
+        _where_positive,
+        _marks_within,
+    )
     lanes_at, number_at, lane, first_of = _lanes_at, _number_at, _lane, _first_of
 
 

@@ -147,7 +147,9 @@ def approximate_difference(p, q, exact):
     d = sub(_turned(exact, p), _turned(exact, q))
     if size(t) == 0.0 and _are_still(exact):
         return d, FILTER * size(d)
-    return Vec3(f * t.x + d.x, f * t.y + d.y, f * t.z + d.z), FILTER * (size(p.v) + size(q.v) + size(t))
+    return Vec3(f * t.x + d.x, f * t.y + d.y, f * t.z + d.z), FILTER * (
+        size(p.v) + size(q.v) + size(t)
+    )
 
 
 @inline

@@ -191,7 +191,9 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
     points, stack = work[0], work[1]
     stack[0, 0], stack[0, 1] = s0, s1
     top, found, lower, where = 1, best, np.inf, s0
-    fine = -1.0  # what the points' rounding is relative to: those of the whole, not of ever smaller parts
+    fine = (
+        -1.0
+    )  # what the points' rounding is relative to: those of the whole, not of ever smaller parts
     while top > 0:
         top -= 1
         a, b = stack[top, 0], stack[top, 1]

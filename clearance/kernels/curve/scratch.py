@@ -9,7 +9,9 @@ import numpy as np
 
 from clearance.compile.jit import inline
 
-N_NEAREST = 5  # planes that `nearest.closest_on` takes; `nearest.nearest` keeps its stack in the next one
+N_NEAREST = (
+    5  # planes that `nearest.closest_on` takes; `nearest.nearest` keeps its stack in the next one
+)
 MAP, PART_A, PART_B, GAP, SQUARES, FEET = range(N_NEAREST, 11)
 N_PLANES = 11
 LARGEST_DEGREE = 48  # of B(s(t)) and A together; binomials are at hand up to twice that

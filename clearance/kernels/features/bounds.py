@@ -87,7 +87,9 @@ def lower_bound_between(h, k, n, slack):
     gap_sq = dot(d, d)
     reach = abs(d.x) * h.x + abs(d.y) * h.y + abs(d.z) * h.z
     reach = reach + abs(e.x) * k.x + abs(e.y) * k.y + abs(e.z) * k.z
-    between_centres = larger((gap_sq - reach) / square_root(gap_sq) - slack, -NO_REACH)  # NaN where they coincide
+    between_centres = larger(
+        (gap_sq - reach) / square_root(gap_sq) - slack, -NO_REACH
+    )  # NaN where they coincide
     outside = square_root(larger(in_p, in_q))
     return where_positive(outside, larger(outside, between_centres), between_centres)
 
@@ -132,7 +134,9 @@ def box_reach(box, direction):
     """[m] how far a box reaches from its centre along a direction."""
     h = box.half
     return (
-        h.x * abs(dot(box.x, direction)) + h.y * abs(dot(box.y, direction)) + h.z * abs(dot(box.z, direction))
+        h.x * abs(dot(box.x, direction))
+        + h.y * abs(dot(box.y, direction))
+        + h.z * abs(dot(box.z, direction))
     )
 
 
@@ -183,7 +187,9 @@ def _beside(surface, face, other, face_other, m):
         least += dot(u, sub(m.t, row(surface.vertices, surface.face_vertices[e])))
         if least > farthest:
             farthest, outward = least, u
-    to = along(Vec3(farthest * outward.x, farthest * outward.y, farthest * outward.z), height, normal)
+    to = along(
+        Vec3(farthest * outward.x, farthest * outward.y, farthest * outward.z), height, normal
+    )
     return height * height + farthest * farthest, to
 
 
@@ -204,7 +210,9 @@ def sight_beside(a, face_a, b, face_b, from_a, from_b):
 @inline(force=True)
 def lower_bound_faces_beside(a, face_a, b, face_b, m):
     """[m] a lower bound on the distance of two faces but for rounding, `sight_beside`."""
-    return lower_bound_faces_in_sight(a, face_a, b, face_b, sight_beside(a, face_a, b, face_b, m, inverse(m)))
+    return lower_bound_faces_in_sight(
+        a, face_a, b, face_b, sight_beside(a, face_a, b, face_b, m, inverse(m))
+    )
 
 
 @inline(force=True)

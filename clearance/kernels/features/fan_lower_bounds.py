@@ -41,7 +41,9 @@ def _nearest_of_triangles(frames, one, two):
         n_two = 3 if kind == 5 else (2 if kind in (2, 3) else 1)
         for i in range(1 if n_one == 3 else 3):
             for j in range(1 if n_two == 3 else 3):
-                found = wide_feature(frames, _start(n_one, _turned(one, i)), _start(n_two, _turned(two, j)))
+                found = wide_feature(
+                    frames, _start(n_one, _turned(one, i)), _start(n_two, _turned(two, j))
+                )
                 if less(found.gap_sq, best.gap_sq):
                     best = found
     return best
@@ -49,7 +51,16 @@ def _nearest_of_triangles(frames, one, two):
 
 def _like():
     far = NOTHING_SIZED.length
-    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, NOTHING_SIZED.pair, far, far
+    return (
+        Lent(surface_like()),
+        0,
+        Lent(surface_like()),
+        0,
+        FRAMES_AT_REST,
+        NOTHING_SIZED.pair,
+        far,
+        far,
+    )
 
 
 @apart(FANS, _like)
@@ -83,4 +94,6 @@ def floor_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
 @inline
 def fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
     """The same by address."""
-    return at_address(table, FANS, floor, (lent_a, face_a, lent_b, face_b, frames, pair, least, floor))
+    return at_address(
+        table, FANS, floor, (lent_a, face_a, lent_b, face_b, frames, pair, least, floor)
+    )

@@ -64,7 +64,9 @@ def _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance):
             continue
         edge = 0.0
         for k in range(start, end):
-            edge = max(edge, dot(outward, sub(row(surface.vertices, surface.face_vertices[k]), corner)))
+            edge = max(
+                edge, dot(outward, sub(row(surface.vertices, surface.face_vertices[k]), corner))
+            )
         s_x -= edge
         s_y -= edge
         magnitudes = abs(h_x) + abs(h_y) + abs(s_x) + abs(s_y)

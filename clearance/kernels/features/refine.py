@@ -93,7 +93,9 @@ def _better(best, pair, length, face_a, face_b, floor, sure):
     sure = lesser(best.sure, sure)
     if _wins(pair.gap_sq, face_a, face_b, best):
         return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor, sure)
-    return Refined(best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, best.floor, sure)
+    return Refined(
+        best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, best.floor, sure
+    )
 
 
 def _two_faces_like():
@@ -136,9 +138,14 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
             length = root(pair.gap_sq)
             if not less(floor, _enough(length, ask.margin)):
                 off = too_far(frames, one, two, pair, length)
-                return _better(best, pair, length, face_a, face_b, minus(floor, off), minus(length, off))
+                return _better(
+                    best, pair, length, face_a, face_b, minus(floor, off), minus(length, off)
+                )
     return at_address(
-        table, REFINE_EVERY, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, ask, best, table)
+        table,
+        REFINE_EVERY,
+        NOTHING_REFINED,
+        (lent_a, face_a, lent_b, face_b, frames, ask, best, table),
     )
 
 
@@ -146,7 +153,10 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
 def refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best):
     """The same by address."""
     return at_address(
-        table, REFINE, NOTHING_REFINED, (lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table)
+        table,
+        REFINE,
+        NOTHING_REFINED,
+        (lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table),
     )
 
 
@@ -185,7 +195,9 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
 
 
 @inline(force=True)
-def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table):
+def settle(
+    lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table
+):
     """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
 
     Args:
@@ -201,11 +213,15 @@ def settle(lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, 
             continue
         if near_sq > limit * limit:
             in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-            if in_sight > limit or not may_hide(a, face_a, b, face_b, frames.m, margin, limit, least):
+            if in_sight > limit or not may_hide(
+                a, face_a, b, face_b, frames.m, margin, limit, least
+            ):
                 continue
         features = waiting.features
         seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
-        best = refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, Ask(limit, margin), best)
+        best = refined_of(
+            table, lent_a, face_a, lent_b, face_b, frames, seen, Ask(limit, margin), best
+        )
     return best
 
 

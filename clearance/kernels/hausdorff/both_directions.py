@@ -88,8 +88,12 @@ def both_directions(one, two, shift_x, shift_y, aim):
         pair = Pair(Curves(one.pieces, two.pieces, shift_x, shift_y), lb)
         kept = np.zeros(n_arcs, np.bool_)
         kept[drawn.deepest_leaf] = True
-        for stage in range(3):  # the deepest arc; what trimming leaves, some of much first; the rest
-            heap = _search_kept(pair, la, aim, drawn, stage == SOME_OF_MANY, kept, state, work, heap)
+        for stage in range(
+            3
+        ):  # the deepest arc; what trimming leaves, some of much first; the rest
+            heap = _search_kept(
+                pair, la, aim, drawn, stage == SOME_OF_MANY, kept, state, work, heap
+            )
             bound = max(max(state.lower, state.map_bound), aim.enough)
             if stage == THE_DEEPEST:
                 kept[:] = True

@@ -22,7 +22,9 @@ MOST_OPEN = 4000  # pairs of nodes that may be open at once
 CELL_ROWS = 300  # rows of scratch at least: cells of one pair of leaves that may be open at once
 BUDGET = 200000  # cells after which the rest is given up with its bound
 WIDEST = 1e-9  # of the distance: how much of a bound's lack may be the rounding of large radii
-FIRST_FEET = 16  # arcs of A whose starts give a good bound first, so that most pairs are never opened
+FIRST_FEET = (
+    16  # arcs of A whose starts give a good bound first, so that most pairs are never opened
+)
 MOST_STEPS = 12  # from foot to foot
 OF_A, OF_B, CELLS, BENDS = range(4)  # planes of scratch, in use while no nearest point is sought
 

@@ -138,9 +138,7 @@ def _bound_of(lines, i, span, enough):
         x1, y1 = point_at(lines.control, i, span.t1)
         run = Run(span.near0, span.near1, span.d0, span.d1)
         shift_x, shift_y = lines.shift_x, lines.shift_y
-        by_run = segment_run_bound(
-            x0, y0, x1, y1, shift_x, shift_y, control, run, enough
-        )
+        by_run = segment_run_bound(x0, y0, x1, y1, shift_x, shift_y, control, run, enough)
         bound = min(bound, by_run)
     return bound
 

@@ -72,9 +72,7 @@ def segment_run_bound(x0, y0, x1, y1, shift_x, shift_y, control, run, enough):
     low, high = 2 * min(run.first, run.last), 2 * max(run.first, run.last) + 1
     for r in range(low, high + 1):
         starts = r > low and r % 2 == 0
-        if starts and (
-            control[r, 0] != control[r - 1, 0] or control[r, 1] != control[r - 1, 1]
-        ):
+        if starts and (control[r, 0] != control[r - 1, 0] or control[r, 1] != control[r - 1, 1]):
             return np.inf
         most = max(most, abs(dx * (control[r, 1] - y0) - dy * (control[r, 0] - x0)))
         if most > enough:

@@ -89,7 +89,11 @@ def _follow(curves, interval, feet, bound, order, enough, work):
     for r in range(1, order):
         place = SHARES[order, r]
         near = 2.0 * place
-        s = s0 + near * (feet.middle - s0) if place <= 0.5 else s1 + (2.0 - near) * (feet.middle - s1)
+        s = (
+            s0 + near * (feet.middle - s0)
+            if place <= 0.5
+            else s1 + (2.0 - near) * (feet.middle - s1)
+        )
         more[r], _ = slide_from(curves, i, t0 + place * (t1 - t0), feet.piece, s)
     closer, where, rounding = follow_bound(
         curves.a, curves.b, i, t0, t1, feet.piece, more, order, curves.shift_x, curves.shift_y, enough,

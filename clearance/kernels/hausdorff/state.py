@@ -12,7 +12,10 @@ SEARCH_STATE = np.dtype(
         np.record,
         [
             ("lower", np.float64),  # proven lower bound of the directed distance
-            ("distance", np.float64),  # the value at the best point; differs from `lower` by rounding
+            (
+                "distance",
+                np.float64,
+            ),  # the value at the best point; differs from `lower` by rounding
             ("piece_a", np.int64),  # the best point: a piece of A, -1 while there is none,
             ("at_a", np.float64),  # and its local parameter
             ("piece_b", np.int64),  # its nearest point on B

@@ -125,9 +125,7 @@ def _settle_pairs(systems, part, table, level, boxes, state, work):
                 continue
             if ranges[k, 0] > ranges[m, 1] or ranges[m, 0] > ranges[k, 1]:
                 continue
-            settled, spent = _pair_is_settled(
-                systems, part, table, level, m, k, boxes, state, work
-            )
+            settled, spent = _pair_is_settled(systems, part, table, level, m, k, boxes, state, work)
             cost += 1.0 + spent
             if not settled and n_open < new.shape[0]:
                 new[n_open, 0], new[n_open, 1] = k, m
@@ -141,7 +139,9 @@ def _settle_pairs(systems, part, table, level, boxes, state, work):
 def _settle_level(systems, da, part, table, level, boxes, state, work):
     """Settles what can be of an interval's systems: whether any stays open, whether all fit, and the cost."""
     (first, second, third), points = da, work[SQUARES]
-    enclose(systems.pair.curves.a, first, second, third, part.piece, part.t0, part.t1, points, boxes.a)
+    enclose(
+        systems.pair.curves.a, first, second, third, part.piece, part.t0, part.t1, points, boxes.a
+    )
     n = put_child_cells(systems, table, level, level > 1, boxes.a, points, boxes.gap)
     cost = 2.0 * table.n_cells[level - 1]
     cost += _settle_normals(systems, part, table, level, n, boxes, state, work)

@@ -9,7 +9,9 @@ from clearance.kernels.hausdorff.state import COMMON_NORMAL, END, SELF_BISECTOR
 
 AT_THE_END = 1e-12  # a local parameter this near to 0 or 1 is that end
 SAME_POINT = 1e-14  # witnesses no farther apart, relative to their coordinates, have no direction
-STEEP = 1e-6  # cosine between the tangent and the line of the witnesses from which on that is no normal
+STEEP = (
+    1e-6  # cosine between the tangent and the line of the witnesses from which on that is no normal
+)
 
 
 @inline

@@ -22,7 +22,9 @@ def _seems_convex(corners):
         size = max(size, dot(side, side))
     if not 1e-200 < dot(total, total) < 1e200:
         return False
-    room = FLAT * np.sqrt(max(size, dot(sub(row(corners, n - 1), first), sub(row(corners, n - 1), first))))
+    room = FLAT * np.sqrt(
+        max(size, dot(sub(row(corners, n - 1), first), sub(row(corners, n - 1), first)))
+    )
     room *= np.sqrt(dot(total, total))
     for i in range(n):
         here, ahead, after = row(corners, i), row(corners, (i + 1) % n), row(corners, (i + 2) % n)

@@ -82,7 +82,16 @@ def _is_bent(points, flat, start, end, normal, terms):
         return False
     second, third = _far_corners(points, flat, start, end)
     for c in range(start + 1, end):
-        if orient3d(points[flat[start]], points[flat[second]], points[flat[third]], points[flat[c]], terms) != 0:
+        if (
+            orient3d(
+                points[flat[start]],
+                points[flat[second]],
+                points[flat[third]],
+                points[flat[c]],
+                terms,
+            )
+            != 0
+        ):
             return True
     axis = 0
     for other in range(1, 3):
@@ -92,7 +101,11 @@ def _is_bent(points, flat, start, end, normal, terms):
         return True
     i, j = (axis + 1) % 3, (axis + 2) % 3
     for c in range(n):
-        p, q, r = points[flat[start + c]], points[flat[start + (c + 1) % n]], points[flat[start + (c + 2) % n]]
+        p, q, r = (
+            points[flat[start + c]],
+            points[flat[start + (c + 1) % n]],
+            points[flat[start + (c + 2) % n]],
+        )
         turn = orient2d(p[i], p[j], q[i], q[j], r[i], r[j], terms)
         onward = (q[i] - p[i]) * (r[i] - q[i]) + (q[j] - p[j]) * (r[j] - q[j])
         if turn * normal[axis] < 0.0 or (turn == 0 and onward < 0.0):

@@ -86,7 +86,11 @@ def facing_of(cones_p, group, cones_q, other, m, slack):
     first, across, k = CONE_ROWS * group, CONE_ROWS * (other // WIDTH), other % WIDTH
     u = Vec3(lanes_at(cones_p, first), lanes_at(cones_p, first + 1), lanes_at(cones_p, first + 2))
     cos_u, sin_u = lanes_at(cones_p, first + 3), lanes_at(cones_p, first + 4)
-    v = Vec3(number_at(cones_q, across, k), number_at(cones_q, across + 1, k), number_at(cones_q, across + 2, k))
+    v = Vec3(
+        number_at(cones_q, across, k),
+        number_at(cones_q, across + 1, k),
+        number_at(cones_q, across + 2, k),
+    )
     v = turn(m, v)
     cos_v, sin_v = number_at(cones_q, across + 3, k), number_at(cones_q, across + 4, k)
     reach = lanes_at(cones_p, first + 5) + (number_at(cones_q, across + 5, k) + slack)

@@ -104,7 +104,11 @@ class Box(NamedTuple):
 
 @inline(force=True)
 def _point_at(numbers, first, k):
-    return Vec3(number_at(numbers, first, k), number_at(numbers, first + 1, k), number_at(numbers, first + 2, k))
+    return Vec3(
+        number_at(numbers, first, k),
+        number_at(numbers, first + 1, k),
+        number_at(numbers, first + 2, k),
+    )
 
 
 @inline(force=True)
@@ -129,7 +133,9 @@ def box_of(surface, node):
 
 @inline(force=True)
 def _points_at(numbers, first):
-    return Vec3(lanes_at(numbers, first), lanes_at(numbers, first + 1), lanes_at(numbers, first + 2))
+    return Vec3(
+        lanes_at(numbers, first), lanes_at(numbers, first + 1), lanes_at(numbers, first + 2)
+    )
 
 
 @inline(force=True)

@@ -79,7 +79,11 @@ def _fit(points, starts, order, first, last, v, low, high):
     for i in range(first, last):
         for k in range(starts[order[i]], starts[order[i] + 1]):
             for axis in range(3):
-                x = points[k, 0] * v[0, axis] + points[k, 1] * v[1, axis] + points[k, 2] * v[2, axis]
+                x = (
+                    points[k, 0] * v[0, axis]
+                    + points[k, 1] * v[1, axis]
+                    + points[k, 2] * v[2, axis]
+                )
                 low[axis] = min(low[axis], x)
                 high[axis] = max(high[axis], x)
     a, b, c = high[0] - low[0], high[1] - low[1], high[2] - low[2]
@@ -205,7 +209,9 @@ def _set_part(points, starts, order, part, first, last, room):
 def _parts(points, starts, order, middles, room):
     """Splits the part in `room`, the widest first, until there are four or all fit into a group; their number."""
     n_parts = 1
-    few = WIDTH if room.spans[0, 1] - room.spans[0, 0] > WIDTH else 1  # so that few lanes stay empty
+    few = (
+        WIDTH if room.spans[0, 1] - room.spans[0, 0] > WIDTH else 1
+    )  # so that few lanes stay empty
     while n_parts < WIDTH:
         widest = -1
         for part in range(n_parts):

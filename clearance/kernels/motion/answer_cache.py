@@ -53,7 +53,11 @@ def still_holds(answers, pair, moves, gap):
 @inline
 def was_contact(answers, pair):
     """True if the surfaces of a pair met when it was last measured."""
-    return answers.asked[pair] != NEVER and answers.gaps_sq[pair] == 0.0 and answers.faces[pair, 0] >= 0
+    return (
+        answers.asked[pair] != NEVER
+        and answers.gaps_sq[pair] == 0.0
+        and answers.faces[pair, 0] >= 0
+    )
 
 
 @inline

@@ -50,12 +50,19 @@ def room_for_boxes(n_bodies):
 def place_box(surface, body, pose, boxes):
     """Puts the box of a body to where the body is, at a `Rigid`."""
     box = box_of(surface, surface.roots[body])
-    centre, x, y, z = move(pose, box.centre), turn(pose, box.x), turn(pose, box.y), turn(pose, box.z)
+    centre, x, y, z = (
+        move(pose, box.centre),
+        turn(pose, box.x),
+        turn(pose, box.y),
+        turn(pose, box.z),
+    )
     for k in range(3):
         boxes.axes[body, 0, k], boxes.axes[body, 1, k], boxes.axes[body, 2, k] = x[k], y[k], z[k]
         boxes.centres[body, k], boxes.halves[body, k] = centre[k], box.half[k]
     c, h, t = box.centre, box.half, pose.t
-    reach = abs(t.x) + abs(t.y) + abs(t.z) + abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
+    reach = (
+        abs(t.x) + abs(t.y) + abs(t.z) + abs(c.x) + abs(c.y) + abs(c.z) + 2.0 * (h.x + h.y + h.z)
+    )
     boxes.slacks[body] = (SLACK + 8.0 * defect_of(pose)) * reach
     boxes.radii[body] = math.sqrt(dot(h, h)) * OUTWARD
 
@@ -63,7 +70,9 @@ def place_box(surface, body, pose, boxes):
 @inline(force=True)
 def _box(boxes, body):
     axes = boxes.axes[body]
-    return Box(row(axes, 0), row(axes, 1), row(axes, 2), row(boxes.centres, body), row(boxes.halves, body))
+    return Box(
+        row(axes, 0), row(axes, 1), row(axes, 2), row(boxes.centres, body), row(boxes.halves, body)
+    )
 
 
 @inline(force=True)
@@ -85,8 +94,13 @@ def bound_of_bodies(boxes, a, b, enough):
     d = sub(q.centre, p.centre)
     slack = boxes.slacks[a] + boxes.slacks[b]
     lean = slack + LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
-    by_balls = max(_beyond(p, d, lean) - boxes.radii[b], _beyond(q, d, lean) - boxes.radii[a]) - 2.0 * slack
+    by_balls = (
+        max(_beyond(p, d, lean) - boxes.radii[b], _beyond(q, d, lean) - boxes.radii[a])
+        - 2.0 * slack
+    )
     if by_balls > enough:
         return by_balls
-    by_boxes = lower_bound_between(p.half, q.half, between_boxes(p, q.x, q.y, q.z, d), slack) - slack
+    by_boxes = (
+        lower_bound_between(p.half, q.half, between_boxes(p, q.x, q.y, q.z, d), slack) - slack
+    )
     return max(0.0, max(by_balls, by_boxes))

@@ -147,7 +147,9 @@ def _go_to(chain, path, step, low, high, middle):
 
 @inline
 def _new_middle(n_links):
-    return Middle(np.empty((1, n_links)), np.empty(n_links), np.empty(n_links), np.empty((1, n_links, 4, 4)))
+    return Middle(
+        np.empty((1, n_links)), np.empty(n_links), np.empty(n_links), np.empty((1, n_links, 4, 4))
+    )
 
 
 @inline
@@ -177,7 +179,9 @@ def _go_on(surface, chain, path, step, known):
         numbers[0], numbers[1], numbers[2] = drift.velocity.x, drift.velocity.y, drift.velocity.z
         numbers[3], numbers[4], numbers[5] = drift.spin.x, drift.spin.y, drift.spin.z
         numbers[6], numbers[7] = drift.rest, drift.turn
-        known.travel[body] += 2.0 * GROWTH * drift_of_box(box_of(surface, surface.roots[body]), drift)
+        known.travel[body] += (
+            2.0 * GROWTH * drift_of_box(box_of(surface, surface.roots[body]), drift)
+        )
 
 
 @inline
@@ -218,7 +222,21 @@ def certify(surface, chain, asked, path, order, first, last, clearance, aim, bou
         table,
         CERTIFY,
         0,
-        (lend(surface), chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table),
+        (
+            lend(surface),
+            chain,
+            asked,
+            path,
+            order,
+            first,
+            last,
+            clearance,
+            aim,
+            bounds,
+            tally,
+            known,
+            table,
+        ),
     )
 
 
@@ -236,7 +254,9 @@ def _like():
 
 
 @apart(CERTIFY, _like)
-def _certify(lent, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table):
+def _certify(
+    lent, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table
+):
     """`certify`, with room for what is known."""
     surface = borrow(lent)
     n_pairs = len(asked.bodies)
@@ -258,7 +278,9 @@ def _certify(lent, chain, asked, path, order, first, last, clearance, aim, bound
                 floor = min(floor, carried)
                 tally[0] += 1
                 continue
-            over = _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, tally, table)
+            over = _hold_interval(
+                surface, chain, asked, path, step, pair, least, aim, known, tally, table
+            )
             floors[pair] = (over.floor + moved) * KEPT_DOWN
             if over.share >= 0.0:
                 least, share, seen = over.least, over.share, pair
@@ -276,7 +298,9 @@ def _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, t
     body = asked.bodies[pair, 0]
     drift = _drift_at(known.drifts, body)
     gap = aim.gap
-    held = _hold_pair(surface, asked, pair, known.whole, drift, least, gap, aim, known, tally, table)
+    held = _hold_pair(
+        surface, asked, pair, known.whole, drift, least, gap, aim, known, tally, table
+    )
     share = 0.5 if held.least < least else -1.0
     if held.completed or held.least <= 0.0:
         return Over(held.floor, held.least, share)
@@ -295,7 +319,9 @@ def _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, t
             gap *= WIDER
         _go_to(chain, path, step, low, high, known.part)
         drift = _drift_in(surface, chain, body, asked.links[pair], known.part)
-        held = _hold_pair(surface, asked, pair, known.part, drift, least, gap, aim, known, tally, table)
+        held = _hold_pair(
+            surface, asked, pair, known.part, drift, least, gap, aim, known, tally, table
+        )
         if held.least < least:
             least, share = held.least, 0.5 * (low + high)
         if least <= 0.0:

@@ -71,7 +71,9 @@ class Held(NamedTuple):
 @inline
 def _node_floors(p, q, m, sight, slack, drift, target):
     """[m] lower bounds on the distances of boxes in lanes over the interval."""
-    in_sight = lower_bound_boxes_in_sight(p, q, sight) - slack - drift_of_box_along(p, sight.u, drift)
+    in_sight = (
+        lower_bound_boxes_in_sight(p, q, sight) - slack - drift_of_box_along(p, sight.u, drift)
+    )
     if marks_within(in_sight, target) == 0:
         return in_sight
     apart = lower_bound_boxes(p, q, m, slack) - slack
@@ -95,7 +97,9 @@ def allowed_gap(least, gap, fail):
 
 
 @inline
-def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, scratch, tally, table):
+def hold(
+    a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, scratch, tally, table
+):
     """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
 
     The search is given up where that cannot be proven, unless the body stands still.
@@ -136,7 +140,9 @@ def hold(a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, 
             if bound < target:
                 beside = sight_beside(a, face_a, b, face_b, m, m_back)
                 apart = _face_floor(a, face_a, b, face_b, beside, slack, drift)
-                bound = max(bound, apart) if apart > 0.0 else bound  # what may touch is told by exact signs below
+                bound = (
+                    max(bound, apart) if apart > 0.0 else bound
+                )  # what may touch is told by exact signs below
             if bound < target:
                 tally[3] += 1
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best

@@ -88,7 +88,9 @@ def _reach_of_body(box, links, link, positions, reach):
     stretch *= 1.0 + defect_of(rigid(links.parent_from_joint[link]))
     for column in range(len(reach)):
         reach[column] *= stretch
-    return stretch * (noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link])))
+    return stretch * (
+        noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link]))
+    )
 
 
 @inline

@@ -106,7 +106,11 @@ def place_links(links, positions, poses, wanted, look):
             _write(rigid(links.parent_from_joint[link]), poses[link])
             continue
         column = links.columns[link]
-        position = 0.0 if column == NO_COLUMN else links.factors[link] * positions[column] + links.offsets[link]
+        position = (
+            0.0
+            if column == NO_COLUMN
+            else links.factors[link] * positions[column] + links.offsets[link]
+        )
         _place_link(
             poses[parent], links.parent_from_joint[link], links.kinds[link], links.axes[link],
             position, poses[link],

@@ -91,5 +91,7 @@ def bring(surface, world, bodies, positions, look, placed):
         placed.looks[body] += 1
         if _has_moved(before, after):
             placed.moves[body] += 1
-            placed.travel[body] += displacement(surface, surface.roots[body], before, after) * GROWTH
+            placed.travel[body] += (
+                displacement(surface, surface.roots[body], before, after) * GROWTH
+            )
             _put(after, placed, body)

@@ -243,7 +243,9 @@ def nearest_of(
     order.pairs[len(world.pairs)] = first
     tally[0] += len(world.pairs)
     for turn in range(-1 if first >= 0 else 0, len(bodies)):
-        body = len(world.frames) if turn < 0 else bodies[turn]  # the list of one that is asked first
+        body = (
+            len(world.frames) if turn < 0 else bodies[turn]
+        )  # the list of one that is asked first
         nearest = np.inf
         if first >= 0 and body == world.pairs[first, 0]:
             nearest = _spare(world, first, known, goal)
@@ -254,7 +256,9 @@ def nearest_of(
             if turn >= 0 and pair == first:
                 continue
             floor = carried(world, pair, known)
-            if best.gap_sq == 0.0 and pair > best_pair and not goal.each:  # no nearer, and not the least pair
+            if (
+                best.gap_sq == 0.0 and pair > best_pair and not goal.each
+            ):  # no nearer, and not the least pair
                 nearest = min(nearest, floor)
                 continue
             if goal.each:
@@ -321,7 +325,19 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
             for column in range(n_columns):
                 few[i, column] = positions[first.rows[i], column]
         known = nothing_known(world, n_columns, within)
-        _sweep(surface, world, few, first.rows, goal, first.effort, known, rows, pair_rows, tally, table)
+        _sweep(
+            surface,
+            world,
+            few,
+            first.rows,
+            goal,
+            first.effort,
+            known,
+            rows,
+            pair_rows,
+            tally,
+            table,
+        )
     known = nothing_known(world, n_columns, within)
     _sweep(surface, world, positions, steps, goal, TO_THE_END, known, rows, pair_rows, tally, table)
 
@@ -329,7 +345,13 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
 @kernel(reference_counts=False)
 def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_rows, tally, table):
     """`sweep`, with room for what is known. The rows after a first look are overwritten."""
-    within, floors, order, placed, due = known.within, known.floors, known.order, known.placed, known.due
+    within, floors, order, placed, due = (
+        known.within,
+        known.floors,
+        known.order,
+        known.placed,
+        known.due,
+    )
     put_all(world, positions[0], placed)
     for pair in range(len(world.pairs)):
         floors[pair] = box_bound(surface, world, pair, placed, known.boxes, np.inf)
@@ -350,7 +372,11 @@ def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_row
         if look > 0:
             bring(surface, world, bodies, positions[row], look, placed)
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
-        if first >= 0 and carried(world, first, known) <= 0.0 and not was_contact(known.answers, first):
+        if (
+            first >= 0
+            and carried(world, first, known) <= 0.0
+            and not was_contact(known.answers, first)
+        ):
             first = nearest_by_boxes(surface, world, bodies, known, first)
         best, best_pair, lowest = nearest_of(
             surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, known, pair_rows, tally,

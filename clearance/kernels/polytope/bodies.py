@@ -26,7 +26,9 @@ def _array_at(typing_context, rows, i, column, like):
 
     def emit(context, builder, signature, values):
         at = builder.add(builder.mul(values[1], values[1].type(4)), values[2])
-        both = elements_at(context, builder, signature.args[0], values[0], (at, builder.add(at, at.type(1))))
+        both = elements_at(
+            context, builder, signature.args[0], values[0], (at, builder.add(at, at.type(1)))
+        )
         address, length = map(builder.load, both)
         return array_from(context, builder, result, address, length)
 

@@ -163,7 +163,9 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
         if parting.floor > limit:
             nothing = nothing_yet(asked.wanted * asked.wanted)
             floor = max(0.0, parting.floor - slack - 2.0 * margin)
-            return Measured(nothing, floor, 0.0, parting.face_a, parting.face_b, Tally(n_nodes, 0, 0))
+            return Measured(
+                nothing, floor, 0.0, parting.face_a, parting.face_b, Tally(n_nodes, 0, 0)
+            )
     for _ in range(2):
         found = descend(
             lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, parting,
@@ -214,7 +216,9 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
 
 
 @inline(one_caller=True)
-def measure_pair(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
+def measure_pair(
+    lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table
+):
     """The same by address."""
     return at_address(
         table,

@@ -76,7 +76,9 @@ def nothing_yet(limit_sq):
 
 
 @inline(force=True)
-def _wait_for_near(a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut):
+def _wait_for_near(
+    a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut
+):
     """Lets the marked nodes of a group wait that may hold nearest points with a node of the other body.
 
     Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. What is turned
@@ -152,7 +154,19 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
             bounds = bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
             n_before = n_waiting
             n_waiting, marks, low, far = _wait_for_near(
-                a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut
+                a,
+                b,
+                from_a,
+                from_b,
+                scratch,
+                n_waiting,
+                group,
+                other,
+                is_b,
+                marks,
+                bounds,
+                slack,
+                cut,
             )
             if n_waiting > n_before and scratch.bounds[n_waiting - 1] < scratch.bounds[nearest]:
                 nearest = n_waiting - 1
@@ -164,7 +178,11 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
         else:
             floor = min(floor, carried - moved)
         kept = start + n_kept
-        fronts.entries[kept, 0], fronts.entries[kept, 1], fronts.entries[kept, 2] = group, other, marks
+        fronts.entries[kept, 0], fronts.entries[kept, 1], fronts.entries[kept, 2] = (
+            group,
+            other,
+            marks,
+        )
         fronts.floors[kept] = carried
         n_kept += 1
     if n_waiting > 0:  # nearest last
@@ -237,7 +255,9 @@ def descend(
             floor = min(floor, bound)
             if not is_kept:
                 mark = 1 << node_a % WIDTH
-                n_left = _leave(scratch, n_left, node_a // WIDTH, node_b, mark, (bound + moved) * KEPT_DOWN)
+                n_left = _leave(
+                    scratch, n_left, node_a // WIDTH, node_b, mark, (bound + moved) * KEPT_DOWN
+                )
             continue
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
@@ -258,7 +278,9 @@ def descend(
                     best_gap = min(limit, math.sqrt(best.gap_sq))
                     cut = best_gap + margin
                     from_a, from_b = views_of(best, m)
-                    in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
+                    in_sight = (
+                        lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
+                    )
                 gap = sure_gap(a, face_a, b, face_b, m, margin, in_sight)
                 if bound <= 0.0 and gap <= 0.0:
                     met = meeting_of(table, lent_a, face_a, lent_b, face_b, frames, scratch.exact)
@@ -278,8 +300,18 @@ def descend(
                         n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
                         if n_pairs > N_WAITING // 2:
                             refined = settle(
-                                lent_a, lent_b, frames, min(best_gap, wanted_gap), margin,
-                                scratch.waiting, n_pairs, from_a.sight, slack, 0.0, refined, table,
+                                lent_a,
+                                lent_b,
+                                frames,
+                                min(best_gap, wanted_gap),
+                                margin,
+                                scratch.waiting,
+                                n_pairs,
+                                from_a.sight,
+                                slack,
+                                0.0,
+                                refined,
+                                table,
                             )
                             n_pairs = 0
                     put(scratch.waiting, n_pairs, face_a, face_b, near.seen, least_sq)
@@ -292,7 +324,9 @@ def descend(
                 else:
                     floor = min(floor, math.sqrt(best.gap_sq) + margin)
             if not is_kept:  # the roots
-                n_left = _leave(scratch, n_left, node_a // WIDTH, node_b, 1, (bound + moved) * KEPT_DOWN)
+                n_left = _leave(
+                    scratch, n_left, node_a // WIDTH, node_b, 1, (bound + moved) * KEPT_DOWN
+                )
             continue
         is_b, group, count, other = opened(a, node_a, b, node_b)
         marks = (1 << count) - 1
@@ -308,8 +342,18 @@ def descend(
             n_left = _leave(scratch, n_left, group, other, marks, (low + moved) * KEPT_DOWN)
     if not met.found:
         refined = settle(
-            lent_a, lent_b, frames, min(best_gap, wanted_gap), margin,
-            scratch.waiting, n_pairs, from_a.sight, slack, best_gap, refined, table,
+            lent_a,
+            lent_b,
+            frames,
+            min(best_gap, wanted_gap),
+            margin,
+            scratch.waiting,
+            n_pairs,
+            from_a.sight,
+            slack,
+            best_gap,
+            refined,
+            table,
         )
     if met.found or floor == -math.inf:
         forget(fronts, pair)

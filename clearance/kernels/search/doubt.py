@@ -51,7 +51,10 @@ def generalized_windings(surface, points, poses, poses_of_points, least, most, t
             number = 0.0
             if in_box(surface, surface.roots[0], x, away):
                 asked = (surface, 0, False, v, x, away, frames, scratch.exact, scratch.nodes)
-                number = abs(at_address(table, WINDING_NUMBER, 0, asked) - signed_turns_of_caps(surface, 0, x))
+                number = abs(
+                    at_address(table, WINDING_NUMBER, 0, asked)
+                    - signed_turns_of_caps(surface, 0, x)
+                )
             least[i] = min(least[i], number)
             most[i] = max(most[i], number)
 
@@ -84,7 +87,9 @@ def _is_beside(low, high, low_of_other, high_of_other, frame, frame_of_other):
     half, half_of_other = _half(low, high), _half(low_of_other, high_of_other)
     middle = Vec3(low[0] + half.x, low[1] + half.y, low[2] + half.z)
     at = Vec3(
-        low_of_other[0] + half_of_other.x, low_of_other[1] + half_of_other.y, low_of_other[2] + half_of_other.z
+        low_of_other[0] + half_of_other.x,
+        low_of_other[1] + half_of_other.y,
+        low_of_other[2] + half_of_other.z,
     )
     m = relative(frame, frame_of_other)
     away = sub(move(m, at), middle)
@@ -93,7 +98,9 @@ def _is_beside(low, high, low_of_other, high_of_other, frame, frame_of_other):
         abs(m.yx) * half_of_other.x + abs(m.yy) * half_of_other.y + abs(m.yz) * half_of_other.z,
         abs(m.zx) * half_of_other.x + abs(m.zy) * half_of_other.y + abs(m.zz) * half_of_other.z,
     )
-    rounding = 1e-12 * (size(away) + size(frame.t) + size(frame_of_other.t) + size(middle) + size(at))
+    rounding = 1e-12 * (
+        size(away) + size(frame.t) + size(frame_of_other.t) + size(middle) + size(at)
+    )
     return (
         abs(away.x) > half.x + reach.x + rounding
         or abs(away.y) > half.y + reach.y + rounding
@@ -129,7 +136,11 @@ def _turns_of(triangles, x):
     """[turns] the magnitude of the solid angle of triangles (k, 3, 3) from `x`."""
     total = 0.0
     for i in range(len(triangles)):
-        a, b, c = sub(row(triangles[i], 0), x), sub(row(triangles[i], 1), x), sub(row(triangles[i], 2), x)
+        a, b, c = (
+            sub(row(triangles[i], 0), x),
+            sub(row(triangles[i], 1), x),
+            sub(row(triangles[i], 2), x),
+        )
         angle = solid_angle(a, b, c)
         total += angle if dot(a, cross(b, c)) > 0.0 else -angle
     return abs(total) / (4.0 * math.pi)
@@ -138,7 +149,10 @@ def _turns_of(triangles, x):
 @inline
 def _all_wound(triangles, points, frame, frame_of_points):
     for k in range(len(points)):
-        if not _turns_of(triangles, move_back(frame, move(frame_of_points, row(points, k)))) >= WOUND:
+        if (
+            not _turns_of(triangles, move_back(frame, move(frame_of_points, row(points, k))))
+            >= WOUND
+        ):
             return False
     return True
 

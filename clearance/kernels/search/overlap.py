@@ -35,7 +35,16 @@ NO_OVERLAP = Overlap(NO_MEETING, -1, -1, 0, 0)
 
 
 def _like():
-    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, 0.0, new_scratch(), table_like()
+    return (
+        Lent(surface_like()),
+        0,
+        Lent(surface_like()),
+        0,
+        FRAMES_AT_REST,
+        0.0,
+        new_scratch(),
+        table_like(),
+    )
 
 
 @apart(OVERLAP, _like)
@@ -52,7 +61,10 @@ def overlap(lent_a, root_a, lent_b, root_b, frames, slack, scratch, table):
     scratch.nodes[0, 0], scratch.nodes[0, 1], scratch.bounds[0] = root_a, root_b, 0.0
     while n_waiting > 0:
         n_waiting -= 1
-        node_a, node_b = np.int64(scratch.nodes[n_waiting, 0]), np.int64(scratch.nodes[n_waiting, 1])
+        node_a, node_b = (
+            np.int64(scratch.nodes[n_waiting, 0]),
+            np.int64(scratch.nodes[n_waiting, 1]),
+        )
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             n_faces += 1
@@ -63,7 +75,11 @@ def overlap(lent_a, root_a, lent_b, root_b, frames, slack, scratch, table):
         is_b, group, count, other = opened(a, node_a, b, node_b)
         n_nodes += count
         if is_b:
-            p, q, turn = group_at(b.boxes, b.centres, group), box_at(a.boxes, a.centres, other), back
+            p, q, turn = (
+                group_at(b.boxes, b.centres, group),
+                box_at(a.boxes, a.centres, other),
+                back,
+            )
         else:
             p, q, turn = group_at(a.boxes, a.centres, group), box_at(b.boxes, b.centres, other), m
         bounds = lower_bound_boxes(p, q, turn, slack)

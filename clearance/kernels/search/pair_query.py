@@ -140,7 +140,9 @@ def _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table):
         moved = 0.0
         asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
         forget(known.fronts, 0)
-    measured = measure_pair(lent_a, 0, lent_b, 0, frames, asked, known.fronts, 0, moved, scratch, table)
+    measured = measure_pair(
+        lent_a, 0, lent_b, 0, frames, asked, known.fronts, 0, moved, scratch, table
+    )
     known.carried[MOVED] = moved
     known.carried[FLOOR] = (measured.lower_bound + moved) * KEPT_DOWN
     known.seeds[0], known.seeds[1] = measured.face_a, measured.face_b
@@ -164,10 +166,24 @@ def nearest_at_poses(held, poses_a, poses_b, checked, afresh, numbers, points, c
     """
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
     for i in range(0 if checked else len(numbers)):
-        if not (_is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])):
+        if not (
+            _is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])
+        ):
             return i
     known = Known(held.fronts, held.poses, held.seeds, held.carried)
-    _nearest(held.a, held.b, known, held.scratch, poses_a, poses_b, afresh, numbers, points, counts, table)
+    _nearest(
+        held.a,
+        held.b,
+        known,
+        held.scratch,
+        poses_a,
+        poses_b,
+        afresh,
+        numbers,
+        points,
+        counts,
+        table,
+    )
     return -1
 
 

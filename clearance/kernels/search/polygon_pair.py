@@ -161,16 +161,17 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
     a, b = borrow(lent_a), borrow(lent_b)
     near = nearest_of_faces(a, 0, b, 0, frames.m, margin, nothing_yet(np.inf))
     sight = sight_along(near.best.p, near.best.q, frames.m)
-    if (
-        lower_bound_faces_in_sight(a, 0, b, 0, sight) <= margin
-        and may_meet(a, 0, b, 0, frames.m, margin)
+    if lower_bound_faces_in_sight(a, 0, b, 0, sight) <= margin and may_meet(
+        a, 0, b, 0, frames.m, margin
     ):
         found = meeting_of(table, lent_a, 0, lent_b, 0, frames, exact)
         if found.found:
             common = common_point_of(table, a, 0, b, 0, frames, found)
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
-    refined = refined_of(table, lent_a, 0, lent_b, 0, frames, near.seen, Ask(limit, margin), NOTHING_REFINED)
+    refined = refined_of(
+        table, lent_a, 0, lent_b, 0, frames, near.seen, Ask(limit, margin), NOTHING_REFINED
+    )
     distance = refined.length.hi
     error = error_of(refined, distance)
     if distance < UNDERFLOWN:  # its square is not a number any more
@@ -226,7 +227,5 @@ def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
 def nearest_polygons(ps, qs, answers, table):
     """Fills `answers` for each pair `ps[k]`, `qs[k]`; all arrays contiguous and writable."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
-    at_address(
-        table, POLYGONS, 0, (ps, qs, lend(a_p), lend(b_q), room_for_exact(), answers, table)
-    )
+    at_address(table, POLYGONS, 0, (ps, qs, lend(a_p), lend(b_q), room_for_exact(), answers, table))
     a_p.blunt[0] = b_q.blunt[0] = 0.0  # held until here

@@ -134,7 +134,18 @@ def _nearest_with(n, p, q, r, w):
 
 def _like():
     hit = Hit(0.0, 0, 0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
-    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST.m, hit, 0.0, 0.0, 0.0, new_scratch()
+    return (
+        Lent(surface_like()),
+        0,
+        Lent(surface_like()),
+        0,
+        FRAMES_AT_REST.m,
+        hit,
+        0.0,
+        0.0,
+        0.0,
+        new_scratch(),
+    )
 
 
 @inline(force=True)
@@ -143,7 +154,10 @@ def _let_wait(n_a, n_b, floor, scratch):
     n_waiting = 0
     for i in range(n_a):
         for k in range(n_b):
-            scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = ~scratch.left[i, 0], scratch.left[k, 1]
+            scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1] = (
+                ~scratch.left[i, 0],
+                scratch.left[k, 1],
+            )
             scratch.bounds[n_waiting] = floor
             n_waiting += 1
     return n_waiting
@@ -196,7 +210,9 @@ def part(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch)
         if is_as_far:
             if max(n_a, n_b) > TOUCHING or n_a * n_b > TOUCHING_PAIRS:
                 break
-            return Parting(floor, floor + room, _let_wait(n_a, n_b, floor, scratch), n_nodes, face_a, face_b)
+            return Parting(
+                floor, floor + room, _let_wait(n_a, n_b, floor, scratch), n_nodes, face_a, face_b
+            )
         x = row(a.vertices, a.face_vertices[top_a.corner])
         w = sub(x, move(m, row(b.vertices, b.face_vertices[top_b.corner])))
         if n_points == 0:
