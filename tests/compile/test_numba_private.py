@@ -194,7 +194,7 @@ def test_what_counts_no_references_makes_no_array(options):
     made = inline(**options)(lambda n: np.zeros(n).sum())
     calling = numba.njit(lambda n: made(n))
     if options:
-        with pytest.raises(numba.TypingError, match="NRT required"):
+        with pytest.raises(numba.TypingError, match="Only accept returning of array passed"):
             calling(3)
     else:
         assert calling(3) == 0.0
