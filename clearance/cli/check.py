@@ -115,6 +115,7 @@ def check(
 
     if samples_only and (certify or certify_mm is not None):
         raise click.UsageError("--samples-only proves nothing; leave out --certify and --certify-mm")
+    _require_extras(out, cross_check, motion)
     require_folder_place(out)
     require_file_place(junit)
     _compile_ahead(quiet)
@@ -151,6 +152,22 @@ def check(
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return ExitCode(run.verdict.exit_code)
+
+
+def _require_extras(out: Path | None, cross_check: bool, motion: str) -> None:
+    """Refuses, before anything is measured, what a missing library could not do in the end.
+
+    Raises:
+        Unavailable: a library of an extra that this run needs is missing.
+    """
+    from clearance.extras import require
+
+    if out is not None:
+        require("report", "--out")
+    if cross_check:
+        require("crosscheck", "--cross-check")
+    if motion == "simulated":
+        require("simulate", "--motion simulated")
 
 
 def _outputs(out: Path | None, junit: Path | None) -> list[Path]:

@@ -11,14 +11,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from clearance.simulate.spool import Rows, open_spool
+from clearance.simulate.resumable_rows import Rows, open_resumable_rows
 
 SUFFIX = ".unfinished"
 
 
 @contextmanager
 def kept_rows(out: Path | None, quiet: bool) -> Iterator[Rows | None]:
-    """The spool for the report folder `out`; None where no report is wanted.
+    """The resumable rows for the report folder `out`; None where no report is wanted.
 
     Raises:
         Unwritable: another run is writing the same report, or there is no room.
@@ -26,8 +26,8 @@ def kept_rows(out: Path | None, quiet: bool) -> Iterator[Rows | None]:
     if out is None:
         yield None
         return
-    with open_spool(place_of(out), (lambda line: None) if quiet else _say) as spool:
-        yield spool
+    with open_resumable_rows(place_of(out), (lambda line: None) if quiet else _say) as rows:
+        yield rows
 
 
 def place_of(out: Path) -> Path:

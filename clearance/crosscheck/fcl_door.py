@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.crosscheck.triangles import TriangleSoup
-from clearance.errors import Unavailable
+from clearance.extras import importing
 
 _MM_PER_M = 1000.0
 _LEAST_NORMAL_SQ = 1e-15  # [mm^4] the threshold in FCL's TriangleDistance::triDistance
@@ -83,11 +83,6 @@ def peer_name() -> str:
 
 
 def _fcl():
-    try:
+    with importing("crosscheck", "the cross-check"):
         import fcl
-    except ImportError as error:
-        raise Unavailable(
-            f"the cross-check needs python-fcl, which cannot be imported ({error})",
-            valid="pip install python-fcl",
-        ) from None
     return fcl

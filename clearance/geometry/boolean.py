@@ -14,9 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from clearance.errors import BadPolygon, Unavailable
-
-INSTALL = "pip install 'clearance[contact]'"
+from clearance.errors import BadPolygon
+from clearance.extras import importing, is_installed
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,9 +73,7 @@ class ClosedMesh:
 
 def available() -> bool:
     """True if manifold3d is installed."""
-    from importlib.util import find_spec
-
-    return find_spec("manifold3d") is not None
+    return is_installed("manifold3d")
 
 
 def solid(vertices: np.ndarray, triangles: np.ndarray) -> Any:
@@ -130,8 +127,6 @@ def mesh_of(one: Any) -> ClosedMesh:
 
 
 def _library() -> Any:
-    try:
+    with importing("contact", "a Boolean of solids"):
         import manifold3d
-    except ImportError:
-        raise Unavailable("manifold3d is not installed", valid=INSTALL) from None
     return manifold3d

@@ -14,6 +14,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from clearance.errors import BadPolygon, ClearanceError, Unavailable
+from clearance.extras import install
 from clearance.geometry import boolean, decompose
 from clearance.geometry.envelope import envelope, is_clearly_concave
 from clearance.geometry.polyhedron import Polyhedron
@@ -207,7 +208,7 @@ def _solid(body: Polyhedron) -> tuple[Any, str]:
 def _uncuttable(body: Polyhedron) -> str:
     """Why CoACD cannot cut a body, in a few words; nothing where it can."""
     if not decompose.available():
-        return f"CoACD is not installed ({boolean.INSTALL})"
+        return f"CoACD is not installed ({install('contact')})"
     return "" if body.n_triangles <= MOST_CUT else f"of more than {MOST_CUT} triangles, which are not cut"
 
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 import io
 import subprocess
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 
 from clearance.errors import BadPolygon, Unavailable
-from clearance.geometry.boolean import INSTALL
+from clearance.extras import install, is_installed
 
 THRESHOLDS = (0.05, 0.02, 0.01)
 """[-] The concavity that CoACD leaves uncut, its default first: finer costs parts, and depth is sharpened by
@@ -33,7 +32,7 @@ _PROCESS = Path(__file__).with_name("coacd_process.py")
 
 def available() -> bool:
     """True if CoACD is installed."""
-    return find_spec("coacd") is not None
+    return is_installed("coacd")
 
 
 def cut_into_hulls(
@@ -50,7 +49,7 @@ def cut_into_hulls(
         collision-aware concavity and tree search", as the library CoACD.
     """
     if not available():
-        raise Unavailable("CoACD is not installed", valid=INSTALL)
+        raise Unavailable("CoACD is not installed", valid=install("contact"))
     sent = io.BytesIO()
     np.savez(sent, vertices=vertices, triangles=triangles, threshold=threshold, seconds=MOST_WORK)
     try:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
+from clearance.extras import install
 from clearance.world.case import Source
 
 _PYBULLET_DATA = "pybullet_data:"
@@ -146,7 +147,7 @@ def resolved(given: str, folder: Path) -> Path:
         return folder / given
     brought = _pybullet_data_folder()
     if brought is None:
-        raise Unavailable(f"{given!r} needs the package pybullet", valid="pip install pybullet")
+        raise Unavailable(f"{given!r} needs the package pybullet", valid=install("simulate"))
     return brought / given.removeprefix(_PYBULLET_DATA).lstrip("/")
 
 

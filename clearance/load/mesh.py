@@ -64,8 +64,7 @@ def read_mesh(
         up_axis: what becomes of a COLLADA file's `<up_axis>`: "file" obeys it, "ros" ignores it.
 
     Raises:
-        MissingFile, BadSyntax, EmptyMesh, NotFinite, BadPolygon, BadDimension: with the file's
-        name.
+        MissingFile, BadSyntax, EmptyMesh, NotFinite, BadPolygon, BadDimension: with the file's name.
     """
     path = Path(path)
     return mesh_from_bytes(read_bytes(path, path.name), path.name, scale, up_axis).shape

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from clearance.geometry.shapes import SHAPES
 from clearance.load import schema
 from clearance.world.notice import Notice, Severity, listed
 
@@ -34,14 +35,19 @@ def obstacle_notices(obstacles: Sequence[schema.Obstacle]) -> list[Notice]:
     """What is odd about radii, angles and scales of a scene's obstacles."""
     wide, turned = [], []
     for obstacle in obstacles:
-        shape = obstacle.pipe or obstacle.cylinder or obstacle.sphere
-        radius = getattr(shape, "outer_radius", None) or getattr(shape, "radius", 0.0)
+        radius = _radius(obstacle)
         if radius > LARGE_RADIUS:
             wide.append(f"obstacle {obstacle.name!r} has a radius of {radius:g} m")
         turned += odd_angles(f"obstacle {obstacle.name!r}", obstacle.pose.rpy)
     hint = "lengths are in metres, is this millimetres?"
     notices = [units(f"{listed(wide)}; {hint}")] if wide else []
     return notices + angle_notices(turned)
+
+
+def _radius(obstacle: schema.Obstacle) -> float:
+    """[m] of a round shape; 0 for others."""
+    shape = SHAPES.get(obstacle.kind)
+    return 0.0 if shape is None or shape.radius is None else obstacle.dimensions[shape.radius]
 
 
 def odd_angles(what: str, rpy: Sequence[float] | None) -> list[str]:

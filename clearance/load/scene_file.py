@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from clearance.errors import DuplicateName, at
-from clearance.geometry import shapes
-from clearance.geometry.polyhedron import Polyhedron
+from clearance.errors import at
+from clearance.geometry.shapes import SHAPES
 from clearance.load import schema
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.notes import grouped
 from clearance.world.body import Body, Obstacle
+from clearance.world.names import require_own_names
 
 
 def make_obstacles(
@@ -26,18 +26,15 @@ def make_obstacles(
         DuplicateName: two obstacles with one name. BadInput: a shape that no solid can have, a bad
         mesh.
     """
-    obstacles: dict[str, Obstacle] = {}
+    require_own_names("obstacle", [item.name for item in given])
+    obstacles: list[Obstacle] = []
     notes: list[tuple[str, str]] = []
     for i, item in enumerate(given):
         with at(f"obstacles[{i}]"):
-            if item.name in obstacles:
-                raise DuplicateName(
-                    f"two obstacles have the name {item.name!r}", valid="each name once"
-                )
             body, body_notes = _body(item, folder, meshes)
-        obstacles[item.name] = Obstacle(body, item.pose.matrix())
+        obstacles.append(Obstacle(body, item.pose.matrix()))
         notes += [(body.origin, note) for note in body_notes]
-    return tuple(obstacles.values()), grouped(notes)
+    return tuple(obstacles), grouped(notes)
 
 
 def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body, list[str]]:
@@ -47,21 +44,5 @@ def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body,
             mesh = meshes.load(path, item.mesh.factors)
         shown = meshes.files.shown(path)
         return Body(item.name, mesh.shape, shown), list(mesh.notes)
-    key = next(key for key in schema.SHAPES if getattr(item, key) is not None)
-    with at(key):
-        return Body(item.name, _primitive(item), key), []
-
-
-def _primitive(item: schema.Obstacle) -> Polyhedron:
-    if item.box is not None:
-        return shapes.box(item.box.size)
-    if item.cylinder is not None:
-        return shapes.cylinder(radius=item.cylinder.radius, length=item.cylinder.length)
-    if item.sphere is not None:
-        return shapes.sphere(radius=item.sphere.radius)
-    return _pipe(item.pipe)
-
-
-def _pipe(pipe: schema.Pipe) -> Polyhedron:
-    given = pipe.model_dump(exclude_none=True)
-    return shapes.pipe(**given)
+    with at(item.kind):
+        return Body(item.name, SHAPES[item.kind].maker(**item.dimensions), item.kind), []

@@ -15,13 +15,13 @@ import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
+from clearance.geometry import shapes
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.load.shape_schema import Triple, with_shapes
 from clearance.world.names import checked_name
 from clearance.world.notice import KINDS
 
-Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
-Positive = Annotated[float, Field(gt=0)]
 
 
 Name = Annotated[str, Field(min_length=1), AfterValidator(checked_name)]
@@ -75,46 +75,6 @@ class Pose(Strict):
         return pose_from_rpy(self.xyz, self.rpy or [0.0, 0.0, 0.0])
 
 
-class Box(Strict):
-    """A box about its centre."""
-
-    size: Annotated[list[Positive], Field(min_length=3, max_length=3)]
-
-
-class Cylinder(Strict):
-    """A cylinder along z about its centre."""
-
-    radius: Positive
-    length: Positive
-
-
-class Sphere(Strict):
-    """A ball about its centre."""
-
-    radius: Positive
-
-
-class Pipe(Strict):
-    """A pipe: straight along z about its centre (`length`), or bent along a line of points
-    (`path`).
-    """
-
-    outer_radius: Positive
-    inner_radius: Annotated[float, Field(ge=0)]
-    length: Positive | None = None
-    sections: Annotated[int, Field(ge=3)] | None = None
-    path: Annotated[list[Triple], Field(min_length=2)] | None = None
-    bend_radius: Positive | None = None
-
-    @model_validator(mode="after")
-    def _bends_only_with_path(self) -> Pipe:
-        if self.path is None and self.bend_radius is not None:
-            raise BadInput(
-                "bend_radius is given without path", valid="a straight pipe has no bends"
-            )
-        return self
-
-
 def _is_double(number: int | float) -> bool:
     """True for a finite number that doubles can hold; whole numbers in a file may be longer."""
     try:
@@ -149,19 +109,30 @@ class Mesh(Strict):
         return x, y, z
 
 
-SHAPES = ("box", "pipe", "cylinder", "sphere", "mesh")
+SHAPES = (*shapes.SHAPES, "mesh")
 
 
-class Obstacle(Strict):
-    """A named solid that stands somewhere."""
+class Standing(Strict):
+    """A name, and where what has it stands."""
 
     name: Name
     pose: Pose = Pose()
-    box: Box | None = None
-    pipe: Pipe | None = None
-    cylinder: Cylinder | None = None
-    sphere: Sphere | None = None
+
+
+class Obstacle(with_shapes(Standing, Strict)):
+    """A named solid that stands somewhere."""
+
     mesh: Mesh | None = None
+
+    @property
+    def kind(self) -> str:
+        """Which of `SHAPES` it is."""
+        return next(key for key in SHAPES if getattr(self, key) is not None)
+
+    @property
+    def dimensions(self) -> dict[str, Any]:
+        """What is given of its shape, by name."""
+        return getattr(self, self.kind).model_dump(exclude_none=True)
 
     @model_validator(mode="after")
     def _one_shape(self) -> Obstacle:

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite, at
+from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, NotFinite, at
 from clearance.geometry.pose import pose_from_rpy
+from clearance.geometry.shapes import SHAPES, Measure
 from clearance.load.plausibility import odd_angles
-from clearance.world.names import checked_name
+from clearance.world.names import checked_name, require_own_names
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -27,13 +28,15 @@ _KEPT_BELOW = {
     "joint": ("origin", "parent", "child", "axis", "limit", "mimic"),
 }
 
+_PRIMITIVES = {name: shape for name, shape in SHAPES.items() if shape.in_urdf}
+
 _NUMBERS: dict[str, dict[str, tuple[int, ...]]] = {
+    **{
+        name: {key: (3,) if measure is Measure.SIZES else (1,) for key, measure in shape.dimensions.items()}
+        for name, shape in _PRIMITIVES.items()
+    },
     "origin": {"xyz": (3,), "rpy": (3,)},
     "axis": {"xyz": (3,)},
-    "box": {"size": (3,)},
-    "cylinder": {"radius": (1,), "length": (1,)},
-    "capsule": {"radius": (1,), "length": (1,)},
-    "sphere": {"radius": (1,)},
     "mesh": {"scale": (1, 3)},
     "limit": {"lower": (1,), "upper": (1,)},
     "mimic": {"multiplier": (1,), "offset": (1,)},
@@ -41,19 +44,16 @@ _NUMBERS: dict[str, dict[str, tuple[int, ...]]] = {
 """How many numbers each attribute holds."""
 
 _REQUIRED = {
+    **{name: tuple(shape.dimensions) for name, shape in _PRIMITIVES.items()},
     "link": ("name",),
     "joint": ("name", "type"),
     "parent": ("link",),
     "child": ("link",),
-    "box": ("size",),
-    "cylinder": ("radius", "length"),
-    "capsule": ("radius", "length"),
-    "sphere": ("radius",),
     "mesh": ("filename",),
     "mimic": ("joint",),
 }
 
-_SHAPES = ("box", "cylinder", "capsule", "sphere", "mesh")
+_SHAPES = (*_PRIMITIVES, "mesh")
 
 
 def parse_document(data: bytes) -> Element:
@@ -103,6 +103,12 @@ def numbers(
     """The numbers in an attribute of a checked document."""
     text = element.get(attribute)
     return default if text is None else tuple(map(float, text.split()))
+
+
+def dimensions_of(primitive: Element) -> dict[str, float | tuple[float, ...]]:
+    """The dimensions of a shape of the table, by name, in a checked document."""
+    given = {key: numbers(primitive, key) for key in SHAPES[primitive.tag].dimensions}
+    return {key: values[0] if len(values) == 1 else values for key, values in given.items()}
 
 
 def _origin(origin: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -155,16 +161,11 @@ def _reduce(element: Element) -> None:
 
 
 def _check_names(root: Element, kind: str) -> None:
-    seen = set()
-    for i, element in enumerate(root.findall(kind)):
-        name = element.get("name")
+    names = [element.get("name") for element in root.findall(kind)]
+    for i, name in enumerate(names):
         if not name:
             raise MissingKey(f"<{kind}> has no name", where=f"{kind}[{i}]")
-        with at(f"{kind}[{i}]"):
-            checked_name(name)
-        if name in seen:
-            raise DuplicateName(f"two {kind}s have the name {name!r}", valid="each name once")
-        seen.add(name)
+    require_own_names(kind, names)
 
 
 def _check(element: Element, where: str) -> None:

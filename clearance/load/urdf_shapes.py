@@ -1,4 +1,4 @@
-"""The shapes of a URDF's links: boxes, cylinders, capsules, balls and mesh files, in the link's frame.
+"""The shapes of a URDF's links, those of the table of shapes and mesh files, in the link's frame.
 
 Not for: which links and joints there are (`urdf`).
 """
@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.shapes import box, capsule, cylinder, sphere
+from clearance.geometry.shapes import SHAPES
 from clearance.load.collada_file import UpAxis
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore, Scale
 from clearance.load.notes import grouped, short
 from clearance.load.plausibility import scale_notices
-from clearance.load.urdf_elements import number, numbers, pose_of
+from clearance.load.urdf_elements import dimensions_of, numbers, pose_of
 from clearance.world.notice import Notice, Severity
 
 if TYPE_CHECKING:
@@ -91,13 +91,7 @@ class ShapeReader:
         kind = element.tag
         if kind == "mesh":
             return self._mesh(element)
-        if kind == "box":
-            return box(numbers(element, "size")), kind
-        radius = number(element, "radius")
-        if kind == "sphere":
-            return sphere(radius=radius), kind
-        made = capsule if kind == "capsule" else cylinder
-        return made(radius=radius, length=number(element, "length")), kind
+        return SHAPES[kind].maker(**dimensions_of(element)), kind
 
     def _mesh(self, element: Element) -> tuple[Polyhedron, str]:
         path, scale = self.mesh_file(element)

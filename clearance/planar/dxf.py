@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, at
+from clearance.extras import importing
 from clearance.planar.curve import Curve
 from clearance.planar.entries import BadCurve
 from clearance.tolerance import MEETING, PARAMETER
@@ -34,9 +35,10 @@ def read_dxf(path: str) -> Curve:
     """The curve of all entities in the model space of the DXF file at `path`; other kinds are refused.
 
     Raises: MissingFile, BadSyntax (not DXF, an unknown unit, or none of its entities is a curve), BadCurve (an
-        entity of another kind, or one that lies outside the plane z = const).
+        entity of another kind, or one that lies outside the plane z = const), Unavailable (no ezdxf).
     """
-    import ezdxf
+    with importing("dxf", "a DXF drawing"):
+        import ezdxf
 
     file = Path(path)
     if not file.is_file():

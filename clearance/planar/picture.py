@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, Unavailable, Unwritable
+from clearance.errors import BadInput, Unwritable
+from clearance.extras import importing
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import Hausdorff
 from clearance.planar.trimming import distance_field, kept_parts
@@ -30,12 +31,10 @@ def draw_comparison(
         raise BadInput(
             f"a picture {suffix or 'without suffix'}", where=str(path), valid=".svg or .png"
         )
-    try:
+    with importing("report", "a picture"):
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
-    except ImportError:
-        raise Unavailable("matplotlib is not installed", valid="pip install matplotlib") from None
     figure = Figure(figsize=_size_of(*_page(a, b)), layout="constrained")
     FigureCanvasAgg(figure)
     _fill(figure.add_subplot(), a, b, found, field)

@@ -6,6 +6,8 @@ beyond a sketch by less than the profile's bound is still called a violation. No
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from clearance.errors import at
@@ -17,21 +19,21 @@ from clearance.profiles.picture import picture_bytes
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import holds
 from clearance.profiles.sweep import swept_profile
-from clearance.simulate.record import ProfileAnswer, Record
+from clearance.simulate.record import ProfileAnswer, Samples
 from clearance.world.case import ReservedSpace
 
 
-def answer_profiles(record: Record) -> tuple[ProfileAnswer, ...]:
+def answer_profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
     """One answer for each of the case's profiles, in their order.
 
     Raises:
         BadInput: not a plane, an open contour; with the profile's name.
     """
     found = []
-    for i, space in enumerate(record.case.profiles):
+    for i, space in enumerate(samples.case.profiles):
         with at(f"profiles[{i}] {space.name}"):
             swept = swept_profile(
-                record, space.plane, links=space.links or None, section=space.section
+                samples, space.plane, links=space.links or None, section=space.section
             )
             found.append(_answer(space, swept))
     return tuple(found)
@@ -67,7 +69,7 @@ def _answer(space: ReservedSpace, swept: Profile) -> ProfileAnswer:
         point_sketch=_pair(ends[1]),
         link=link,
         step=step,
-        picture=_picture(space, swept, Drawn("sketch", curve), ends),
+        picture=partial(_picture, space, swept, Drawn("sketch", curve), ends),
     )
 
 

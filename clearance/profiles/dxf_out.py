@@ -10,6 +10,7 @@ import re
 
 import numpy as np
 
+from clearance.extras import importing
 from clearance.profiles.profile import Profile
 
 METRES = 6
@@ -17,8 +18,13 @@ METRES = 6
 
 
 def dxf_text(profile: Profile) -> str:
-    """The text of a DXF R2010 drawing; the same profile gives the same text."""
-    import ezdxf
+    """The text of a DXF R2010 drawing; the same profile gives the same text.
+
+    Raises:
+        Unavailable: ezdxf is missing.
+    """
+    with importing("dxf", "a DXF drawing"):
+        import ezdxf
 
     before = ezdxf.options.write_fixed_meta_data_for_testing
     try:  # else the file would hold the time of writing and fresh GUIDs

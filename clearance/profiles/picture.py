@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from clearance.errors import BadInput, Unavailable, Unwritable
+from clearance.errors import BadInput, Unwritable
+from clearance.extras import importing
 from clearance.profiles.outline_file import Drawn, rings_of_curve
 from clearance.profiles.region import Region, difference, rings_of
 
@@ -62,12 +63,10 @@ def picture_bytes(
 
     Raises: Unavailable (no matplotlib).
     """
-    try:
+    with importing("report", "a picture"):
         import matplotlib
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
-    except ImportError:
-        raise Unavailable("matplotlib is not installed", valid="pip install matplotlib") from None
     low, high = _page(a, b)
     width, height = high - low
     scale = min(6.6 / width, 5.4 / height)

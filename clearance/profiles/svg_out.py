@@ -6,6 +6,7 @@ Not for: pictures of two outlines (`picture`).
 from __future__ import annotations
 
 import numpy as np
+from markupsafe import escape
 
 from clearance.profiles.contour import Contour
 from clearance.profiles.profile import Profile
@@ -25,7 +26,7 @@ def svg_text(profile: Profile) -> str:
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:.6g}mm" height="{height:.6g}mm" '
         f'viewBox="{low[0]:.9g} {-high[1]:.9g} {width:.9g} {height:.9g}" style="{FITTING}">\n'
-        f"<title>{_escaped(profile.name)}, {_escaped(profile.plane)}</title>\n"
+        f"<title>{escape(profile.name)}, {escape(profile.plane)}</title>\n"
         f"<desc>contains all that is swept; exceeds it by at most {profile.bound * 1000:.4g} mm</desc>\n"
         f'<path transform="scale(1 -1)" d="{paths}" fill="#dbe7f5" fill-rule="evenodd" '
         f'stroke="#1f5fbf" stroke-width="{stroke:.3g}"/>\n</svg>\n'
@@ -44,7 +45,3 @@ def svg_path(contour: Contour, scale: float) -> str:
             radius = scale * chord * (1.0 + bulge * bulge) / (4.0 * abs(bulge))
             words.append(f"A{radius:.9g} {radius:.9g} 0 0 {int(bulge > 0.0)} {x:.9g} {y:.9g}")
     return " ".join(words) + " Z"
-
-
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")

@@ -80,7 +80,7 @@ def polygon_distances(ps: np.ndarray, qs: np.ndarray, *, method: str = "exact") 
     """(k,) distances [m] of the polygon pairs `ps[i]`, `qs[i]`; shapes (k, n, 3) and (k, m, 3).
 
     Raises:
-        As `polygon_distance`.
+        BadShape, NotFinite, BadPolygon: as `polygon_distance`.
     """
     ps, qs = _polygons(ps, 3), _polygons(qs, 3)
     if len(ps) != len(qs):

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from clearance.report.markup import Html, element, section, step_link, table
+from markupsafe import Markup
+
+from clearance.report.markup import element, section, step_link, table
 from clearance.report.wording import certified_text, count, scientific_mm
 
 MAX_DISAGREEMENTS = 200
 """Most steps of a failed cross-check printed on the page; all are in `summary.json`."""
 
 
-def certainty(summary: dict[str, Any]) -> Html:
+def certainty(summary: dict[str, Any]) -> Markup:
     """How exact the figures are, and what the cross-check found."""
     notes = [element("li", note) for note in summary["notes"]]
     return section(
@@ -23,7 +25,7 @@ def certainty(summary: dict[str, Any]) -> Html:
         element("p", _tessellation(summary["tessellation_bound"])),
         element("p", *_sampling(summary)),
         *_cross_check(summary["cross_check"]),
-        element("ul", *notes) if notes else Html(""),
+        element("ul", *notes) if notes else Markup(""),
     )
 
 
@@ -74,7 +76,7 @@ def _sampling(summary: dict[str, Any]) -> list[object]:
     return parts
 
 
-def _cross_check(check: dict[str, Any] | None) -> list[Html]:
+def _cross_check(check: dict[str, Any] | None) -> list[Markup]:
     if check is None:
         return [element("p", "No cross-check was asked for.")]
     figures = (
@@ -109,7 +111,7 @@ def _cross_check(check: dict[str, Any] | None) -> list[Html]:
     return [element("p", figures), table(heads, rows, class_="clickable")]
 
 
-def unmeasured(summary: dict[str, Any]) -> Html:
+def unmeasured(summary: dict[str, Any]) -> Markup:
     """Which links and pairs were left out, and why."""
     rows = [
         element(
@@ -132,7 +134,7 @@ def unmeasured(summary: dict[str, Any]) -> Html:
     return section("Not measured", table(("Link", "Obstacle", "Why"), rows))
 
 
-def loaded(summary: dict[str, Any]) -> Html:
+def loaded(summary: dict[str, Any]) -> Markup:
     """Every body with its size and quality."""
     groups = [(f"Robot {robot['name']}", robot["links"]) for robot in summary["robots"]]
     groups.append(("Obstacles", summary["obstacles"]))
@@ -162,7 +164,7 @@ def _quality(body: dict[str, Any]) -> str:
     return "closed" if body["oriented"] else "closed, not oriented"
 
 
-def _body_row(body: dict[str, Any]) -> Html:
+def _body_row(body: dict[str, Any]) -> Markup:
     low, high = body["bounding_box"]
     size = " \N{MULTIPLICATION SIGN} ".join(
         f"{(b - a) * 1000:.4g}" for a, b in zip(low, high, strict=True)
@@ -189,7 +191,7 @@ def _rounded(value: float) -> str:
     return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.4g}"
 
 
-def provenance(summary: dict[str, Any]) -> Html:
+def provenance(summary: dict[str, Any]) -> Markup:
     """Files with their sha256, versions, counters."""
     files = [
         element(
@@ -212,15 +214,15 @@ def provenance(summary: dict[str, Any]) -> Html:
     )
 
 
-def sign_off(fields: dict[str, str] | None) -> Html:
+def sign_off(fields: dict[str, str] | None) -> Markup:
     """Author and revision, and room to sign; nothing where the case has no such fields."""
     if fields is None:
-        return Html("")
+        return Markup("")
     heads = ("", "Name", "Date", "Signature")
     roles = {"Author": fields["author"], "Checked": "", "Approved": ""}
     rows = [
         element("tr", element("th", role, scope="row"), element("td", name), *[element("td", "")] * 2)
         for role, name in roles.items()
     ]
-    revision = element("p", f"Revision {fields['revision']}") if fields["revision"] else Html("")
+    revision = element("p", f"Revision {fields['revision']}") if fields["revision"] else Markup("")
     return section("Sign-off", revision, table(heads, rows, class_="sign-off"))

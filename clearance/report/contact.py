@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections import Counter
 from typing import Any
 
-from clearance.report.markup import Html, element, section, step_link, table
+from markupsafe import Markup
+
+from clearance.report.markup import element, section, step_link, table
 from clearance.report.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
 from clearance.simulate.record import Record, StepContact
 
@@ -47,7 +49,7 @@ def _told(row: StepContact) -> dict[str, Any]:
     }
 
 
-def _not_worked_out() -> Html:
+def _not_worked_out() -> Markup:
     told = (
         "Depth, volume and way out were not worked out: the run did not ask for them (--contact none), or bodies "
         "meet between the samples only."
@@ -55,11 +57,11 @@ def _not_worked_out() -> Html:
     return section("Contact", element("p", told))
 
 
-def contacts(summary: dict[str, Any]) -> Html:
+def contacts(summary: dict[str, Any]) -> Markup:
     """The section on overlaps; nothing where there are none, one line where none was worked out."""
     found = summary["contact"]
     if found is None:
-        return _not_worked_out() if summary["status_counts"]["contact"] else Html("")
+        return _not_worked_out() if summary["status_counts"]["contact"] else Markup("")
     deepest = found["deepest"]
     way = ", ".join(f"{value:.4f}" for value in deepest["direction"])
     first = element(
@@ -87,7 +89,7 @@ def contacts(summary: dict[str, Any]) -> Html:
     )
 
 
-def _row(pair: dict[str, Any]) -> Html:
+def _row(pair: dict[str, Any]) -> Markup:
     depth, volume = pair["penetration_at_least"], pair["volume_at_least"]
     cells = (
         pair["n_steps"],

@@ -1,36 +1,29 @@
-"""HTML from values: what every part of the page is built with. Text from outside is escaped here
-only."""
+"""HTML from values: what every part of the page is built with. Text that is no `Markup` is escaped here only."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from html import escape
 from typing import Any
 
-
-class Html(str):
-    """Text that is already HTML."""
-
-    __slots__ = ()
+from markupsafe import Markup, escape
 
 
-def element(tag: str, *content: object, **attributes: object) -> Html:
-    """`<tag ...>content</tag>` with everything escaped that is not `Html`; `_` in a name becomes
-    `-`."""
-    inner = "".join(part if isinstance(part, Html) else escape(str(part)) for part in content)
+def element(tag: str, *content: object, **attributes: object) -> Markup:
+    """`<tag ...>content</tag>` with everything escaped that is not `Markup`; `_` in a name becomes `-`."""
+    inner = Markup("").join(content)
     pairs = ((name.rstrip("_").replace("_", "-"), value) for name, value in attributes.items())
     given = "".join(f' {name}="{escape(str(value))}"' for name, value in pairs if value is not None)
-    return Html(f"<{tag}{given}>{inner}</{tag}>")
+    return Markup(f"<{tag}{given}>{inner}</{tag}>")
 
 
-def section(title: str, *content: Html) -> Html:
+def section(title: str, *content: Markup) -> Markup:
     """A part of the page with its title."""
     return element("section", element("h2", title), *content)
 
 
 def table(
-    heads: Iterable[str], rows: list[Html], class_: str | None = None, *, tall: bool = False
-) -> Html:
+    heads: Iterable[str], rows: list[Markup], class_: str | None = None, *, tall: bool = False
+) -> Markup:
     """A table that scrolls in a box of its own where it is too wide; a heading that begins with `>` stands over
     numbers, to the right. One that is `tall` scrolls where it is too high as well."""
     cells = [
@@ -44,12 +37,12 @@ def table(
     return element("div", body, class_="scroll tall" if tall else "scroll")
 
 
-def step_link(step: int) -> Html:
+def step_link(step: int) -> Markup:
     """A link that moves the replay to a step."""
     return element("a", f"step {step:,}", href="#stage", data_step=step)
 
 
-def moment_link(moment: dict[str, Any], text: str) -> Html:
+def moment_link(moment: dict[str, Any], text: str) -> Markup:
     """A link that moves the replay to a step, or to a moment between two."""
     at = {"data_time": moment["time"]} if moment["between"] else {"data_step": moment["step"]}
     return element("a", text, href="#stage", **at)

@@ -11,15 +11,16 @@ import base64
 import json
 import re
 from dataclasses import asdict
-from html import escape
 from importlib.util import find_spec
 from pathlib import Path
 from string import Template
 from typing import Any
 
 import numpy as np
+from markupsafe import escape
 
 from clearance.errors import Unavailable
+from clearance.extras import importing, install
 from clearance.report.markup import element
 from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import badge_text, header, sections
@@ -172,7 +173,8 @@ def _own(name: str) -> str:
 
 
 def _plotly() -> str:
-    from plotly.offline import get_plotlyjs
+    with importing("report", "the report's page"):
+        from plotly.offline import get_plotlyjs
 
     return get_plotlyjs()
 
@@ -187,5 +189,5 @@ def _meshcat() -> str:
         else None
     )
     if bundle is None or not bundle.is_file():
-        raise Unavailable("meshcat's viewer is not installed", valid="pip install meshcat")
+        raise Unavailable("meshcat's viewer is not installed", valid=install("report"))
     return bundle.read_text(encoding="utf-8")

@@ -5,14 +5,16 @@ from __future__ import annotations
 import base64
 from typing import Any
 
-from clearance.report.markup import Html, element, section, step_link, table
+from markupsafe import Markup
+
+from clearance.report.markup import element, section, step_link, table
 from clearance.report.wording import gap_text
 
 
-def profiles(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
+def profiles(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:
     """The section; nothing where the case names no profile."""
     if not summary["profiles"]:
-        return Html("")
+        return Markup("")
     heads = ("Profile", "Plane", "Kept", ">Gap, mm", ">Limit, mm", "Closest", "When")
     rows = [_row(answer) for answer in summary["profiles"]]
     figures = [_figure(answer, pictures) for answer in summary["profiles"]]
@@ -32,7 +34,7 @@ def plane_text(answer: dict[str, Any]) -> str:
     return answer["plane"] if cut is None else f"{answer['plane']} at {cut:g} m"
 
 
-def _row(answer: dict[str, Any]) -> Html:
+def _row(answer: dict[str, Any]) -> Markup:
     kept = (
         element("span", "yes")
         if answer["passed"]
@@ -52,10 +54,10 @@ def _row(answer: dict[str, Any]) -> Html:
     )
 
 
-def _figure(answer: dict[str, Any], pictures: dict[str, str]) -> Html:
+def _figure(answer: dict[str, Any], pictures: dict[str, str]) -> Markup:
     picture = pictures.get(answer["name"])
     if picture is None:
-        return Html("")
+        return Markup("")
     source = "data:image/svg+xml;base64," + base64.b64encode(picture.encode()).decode()
     style = "max-width:100%;height:auto;background:white"
     return element("p", element("img", src=source, alt=f"profile {answer['name']}", style=style))

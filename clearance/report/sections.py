@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from markupsafe import Markup
+
 from clearance.report.background import certainty, loaded, provenance, sign_off, unmeasured
 from clearance.report.contact import contacts
 from clearance.report.markup import (
-    Html,
     element,
     moment_link,
     section,
@@ -34,11 +35,11 @@ _TITLES = {
 }
 
 
-def header(summary: dict[str, Any]) -> Html:
+def header(summary: dict[str, Any]) -> Markup:
     """Name, verdict, what puts it in doubt, least clearance, limits."""
     limits = summary["limits"]
     facts = [
-        ("Least clearance", Html(f"<strong>{mm(summary['worst']['clearance'])}</strong> mm")),
+        ("Least clearance", element("strong", mm(summary["worst"]["clearance"])) + " mm"),
         ("Certified", _certified_word(summary["certified"])),
         ("Between", f"{summary['worst']['link']} and {summary['worst']['obstacle']}"),
         ("At", moment_of(summary["worst"])),
@@ -74,7 +75,7 @@ def _badge_class(summary: dict[str, Any]) -> str:
     return "violated" if summary["disputed_by"] else summary["verdict"]
 
 
-def _beside(summary: dict[str, Any]) -> Html:
+def _beside(summary: dict[str, Any]) -> Markup:
     """What a reader must know beside the clearance, right below the verdict."""
     rows = [
         element("li", f"Suspect {one['kind']}: {one['text']}", class_="text-suspect")
@@ -85,7 +86,7 @@ def _beside(summary: dict[str, Any]) -> Html:
     doubts += [f"Warning: {text}" for text in summary["warnings"]]
     rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
     rows += [element("li", f"{name.capitalize()} not checked") for name in summary["not_checked"]]
-    return element("ul", *rows, class_="beside") if rows else Html("")
+    return element("ul", *rows, class_="beside") if rows else Markup("")
 
 
 def _certified_word(certified: dict[str, Any] | None) -> str:
@@ -121,30 +122,28 @@ def _cross_check_word(check: dict[str, Any] | None) -> str:
     return f"agrees with {check['peer']}" if check["agrees"] else f"disagrees with {check['peer']}"
 
 
-def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Html:
+def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:
     """All sections under the replay; `pictures`: SVG of each profile by its name."""
-    return Html(
-        "".join(
-            [
-                element(
-                    "div",
-                    worst_moment(summary),
-                    element("div", events(summary), certainty(summary)),
-                    class_="columns",
-                ),
-                contacts(summary),
-                profiles(summary, pictures),
-                matrix(summary),
-                unmeasured(summary),
-                loaded(summary),
-                provenance(summary),
-                sign_off(summary["sign_off"]),
-            ]
-        )
+    return Markup("").join(
+        [
+            element(
+                "div",
+                worst_moment(summary),
+                element("div", events(summary), certainty(summary)),
+                class_="columns",
+            ),
+            contacts(summary),
+            profiles(summary, pictures),
+            matrix(summary),
+            unmeasured(summary),
+            loaded(summary),
+            provenance(summary),
+            sign_off(summary["sign_off"]),
+        ]
     )
 
 
-def worst_moment(summary: dict[str, Any]) -> Html:
+def worst_moment(summary: dict[str, Any]) -> Markup:
     """The joint values and witness points of the worst step."""
     worst = summary["worst"]
     several = len({joint["robot"] for joint in worst["joints"]}) > 1
@@ -182,7 +181,7 @@ def worst_moment(summary: dict[str, Any]) -> Html:
     )
 
 
-def _worst_sample(summary: dict[str, Any]) -> list[Html]:
+def _worst_sample(summary: dict[str, Any]) -> list[Markup]:
     """The least clearance at the steps, where that between them is less."""
     sample = summary["worst_sample"]
     if not summary["worst"]["between"]:
@@ -191,7 +190,7 @@ def _worst_sample(summary: dict[str, Any]) -> list[Html]:
     return [element("p", text, f"{sample['obstacle']}, ", step_link(sample["step"]), ".")]
 
 
-def _range_bar(joint: dict[str, Any]) -> Html:
+def _range_bar(joint: dict[str, Any]) -> Markup:
     """Where in its limits a joint stands, as a bar; a word where it has none."""
     lower, upper = joint["lower"], joint["upper"]
     if lower is None or upper is None or upper <= lower:
@@ -204,7 +203,7 @@ def _range_bar(joint: dict[str, Any]) -> Html:
     return element("span", mark, class_="range", title=ends)
 
 
-def events(summary: dict[str, Any]) -> Html:
+def events(summary: dict[str, Any]) -> Markup:
     """When limits were entered and left."""
     found = summary["events"]
     if not found:
@@ -234,7 +233,7 @@ def events(summary: dict[str, Any]) -> Html:
     return section("Events", table(heads, rows, class_="clickable", tall=True), *notes)
 
 
-def _event_cells(event: dict[str, Any]) -> tuple[Html, Html, Html]:
+def _event_cells(event: dict[str, Any]) -> tuple[Markup, Markup, Markup]:
     least = "" if event["least"] is None else mm(event["least"])
     if event["clearance"] is None:
         figures, who = ("", least), "not measured further"
@@ -247,10 +246,10 @@ def _event_cells(event: dict[str, Any]) -> tuple[Html, Html, Html]:
 _PAIR_SHOWN = {True: "its own curve", False: "its place beside the curve"}
 
 
-def matrix(summary: dict[str, Any]) -> Html:
+def matrix(summary: dict[str, Any]) -> Markup:
     """Least clearance of each link and obstacle in mm, coloured by the limits; nothing if not asked for."""
     if not summary["pairs"]:
-        return Html("")
+        return Markup("")
     cells = {(pair["link"], pair["obstacle"]): (i, pair) for i, pair in enumerate(summary["pairs"])}
     links = [body["name"] for robot in summary["robots"] for body in robot["links"]]
     links = [name for name in dict.fromkeys(links) if any(name == link for link, _ in cells)]
@@ -283,7 +282,7 @@ def matrix(summary: dict[str, Any]) -> Html:
     )
 
 
-def _matrix_cell(found: tuple[int, dict[str, Any]] | None, limits: dict[str, float]) -> Html:
+def _matrix_cell(found: tuple[int, dict[str, Any]] | None, limits: dict[str, float]) -> Markup:
     if found is None:
         return element("td", "\N{EN DASH}", class_="none")
     place, pair = found

@@ -6,7 +6,7 @@ README of the format (`NOTES.md`). Not for: wording and rounding, which belong t
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import Any
 
 import numpy as np
@@ -175,7 +175,8 @@ def certified_of(record: Record) -> dict[str, Any] | None:
 
 def _profile(answer: ProfileAnswer) -> dict[str, Any]:
     """A profile's answer without its picture."""
-    return {key: value for key, value in asdict(answer).items() if key != "picture"}
+    names = (field.name for field in fields(answer) if field.name != "picture")
+    return {name: getattr(answer, name) for name in names}
 
 
 def _cross_check(check: CrossCheck | None) -> dict[str, Any] | None:

@@ -7,9 +7,9 @@ no more. Not for: turning it round (the GLB file is).
 from __future__ import annotations
 
 from collections.abc import Iterator
-from html import escape
 
 import numpy as np
+from markupsafe import escape
 
 from clearance.geometry.polytope import Polytope
 from clearance.report.wording import litres

@@ -22,7 +22,7 @@ from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
 from clearance.simulate.moment import Moment, Moments
 from clearance.simulate.parts import blocks, in_order, parts, usable_cores
 from clearance.simulate.record import Certificate
-from clearance.simulate.spool import Rows
+from clearance.simulate.resumable_rows import Rows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link

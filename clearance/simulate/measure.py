@@ -2,7 +2,7 @@
 
 The compiled sweep runs over parts of the steps, on several threads, so that progress can be shown and a run
 interrupted; how the steps are parted depends on their number alone, and so does every result. Rows are kept in
-memory or on disk (`spool`). Not for: where the motion comes from (`kinematic`, `bullet`).
+memory or on disk (`resumable_rows`). Not for: where the motion comes from (`kinematic`, `bullet`).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from clearance.kernels.motion.sweep import NOT_LESS, FirstLook, Goal, sweep
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.simulate.layout import Layout, lay_out, positions_at
 from clearance.simulate.parts import blocks, in_order, parts, usable_cores
-from clearance.simulate.spool import Rows
+from clearance.simulate.resumable_rows import Rows
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, Unavailable
+from clearance.extras import install
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import solid_of
@@ -83,7 +84,7 @@ def shared_workspace(
     if not 0.0 < within < np.inf:
         raise BadDimension(f"within is {within!r} m", valid="a length above 0")
     if not boolean.available():
-        raise Unavailable("manifold3d is not installed", valid=boolean.INSTALL)
+        raise Unavailable("manifold3d is not installed", valid=install("contact"))
     named = _named_robots(cases)
     _require_one_cell(cases)
     _require_different_places(named)

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import MissingFile
+from clearance.extras import importing
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, Replay, load_replay, replay_of
 from clearance.simulate.steps import STATUSES
@@ -37,7 +38,8 @@ class Playback:
     end."""
 
     def __init__(self, replay: Replay) -> None:
-        from clearance.view.viewer import Stage
+        with importing("view", "the live view"):
+            from clearance.view.viewer import Stage
 
         self.replay = replay
         self._stage = Stage()
@@ -95,6 +97,7 @@ def play(what: Record | str | Path) -> Playback:
 
     Raises:
         MissingFile: the folder is not there or holds no report. BadSyntax: its replay is damaged.
+        Unavailable: a library of the extra `view` is missing.
     """
     return Playback(replay_of(what) if isinstance(what, Record) else _replay_in(Path(what)))
 

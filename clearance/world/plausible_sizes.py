@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.shapes import SHAPES
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.notice import Notice, Severity, listed
@@ -30,8 +31,6 @@ HALL, WALL = 100.0, 5.0
 
 FAR_ORIGIN = 20.0
 """[m] No joint is as far from the one before, and no shape from its link; 20 mm is usual."""
-
-_PRIMITIVES = {"box", "pipe", "cylinder", "sphere", "capsule"}
 
 
 class Frame(NamedTuple):
@@ -156,7 +155,7 @@ def _is_small(body: Body, length: float, others: list[float], reach: float) -> b
 
 
 def _is_mesh(body: Body) -> bool:
-    return not set(body.origin.split(", ")) <= _PRIMITIVES
+    return not set(body.origin.split(", ")) <= SHAPES.keys()
 
 
 def _odd_places(case: Case, frames: Sequence[Frame]) -> list[str]:

@@ -112,12 +112,12 @@ def test_a_peer_that_disagrees_is_exit_3_whatever_the_verdict(folder, limit):
 KILLED = """
 import os, signal
 from clearance import cli
-from clearance.simulate import spool
-spool.SAVE_AFTER, note = 0.0, spool._SpooledLog.note
+from clearance.simulate import resumable_rows
+resumable_rows.SAVE_AFTER, note = 0.0, resumable_rows._ResumableLog.note
 def killed(log, done, gathered, *, last):
     note(log, done, gathered, last=last)
     os.kill(os.getpid(), signal.SIGKILL)
-spool._SpooledLog.note = killed
+resumable_rows._ResumableLog.note = killed
 cli.main()
 """
 

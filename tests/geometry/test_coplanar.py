@@ -6,11 +6,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.geometry.coplanar import merge_coplanar
 from clearance.geometry.polyhedron import Polyhedron
+from tests.examples import examples
 from tests.geometry.exact_faces import (
     areas_by_plane,
     corners,
@@ -131,7 +132,7 @@ maps = st.lists(st.integers(-3, 3), min_size=9, max_size=9).map(lambda x: np.arr
 maps = maps.filter(lambda m: round(np.linalg.det(m)) > 0)
 
 
-@settings(max_examples=80, deadline=None)
+@examples(80)
 @given(cells, st.lists(st.booleans(), min_size=1, max_size=7), maps, st.sampled_from([1.0, 2.0**-40, 1e6 + 0.1]))
 def test_the_points_stay_exactly_the_same(cells, diagonals, matrix, shift):
     vertices, triangles = voxel_surface(cells, diagonals)
@@ -145,7 +146,7 @@ def test_the_points_stay_exactly_the_same(cells, diagonals, matrix, shift):
     assert {tuple(p) for p in shape.vertices} <= {tuple(p) for p in raw.vertices}
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.data())
 def test_rounded_coordinates_merge_only_where_rationals_agree(data):
     """Two triangles in a plane whose coordinates are rounded: merged exactly when the determinant is 0."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import (
@@ -16,9 +16,9 @@ from clearance.errors import (
     EmptyMesh,
     NotFinite,
 )
-from clearance.geometry.faces import split_warped
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder, sphere
+from tests.examples import examples
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
 PENTAGRAM = np.array([[np.cos(a), np.sin(a), 0] for a in np.arange(5) * 4 * np.pi / 5])
@@ -65,14 +65,6 @@ def test_rounding_far_from_the_origin_is_no_warp():
     moved = cylinder(1e-3, 1e-2).transformed(turn)
     faces = np.split(moved.face_vertices, moved.face_starts[1:-1])
     assert Polyhedron(moved.vertices, faces).n_faces == moved.n_faces
-
-
-def test_split_warped_cuts_only_what_is_not_flat():
-    bent = np.vstack([SQUARE, SQUARE[3] + [0, 0, 0.1]])
-    faces, n_cut = split_warped(bent, [[0, 1, 2, 3], [0, 1, 2, 4]])
-    assert n_cut == 1
-    assert faces == [[0, 1, 2, 3], [0, 1, 2], [0, 2, 4]]
-    assert Polyhedron(bent, faces).n_faces == 3
 
 
 def test_normals_of_a_needle_are_right_and_of_a_line_zero():
@@ -140,7 +132,7 @@ def test_outward_turns_what_is_inside_out_and_leaves_cavities():
     assert beside.volume == 26.0 and beside.outward().volume == 28.0
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(st.lists(st.floats(0.01, 100) | st.floats(-100, -0.01), min_size=3, max_size=3))
 def test_scaling_keeps_the_outside_outside(factors):
     shape = box((1, 2, 3)).scaled(factors)

@@ -6,12 +6,13 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadDimension
 from clearance.geometry.shapes import box, capsule, cylinder, pipe, sphere
 from clearance.geometry.shapes.dimension import sections_for
+from tests.examples import examples
 from tests.geometry.exact_faces import area_vector, corners, dot, is_flat_and_convex, minus
 
 radii = st.floats(1e-3, 10.0)
@@ -40,7 +41,7 @@ def test_a_box_is_exact():
     assert all(is_flat_and_convex(corners(shape, i)) for i in range(6))
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(radii, tolerances)
 def test_a_sphere_lies_inside_its_faces(radius, share):
     shape = sphere(radius, share * radius)
@@ -54,7 +55,7 @@ def test_a_sphere_lies_inside_its_faces(radius, share):
         assert all(dot(p, p) <= limit for p in face)
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(radii, st.floats(0.0, 50.0), tolerances)
 def test_a_capsule_lies_inside_its_faces(radius, length, share):
     shape = capsule(radius, length, share * radius)
@@ -70,7 +71,7 @@ def test_a_capsule_lies_inside_its_faces(radius, length, share):
             assert x * x + y * y + max(abs(z) - half, Fraction(0)) ** 2 <= limit
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(radii, st.floats(1e-3, 50.0), st.integers(3, 90))
 def test_a_cylinder_lies_inside_its_faces(radius, length, n):
     shape = cylinder(radius, length, sections=n)
@@ -87,7 +88,7 @@ def test_a_cylinder_lies_inside_its_faces(radius, length, n):
         assert all(x * x + y * y <= limit for x, y, _ in face)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(radii, st.floats(0.05, 0.999), st.integers(3, 90))
 def test_a_pipe_loses_no_material(outer, share, n):
     inner = share * outer

@@ -3,9 +3,10 @@ laws on them."""
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from tests import oracle
+from tests.examples import examples
 from tests.strategies import FAMILIES, boxes, lattice_polygons, polygon_pairs, poses
 
 CONTACT = {
@@ -34,7 +35,7 @@ def test_contact_is_as_frequent_as_the_family_says(name):
 
 
 @given(polygon_pairs())
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_distance_is_symmetric_and_at_most_that_of_any_corners(pair):
     p, q = pair
     sq = oracle.polygon_distance_sq(p, q)
@@ -44,14 +45,14 @@ def test_distance_is_symmetric_and_at_most_that_of_any_corners(pair):
 
 
 @given(lattice_polygons(), lattice_polygons())
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_planar_polygons_do_not_depend_on_the_first_corner_or_the_direction(p, q):
     sq = oracle.polygon_distance_sq(p, q)
     assert oracle.polygon_distance_sq(np.roll(p, 1, axis=0), q[::-1]) == sq
 
 
 @given(boxes(), boxes(), poses())
-@settings(max_examples=25, deadline=None)
+@examples(25)
 def test_solids_are_never_farther_apart_than_their_surfaces(a, b, pose):
     surfaces = oracle.polyhedron_distance_sq(*a, *b, None, pose)
     solids = oracle.solid_distance_sq(*a, *b, None, pose)

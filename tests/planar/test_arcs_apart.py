@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.kernels.curve.arc import RADIUS, WIDTH, set_arc, set_segment
 from clearance.kernels.curve.arcs import arcs_apart
+from tests.examples import examples
 from tests.reached import reached
 
 
@@ -49,7 +50,7 @@ def drawn(rng, grid):
     return arc(*ends[:2], None if turn is None else chord + turn, *ends[2:])
 
 
-@settings(max_examples=150, deadline=None)
+@examples(150)
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_the_distance_of_two_arcs_is_that_of_many_points_on_them(seed, grid):
     rng = np.random.default_rng(seed)

@@ -5,15 +5,16 @@ import os
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff.state import CUTS, Aim
+from clearance.kernels.hausdorff.state import Aim
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import _solve, hausdorff, within
 from clearance.planar.trimming import kept_intervals
+from tests.examples import examples
 from tests.oracle import planar_hausdorff as oracle
 
 N_RANDOM = int(os.environ.get("CLEARANCE_PLANAR_PAIRS", "60"))
@@ -268,7 +269,7 @@ def curve_of(control):
         return Curve.polyline([[0, 0], [1, 0]])
 
 
-@settings(max_examples=80, deadline=None)
+@examples(80)
 @given(points, points, points)
 def test_axioms_of_a_metric(one, two, three):
     a, b, c = curve_of(one), curve_of(two), curve_of(three)
@@ -279,7 +280,7 @@ def test_axioms_of_a_metric(one, two, three):
     assert ab.error_bound <= 1e-13 * max(a.size, b.size)
 
 
-@settings(max_examples=80, deadline=None)
+@examples(80)
 @given(points, points)
 def test_zero_iff_equal(one, two):
     """0 to rounding for the same curve run through otherwise; no sample of either may be farther than it."""
@@ -294,7 +295,7 @@ def test_zero_iff_equal(one, two):
     assert found.distance < 1e-6 or not within(a, b, found.distance * (1 - 1e-9))
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(points, points, st.floats(0.0, 6.3), st.booleans(), st.sampled_from([1e-7, 0.3, 1.0, 1e5]))
 def test_rigid_motion_and_scaling(one, two, angle, mirrored, scale):
     a, b = curve_of(one), curve_of(two)
@@ -315,14 +316,14 @@ def test_within_stops_at_the_first_point_beyond():
     a, b = Curve.bspline(c), Curve.bspline(c + 0.3 * np.random.default_rng(6).normal(size=c.shape))
     shift, size = placed(a, b)
     intervals = [
-        int(_solve(a, b, shift, aim_of(1e-15 * size, limit=limit))[0][:, CUTS].sum())
+        int(_solve(a, b, shift, aim_of(1e-15 * size, limit=limit))[0]["n_cuts"].sum())
         for limit in (1e-3, math.inf)
     ]
     assert intervals[0] * 20 < intervals[1]
     assert not within(a, b, 1e-3) and within(a, b, 10.0)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @example(one=[(0, -1), (0, 0), (0, 1), (0, 1)], two=[(0, 0)] * 4)
 @given(points, points)
 def test_trimming_is_safe(one, two):

@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff, within
+from tests.examples import examples
 from tests.oracle import planar_hausdorff as oracle
 
 precise = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
@@ -59,7 +60,7 @@ def test_vertex_count_sweep_by_hand(n):
 vertices = st.lists(st.tuples(st.integers(-6, 6), st.integers(-6, 6)), min_size=2, max_size=12)
 
 
-@settings(max_examples=150, deadline=None)
+@examples(150)
 @given(vertices, vertices, st.booleans())
 def test_the_quick_way_agrees_with_the_general_one(one, two, near):
     if near:  # the same vertices almost: bisectors, overlap and ties

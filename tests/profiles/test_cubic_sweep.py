@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
@@ -14,13 +14,14 @@ from clearance.profiles.plane import Plane
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.kinematics import link_poses
 from clearance.world.robot import JointKind
+from tests.examples import examples
 from tests.oracle.outlines import inside
 from tests.profiles.chord_bound import assert_within_chord_and_turn
 from tests.profiles.finely import finely_swept, interpolated, strays, sweeps
 from tests.profiles.moving import Z, joint, moved, rows, slab
 
 
-@settings(max_examples=6, deadline=None)
+@examples(6)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]))
 def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):
     rng, case = sweeps(seed, bent=True)
@@ -72,7 +73,7 @@ def test_a_bar_that_overshoots_sweeps_the_sector_to_its_turning_point():
     assert turned.max() >= 0.5 >= turned.max() - thick
 
 
-@settings(max_examples=10, deadline=None)
+@examples(10)
 @given(st.integers(0, 2**32 - 1))
 def test_a_section_holds_every_point_cut(seed):
     rng, case = sweeps(seed, bent=True)
@@ -93,7 +94,7 @@ def test_a_section_holds_every_point_cut(seed):
     assert all(inside(point, chosen) for point in on_plane[cut][:40])
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(st.integers(0, 2**32 - 1))
 def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed):
     _, case = sweeps(seed, bent=True)
@@ -101,7 +102,7 @@ def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed):
     assert_within_chord_and_turn(case, motion, lambda at: interpolated(motion, at), slack=1e-13)
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(st.integers(0, 2**32 - 1), st.booleans())
 def test_the_course_is_the_motion(seed, bent):
     _, case = sweeps(seed, bent=bent)

@@ -4,13 +4,14 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.profiles.contour import Contour
 from clearance.profiles.fit_rows import gaps_of_shape, sides_of
 from clearance.profiles.gap import Closed
 from clearance.profiles.pieces import Pieces
+from tests.examples import examples
 from tests.oracle.outlines import inside
 
 
@@ -23,7 +24,7 @@ def ring(seed, n):
     return Contour(vertices, rng.uniform(-0.9, 0.9, n) * (rng.random(n) < 0.6))
 
 
-@settings(max_examples=50, deadline=None)
+@examples(50)
 @given(st.integers(0, 10**6), st.integers(3, 70))
 def test_no_point_of_many_on_the_pieces_is_nearer_than_the_foot(seed, n):
     pieces = Pieces([ring(seed, n), ring(seed + 1, 5)])

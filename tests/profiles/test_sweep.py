@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
@@ -14,6 +14,7 @@ from clearance.profiles.plane import Plane
 from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.kinematics import link_poses
 from clearance.world.robot import JointKind
+from tests.examples import examples
 from tests.oracle.outlines import inside
 from tests.profiles.chord_bound import assert_within_chord_and_turn
 from tests.profiles.finely import finely_swept, strays, sweeps
@@ -94,7 +95,7 @@ def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
     assert abs(-hole.area - math.pi * 0.3**2) <= found.bound * hole.length
 
 
-@settings(max_examples=6, deadline=None)
+@examples(6)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["xy", "xz", "yz", "0.1 0 0 1 2 3"]))
 def test_contains_a_sampling_a_hundred_times_finer_and_is_near_it(seed, name):
     rng, case = sweeps(seed)
@@ -115,7 +116,7 @@ def test_a_long_bar_spinning_about_its_middle_is_a_double_wedge_not_its_hull():
     assert strays(found, truth) <= found.bound
 
 
-@settings(max_examples=10, deadline=None)
+@examples(10)
 @given(st.integers(0, 2**32 - 1))
 def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed):
     rng, case = sweeps(seed)
@@ -148,7 +149,7 @@ def test_a_section_holds_every_point_cut_and_lies_near_the_body_in_space(seed):
     assert away.max() <= found.bound + 5e-4  # the dense samples' own steps
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(st.integers(0, 2**32 - 1))
 def test_points_stay_within_the_chord_bound(seed):
     _, case = sweeps(seed)

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron, distance
@@ -16,6 +16,7 @@ from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.search.containment import contained
 from clearance.kernels.search.scratch import new_scratch
 from tests import oracle
+from tests.examples import examples
 from tests.made_cases import torus
 from tests.strategies import BOX_FACES, QUARTER_TURNS, poses, rotations
 
@@ -66,7 +67,7 @@ def test_one_ulp_inside_or_outside(ulps):
 
 
 @given(poses(reach=1.0), poses(reach=1.0), st.sampled_from([1.0, 0.25, 0.01]), st.booleans())
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_any_poses_like_the_oracle(pose_a, pose_b, size, swapped):
     shapes = [(CORNERS, BOX_FACES), (CORNERS * 0.3 * size, BOX_FACES)]
     if swapped:

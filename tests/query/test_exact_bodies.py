@@ -4,11 +4,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from clearance import Polyhedron, distance
 from clearance.geometry.shapes import sphere
 from tests import oracle
+from tests.examples import examples
 from tests.strategies import BOX_FACES, QUARTER_TURNS, boxes, poses, rotations
 
 
@@ -20,7 +21,7 @@ def pose_of(random, reach):
 
 
 @given(boxes(), boxes(), poses(), poses())
-@settings(max_examples=120, deadline=None)
+@examples(120)
 def test_boxes_like_the_oracle(a, b, pose_a, pose_b):
     near = distance(Polyhedron(*a), Polyhedron(*b), pose_a=pose_a, pose_b=pose_b)
     sq = oracle.solid_distance_sq(*a, *b, pose_a, pose_b)
@@ -32,7 +33,7 @@ def test_boxes_like_the_oracle(a, b, pose_a, pose_b):
 
 
 @given(boxes(), boxes(), poses())
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_swapped_bodies_are_as_far_apart(a, b, pose):
     one, other = Polyhedron(*a), Polyhedron(*b)
     near, swapped = distance(one, other, pose_b=pose), distance(other, one, pose_a=pose)

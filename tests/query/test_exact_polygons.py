@@ -5,11 +5,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import polygon_distance, polygon_distances
 from tests import oracle
+from tests.examples import examples
 from tests.strategies import FAMILIES, polygon_pairs
 
 
@@ -97,7 +98,7 @@ def same(one, other, factor=1.0):
 
 
 @given(polygon_pairs())
-@settings(max_examples=200, deadline=None)
+@examples(200)
 def test_swapping_the_polygons_swaps_the_answer_bit_for_bit(pair):
     p, q = pair
     near, swapped = polygon_distance(p, q), polygon_distance(q, p)
@@ -108,7 +109,7 @@ def test_swapping_the_polygons_swaps_the_answer_bit_for_bit(pair):
 
 
 @given(polygon_pairs(), st.integers(0, 70), st.integers(0, 70))
-@settings(max_examples=200, deadline=None)
+@examples(200)
 def test_rotating_the_corners_changes_no_bit(pair, i, j):
     p, q = pair
     turned = polygon_distance(np.roll(p, i, axis=0), np.roll(q, j, axis=0))
@@ -116,7 +117,7 @@ def test_rotating_the_corners_changes_no_bit(pair, i, j):
 
 
 @given(polygon_pairs(), st.integers(-300, 300))
-@settings(max_examples=200, deadline=None)
+@examples(200)
 def test_scaling_by_a_power_of_two_scales_the_answer_exactly(pair, k):
     p, q = pair
     if np.abs(np.concatenate([p, q]))[np.concatenate([p, q]) != 0.0].min(initial=1.0) < 1e-100:
@@ -126,7 +127,7 @@ def test_scaling_by_a_power_of_two_scales_the_answer_exactly(pair, k):
 
 
 @given(polygon_pairs())
-@settings(max_examples=150, deadline=None)
+@examples(150)
 def test_any_pair_of_polygons(pair):
     p, q = pair
     near, sq = polygon_distance(p, q), exact_sq(p, q)

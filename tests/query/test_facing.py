@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -28,6 +28,7 @@ from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_pose
 from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import answer_rows
 from tests import oracle
+from tests.examples import examples
 from tests.made_cases import (
     at,
     ball,
@@ -160,7 +161,7 @@ def anywhere(random, reach):
     return at(*(reach * random.normal(size=3)), turned)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @example(0, "dented", "fan", 2.0, 0.0)
 @example(1, "crossing", "twice", 1.0, 4e-7)
 @example(2, "copied", "thin shell", 2.0, 0.0)
@@ -199,7 +200,7 @@ def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
             of_b[i, j] = away >> j % WIDTH & 1
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),
     st.sampled_from([0.5, 1.0, 2.0, 10.0]), st.floats(0.0, 0.25), st.floats(0.0, 0.3),
@@ -253,7 +254,7 @@ def bare(surface):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@settings(max_examples=12, deadline=None)
+@examples(12)
 @given(seed=st.integers(0, 2**32 - 1), other=st.sampled_from(sorted(KINDS)))
 def test_cones_change_no_bit(kind, seed, other):
     random = np.random.default_rng(seed)

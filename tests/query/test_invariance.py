@@ -4,10 +4,11 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron, distance, polygon_distance, polygon_distances
+from tests.examples import examples
 from tests.strategies import (
     FAMILIES,
     QUARTER_TURNS,
@@ -27,7 +28,7 @@ def agree(one, other):
 
 
 @given(boxes(), boxes(), poses(), st.sampled_from(QUARTER_TURNS), st.tuples(QUARTERS, QUARTERS, QUARTERS))
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_a_motion_that_floats_hold_exactly_changes_nothing_but_the_last_bit(a, b, pose, turn, shift):
     """A quarter turn of both bodies; a shift too where it rounds no coordinate."""
     one, other = Polyhedron(*a), Polyhedron(*b)
@@ -42,7 +43,7 @@ def test_a_motion_that_floats_hold_exactly_changes_nothing_but_the_last_bit(a, b
 
 
 @given(boxes(), boxes(), poses(), st.integers(0, 2**32 - 1), st.floats(0.0, 1e6))
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_any_rigid_motion_of_both_bodies_changes_only_by_its_rounding(a, b, pose, seed, far):
     random = np.random.default_rng(seed)
     motion = np.eye(4)
@@ -56,7 +57,7 @@ def test_any_rigid_motion_of_both_bodies_changes_only_by_its_rounding(a, b, pose
 
 
 @given(lattice_polygons(max_corners=5), lattice_polygons(max_corners=5))
-@settings(max_examples=100, deadline=None)
+@examples(100)
 def test_subdividing_a_polygon_changes_nothing(p, q):
     """The fan's triangles, each cut in four at the middles of its edges, which floats hold exactly."""
     whole = polygon_distance(p, q)
@@ -72,7 +73,7 @@ def test_subdividing_a_polygon_changes_nothing(p, q):
 
 
 @given(polygon_pairs(), st.lists(st.floats(1e-6, 2.0), min_size=2, max_size=4))
-@settings(max_examples=100, deadline=None)
+@examples(100)
 def test_moving_away_along_the_witness_direction_adds_what_was_moved(pair, moves):
     """Flat convex polygons: the distance grows by the way, to the rounding of the moved corners."""
     p, q = pair
@@ -92,7 +93,7 @@ def test_moving_away_along_the_witness_direction_adds_what_was_moved(pair, moves
 
 
 @given(boxes(), boxes(), poses(), st.tuples(*[st.floats(-0.3, 0.3)] * 3))
-@settings(max_examples=80, deadline=None)
+@examples(80)
 def test_between_two_steps_the_distance_changes_by_no_more_than_the_motion(a, b, pose, step):
     one, other = Polyhedron(*a), Polyhedron(*b)
     moved = pose.copy()
@@ -104,7 +105,7 @@ def test_between_two_steps_the_distance_changes_by_no_more_than_the_motion(a, b,
 
 
 @given(lattice_polygons(), lattice_polygons(), st.integers(0, 6), st.integers(0, 6))
-@settings(max_examples=100, deadline=None)
+@examples(100)
 def test_swapped_and_rotated_at_once_on_degenerate_input(p, q, i, j):
     near = polygon_distance(p, q)
     other = polygon_distance(np.roll(q, j, axis=0), np.roll(p, i, axis=0))

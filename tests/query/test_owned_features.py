@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import Polyhedron
@@ -12,6 +12,7 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import ANYTHING, LISTED
 from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_poses
 from clearance.kernels.search.scratch import new_scratch
+from tests.examples import examples
 from tests.made_cases import torus, without_cones
 from tests.strategies import rotations
 
@@ -90,7 +91,7 @@ def test_bits_say_what_the_lists_say(name):
 
 @pytest.mark.parametrize("name", BODIES)
 @pytest.mark.parametrize("cut", [False, True], ids=["polygons", "triangles"])
-@settings(max_examples=12, deadline=None)
+@examples(12)
 @given(seed=st.integers(0, 2**32 - 1), other=st.sampled_from(sorted(BODIES)))
 def test_nothing_changes_but_the_work(name, cut, seed, other):
     shapes = [BODIES[name], BODIES[other]]

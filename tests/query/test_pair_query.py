@@ -6,12 +6,13 @@ from dataclasses import fields
 import numba
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
 from clearance.errors import BadPose, BadShape, NotFinite
 from clearance.kernels.search.pair_query import nearest_at_poses
+from tests.examples import examples
 from tests.strategies import boxes, poses, rotations
 
 
@@ -120,7 +121,7 @@ def test_swapped_bodies_are_as_far_apart(pair):
 
 
 @given(boxes(), boxes(), st.lists(st.tuples(poses(), poses(), st.booleans()), min_size=2, max_size=6))
-@settings(max_examples=40, deadline=None)
+@examples(40)
 def test_boxes_anywhere_and_back_again(a, b, asked):
     one, other = cl.Polyhedron(*a), cl.Polyhedron(*b)
     query = cl.Query(one, other)

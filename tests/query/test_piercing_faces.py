@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import polygon_distance
+from tests.examples import examples
 from tests.oracle.polygons import polygon_distance_sq
 
 BESIDE = (0.0, 1e-300, 1e-17, 1e-16, 1e-14, 1e-11, 1e-6, 1e-2, 0.5)
@@ -18,7 +19,7 @@ def convex(rng: np.random.Generator, n_corners: int, slenderness: float) -> np.n
     return corners[:, rng.permutation(3)]
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(
     st.integers(0, 2**32 - 1), st.integers(3, 7), st.sampled_from(BESIDE), st.booleans(),
     st.sampled_from([1.0, 1e-3, 1e-7]), st.sampled_from([0.0, 1.0, 1e4]),

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.compile.jit import kernel
@@ -20,6 +20,7 @@ from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import chain_arrays, link_poses, positions_by_link
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.examples import examples
 from tests.made_cases import random_robot
 
 SHAPE = box((0.3, 0.1, 0.2))
@@ -33,7 +34,7 @@ def drifts(surface, chain, link, poses, swing, bend, direction):
     return drift_of_box(box_of(surface, 0), drift), along
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(
     st.integers(0, 2**32 - 1),
     st.integers(1, 7),

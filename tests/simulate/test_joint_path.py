@@ -4,11 +4,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from clearance.compile.jit import kernel
 from clearance.kernels.motion.joint_path import OUTWARD, JointPath, part_of
+from tests.examples import examples
 
 SIZES = st.sampled_from([0.0, 1e-6, 0.3, 7.0, 1e5])
 
@@ -33,7 +34,7 @@ def hermite(path, at):
     return sum(w * c for w, c in zip(weights, controls, strict=True))
 
 
-@settings(max_examples=150, deadline=None)
+@examples(150)
 @given(st.integers(0, 2**32 - 1), SIZES, SIZES, st.integers(0, 30))
 def test_the_motion_stays_within_swing_and_bend(seed, size, speed, depth):
     rng = np.random.default_rng(seed)
@@ -59,7 +60,7 @@ def test_the_bend_of_a_parabola_is_no_larger_than_it_must_be():
     assert found.bend == pytest.approx(0.25, rel=1e-11)
 
 
-@settings(max_examples=50, deadline=None)
+@examples(50)
 @given(st.floats(-10, 10), st.floats(-10, 10), st.integers(0, 15))
 @example(0.1, 0.7, 3)
 def test_without_velocities_the_motion_is_linear(before, after, i):

@@ -20,9 +20,9 @@ import clearance as cl
 from clearance.errors import Unwritable
 from clearance.report.summary import summary_of
 from clearance.report.tables import pair_batches, step_batches, write_csv, write_parquet
-from clearance.simulate import parts, spool
+from clearance.simulate import parts, resumable_rows
 from clearance.simulate.replay import replay_of
-from clearance.simulate.spool import open_spool
+from clearance.simulate.resumable_rows import open_resumable_rows
 from clearance.world.case import Case
 
 ROOT = Path(__file__).parents[2]
@@ -53,16 +53,16 @@ def case() -> Case:
 
 @pytest.fixture(autouse=True)
 def saved_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(spool, "SAVE_AFTER", 0.0)
+    monkeypatch.setattr(resumable_rows, "SAVE_AFTER", 0.0)
     monkeypatch.setattr(parts, "LONGEST_PART", 16)
     monkeypatch.setattr(parts, "SPARSE", 1)
 
 
 def answer(case: Case, place: Path, said: list[str], **asked: object) -> dict[str, object]:
     """All that a run found whose rows were kept in `place`, after that is gone."""
-    with open_spool(place, said.append) as kept:
+    with open_resumable_rows(place, said.append) as kept:
         run = cl.check(case, kept=kept, **asked)
-        run.record.let_go()
+        kept.let_go()
         found = told(run)
     assert not place.exists()
     assert found == told(run)
@@ -111,7 +111,7 @@ def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
         with pytest.raises(Interrupted):
             progress = stopping_at(count)
             answer(case, tmp_path / "kept", said, jobs=1 + count % 2, progress=progress, **ASKED[name])
-    with pytest.raises(Interrupted), open_spool(tmp_path / "kept", said.append) as kept:
+    with pytest.raises(Interrupted), open_resumable_rows(tmp_path / "kept", said.append) as kept:
         cl.check(case, kept=kept, **ASKED[name])  # all is measured, and then the report is interrupted
         raise Interrupted
     assert answer(case, tmp_path / "kept", said, jobs=1, **ASKED[name]) == memory
@@ -125,9 +125,9 @@ def test_a_report_from_disk_has_the_bytes_of_one_from_memory(
     monkeypatch.setattr(parts, "BLOCK", 100)
     asked = {"need": "pairs", "certify": True}
     cl.check(case, **asked).save(tmp_path / "memory")
-    with pytest.raises(Interrupted), open_spool(tmp_path / "kept", print) as kept:
+    with pytest.raises(Interrupted), open_resumable_rows(tmp_path / "kept", print) as kept:
         cl.check(case, kept=kept, progress=stopping_at(15), **asked)
-    with open_spool(tmp_path / "kept", print) as kept:
+    with open_resumable_rows(tmp_path / "kept", print) as kept:
         cl.check(case, kept=kept, **asked).save(tmp_path / "disk")
     names = sorted(path.name for path in (tmp_path / "memory").iterdir())
     assert names == sorted(path.name for path in (tmp_path / "disk").iterdir())
@@ -184,14 +184,14 @@ def test_another_question_starts_anew(case: Case, tmp_path: Path) -> None:
 KILLED = """
 import os, pathlib, signal, sys
 import clearance as cl
-from clearance.simulate import parts, spool
-from clearance.simulate.spool import open_spool
-spool.SAVE_AFTER, parts.LONGEST_PART, calls = 0.0, 16, []
+from clearance.simulate import parts, resumable_rows
+from clearance.simulate.resumable_rows import open_resumable_rows
+resumable_rows.SAVE_AFTER, parts.LONGEST_PART, calls = 0.0, 16, []
 def progress(done, total):
     calls.append(done)
     if len(calls) == 9:
         os.kill(os.getpid(), signal.SIGKILL)
-with open_spool(pathlib.Path(sys.argv[2]), print) as kept:
+with open_resumable_rows(pathlib.Path(sys.argv[2]), print) as kept:
     cl.check(cl.load_case(sys.argv[1]), kept=kept, progress=progress)
 """
 
@@ -208,15 +208,16 @@ def test_a_killed_process_is_resumed(tmp_path: Path) -> None:
 
 
 def test_a_second_run_to_the_same_place_is_refused(tmp_path: Path) -> None:
-    with open_spool(tmp_path / "kept", print):
-        with pytest.raises(Unwritable, match="another run is writing"), open_spool(tmp_path / "kept", print):
+    place = tmp_path / "kept"
+    with open_resumable_rows(place, print):
+        with pytest.raises(Unwritable, match="another run is writing"), open_resumable_rows(place, print):
             pass
-        assert (tmp_path / "kept").is_dir()
-    assert not (tmp_path / "kept").exists()
+        assert place.is_dir()
+    assert not place.exists()
 
 
 def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(case: Case, tmp_path: Path) -> None:
-    with open_spool(tmp_path / "kept", print) as kept:
+    with open_resumable_rows(tmp_path / "kept", print) as kept:
         run = cl.check(case, kept=kept)
     assert list(run.record.pair_minima) == list(cl.check(case).record.pair_minima)
     run.save(tmp_path / "out")
@@ -236,7 +237,7 @@ def test_a_full_disk_is_told_before_anything_is_mapped(
 
 
 def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="refused"), open_spool(tmp_path / "kept", print) as kept:
+    with pytest.raises(ValueError, match="refused"), open_resumable_rows(tmp_path / "kept", print) as kept:
         kept.ask("question")
         kept.array("steps.clearance", (100,))
         raise ValueError("refused")
@@ -265,13 +266,13 @@ def resampled(case: Case, n_steps: int) -> Case:
 def most_memory(case: Case, folder: Path, jobs: int) -> int:
     """[bytes] numpy and Python take at most beside the case, from the sweep to the last file but the page."""
     tracemalloc.start()
-    with open_spool(folder / "kept", print) as kept:
+    with open_resumable_rows(folder / "kept", print) as kept:
         run = cl.check(case, need="pairs", certify=True, jobs=jobs, kept=kept)
-        write_parquet(step_batches(run.record), folder / "steps.parquet")
-        write_csv(lambda: step_batches(run.record), folder / "steps.csv")
-        write_parquet(pair_batches(run.record), folder / "pairs.parquet")
+        write_parquet(step_batches(run.record, kept), folder / "steps.parquet")
+        write_csv(lambda: step_batches(run.record, kept), folder / "steps.csv")
+        write_parquet(pair_batches(run.record, kept), folder / "pairs.parquet")
         summary_of(run.record)
-        replay_of(run.record, 300)
+        replay_of(run.record, 300, kept)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     return most
@@ -279,7 +280,7 @@ def most_memory(case: Case, folder: Path, jobs: int) -> int:
 
 def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
     """[bytes] of 4000 and of 40,000 steps on one thread, and of 40,000 on two."""
-    parts.LONGEST_PART, parts.BLOCK, spool.SAVE_AFTER = 128, 1000, 1.0
+    parts.LONGEST_PART, parts.BLOCK, resumable_rows.SAVE_AFTER = 128, 1000, 1.0
     case = cl.load_case(ROOT / "scenes" / "box_box" / "case.yaml")
     most_memory(resampled(case, 500), folder, 2)  # what is loaded once
     few, many = resampled(case, 4_000), resampled(case, 40_000)

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import clearance as cl
@@ -38,6 +38,7 @@ from clearance.simulate.measure import measure
 from clearance.world.case import Limits
 from clearance.world.pairs import measured_pairs
 from tests import oracle
+from tests.examples import examples
 from tests.made_cases import faces_below, flying
 from tests.oracle.rationals import posed
 from tests.strategies import rotations
@@ -147,7 +148,7 @@ def is_at_most(bound, distance_sq):
     return bound <= 0.0 or (math.isfinite(bound) and Fraction(float(bound)) ** 2 <= distance_sq)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @example(0, "far", "needles", 1e5, True)
 @example(1, "no area", "no area", 1.0, False)
 @given(
@@ -180,7 +181,7 @@ def test_no_bound_of_a_node_or_face_is_above_the_exact_distance(seed, kind_a, ki
             assert is_at_most(faces[f, g], truth[f][g])
 
 
-@settings(max_examples=120, deadline=None)
+@examples(120)
 @example(0, "far", "needles", 1e5, 0.0)
 @example(1, "tiny", "far", 1e-7, 4e-7)
 @given(
@@ -240,7 +241,7 @@ def test_edges_that_cross_are_told_apart_across_both():
     assert faces[0, 0] == pytest.approx(0.01, abs=1e-12)
 
 
-@settings(max_examples=100, deadline=None)
+@examples(100)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(KINDS), st.sampled_from([0.0, 1e-9, 1e-3, 1.0, 1e4]), st.booleans()
 )
@@ -257,7 +258,7 @@ def test_no_corner_moves_farther_than_its_bound(seed, kind, reach, turned):
         assert moved_sq <= Fraction(bound) ** 2
 
 
-@settings(max_examples=20, deadline=None)
+@examples(20)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(KINDS[:5]), st.sampled_from(KINDS[:5]),
     st.sampled_from([0.0, 1e-3, 0.1, 3.0]), st.sampled_from(["minimum", "limit"]),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
@@ -17,6 +17,7 @@ from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import joined_links, link_poses
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+from tests.examples import examples
 from tests.made_cases import random_robot
 
 SCENES = Path(__file__).parents[2] / "scenes"
@@ -42,7 +43,7 @@ def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:
     return PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))), world_from_base=base)
 
 
-@settings(max_examples=150, deadline=None)
+@examples(150)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]))
 def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     rng = np.random.default_rng(seed)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import CubicHermiteSpline
 
@@ -12,6 +12,7 @@ from clearance.world.cubic import asked_at, extremes_between
 from clearance.world.kinematics import moving_velocities, positions_by_link, velocities_by_link
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
 from clearance.world.trajectory import Trajectory
+from tests.examples import examples
 
 
 def random_trajectory(seed, n_steps=5, n_joints=3):
@@ -23,7 +24,7 @@ def random_trajectory(seed, n_steps=5, n_joints=3):
     return Trajectory(times, names, size * rng.normal(size=size.shape), velocities)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.integers(0, 2**32 - 1))
 def test_positions_and_extremes_are_those_of_the_spline(seed):
     asked = random_trajectory(seed)

@@ -1,11 +1,43 @@
-"""Ready-made solids: box, cylinder, sphere, capsule, pipe, about the origin with the axis along z (as in URDF).
+"""Ready-made solids about the origin with the axis along z (as in URDF), and the table of them.
 
 Round shapes are faceted from outside: the true solid lies within the faceted one, and `excess` bounds by how
-much the faceted one is larger. Not for: shapes from files (room `load`).
+much the faceted one is larger. A new shape is a file in this folder and a row here: case files, URDF files, the
+schema and the checks of units follow the table. Not for: shapes from files (room `load`).
 """
 
 from clearance.geometry.shapes.box import box
 from clearance.geometry.shapes.pipe import pipe
 from clearance.geometry.shapes.round import capsule, cylinder, sphere
+from clearance.geometry.shapes.shape import Measure, Shape
 
-__all__ = ["box", "capsule", "cylinder", "pipe", "sphere"]
+_LENGTH, _OR_ZERO = Measure.LENGTH, Measure.LENGTH_OR_ZERO
+_BENT = {"length": _LENGTH, "sections": Measure.SIDES, "path": Measure.POINTS, "bend_radius": _LENGTH}
+
+SHAPES = {
+    "box": Shape(box, "A box about its centre.", {"size": Measure.SIZES}, in_urdf=True),
+    "pipe": Shape(
+        pipe,
+        "A pipe: straight along z about its centre (`length`), or bent along a line of points\n(`path`).",
+        {"outer_radius": _LENGTH, "inner_radius": _OR_ZERO},
+        optional=_BENT,
+        radius="outer_radius",
+    ),
+    "cylinder": Shape(
+        cylinder,
+        "A cylinder along z about its centre.",
+        {"radius": _LENGTH, "length": _LENGTH},
+        in_urdf=True,
+        radius="radius",
+    ),
+    "capsule": Shape(
+        capsule,
+        "A cylinder of that length along z about its centre, with half a ball on either end.",
+        {"radius": _LENGTH, "length": _OR_ZERO},
+        in_urdf=True,
+        radius="radius",
+    ),
+    "sphere": Shape(sphere, "A ball about its centre.", {"radius": _LENGTH}, in_urdf=True, radius="radius"),
+}
+"""Every shape that files can name, by its name."""
+
+__all__ = ["SHAPES", "Measure", "Shape", "box", "capsule", "cylinder", "pipe", "sphere"]

@@ -35,8 +35,8 @@ def pipe(
 
     Raises:
         BadDimension: a radius or length that is negative, not finite or 0 (but `inner_radius`), inner not
-            below outer, both or neither of `length` and `path`, equal neighbours in the path, a bend radius
-            not above the outer radius, bends that do not fit between the corners.
+            below outer, both or neither of `length` and `path`, a bend radius without a path, equal neighbours
+            in the path, a bend radius not above the outer radius, bends that do not fit between the corners.
 
     Exactness: the pipe lies inside the faceted one, and no facet of it, of the bore neither, is farther than
         `excess` from the true surface. Faces of straight pipes are flat to the last bit.
@@ -53,6 +53,8 @@ def pipe(
         given = "both" if path is not None else "neither"
         raise BadDimension(f"{given} of length and path given", valid="one of them is needed")
     if path is None:
+        if bend_radius is not None:
+            raise BadDimension("bend_radius is given without path", valid="a straight pipe has no bends")
         return _straight(inner, outer, positive(length, "length"), sections_for(outer, tolerance, sections))
     return _bent(inner, outer, mitred(path, bend_radius, outer, positive(tolerance, "tolerance")),
                  sections, tolerance)

@@ -1,4 +1,4 @@
-"""The folder of a spool: only one that we made and marked is emptied or taken away, and never through a link."""
+"""The folder of resumable rows: only one that we made and marked is emptied, and never through a link."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from clearance.errors import Unwritable
-from clearance.simulate import spool_folder
-from clearance.simulate.spool import open_spool
-from clearance.simulate.spool_folder import LOCK, MARK
+from clearance.simulate import rows_folder
+from clearance.simulate.resumable_rows import open_resumable_rows
+from clearance.simulate.rows_folder import LOCK, MARK
 
 
 class Interrupted(BaseException):
@@ -32,7 +32,7 @@ def everything(folder: Path) -> dict[str, bytes | str | None]:
 
 
 def left_by_an_interrupted_run(place: Path) -> None:
-    with pytest.raises(Interrupted), open_spool(place, print) as kept:
+    with pytest.raises(Interrupted), open_resumable_rows(place, print) as kept:
         kept.ask("the question before")
         kept.array("steps.clearance", (10,))
         kept.log("steps", [slice(0, 10)]).note(1, {}, last=True)
@@ -107,7 +107,7 @@ def test_what_we_have_not_made_is_refused_and_left_as_it_is(
     place = tmp_path / ".out.unfinished"
     plant(place)
     before = everything(tmp_path)
-    with pytest.raises(Unwritable, match="move it away") as caught, open_spool(place, print) as kept:
+    with pytest.raises(Unwritable, match="move it away") as caught, open_resumable_rows(place, print) as kept:
         kept.ask("another question")
     assert str(place) in str(caught.value)
     assert everything(tmp_path) == before
@@ -119,7 +119,7 @@ def test_a_link_that_has_come_since_is_not_followed(tmp_path: Path) -> None:
     precious.mkdir()
     (precious / "thesis.txt").write_text("years of work")
     place = tmp_path / "kept"
-    with pytest.raises(Unwritable), open_spool(place, print) as kept:
+    with pytest.raises(Unwritable), open_resumable_rows(place, print) as kept:
         place.rename(tmp_path / "aside")
         place.symlink_to(precious)
         kept.ask("question")
@@ -130,7 +130,7 @@ def test_what_a_run_has_left_is_taken_by_the_next(tmp_path: Path) -> None:
     place = tmp_path / "kept"
     left_by_an_interrupted_run(place)
     assert place.stat().st_mode & 0o077 == 0
-    with open_spool(place, print) as kept:
+    with open_resumable_rows(place, print) as kept:
         kept.ask("the question before")
         assert (place / "steps.clearance.rows").exists()
     assert list(tmp_path.iterdir()) == []
@@ -145,12 +145,12 @@ def test_of_two_runs_that_start_at_once_one_is_refused(
     def seen_too_early(path: Path) -> bool:
         found = lexists(path)
         if not ways:
-            ways.append(open_spool(place, print))
+            ways.append(open_resumable_rows(place, print))
             ways[0].__enter__()
         return found
 
-    monkeypatch.setattr(spool_folder.os.path, "lexists", seen_too_early)
-    with pytest.raises(Unwritable, match="another run is writing"), open_spool(place, print):
+    monkeypatch.setattr(rows_folder.os.path, "lexists", seen_too_early)
+    with pytest.raises(Unwritable, match="another run is writing"), open_resumable_rows(place, print):
         pass
     assert (place / LOCK).read_text() == MARK
     ways[0].__exit__(None, None, None)
@@ -167,7 +167,7 @@ def test_a_folder_taken_away_is_gone_at_once(tmp_path: Path, monkeypatch: pytest
         rmtree(path, **options)
 
     place = tmp_path / "kept"
-    with open_spool(place, print):
-        monkeypatch.setattr(spool_folder.shutil, "rmtree", watched)
+    with open_resumable_rows(place, print):
+        monkeypatch.setattr(rows_folder.shutil, "rmtree", watched)
     assert seen == [False]
     assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,89 @@
+from .errors import BadInput, ClearanceError
+from .geometry.polyhedron import Polyhedron
+from .geometry.polytope import Polytope
+from .geometry.shapes import box, capsule, cylinder, pipe, sphere
+from .load.case_file import load_case
+from .load.mesh import read_mesh
+from .load.urdf import load_urdf
+from .planar.biarcs import biarcs
+from .planar.curve import Curve
+from .planar.deviation import deviation
+from .planar.hausdorff import Undecided, hausdorff, within
+from .planar.minimum import minimum_distance
+from .profiles.fit import Fit, fit
+from .profiles.profile import Profile
+from .profiles.sweep import swept_profile
+from .query.common_point import common_point
+from .query.common_point_paper import common_point_paper
+from .query.contact import Contact, contact
+from .query.distance import distance, polygon_distance, polygon_distances
+from .query.intersection import Intersection, intersect
+from .query.pair_query import Query
+from .query.penetration import penetration
+from .query.result import Nearest
+from .run import Run, check
+from .simulate.checker import Checker
+from .simulate.record import CrossCheck, Record
+from .simulate.workspace import Workspace, shared_workspace
+from .sketch import Sketch, SketchResult
+from .world.body import Body, Obstacle
+from .world.case import Case, Limits, PlacedRobot
+from .world.robot import Robot
+from .world.trajectory import Trajectory
+
+__all__ = [
+    "BadInput",
+    "Body",
+    "Case",
+    "Checker",
+    "ClearanceError",
+    "Contact",
+    "CrossCheck",
+    "Curve",
+    "Fit",
+    "Intersection",
+    "Limits",
+    "Nearest",
+    "Obstacle",
+    "PlacedRobot",
+    "Polyhedron",
+    "Polytope",
+    "Profile",
+    "Query",
+    "Record",
+    "Robot",
+    "Run",
+    "Sketch",
+    "SketchResult",
+    "Trajectory",
+    "Undecided",
+    "Workspace",
+    "__version__",
+    "biarcs",
+    "box",
+    "capsule",
+    "check",
+    "common_point",
+    "common_point_paper",
+    "contact",
+    "cylinder",
+    "deviation",
+    "distance",
+    "fit",
+    "hausdorff",
+    "intersect",
+    "load_case",
+    "load_urdf",
+    "minimum_distance",
+    "penetration",
+    "pipe",
+    "polygon_distance",
+    "polygon_distances",
+    "read_mesh",
+    "shared_workspace",
+    "sphere",
+    "swept_profile",
+    "within",
+]
+
+__version__: str

@@ -1,0 +1,60 @@
+"""The optional libraries: which extra brings each, and the one line that says so where one is missing.
+
+`pip install clearance` brings what measuring needs. The other libraries serve one purpose each and are imported
+behind one door each, which asks here first. Not for: the dependencies that are always there (`pyproject.toml`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+
+from clearance.errors import Unavailable
+
+LIBRARIES = {
+    "contact": ("coacd", "manifold3d"),
+    "crosscheck": ("fcl",),
+    "dxf": ("ezdxf",),
+    "report": ("plotly", "meshcat", "matplotlib"),
+    "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
+    "view": ("meshcat", "tornado", "umsgpack"),
+}
+"""The modules that each extra of `pyproject.toml` brings."""
+
+
+def install(extra: str) -> str:
+    """The command that installs an extra."""
+    return f"pip install 'clearance[{extra}]'"
+
+
+def is_installed(library: str) -> bool:
+    """Whether a library can be found; it is not imported."""
+    return find_spec(library) is not None
+
+
+def require(extra: str, purpose: str) -> None:
+    """Lets pass where all libraries of an extra are installed; none is imported.
+
+    Raises:
+        Unavailable: one is missing; the message names the purpose and the command that installs it.
+    """
+    for library in LIBRARIES[extra]:
+        if not is_installed(library):
+            raise Unavailable(f"{purpose} needs {library}, which is not installed", valid=install(extra))
+
+
+@contextmanager
+def importing(extra: str, purpose: str) -> Iterator[None]:
+    """Turns the failure of an import inside into one line: the library is missing, or why it cannot be loaded.
+
+    Raises:
+        Unavailable: a library is missing, or cannot be loaded.
+    """
+    try:
+        yield
+    except ImportError as error:
+        library = (error.name or "a library").partition(".")[0]
+        missing = isinstance(error, ModuleNotFoundError)
+        fault = "is not installed" if missing else f"cannot be imported ({error})"
+        raise Unavailable(f"{purpose} needs {library}, which {fault}", valid=install(extra)) from None

@@ -1,0 +1,40 @@
+"""Marks by what a test uses, a guard that holds it to them, and the profiles of its random examples."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests import examples
+from tests.guards import guarded, refused
+from tests.marks import marks_of
+
+MARKS = ("cold", "browser", "peer", "slow", "shared")
+
+examples.register()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Adds the marks that follow from what each test and its fixtures use."""
+    for item in items:
+        fixtures = item._fixtureinfo.name2fixturedefs.values()
+        for mark in sorted(marks_of([item.function, *(f.func for last in fixtures for f in last)])):
+            item.add_marker(mark)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """Guards a test with its fixtures, from set-up to tear-down."""
+    with guarded(frozenset(mark for mark in MARKS if item.get_closest_marker(mark))):
+        return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Iterator[None]:
+    """Fails a test that the guard refused something, even where the code under test made nothing of it."""
+    result = yield
+    if refused:
+        pytest.fail(f"{item.nodeid}: {'; '.join(refused)}", pytrace=False)
+    return result

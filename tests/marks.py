@@ -1,0 +1,106 @@
+"""The marks that follow from the names that a test, its fixtures and their callees in `tests` use.
+
+`cold`: starts a process, or begins with empty caches. `browser`: drives Chromium. `peer`: asks another
+library the same question. `shared`: reads the cases beside the repository. What no name gives away carries
+its mark by hand; `guards` fails a test that does what it has no mark for.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable, Iterable, Iterator
+from dis import get_instructions
+from pathlib import Path
+from types import CodeType, FunctionType, ModuleType
+
+TESTS = Path(__file__).parent
+SHARED_CASES = TESTS.parents[1] / "shared" / "cases"
+PEERS = {"coal", "fcl", "klampt", "manifold3d", "pybullet", "shapely", "solvespace", "trimesh", "yourdfpy"}
+COLD_NAMES = {"fork", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME"}
+GLOBALS = {"LOAD_GLOBAL", "LOAD_NAME"}
+PARTS = {"LOAD_ATTR", "LOAD_METHOD", "LOAD_CONST", "KW_NAMES"}
+
+
+def marks_of(functions: Iterable[Callable]) -> set[str]:
+    """The marks of a test, given its function and its fixtures'."""
+    found, waiting, seen = set(), [_unwrapped(f) for f in functions], set()
+    while waiting:
+        one = waiting.pop()
+        if one is not None and one not in seen:
+            seen.add(one)
+            marks, callees = _looked_at(one)
+            found |= marks
+            waiting.extend(callees)
+    return found
+
+
+@functools.cache
+def _looked_at(function: FunctionType) -> tuple[frozenset[str], tuple[FunctionType, ...]]:
+    """The marks of what a function itself uses, and what it may call in `tests`."""
+    used = list(_used(function))
+    marks = frozenset(mark for value in used for mark in _marks_of_value(value))
+    return marks, tuple(callee for value in used for callee in _functions_of(value))
+
+
+def _functions_of(value: object) -> list[FunctionType]:
+    """The functions of `tests` that come with a value: itself, or a class's methods."""
+    if isinstance(value, str | tuple | int | float | None):
+        return []
+    values = vars(value).values() if isinstance(value, type) else [value]
+    functions = map(_unwrapped, values)
+    return [f for f in functions if f is not None and f.__code__.co_filename.startswith(str(TESTS))]
+
+
+def _unwrapped(value: object) -> FunctionType | None:
+    """The plain function below decorators."""
+    while hasattr(value, "__wrapped__"):
+        value = value.__wrapped__
+    inner = getattr(value, "hypothesis", None)
+    value = value if inner is None else inner.inner_test
+    return value if isinstance(value, FunctionType) else None
+
+
+def _used(function: FunctionType) -> Iterator[object]:
+    """All globals, attribute names, constants and modules that a function uses."""
+    for code in _codes(function.__code__):
+        for step in get_instructions(code):
+            if step.opname in GLOBALS:
+                yield function.__globals__.get(step.argval)
+            elif step.opname in PARTS:
+                yield step.argval
+            elif step.opname == "IMPORT_NAME":
+                yield Imported(step.argval)
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _codes(constant)
+
+
+class Imported(str):
+    """The name of a module that a function imports."""
+
+
+def _marks_of_value(value: object) -> Iterator[str]:
+    if isinstance(value, Path):
+        if str(value).startswith(str(SHARED_CASES)):
+            yield "shared"
+    elif isinstance(value, ModuleType | Imported):
+        yield from _marks_of_module(value if isinstance(value, str) else value.__name__)
+    elif isinstance(value, str) and value in COLD_NAMES:
+        yield "cold"
+    elif isinstance(value, tuple) and any(isinstance(x, str) and x == "cross_check" for x in value):
+        yield "peer"
+    elif isinstance(value, FunctionType | type):
+        yield from _marks_of_module(value.__module__)
+
+
+def _marks_of_module(name: str) -> Iterator[str]:
+    if name == "subprocess":
+        yield "cold"
+    elif name == "tests.report.browser":
+        yield "browser"
+    elif name.split(".")[0] in PEERS or name.startswith("clearance.crosscheck"):
+        yield "peer"

@@ -1,0 +1,141 @@
+"""What runs without the optional libraries, and the one line that says which extra is missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+from clearance import extras
+from clearance.cli import ExitCode, run
+from clearance.load.input_files import resolved
+from clearance.planar.dxf import read_dxf
+
+ROOT = Path(__file__).parents[1]
+CASE = ROOT / "scenes" / "profiles" / "keep_in.yaml"
+OPTIONAL = sorted({library for libraries in extras.LIBRARIES.values() for library in libraries})
+
+DISTRIBUTION_OF = {
+    "fcl": "python-fcl",
+    "pybullet_data": "pybullet",
+    "pybullet_utils": "pybullet",
+    "umsgpack": "u-msgpack-python",
+}
+"""Of modules that are not named as what is installed."""
+
+
+@pytest.fixture
+def hidden(monkeypatch):
+    """Makes libraries look as if they were not installed."""
+
+    def hide(*libraries: str) -> None:
+        for library in libraries:
+            for name in [name for name in sys.modules if name.partition(".")[0] == library]:
+                monkeypatch.delitem(sys.modules, name)
+            monkeypatch.setitem(sys.modules, library, None)
+
+    return hide
+
+
+def test_the_extras_of_the_project_file_bring_the_libraries_that_are_asked_for():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    brought = project["optional-dependencies"]
+    for extra, libraries in extras.LIBRARIES.items():
+        named = {requirement.partition(">=")[0].lower() for requirement in brought[extra]}
+        needed = {DISTRIBUTION_OF.get(library, library) for library in libraries}
+        assert named == needed, extra
+    assert brought["all"] == [f"clearance[{','.join(sorted(extras.LIBRARIES))}]"]
+    assert "clearance[all]" in brought["test"]
+
+
+LIBRARY_ALONE = f"""
+import sys
+for name in {OPTIONAL!r}:
+    sys.modules[name] = None
+import clearance as cl
+away = [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+assert cl.distance(cl.box((1, 1, 1)), cl.box((1, 1, 1)), pose_b=away).distance == 2.0
+run = cl.check({str(CASE)!r})
+assert run.passed and "clear" in repr(run) and "<table" in run._repr_html_()
+assert run.summary["profiles"][0]["passed"]
+"""
+
+
+def test_distance_and_check_need_no_optional_library():
+    done = subprocess.run([sys.executable, "-c", LIBRARY_ALONE], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "extra", "library", "line"),
+    [
+        (["--out", "report"], "report", "plotly", "--out needs plotly"),
+        (["--out", "report"], "report", "matplotlib", "--out needs matplotlib"),
+        (["--cross-check"], "crosscheck", "fcl", "--cross-check needs fcl"),
+        (["--motion", "simulated"], "simulate", "pybullet", "--motion simulated needs pybullet"),
+    ],
+)
+def test_check_refuses_first_what_a_missing_library_could_not_do(
+    hidden, capsys, tmp_path, monkeypatch, options, extra, library, line
+):
+    hidden(library)
+    monkeypatch.chdir(tmp_path)
+    assert run(["check", str(CASE), *options]) == ExitCode.BAD_INPUT
+    told = capsys.readouterr()
+    assert told.out == "" and list(tmp_path.iterdir()) == []
+    assert told.err == f"error: {line}, which is not installed; pip install 'clearance[{extra}]'\n"
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    return cl.check(CASE).save(tmp_path_factory.mktemp("report"))
+
+
+@pytest.mark.parametrize("library", extras.LIBRARIES["view"])
+def test_view_says_which_extra_it_needs(hidden, monkeypatch, report, capsys, library):
+    hidden(library)
+    for name in ("clearance.view.viewer", "clearance.view.server"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    assert run(["view", str(report)]) == ExitCode.BAD_INPUT
+    line = f"the live view needs {library}, which is not installed; pip install 'clearance[view]'"
+    assert capsys.readouterr().err == f"error: {line}\n"
+
+
+def refused_by(function, *arguments) -> str:
+    with pytest.raises(cl.ClearanceError) as caught:
+        function(*arguments)
+    return str(caught.value)
+
+
+def test_each_door_says_which_extra_it_needs(hidden, tmp_path):
+    hidden(*OPTIONAL)
+    (tmp_path / "drawing.dxf").write_text("")
+    dxf = refused_by(read_dxf, str(tmp_path / "drawing.dxf"))
+    assert dxf == "a DXF drawing needs ezdxf, which is not installed; pip install 'clearance[dxf]'"
+    robot = refused_by(resolved, "pybullet_data:r2d2.urdf", tmp_path)
+    assert robot.endswith("needs the package pybullet; pip install 'clearance[simulate]'")
+    kept = cl.check(CASE)
+    assert refused_by(kept.save, tmp_path / "report").endswith("pip install 'clearance[report]'")
+    assert not (tmp_path / "report").exists()
+    for option, extra in (({"cross_check": True}, "crosscheck"), ({"motion": "simulated"}, "simulate")):
+        with pytest.raises(cl.ClearanceError, match=rf"pip install 'clearance\[{extra}\]'"):
+            cl.check(CASE, **option)
+
+
+def test_a_library_that_cannot_be_loaded_says_why():
+    with pytest.raises(cl.ClearanceError, match=r"cannot be imported \(libGL is missing\)"):
+        with extras.importing("view", "the view"):
+            raise ImportError("libGL is missing", name="meshcat")
+
+
+def test_a_fault_of_our_own_is_no_missing_library():
+    with pytest.raises(ValueError), extras.importing("view", "the view"):
+        raise ValueError
+
+
+def test_what_is_installed_is_found():
+    assert extras.is_installed("clearance") and not extras.is_installed("no_such_library")

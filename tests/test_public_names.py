@@ -1,0 +1,55 @@
+"""The public names: the stub that an IDE reads and what the package gives at run time are the same."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+
+STUB = ast.parse(Path(cl.__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
+ROOM_OF = {
+    alias.name: f"clearance.{node.module}"
+    for node in STUB.body
+    if isinstance(node, ast.ImportFrom)
+    for alias in node.names
+}
+LISTED = next(
+    ast.literal_eval(node.value)
+    for node in STUB.body
+    if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__"
+)
+
+TETRAHEDRON = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
+
+
+def test_the_stub_lists_what_it_imports_and_the_package_offers_the_same():
+    assert sorted(LISTED) == LISTED == sorted([*ROOM_OF, "__version__"])
+    assert sorted(cl.__all__) == LISTED and set(ROOM_OF) <= set(dir(cl))
+
+
+@pytest.mark.parametrize("name", sorted(ROOM_OF))
+def test_each_name_is_what_its_room_calls_so(name):
+    assert getattr(cl, name) is getattr(importlib.import_module(ROOM_OF[name]), name)
+
+
+def test_an_unknown_name_is_an_attribute_error_that_names_it():
+    with pytest.raises(AttributeError, match="distanse"):
+        cl.distanse  # noqa: B018
+
+
+def test_importing_the_package_imports_no_large_library():
+    heavy = ("numpy", "numba", "scipy", "pyarrow", "pydantic", "lxml", "click", "clearance.load")
+    script = f"import sys, clearance; print([name for name in {heavy!r} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout == "[]\n"
+
+
+def test_a_mesh_file_is_read_by_the_room_that_the_package_attaches(tmp_path):
+    (tmp_path / "corner.off").write_text(TETRAHEDRON)
+    assert cl.Polyhedron.from_file(tmp_path / "corner.off", scale=2.0).vertices.max() == 2.0
