@@ -12,6 +12,7 @@ import numba
 import pytest
 
 from clearance.simulate.parts import usable_cores
+from tests.cli.test_leaving import write_case
 
 ROOT = Path(__file__).parents[2]
 
@@ -63,7 +64,8 @@ from clearance.kernels.search import body_pair
 from clearance.kernels.features import common_point
 from clearance.kernels.features import meeting
 do = f"""import sys; sys.path[:] = {sys.path!r}
-from clearance.kernels.search import body_pair; from clearance.compile import kernel_table
+from clearance.kernels.search import body_pair
+from clearance.compile import kernel_table
 kernel_table.compile_kernel(kernel_table.MEETING)"""
 process = subprocess.Popen([sys.executable, "-c", do], stdout=subprocess.PIPE)
 kernel_table.await_from(process, kernel_table.TOGETHER)
@@ -183,3 +185,37 @@ def test_the_second_process_ends_with_a_first_that_is_killed(tmp_path):
 @pytest.mark.skipif(usable_cores() < 2, reason="one core: nothing is compiled ahead")
 def test_where_no_process_can_be_started_all_is_left_to_the_first(tmp_path):
     assert told_by(WHERE_NO_PROCESS_STARTS, tmp_path) == [True, 0]
+
+
+WHO_STARTS_PROCESSES = """
+import json, sys
+import clearance as cl
+from clearance.cli import run
+from clearance.compile.kernel_cache import KernelCache
+
+KernelCache.holds_any = lambda self: False  # the cache looks empty to who asks whether to start a process
+started = []
+sys.addaudithook(lambda event, args: started.append(event) if event in {events} else None)
+box = cl.box((1.0, 1.0, 1.0))
+cl.distance(box, box)
+cl.check({case!r}, certify=False)
+by_library = list(started)
+code = run(["check", {case!r}, "--samples-only", "--quiet"])
+print(json.dumps([by_library, started, code]), file=sys.__stdout__)
+"""
+EVENTS = {"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "os.system"}
+
+
+@pytest.mark.skipif(usable_cores() < 2, reason="one core: nothing is compiled ahead")
+def test_a_library_call_starts_no_process_where_the_command_line_does(tmp_path):
+    """What is compiled lies in the cache as ever: the rest of both calls runs through."""
+    write_case(tmp_path / "case", None)
+    case = str(tmp_path / "case" / "case.yaml")
+    done = subprocess.run(
+        [sys.executable, "-c", WHO_STARTS_PROCESSES.format(case=case, events=EVENTS)],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    by_library, by_all, code = json.loads(done.stdout.splitlines()[-1])
+    assert (by_library, code) == ([], 0)
+    assert "subprocess.Popen" in by_all

@@ -6,14 +6,12 @@ import sys
 from pathlib import Path
 
 import numba
-import numpy as np
 import pytest
 
 from clearance.compile import kernel_table
-from clearance.compile.jit import inline, kernel
+from clearance.compile.jit import kernel
 from clearance.compile.kernel_table import MEETING, at_address, call
 from clearance.kernels.features import meeting
-from tests.reached import reached
 
 ROOT = Path(__file__).parents[2]
 
@@ -60,39 +58,3 @@ def test_a_caller_with_other_types_is_refused():
     assert meeting.meeting is not None
     with pytest.raises(TypeError, match=r"meeting.* is called with other types"):
         call(with_other_types, 1.0)
-
-
-@compiled_only
-def test_what_only_kernels_can_call_is_refused_to_python():
-    from clearance.kernels.arithmetic.vec3 import rigid
-
-    with pytest.raises(TypeError, match=r"vec3\.rigid can be called by kernels only"):
-        rigid(np.eye(4))
-    assert reached(rigid)(np.eye(4)).xx == 1.0
-    with pytest.raises(TypeError, match="by kernels only"):
-        rigid(np.eye(4))
-
-
-@inline
-def first_of(arrays):
-    return arrays[0]
-
-
-@compiled_only
-def test_an_array_is_not_handed_on_to_a_kernel_that_counts_no_references():
-    """One form of `first_of` would serve both: where only one counts, an array is freed while it is in use."""
-
-    @numba.njit  # not cached: `first_of` is compiled here, with counts
-    def counting(arrays):
-        return first_of(arrays)[0]
-
-    @kernel(reference_counts=False)
-    def not_counting(arrays):
-        return first_of(arrays)[0]
-
-    arrays = (np.ones(2), np.zeros(2))
-    assert counting(arrays) == 1.0
-    with pytest.raises(
-        Exception, match="first_of returns an array to a kernel without reference counts"
-    ):
-        not_counting(arrays)
