@@ -2,7 +2,7 @@
 
 A kernel's arguments are fixed in number; a call a body gives Python's lock away and takes it back each time,
 and two threads that do so in turn wait for each other as long as they work. A body is therefore a row of
-numbers: address and length of `numbers`, address and length of `indices` (`polytope.exits`). Whoever makes the
+numbers: address and length of `numbers`, address and length of `indices` (`polytope.body`). Whoever makes the
 rows must hold the arrays. Not for: bodies of which there are one or two.
 """
 

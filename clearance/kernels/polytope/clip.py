@@ -62,7 +62,7 @@ class Cutters(NamedTuple):
     like: PackedBody
 
 
-class Limits(NamedTuple):
+class CutLimits(NamedTuple):
     """What counts as what.
 
     Attributes:
