@@ -12,7 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.clip import CutLimits, Cutters, cut_by_bodies, rooms_about
+from clearance.kernels.polytope.bodies import Cutters
+from clearance.kernels.polytope.clip import CutLimits, cut_by_bodies, rooms_about
 from clearance.kernels.polytope.cut import (
     BROKEN,
     CUT,

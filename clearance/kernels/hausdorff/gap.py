@@ -1,4 +1,4 @@
-"""Compiled least distance of two curves, and the distances of many points from one: certified.
+"""Compiled least distance of two curves, certified.
 
 Two parts are apart by at least the gap of their control polygons along any direction; along that of their
 middle points this bound errs by the square of their length alone. Not for: the Hausdorff distance.
@@ -47,22 +47,6 @@ class LeafScratch(NamedTuple):
 
     planes: np.ndarray
     arcs: np.ndarray
-
-
-@kernel
-def feet(pieces, leaves, points, out):
-    """Writes distance, proven lower bound, piece and local parameter (n, 4) of each of `points` (n, 2)."""
-    work = new_scratch(widest(pieces), 0)
-    hint = 0
-    for k in range(points.shape[0]):
-        foot = nearest(pieces, leaves, points[k, 0], points[k, 1], hint, np.inf, work)
-        hint = foot.leaf
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = (
-            foot.distance,
-            foot.lower,
-            foot.piece,
-            foot.local,
-        )
 
 
 @inlined

@@ -9,6 +9,7 @@ rows must hold the arrays. Not for: bodies of which there are one or two.
 from __future__ import annotations
 
 import ctypes
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -16,6 +17,9 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numba.np.arrayobj import populate_array
+
+from clearance.compile.jit import spliced
+from clearance.kernels.polytope.body import PackedBody
 
 NUMBERS, INDICES = 0, 2
 
@@ -53,3 +57,25 @@ def _array_from(rows, i, column, like):
 array_at = _array_from if numba.config.DISABLE_JIT else _array_at
 """`array_at(rows, i, column, like)`: the array of body i at `NUMBERS` or `INDICES`; `like` shows its type. rows:
 (m, 4) int64."""
+
+
+class Cutters(NamedTuple):
+    """Bodies to cut by.
+
+    Attributes:
+        rows: (m, 4) int64, see above; bases: the number of each one's first plane.
+        origin: (3,) what the places of the polytope that is cut are about.
+        like: shows the types of a body's arrays.
+    """
+
+    rows: np.ndarray
+    bases: np.ndarray
+    origin: np.ndarray
+    like: PackedBody
+
+
+@spliced
+def body_at(cutters, i):
+    """Body `i`."""
+    numbers = array_at(cutters.rows, i, NUMBERS, cutters.like.numbers)
+    return PackedBody(numbers, array_at(cutters.rows, i, INDICES, cutters.like.indices))
