@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from clearance.kernels.hausdorff.gap import feet
+from clearance.kernels.curve.feet import feet
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.entries import BadCurve, checked_number

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.profiles.profile import Origin
-from clearance.profiles.region import Nearest, Region, polygons, touching, union
+from clearance.profiles.region import Region, RegionIndex, polygons, touching, union
 
 MOST_KEPT = 20_000
 """Polygons that are held before those inside the outline so far are let go."""
@@ -44,5 +44,5 @@ class Collected:
     def origin(self, contours, labels: tuple[str, ...]) -> Origin:
         """The maker of each piece: whose polygon is nearest to its middle, the first on ties."""
         middles = np.concatenate([contour.middles() for contour in contours])
-        makers = self._makers[Nearest(self._parts)(middles)]
+        makers = self._makers[RegionIndex(self._parts)(middles)]
         return Origin(labels, makers[:, 0].copy(), makers[:, 1].copy())

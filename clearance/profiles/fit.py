@@ -15,8 +15,8 @@ import numpy as np
 from clearance.errors import BadDimension, BadInput, BadShape
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
-from clearance.profiles.fit_bounded import Bounded
-from clearance.profiles.fit_nearest import Nearest
+from clearance.profiles.fit_bounded import BoundedFit
+from clearance.profiles.fit_nearest import NearestFit
 from clearance.profiles.fit_report import held_rates, sensitivities, touching
 from clearance.profiles.fit_result import Fit
 from clearance.profiles.fit_shape import SketchShape
@@ -70,14 +70,14 @@ def fit(
     if drawn is None:
         raise BadShape("the sketch cannot be drawn", where="sketch")
     target = Target(outline, shape, drawn, mode, margin)
-    search = (Nearest if mode == "nearest" else Bounded)(shape, target, drawn)
+    search = (NearestFit if mode == "nearest" else BoundedFit)(shape, target, drawn)
     best, tried = _best(search, starts_of(shape, outline, mode, starts))
     if best is None:
         raise _no_fit(search, mode, margin, tried)
     return _told(sketch, shape, search, best, tried)
 
 
-def _no_fit(search: Nearest | Bounded, mode: str, margin: float, tried: int) -> NoFit:
+def _no_fit(search: NearestFit | BoundedFit, mode: str, margin: float, tried: int) -> NoFit:
     if getattr(search, "endless", False):
         return NoFit(
             "the sketch grows beside the outline without end",
@@ -100,7 +100,7 @@ def _drawn(profile: Profile | Drawn | Curve) -> Drawn:
     return Drawn(profile.name or "profile", profile.curve, profile)
 
 
-def _best(search: Nearest | Bounded, starts: list[np.ndarray]):
+def _best(search: NearestFit | BoundedFit, starts: list[np.ndarray]):
     best, tried = None, 0
     for start in starts:
         tried += 1
@@ -115,7 +115,7 @@ def _best(search: Nearest | Bounded, starts: list[np.ndarray]):
 
 
 def _told(
-    sketch: Sketch, shape: SketchShape, search: Nearest | Bounded, best: Found, tried: int
+    sketch: Sketch, shape: SketchShape, search: NearestFit | BoundedFit, best: Found, tried: int
 ) -> Fit:
     here, target = best.placed, search.target
     n = len(shape.free)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.profiles.fit_placed import Placed
-from clearance.profiles.fit_program import least_area
+from clearance.profiles.fit_program import AreaGoal, least_area
 from clearance.profiles.fit_rows import Gaps, Rows, rows_of
-from clearance.profiles.fit_search import MOST_ROWS, STEPS, Search
+from clearance.profiles.fit_search import MOST_ROWS, STEPS, FitSearch
 from clearance.profiles.fit_target import Found, Places
 
 MOST_NEAR = 60
@@ -24,7 +24,7 @@ ROUNDS = 7
 """Times that a search is taken up again with the certified witnesses."""
 
 
-class Bounded(Search):
+class BoundedFit(FitSearch):
     """The search for the least (outside) or greatest (inside) area with every gap at least the margin.
 
     Attributes:
@@ -72,7 +72,8 @@ class Bounded(Search):
         for _ in range(STEPS):
             merit = target.score(here) + price * max(0.0, wanted - float(gaps.distance.min()))
             bounds = self.bounds(here, reach)
-            found = least_area(rows, change, wanted, price, size, reach, self.shape.scale, *bounds)
+            goal = AreaGoal(change, wanted, price)
+            found = least_area(rows, goal, size, reach, self.shape.scale, *bounds)
             if found.value <= 1e-10 * size**2 or reach < 1e-10:
                 break
             moved, gained = self.shape.at(here.numbers + found.step), -np.inf

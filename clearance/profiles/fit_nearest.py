@@ -11,11 +11,11 @@ from clearance.planar.hausdorff import Hausdorff, hausdorff
 from clearance.profiles.fit_placed import Placed
 from clearance.profiles.fit_program import least_greatest
 from clearance.profiles.fit_rows import Gaps, Rows, rows_of
-from clearance.profiles.fit_search import MOST_ROWS, STEPS, Search
+from clearance.profiles.fit_search import MOST_ROWS, STEPS, FitSearch
 from clearance.profiles.fit_target import Found, Places
 
 
-class Nearest(Search):
+class NearestFit(FitSearch):
     """The search for the least Hausdorff distance."""
 
     def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:

@@ -49,17 +49,35 @@ def least_greatest(rows: Rows, scale: np.ndarray, low: np.ndarray, high: np.ndar
     return Programmed(x[:n] * unit * scale, float(x[n]) * unit, marginals)
 
 
+class AreaGoal(NamedTuple):
+    """What a step is to make least: the area, and what is missing of a gap.
+
+    Attributes:
+        change: (n,) of the area by the numbers. wanted: the least gap. price: of each unit that is missing.
+    """
+
+    change: np.ndarray
+    wanted: float
+    price: float
+
+
 def least_area(
-    rows: Rows, change: np.ndarray, wanted: float, price: float, size: float, reach: float,
-    scale: np.ndarray, low: np.ndarray, high: np.ndarray,
-) -> Programmed:  # fmt: skip
-    """The step that makes area and `price` times the missing gap least to first order; value: the gain.
+    rows: Rows,
+    goal: AreaGoal,
+    size: float,
+    reach: float,
+    scale: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+) -> Programmed:
+    """The step that makes area and price times the missing gap least to first order; value: the gain.
 
     Args:
-        change: (n,) of the area by the numbers. wanted: the least gap. size: of the shape, for units.
+        size: of the shape, for units.
         reach: the greatest step, for units: late small steps are not lost in the solver's tolerances.
         scale, low, high: as for `least_greatest`.
     """
+    change, wanted, price = goal
     scaled = rows.slope * scale
     n = scaled.shape[1]
     found = _least(

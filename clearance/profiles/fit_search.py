@@ -21,7 +21,7 @@ STEPS = 30
 """Linear programs that one search may take."""
 
 
-class Search:
+class FitSearch:
     """A shape, what it is to be, and the places on it that are looked at."""
 
     def __init__(self, shape: SketchShape, target: Target, drawn: Placed) -> None:

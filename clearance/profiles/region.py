@@ -134,7 +134,7 @@ def boundary_distance(region: Region, rings: Sequence[np.ndarray]) -> float:
     return float(shapely.distance(boundary, lines))
 
 
-class Nearest:
+class RegionIndex:
     """Finds which of many regions is nearest to a point; the first one on ties."""
 
     def __init__(self, parts: np.ndarray) -> None:

@@ -16,7 +16,7 @@ import numpy as np
 
 from clearance.geometry.edges import distinct_vertices, edge_use, rings_of
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.kernels.profile.swept_cover import Raster, add_cover
+from clearance.kernels.profile.swept_cover import Raster, SweptEdges, add_cover
 from clearance.kernels.profile.swept_hulls import edge_hulls, triangle_hulls
 from clearance.profiles.chords import Knots
 from clearance.profiles.plane import Plane
@@ -51,8 +51,8 @@ class Silhouette:
         self.shape, self.knots, self.plane = shape, knots, plane
 
     @cached_property
-    def _edges(self) -> tuple[np.ndarray, ...]:
-        """Vertices of each edge, and the faces along it as `add_cover` takes them."""
+    def _edges(self) -> SweptEdges:
+        """Vertices of each edge, and the faces along it."""
         shape = self.shape
         _, kinds = distinct_vertices(shape.vertices)
         ring = rings_of(shape.face_starts)
@@ -64,7 +64,7 @@ class Silhouette:
         )
         ends = np.where(use.forward[use.starts[:-1], None], ends, ends[:, ::-1])
         ways = np.where(use.forward, 1, -1).astype(np.int64)
-        return np.ascontiguousarray(ends), use.starts, ring.face[use.order], ways
+        return SweptEdges(np.ascontiguousarray(ends), use.starts, ring.face[use.order], ways)
 
     def box(self) -> np.ndarray:
         """(2, 2) [m] a box in the plane that holds the body at all knots."""
@@ -78,7 +78,7 @@ class Silhouette:
         for start in range(0, len(self.knots.instant), CHUNK):
             poses = self.knots.poses[start : start + CHUNK]
             signs = np.sign(self._facing(poses)).astype(np.int8)
-            add_cover(raster, self._seen(poses, self.shape.vertices), *self._edges, signs)
+            add_cover(raster, self._seen(poses, self.shape.vertices), self._edges, signs)
 
     def hulls(
         self, raster: Raster, sums: np.ndarray, width: float, slack: float
@@ -103,7 +103,7 @@ class Silhouette:
         states = np.where(open_side, 0, np.sign(facing)).astype(np.int8)
         points = self._seen(knots.poses[run[0] : run[-1] + 2], self.shape.vertices)
         corners, count, interval = edge_hulls(
-            raster, sums, points, *self._edges, states, width, slack
+            raster, sums, points, self._edges, states, width, slack
         )
         return Hulls(corners, count, knots.instant[run][interval])
 

@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.gjk import COMMON, gjk
+from clearance.kernels.polytope.gjk import COMMON, VertexGraph, gjk
 from clearance.query.common_point import ROUNDING, Certificate, CommonPoint
 
 
@@ -24,9 +24,8 @@ def common_point_paper(a: Polytope, b: Polytope, warm: tuple = (0, 0)) -> Common
     Source: Tereshchenko (2013), sections 2.1-2.2.
     """
     limit = ROUNDING * max(a.size, b.size)
-    status, n, k, ia, ib, shares, nearest = gjk(
-        a.vertices, *a.vertex_graph, b.vertices, *b.vertex_graph, *warm, limit
-    )
+    graphs = (VertexGraph(body.vertices, *body.vertex_graph) for body in (a, b))
+    status, n, k, ia, ib, shares, nearest = gjk(*graphs, *warm, limit)
     after = (int(ia[0]), int(ib[0]))
     gap = float(np.linalg.norm(nearest))
     if status != COMMON and gap > limit:

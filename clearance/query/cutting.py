@@ -12,7 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.clip import Cutters, Limits, cut_by_bodies, rooms_about
+from clearance.kernels.polytope.bodies import Cutters
+from clearance.kernels.polytope.clip import CutLimits, cut_by_bodies, rooms_about
 from clearance.kernels.polytope.cut import (
     BROKEN,
     CUT,
@@ -151,7 +152,7 @@ class Cutting:
             Broken: see there.
         """
         task, turns = self.task, np.array(i_bodies, dtype=np.int64)
-        limits = Limits(task.tolerance, NOISE * task.tolerance, SPARSE)
+        limits = CutLimits(task.tolerance, NOISE * task.tolerance, SPARSE)
         while True:
             status, n_done = cut_by_bodies(self.arrays, task.cutters, turns, limits)
             if status != FULL:

@@ -170,7 +170,7 @@ def test_1e9_apart_splines():
 
 
 def hausdorff_point(curve, point):
-    from clearance.kernels.hausdorff.gap import feet
+    from clearance.kernels.curve.feet import feet
 
     out = np.empty((1, 4))
     feet(curve.pieces, curve.leaves, (point - curve.origin)[None], out)

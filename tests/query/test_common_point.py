@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.gjk import LIMIT, gjk, support
+from clearance.kernels.polytope.gjk import LIMIT, VertexGraph, gjk, support
 from clearance.query.common_point import common_point
 from clearance.query.common_point_paper import common_point_paper
 
@@ -35,7 +35,7 @@ def test_hill_climbing_finds_what_looking_at_all_finds(n):
     for direction in np.random.default_rng(2).normal(size=(50, 3)):
         best = (body.vertices @ direction).max()
         for start in (0, n // 2):
-            found = support(body.vertices, *body.vertex_graph, start, direction)
+            found = support(VertexGraph(body.vertices, *body.vertex_graph), start, direction)
             assert body.vertices[found] @ direction == pytest.approx(best, abs=1e-15)
 
 
@@ -93,8 +93,8 @@ def test_gjk_never_runs_on():
         flat = Polytope(CUBE * 10.0 ** rng.integers(-6, 1, 3))
         other = Polytope(CUBE * 10.0 ** rng.integers(-6, 1, 3) + rng.integers(-1, 2, 3))
         for start in (0, 7):
-            _, n, *_ = gjk(flat.vertices, *flat.vertex_graph, other.vertices, *other.vertex_graph,
-                           start, start, 0.0)  # fmt: skip
+            graphs = (VertexGraph(body.vertices, *body.vertex_graph) for body in (flat, other))
+            _, n, *_ = gjk(*graphs, start, start, 0.0)
             assert n < LIMIT // 4
 
 

@@ -14,9 +14,9 @@ from clearance.kernels.curve.bezier import hypotenuse
 from clearance.kernels.curve.distance_map import draw, lower_bound_of_map
 from clearance.kernels.curve.scratch import LARGEST_DEGREE, new_scratch, widest
 from clearance.kernels.hausdorff.cutting import ROOM
-from clearance.kernels.hausdorff.pair import Curves, Pair
-from clearance.kernels.hausdorff.queue import WIDTH, Interval, with_room
-from clearance.kernels.hausdorff.search import MANY, Workspace, close, examine
+from clearance.kernels.hausdorff.interval_search import MANY, SearchScratch, close, examine
+from clearance.kernels.hausdorff.pair import CurvePair, Curves
+from clearance.kernels.hausdorff.queue import WIDTH, OpenInterval, with_room
 from clearance.kernels.hausdorff.state import SEARCH_STATE
 from clearance.kernels.hausdorff.trim import trim, trim_nodes
 from clearance.kernels.hausdorff.witness import write_witness
@@ -57,7 +57,7 @@ def _search_kept(pair, leaves, aim, drawn, sparing, kept, state, work, heap):
         hint = drawn.arc[drawn.first[k]] if hint < 0 else hint
         heap = with_room(heap, n_open, ROOM)
         row = leaves.arcs[k]
-        interval = Interval(leaves.piece[k], row[S0], row[S1], hint, 0.0)
+        interval = OpenInterval(leaves.piece[k], row[S0], row[S1], hint, 0.0)
         hint, n_open = examine(pair, aim, interval, state, work, heap, n_open)
     return close(pair, aim, state, work, heap, n_open)
 
@@ -77,7 +77,7 @@ def both_directions(one, two, shift_x, shift_y, aim):
     points[:] = math.nan
     most = max(widest(one.pieces), widest(two.pieces))
     composed = np.empty((most + 2, 3, LARGEST_DEGREE + 1))
-    work, heap = Workspace(new_scratch(most, 0), composed), np.empty((4 * ROOM, WIDTH))
+    work, heap = SearchScratch(new_scratch(most, 0), composed), np.empty((4 * ROOM, WIDTH))
     for turn in range(2):
         state, la, lb, n_arcs = out[turn], one.leaves, two.leaves, one.leaves.arcs.shape[0]
         pixels = min(PIXELS_AT_MOST, max(PIXELS_AT_LEAST, 2.0 * n_arcs))
@@ -85,7 +85,7 @@ def both_directions(one, two, shift_x, shift_y, aim):
         drawn = draw(one.pieces, la, lb, shift_x, shift_y, pixel, work.planes[0])
         state.piece_a, state.n_arcs, state.n_pixels = -1, n_arcs, drawn.depth.shape[0]
         state.map_bound = lower_bound_of_map(drawn, la, lb, pixel)
-        pair = Pair(Curves(one.pieces, two.pieces, shift_x, shift_y), lb)
+        pair = CurvePair(Curves(one.pieces, two.pieces, shift_x, shift_y), lb)
         kept = np.zeros(n_arcs, np.bool_)
         kept[drawn.deepest_leaf] = True
         for stage in range(

@@ -1,7 +1,7 @@
 """Compiled upper bounds of the distance of a part of A to B, and the true distance of one of its points.
 
 Not for: roots of the systems (`hausdorff.roots`), runs of many arcs (`hausdorff.run`), which parts are asked
-about and in which order (`hausdorff.search`).
+about and in which order (`hausdorff.interval_search`).
 """
 
 import math

@@ -2,7 +2,7 @@
 
 At an end (11), at a common normal found by Newton's method (12), where the curve meets B's self-bisector (13),
 or beside a joint of B that it passes closely. To cut at a root makes the distance monotone on both sides, so
-that the next bound is exact: the certificate. Not for: the bounds (`hausdorff.search`).
+that the next bound is exact: the certificate. Not for: the bounds (`hausdorff.interval_search`).
 """
 
 import math
@@ -12,7 +12,7 @@ from clearance.compile.jit import inline
 from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.nearest import slide_to_foot
 from clearance.kernels.hausdorff.bounds import consider
-from clearance.kernels.hausdorff.queue import Interval, push
+from clearance.kernels.hausdorff.queue import OpenInterval, push
 from clearance.kernels.hausdorff.roots import self_bisector, slide_from
 
 BESIDE = 1e-9  # share of an interval next to its ends where no cut beside a joint is made
@@ -21,7 +21,7 @@ MOST_PARTS = 32  # that an interval is cut into at once
 ROOM = MOST_PARTS + 2  # what the queue must have left
 
 
-class Place(NamedTuple):
+class BoundPlace(NamedTuple):
     """Where an interval's bound is largest: on A, its foot on the piece nearest to the middle, as a share."""
 
     t: float
@@ -55,11 +55,11 @@ def _cut_beside_joints(pair, interval, foot, seen, t, bound, heap, n_open):
             continue
         if apart < CLOSELY * hypotenuse(here.dx, here.dy) * (t1 - t0):
             start, end = (last, cut_at) if forward else (cut_at, last)
-            n_open = push(heap, n_open, bound, Interval(i, start, end, foot.leaf, 0.0))
+            n_open = push(heap, n_open, bound, OpenInterval(i, start, end, foot.leaf, 0.0))
             last = cut_at
     if n_open > before:
         low, high = (last, t1) if forward else (t0, last)
-        n_open = push(heap, n_open, bound, Interval(i, low, high, foot.leaf, 0.0))
+        n_open = push(heap, n_open, bound, OpenInterval(i, low, high, foot.leaf, 0.0))
     return n_open
 
 
@@ -99,5 +99,5 @@ def cut_interval(pair, interval, foot, seen, place, bound, state, work, heap, n_
     is_root = 1.0
     if not t0 < chosen < t1:
         chosen, is_root = 0.5 * (t0 + t1), 0.0
-    n_open = push(heap, n_open, bound, Interval(i, t0, chosen, foot.leaf, is_root))
-    return push(heap, n_open, bound, Interval(i, chosen, t1, foot.leaf, is_root))
+    n_open = push(heap, n_open, bound, OpenInterval(i, t0, chosen, foot.leaf, is_root))
+    return push(heap, n_open, bound, OpenInterval(i, chosen, t1, foot.leaf, is_root))

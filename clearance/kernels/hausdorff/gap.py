@@ -1,4 +1,4 @@
-"""Compiled least distance of two curves, and the distances of many points from one: certified.
+"""Compiled least distance of two curves, certified.
 
 Two parts are apart by at least the gap of their control polygons along any direction; along that of their
 middle points this bound errs by the square of their length alone. Not for: the Hausdorff distance.
@@ -15,7 +15,7 @@ from clearance.kernels.curve.arcs import cells_apart
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet
 from clearance.kernels.curve.nearest import nearest, slide_to_foot
 from clearance.kernels.curve.scratch import new_scratch, widest
-from clearance.kernels.hausdorff.pair import Curves, Part
+from clearance.kernels.hausdorff.pair import CurvePart, Curves
 from clearance.kernels.hausdorff.roots import common_normal
 
 MOST_OPEN = 4000  # pairs of nodes that may be open at once
@@ -44,27 +44,11 @@ LEAST_DISTANCE = np.dtype(
 )
 
 
-class Scratch(NamedTuple):
+class LeafScratch(NamedTuple):
     """Planes of `curve.scratch`, and rows of two arcs (2, WIDTH)."""
 
     planes: np.ndarray
     arcs: np.ndarray
-
-
-@kernel
-def feet(pieces, leaves, points, out):
-    """Writes distance, proven lower bound, piece and local parameter (n, 4) of each of `points` (n, 2)."""
-    work = new_scratch(widest(pieces), 0)
-    hint = 0
-    for k in range(points.shape[0]):
-        foot = nearest(pieces, leaves, points[k, 0], points[k, 1], hint, np.inf, work)
-        hint = foot.leaf
-        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = (
-            foot.distance,
-            foot.lower,
-            foot.piece,
-            foot.local,
-        )
 
 
 @inline
@@ -159,8 +143,8 @@ def _search_leaves(curves, part, other, gap, best, scratch):
     while top > 0:
         top -= 1
         best.n_cells += 1
-        part = Part(i, cells[top, 0], cells[top, 1])
-        other = Part(j, cells[top, 2], cells[top, 3])
+        part = CurvePart(i, cells[top, 0], cells[top, 1])
+        other = CurvePart(j, cells[top, 2], cells[top, 3])
         t, s = _closest_in(curves, part, other)
         a, b = jet(curves.a, i, t), jet(curves.b, j, s)
         ex, ey = a.x + shift_x - b.x, a.y + shift_y - b.y
@@ -224,8 +208,8 @@ def _search_buckets(curves, la, first_a, lb, first_b, gap, best, scratch):
     """Lowers `best` by the arcs of two leaves of the trees, each against each."""
     for k in range(first_a, min(la.arcs.shape[0], first_a + BUCKET)):
         for r in range(first_b, min(lb.arcs.shape[0], first_b + BUCKET)):
-            part = Part(la.piece[k], la.arcs[k, S0], la.arcs[k, S1])
-            other = Part(lb.piece[r], lb.arcs[r, S0], lb.arcs[r, S1])
+            part = CurvePart(la.piece[k], la.arcs[k, S0], la.arcs[k, S1])
+            other = CurvePart(lb.piece[r], lb.arcs[r, S0], lb.arcs[r, S1])
             _search_leaves(curves, part, other, gap, best, scratch)
 
 
@@ -234,7 +218,7 @@ def least_distance(pa, la, pb, lb, shift_x, shift_y, gap):
     """The least distance of two curves: (1,) LEAST_DISTANCE."""
     out, curves = np.zeros(1, LEAST_DISTANCE), Curves(pa, pb, shift_x, shift_y)
     best, planes = out[0], new_scratch(max(widest(pa), widest(pb)), CELL_ROWS)
-    scratch = Scratch(planes, np.empty((2, WIDTH)))
+    scratch = LeafScratch(planes, np.empty((2, WIDTH)))
     _begin(curves, la, lb, best, planes)
     _polish(curves, la, lb, best, planes)
     size_a, size_b = la.boxes.shape[0] // 2, lb.boxes.shape[0] // 2

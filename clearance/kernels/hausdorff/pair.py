@@ -28,14 +28,14 @@ class Curves(NamedTuple):
     shift_y: float
 
 
-class Pair(NamedTuple):
+class CurvePair(NamedTuple):
     """`Curves`, and the arcs of the other one: whole curves may be asked for their nearest point."""
 
     curves: Curves
     leaves: Leaves
 
 
-class Part(NamedTuple):
+class CurvePart(NamedTuple):
     """The part of one piece between two local parameters; run through backwards where `t0` > `t1`."""
 
     piece: int

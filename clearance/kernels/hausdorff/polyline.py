@@ -20,7 +20,7 @@ from clearance.kernels.hausdorff.bracket import (
     narrowed,
     secant,
 )
-from clearance.kernels.hausdorff.run import Run, segment_run_bound
+from clearance.kernels.hausdorff.run import NearestRun, segment_run_bound
 from clearance.kernels.hausdorff.segments import (
     BUCKET,
     STACK,
@@ -58,7 +58,7 @@ class Span(NamedTuple):
     d1: float
 
 
-class Workspace(NamedTuple):
+class SegmentScratch(NamedTuple):
     """Open spans as rows (MOST_OPEN, 6), and the scratch of `nearest_segment`."""
 
     spans: np.ndarray
@@ -136,7 +136,7 @@ def _bound_of(lines, i, span, enough):
     if bound > enough:
         x0, y0 = point_at(lines.control, i, span.t0)
         x1, y1 = point_at(lines.control, i, span.t1)
-        run = Run(span.near0, span.near1, span.d0, span.d1)
+        run = NearestRun(span.near0, span.near1, span.d0, span.d1)
         shift_x, shift_y = lines.shift_x, lines.shift_y
         by_run = segment_run_bound(x0, y0, x1, y1, shift_x, shift_y, control, run, enough)
         bound = min(bound, by_run)
@@ -213,7 +213,7 @@ def directed_polyline(one, two, shift_x, shift_y, aim, states):
     n, size = one.control.shape[0] // 2, one.boxes.shape[0] // 2
     state.piece_a, state.n_arcs = -1, n
     open_nodes = OpenNodes(np.empty(STACK, np.int64), np.empty(STACK))
-    work, todo = Workspace(np.empty((MOST_OPEN, 6)), open_nodes), np.empty(STACK, np.int64)
+    work, todo = SegmentScratch(np.empty((MOST_OPEN, 6)), open_nodes), np.empty(STACK, np.int64)
     hint = two.control.shape[0] // 4
     for k in range(0, n, max(1, n // SEEDS)):
         _, hint = _offer(lines, k, 0.5, hint, open_nodes, state)

@@ -1,6 +1,6 @@
 """Open intervals of a search, the one of the greatest bound first: a binary heap of rows.
 
-Not for: what becomes of them (`hausdorff.search`).
+Not for: what becomes of them (`hausdorff.interval_search`).
 """
 
 from typing import NamedTuple
@@ -13,7 +13,7 @@ BOUND, T0, T1, HINT, WAS_CUT, PIECE = range(6)
 WIDTH = 6
 
 
-class Interval(NamedTuple):
+class OpenInterval(NamedTuple):
     """An interval of a piece of A: its limits, a leaf of B nearby, and whether a root made it (1) or not (0)."""
 
     piece: int
@@ -27,7 +27,7 @@ class Interval(NamedTuple):
 def interval_at(heap, k):
     """Entry `k` of the queue."""
     row = heap[k]
-    return Interval(int(row[PIECE]), row[T0], row[T1], int(row[HINT]), row[WAS_CUT])
+    return OpenInterval(int(row[PIECE]), row[T0], row[T1], int(row[HINT]), row[WAS_CUT])
 
 
 @inline

@@ -16,7 +16,7 @@ from clearance.kernels.curve.bezier import hypotenuse, jet
 LONGEST_RUN = 2000
 
 
-class Run(NamedTuple):
+class NearestRun(NamedTuple):
     """The arcs or segments of B between those nearest to a part's ends, and how far these feet are."""
 
     first: int

@@ -25,7 +25,7 @@ from clearance.kernels.hausdorff.cells import (
     new_table,
     put_child_cells,
 )
-from clearance.kernels.hausdorff.pair import Curves, Pair, Part
+from clearance.kernels.hausdorff.pair import CurvePair, CurvePart, Curves
 from clearance.kernels.hausdorff.roots import slide_from
 from clearance.kernels.hausdorff.single_roots import (
     OPEN,
@@ -44,7 +44,7 @@ A_ROOT = 40.0  # what finding a root costs beside excluding a cell
 class Systems(NamedTuple):
     """What is solved: two curves, three derivatives of B, and (n, 2) which of its ends are not smooth."""
 
-    pair: Pair
+    pair: CurvePair
     db: tuple[Pieces, Pieces, Pieces]
     ends_b: np.ndarray
 
@@ -64,7 +64,7 @@ def _leave(pair, part, state, work):
     foot = consider(pair, i, 0.5 * (part.t0 + part.t1), 0, state, work)
     s0, _ = slide_from(curves, i, part.t0, foot.piece, foot.local)
     s1, _ = slide_from(curves, i, part.t1, foot.piece, foot.local)
-    bound, _ = upper_bound(curves, part, Part(foot.piece, s0, s1), work)
+    bound, _ = upper_bound(curves, part, CurvePart(foot.piece, s0, s1), work)
     bound = min(bound, extent_bound(curves, part, foot.distance, work))
     state.upper = max(state.upper, bound)
     state.n_given_up += 1
@@ -166,7 +166,7 @@ def _solve_part(systems, da, b_parts, part, budget, table, boxes, state, work):
     top, spent = 1, 0.0
     while top > 0:
         top -= 1
-        here, level = Part(part.piece, stack[top, 0], stack[top, 1]), int(stack[top, 2])
+        here, level = CurvePart(part.piece, stack[top, 0], stack[top, 1]), int(stack[top, 2])
         state.n_cuts += 1
         if not fits_first or spent > budget:
             _leave(systems.pair, here, state, work)
@@ -210,14 +210,14 @@ def solve_directed(one, a_parts, two, b_parts, shift_x, shift_y, budget, states)
         one, two: A and B, `CurveArrays`; a_parts, b_parts: (n, 3) piece, t0, t1; shift: from A's frame into B's.
     """
     state, work = states[0], new_scratch(max(widest(one.pieces), widest(two.pieces)), 0)
-    pair = Pair(Curves(one.pieces, two.pieces, shift_x, shift_y), two.leaves)
+    pair = CurvePair(Curves(one.pieces, two.pieces, shift_x, shift_y), two.leaves)
     da, db = _three_derivatives(one.pieces), _three_derivatives(two.pieces)
     systems, table = Systems(pair, db, two.is_end), new_table()
     boxes = Boxes(np.empty((4, 4)), np.empty(4), np.empty((5, 4)))
     share = budget / max(1, a_parts.shape[0])
     for k in range(a_parts.shape[0]):
         _consider_ends(pair, one.is_end, a_parts[k], state, work)
-        part = Part(int(a_parts[k, 0]), a_parts[k, 1], a_parts[k, 2])
+        part = CurvePart(int(a_parts[k, 0]), a_parts[k, 1], a_parts[k, 2])
         _solve_part(systems, da, b_parts, part, share, table, boxes, state, work)
     if state.piece_a < 0:  # nothing to solve, and no end: any point for a witness
         consider(pair, 0, 0.5, 0, state, work)

@@ -2,20 +2,23 @@
 
 A kernel's arguments are fixed in number; a call a body gives Python's lock away and takes it back each time,
 and two threads that do so in turn wait for each other as long as they work. A body is therefore a row of
-numbers: address and length of `numbers`, address and length of `indices` (`polytope.exits`). Whoever makes the
+numbers: address and length of `numbers`, address and length of `indices` (`polytope.body`). Whoever makes the
 rows must hold the arrays. Not for: bodies of which there are one or two.
 """
 
 from __future__ import annotations
 
 import ctypes
+from typing import NamedTuple
 
 import numba
 import numpy as np
 from numba import types
 from numba.extending import intrinsic
 
+from clearance.compile.jit import inline
 from clearance.compile.numba_private import array_from, elements_at
+from clearance.kernels.polytope.body import PackedBody
 
 NUMBERS, INDICES = 0, 2
 
@@ -44,3 +47,25 @@ def _array_from(rows, i, column, like):
 array_at = _array_from if numba.config.DISABLE_JIT else _array_at
 """`array_at(rows, i, column, like)`: the array of body i at `NUMBERS` or `INDICES`; `like` shows its type. rows:
 (m, 4) int64."""
+
+
+class Cutters(NamedTuple):
+    """Bodies to cut by.
+
+    Attributes:
+        rows: (m, 4) int64, see above; bases: the number of each one's first plane.
+        origin: (3,) what the places of the polytope that is cut are about.
+        like: shows the types of a body's arrays.
+    """
+
+    rows: np.ndarray
+    bases: np.ndarray
+    origin: np.ndarray
+    like: PackedBody
+
+
+@inline(one_caller=True)
+def body_at(cutters, i):
+    """Body `i`."""
+    numbers = array_at(cutters.rows, i, NUMBERS, cutters.like.numbers)
+    return PackedBody(numbers, array_at(cutters.rows, i, INDICES, cutters.like.indices))

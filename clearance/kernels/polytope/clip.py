@@ -11,14 +11,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.polytope.bodies import INDICES, NUMBERS, array_at
+from clearance.kernels.polytope.bodies import body_at
 from clearance.kernels.polytope.body import (
     GREATEST_WIDTH,
     WIDTH,
-    PackedBody,
     centroid_of,
     face_edges,
     face_number,
@@ -47,22 +44,7 @@ from clearance.kernels.polytope.cut import (
 from clearance.kernels.polytope.exits import cell_of, exit_in, is_in_ball
 
 
-class Cutters(NamedTuple):
-    """Bodies to cut by.
-
-    Attributes:
-        rows: (m, 4) int64 as `polytope.bodies` says; bases: the number of each one's first plane.
-        origin: (3,) what the places of the polytope that is cut are about.
-        like: shows the types of a body's arrays.
-    """
-
-    rows: np.ndarray
-    bases: np.ndarray
-    origin: np.ndarray
-    like: PackedBody
-
-
-class Limits(NamedTuple):
+class CutLimits(NamedTuple):
     """What counts as what.
 
     Attributes:
@@ -157,13 +139,6 @@ def is_copy(spots, mesh, v, base):
     if mesh[u, 0] < 0 or (mesh[u, LOOKED] != base + 1 and mesh[u, LOOKED] != -1):
         return False
     return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
-
-
-@inline(one_caller=True)
-def body_at(cutters, i):
-    """Body `i`."""
-    numbers = array_at(cutters.rows, i, NUMBERS, cutters.like.numbers)
-    return PackedBody(numbers, array_at(cutters.rows, i, INDICES, cutters.like.indices))
 
 
 @kernel(reference_counts=False)

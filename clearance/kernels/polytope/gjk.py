@@ -8,6 +8,7 @@ knows no special case: a degenerate simplex only drops the faces that have no so
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,12 +18,21 @@ SEPARATED, COMMON, STALLED = 0, 1, 2
 LIMIT = 128
 
 
+class VertexGraph(NamedTuple):
+    """The corners of a convex body (n, 3) [m], and its edges: the starts (n + 1,) of each corner's neighbours."""
+
+    vertices: np.ndarray
+    starts: np.ndarray
+    neighbours: np.ndarray
+
+
 @inline
-def hill_climb(vertices, starts, neighbours, v, x, y, z):
+def hill_climb(graph, v, x, y, z):
     """The vertex farthest in direction (x, y, z), from vertex `v` upwards over the edges.
 
     Source: Tereshchenko (2013), section 1; Ericson (2005), section 9.5.4.
     """
+    vertices, starts, neighbours = graph
     best = vertices[v, 0] * x + vertices[v, 1] * y + vertices[v, 2] * z
     while True:
         here = v
@@ -37,9 +47,9 @@ def hill_climb(vertices, starts, neighbours, v, x, y, z):
 
 
 @kernel
-def support(vertices, starts, neighbours, v, direction):
+def support(graph, v, direction):
     """The index of the vertex farthest in `direction`, climbing from vertex `v`."""
-    return hill_climb(vertices, starts, neighbours, v, direction[0], direction[1], direction[2])
+    return hill_climb(graph, v, direction[0], direction[1], direction[2])
 
 
 @inline
@@ -158,15 +168,17 @@ def least_point(points, n, keep, shares, nearest):
 
 
 @kernel
-def gjk(vertices_a, starts_a, neighbours_a, vertices_b, starts_b, neighbours_b, ia, ib, tolerance):
+def gjk(a, b, ia, ib, tolerance):
     """GJK from vertices `ia`, `ib`: a common point with its simplex, or the nearest points of both.
 
     Args:
+        a, b: `VertexGraph`.
         tolerance: [m] a distance at or below it is contact.
 
     Returns: (status, iterations, n, (4,) indices of A, (4,) of B, (4,) coefficients, (3,) least point of
         A - B [m]); n is the number of simplex points that carry it.
     """
+    vertices_a, vertices_b = a.vertices, b.vertices
     index_a = np.zeros(4, dtype=np.int64)
     index_b = np.zeros(4, dtype=np.int64)
     points = np.zeros((4, 3))
@@ -183,8 +195,8 @@ def gjk(vertices_a, starts_a, neighbours_a, vertices_b, starts_b, neighbours_b, 
         if gap_sq <= tolerance * tolerance:
             return COMMON, iteration, n, index_a, index_b, shares, nearest
         x, y, z = nearest[0], nearest[1], nearest[2]
-        ia = hill_climb(vertices_a, starts_a, neighbours_a, ia, -x, -y, -z)
-        ib = hill_climb(vertices_b, starts_b, neighbours_b, ib, x, y, z)
+        ia = hill_climb(a, ia, -x, -y, -z)
+        ib = hill_climb(b, ib, x, y, z)
         along = 0.0
         for i in range(3):
             along += nearest[i] * (vertices_a[ia, i] - vertices_b[ib, i])

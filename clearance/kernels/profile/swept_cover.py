@@ -80,18 +80,32 @@ def add_inside(raster, first_row, last_row, first_column, last_column, touched, 
         steps[row, first_column] = 0
 
 
+class SweptEdges(NamedTuple):
+    """The edges of a body: (e, 2) their vertices, and the faces along them.
+
+    Attributes:
+        starts: (e + 1,) where each edge's `faces` begin.
+        ways: of each of these, 1 where it runs from the edge's first vertex to the second, -1 where back.
+    """
+
+    ends: np.ndarray
+    starts: np.ndarray
+    faces: np.ndarray
+    ways: np.ndarray
+
+
 @kernel
-def add_cover(raster, points, edges, use_starts, use_faces, use_ways, signs):
+def add_cover(raster, points, edges, signs):
     """Marks what one body covers at several instants.
 
     Args:
         raster: holds every point with a pixel to spare.
         points: (k, v, 2) [m] its vertices in the plane at each instant.
-        edges: (e, 2) vertices of each edge; `use_starts` (e + 1,), `use_faces`, `use_ways`: the faces along
-            it and whether they run from its first vertex to the second (1) or back (-1).
+        edges: its `SweptEdges`.
         signs: (k, f) 1 for faces seen from the front at each instant, -1 from behind, 0 edge-on.
     """
     rows, columns = raster.covered.shape
+    ends, starts, faces, ways = edges
     touched = np.zeros((rows, columns + 1), np.bool_)
     steps = np.zeros((rows, columns + 1), np.int32)
     for k in range(points.shape[0]):
@@ -99,12 +113,12 @@ def add_cover(raster, points, edges, use_starts, use_faces, use_ways, signs):
         last_row = min(rows - 1, row_of(raster, points[k, :, 1].max()) + 1)
         first_column = max(0, column_of(raster, points[k, :, 0].min()) - 1)
         last_column = min(columns - 1, column_of(raster, points[k, :, 0].max()) + 1)
-        for e in range(edges.shape[0]):
+        for e in range(ends.shape[0]):
             count = 0
-            for use in range(use_starts[e], use_starts[e + 1]):
-                count += use_ways[use] * signs[k, use_faces[use]]
+            for use in range(starts[e], starts[e + 1]):
+                count += ways[use] * signs[k, faces[use]]
             if count != 0:
-                a, b = edges[e, 0], edges[e, 1]
+                a, b = ends[e, 0], ends[e, 1]
                 draw_edge(
                     raster, points[k, a, 0], points[k, a, 1], points[k, b, 0], points[k, b, 1],
                     count, touched, steps,

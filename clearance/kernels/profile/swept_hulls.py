@@ -110,13 +110,14 @@ def _part_of(points, k, a, b, low, high, four):
 
 
 @kernel
-def edge_hulls(raster, sums, points, edges, use_starts, use_faces, use_ways, states, width, slack):
+def edge_hulls(raster, sums, points, edges, states, width, slack):
     """What the edges that may bound a body's outline sweep between neighbouring instants, uncovered only.
 
     An edge is cut in halves until what it sweeps is convex or within `slack` of its hull.
 
     Args:
         points: (k + 1, v, 2) [m] the vertices in the plane at each instant.
+        edges: `SweptEdges` of the body.
         states: (k, f) for each interval 1 or -1 for faces that are surely seen from the front or from
             behind throughout, 0 for others.
         width: [m] what slenderer polygons are widened by, to either side.
@@ -125,25 +126,26 @@ def edge_hulls(raster, sums, points, edges, use_starts, use_faces, use_ways, sta
     Returns:
         corners (m, MOST, 2), n_corners (m,), interval (m,).
     """
+    ends, starts, faces, ways = edges
     found = 0
     corners, n_corners = np.empty((1024, MOST, 2)), np.empty(1024, np.int64)
     intervals = np.empty(1024, np.int64)
     four, spare = np.empty((4, 2)), np.empty((4, 2))
     out, widened, waiting = np.empty((40, 2)), np.empty((16, 2)), np.empty((128, 2))
     for k in range(points.shape[0] - 1):
-        for e in range(edges.shape[0]):
+        for e in range(ends.shape[0]):
             count, known = 0, True
-            for use in range(use_starts[e], use_starts[e + 1]):
-                state = states[k, use_faces[use]]
+            for use in range(starts[e], starts[e + 1]):
+                state = states[k, faces[use]]
                 known = known and state != 0
-                count += use_ways[use] * state
+                count += ways[use] * state
             if known and count == 0:
                 continue
             waiting[0, 0], waiting[0, 1], left = 0.0, 1.0, 1
             while left:
                 left -= 1
                 low, high = waiting[left, 0], waiting[left, 1]
-                _part_of(points, k, edges[e, 0], edges[e, 1], low, high, four)
+                _part_of(points, k, ends[e, 0], ends[e, 1], low, high, four)
                 spare[:] = four
                 n = fattened_hull(spare, 4, width, widened, out)
                 if lies_covered(raster, sums, out, n):

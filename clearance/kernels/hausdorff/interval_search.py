@@ -15,18 +15,18 @@ from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.follow import SHARES, drift, follow_bound, least_order, order_for
 from clearance.kernels.curve.scratch import FEET
 from clearance.kernels.hausdorff.bounds import chord_bound, consider, line_covered, upper_bound
-from clearance.kernels.hausdorff.cutting import ROOM, Place, cut_interval
-from clearance.kernels.hausdorff.pair import Part
+from clearance.kernels.hausdorff.cutting import ROOM, BoundPlace, cut_interval
+from clearance.kernels.hausdorff.pair import CurvePart
 from clearance.kernels.hausdorff.queue import BOUND, interval_at, pop, with_room
 from clearance.kernels.hausdorff.roots import common_normal, slide_from
-from clearance.kernels.hausdorff.run import Run, arc_run_bound
+from clearance.kernels.hausdorff.run import NearestRun, arc_run_bound
 
 MANY = 512  # arcs from which on whole runs of them are tried first
 WORTH = 0.25  # the drift's share of what a bound is too large, from which on a map of higher order is tried
 SMALLEST = 4e-16  # an interval that floats cannot cut
 
 
-class Workspace(NamedTuple):
+class SearchScratch(NamedTuple):
     """Scratch of a search: the planes of `curve.scratch`, and room for composed maps (`curve.follow`)."""
 
     planes: np.ndarray
@@ -109,8 +109,8 @@ def _run_bound(pair, interval, leaf, aim, state, planes):
     """The bound by the run of arcs between those nearest to both ends, whose distances are considered."""
     one = consider(pair, interval.piece, interval.t0, leaf, state, planes)
     two = consider(pair, interval.piece, interval.t1, one.leaf, state, planes)
-    run = Run(one.leaf, two.leaf, one.distance, two.distance)
-    part = Part(interval.piece, interval.t0, interval.t1)
+    run = NearestRun(one.leaf, two.leaf, one.distance, two.distance)
+    part = CurvePart(interval.piece, interval.t0, interval.t1)
     return arc_run_bound(pair.curves, part, pair.leaves.arcs, run, settled_below(aim, state))
 
 
@@ -140,8 +140,8 @@ def _followed_where_worth(curves, interval, feet, bound, aim, enough, work):
 def _bounded(pair, interval, feet, leaf, straight, aim, state, work):
     """An upper bound of the interval's distance, and whether a map of higher order was tried for it."""
     curves = pair.curves
-    part = Part(interval.piece, interval.t0, interval.t1)
-    other = Part(feet.piece, feet.start, feet.end)
+    part = CurvePart(interval.piece, interval.t0, interval.t1)
+    other = CurvePart(feet.piece, feet.start, feet.end)
     value, share = upper_bound(curves, part, other, work.planes)
     if straight and pair.leaves.arcs.shape[0] >= MANY and value > 1.5 * state.distance:
         run = _run_bound(pair, interval, leaf, aim, state, work.planes)
@@ -166,7 +166,7 @@ def _place_of_bound(curves, interval, feet, share, state):
     if share > 0.0:
         state.n_normals += 1
         t, s = t0 + share * (t1 - t0), feet.start + share * (feet.end - feet.start)
-        return common_normal(curves, Part(interval.piece, t0, t1), t, feet.piece, s)
+        return common_normal(curves, CurvePart(interval.piece, t0, t1), t, feet.piece, s)
     state.n_ends += 1
     return t0, feet.start
 
@@ -181,7 +181,7 @@ def examine(pair, aim, interval, state, work, heap, n_open):
     straight = curves.a.first[i + 1] - curves.a.first[i] == 2 and not curves.a.rational[i]
     state.n_cuts += 1
     known = max(state.lower, aim.enough)
-    part = Part(i, interval.t0, interval.t1)
+    part = CurvePart(i, interval.t0, interval.t1)
     if straight and line_covered(pair, part, interval.hint, known):
         state.upper = max(state.upper, known)
         return interval.hint, n_open
@@ -207,7 +207,7 @@ def examine(pair, aim, interval, state, work, heap, n_open):
         state.n_given_up += is_open
         state.upper = max(state.upper, bound.value + bound.lost)
         return foot.leaf, n_open
-    place, value = Place(t, s, bound.share), bound.value + bound.lost
+    place, value = BoundPlace(t, s, bound.share), bound.value + bound.lost
     n_open = cut_interval(
         pair, interval, foot, seen, place, value, state, work.planes, heap, n_open
     )
