@@ -16,7 +16,7 @@ from types import CodeType, FunctionType, ModuleType
 TESTS = Path(__file__).parent
 SHARED_CASES = TESTS.parents[1] / "shared" / "cases"
 PEERS = {"coal", "fcl", "klampt", "manifold3d", "pybullet", "shapely", "solvespace", "trimesh", "yourdfpy"}
-CACHES = {"NUMBA_CACHE_DIR", "XDG_CACHE_HOME"}
+COLD_NAMES = {"fork", "NUMBA_CACHE_DIR", "XDG_CACHE_HOME"}
 GLOBALS = {"LOAD_GLOBAL", "LOAD_NAME"}
 PARTS = {"LOAD_ATTR", "LOAD_METHOD", "LOAD_CONST", "KW_NAMES"}
 
@@ -89,9 +89,9 @@ def _marks_of_value(value: object) -> Iterator[str]:
             yield "shared"
     elif isinstance(value, ModuleType | Imported):
         yield from _marks_of_module(value if isinstance(value, str) else value.__name__)
-    elif isinstance(value, str) and value in {"fork", *CACHES}:
+    elif isinstance(value, str) and value in COLD_NAMES:
         yield "cold"
-    elif value == "cross_check" or (isinstance(value, tuple) and "cross_check" in value):
+    elif isinstance(value, tuple) and any(isinstance(x, str) and x == "cross_check" for x in value):
         yield "peer"
     elif isinstance(value, FunctionType | type):
         yield from _marks_of_module(value.__module__)

@@ -14,14 +14,14 @@ import numpy as np
 from clearance.crosscheck.fcl_door import peer_name
 from clearance.crosscheck.peer_run import PeerAnswers, PeerRun
 from clearance.crosscheck.settle import off_body, peer_is_wrong
-from clearance.simulate.record import CrossCheck, Disagreement, Record
+from clearance.simulate.record import CrossCheck, Disagreement, Samples
 from clearance.tolerance import CROSS_CHECK
 
 GIVE_UP = 64
 """Steps that exact arithmetic looks at, or does not settle, after which the others are not looked at."""
 
 
-def cross_check(record: Record, progress: Callable[[int, int], None] | None = None) -> CrossCheck:
+def cross_check(record: Samples, progress: Callable[[int, int], None] | None = None) -> CrossCheck:
     """The comparison of every step of a record with FCL on the same bodies.
 
     Args:

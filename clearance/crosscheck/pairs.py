@@ -12,7 +12,7 @@ from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.fcl_door import PeerBody
 from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
-from clearance.simulate.record import Record
+from clearance.simulate.record import Samples
 from clearance.world.body import Body
 from clearance.world.pairs import measured_pairs
 
@@ -61,7 +61,7 @@ class Mover:
     name: str
 
 
-def peer_pairs(record: Record) -> tuple[list[Mover], list[PeerPair]]:
+def peer_pairs(record: Samples) -> tuple[list[Mover], list[PeerPair]]:
     """The links that take part and every pair that the record does not list as unmeasured.
 
     Links are named as in the record: with their robot's name where there are several.

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.crosscheck.bounds import greatest_displacements, lower_bound_boxes, world_boxes
 from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.pairs import PeerPair, peer_pairs
-from clearance.simulate.record import Record
+from clearance.simulate.record import Samples
 
 _STEPS_AT_ONCE = 512
 _ROUNDING = 1e-12  # [m] taken off every lower bound: far above float64, far below the tolerance
@@ -41,7 +41,7 @@ class PeerAnswers:
 class PeerRun:
     """The bodies of a record in FCL, and the measuring of all its steps."""
 
-    def __init__(self, record: Record) -> None:
+    def __init__(self, record: Samples) -> None:
         self.record = record
         self.movers, self.pairs = peer_pairs(record)
         for pair in self.pairs:

@@ -131,34 +131,6 @@ def check_convex(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> 
         raise BadPolygon(f"polygon {int(np.argmax(bad))} is not convex", valid="convex polygons; split it")
 
 
-def split_warped(
-    vertices: np.ndarray, faces: Sequence[Sequence[int]] | np.ndarray
-) -> tuple[list[list[int]], int]:
-    """The faces with each one that is not flat and convex cut into triangles from its first vertex.
-
-    Args:
-        vertices: (n, 3) [m], finite.
-        faces: polygons with indices in range.
-
-    Returns:
-        The faces in order, and how many were cut. A polygon that is flat but not convex is fanned like the
-        others, which is right only where all of it can be seen from its first vertex.
-    """
-    vertices = checked_vertices(vertices)
-    starts, flat = flat_faces(faces)
-    check_indices(len(vertices), starts, flat)
-    planes = planes_of(vertices, starts, flat)
-    bad = _warp(vertices, starts, flat, planes) > 1.0
-    bad |= _bends_inward(vertices, starts, flat, planes)
-    bad &= np.diff(starts) > 3
-    result: list[list[int]] = []
-    for i in range(len(starts) - 1):
-        face = flat[starts[i] : starts[i + 1]].tolist()
-        fan = [[face[0], face[k], face[k + 1]] for k in range(1, len(face) - 1)]
-        result.extend(fan if bad[i] else [face])
-    return result, int(bad.sum())
-
-
 def _allowance(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray) -> np.ndarray:
     """(m,) [m] how far rounding alone may have moved a face's vertices."""
     largest = np.maximum.reduceat(np.abs(vertices[flat]).max(axis=1), starts[:-1])

@@ -92,11 +92,6 @@ def _join(parts: Sequence[Surface]) -> Surface:
     )
 
 
-def face_offsets(shapes: Sequence[Polyhedron]) -> np.ndarray:
-    """(k,) the index in the joined surface of the first face of each shape."""
-    return _offsets([shape.n_faces for shape in shapes])
-
-
 def _offsets(lengths: Sequence[int]) -> np.ndarray:
     return np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
 

@@ -16,11 +16,7 @@ from clearance.load.allow import checked_links, checked_pairs
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
-from clearance.load.motion_names import (
-    check_joint_names,
-    check_not_given_twice,
-    note_on_joints_at_zero,
-)
+from clearance.load.motion_names import check_not_given_twice, note_on_joints_at_zero
 from clearance.load.plausibility import angle_notices, obstacle_notices, odd_angles, scale_notices
 from clearance.load.reserved import reserved_spaces
 from clearance.load.scene_file import make_obstacles
@@ -29,6 +25,7 @@ from clearance.load.trajectory_file import read_trajectory
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
 from clearance.world.case import Case, Limits, PlacedRobot, SignOff
+from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name
 from clearance.world.notice import Notice
 from clearance.world.pairs import measured_pairs
@@ -131,7 +128,7 @@ def _placed_robot(given: schema.Case, folder: Path, meshes: MeshStore) -> Placed
         robot = read_robot(request, meshes)
     trajectory = _trajectory(resolved(given.trajectory.file, folder), robot, meshes)
     with at("robot.joints"):
-        check_joint_names(given.robot.joints, robot)
+        require_moving_joints(robot, given.robot.joints)
         check_not_given_twice(given.robot.joints, trajectory.joint_names)
     with at("robot.exclude_links"):
         exclude_links = checked_links(given.robot.exclude_links, robot.link_names)
@@ -164,7 +161,7 @@ def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
                 refuse_foreign(file.read(65536), shown, "a trajectory")
             raise
         with at(shown):
-            check_joint_names(trajectory.joint_names, robot)
+            require_moving_joints(robot, trajectory.joint_names)
             require_few_turns(robot, trajectory.joint_names, trajectory)
     return trajectory
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadInput, UnknownJoint, at, nearest_name
+from clearance.errors import BadDimension, BadInput, at
 from clearance.load.urdf_elements import number, numbers, pose_of
 from clearance.tolerance import REACH
-from clearance.world.notice import listed
+from clearance.world.mimics import masters_of
 from clearance.world.robot import Joint, JointKind, Mimic
 
 if TYPE_CHECKING:
@@ -30,13 +30,13 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
     for element in root.iterfind("joint"):
         with at(f"joint {element.get('name')!r}"):
             joints.append(_joint(element))
-    masters = _masters(joints)
+    masters = masters_of(joints)
+    fixed = {joint.name for joint in joints if joint.kind is JointKind.FIXED}
     notes: list[str] = []
-    for i, joint in enumerate(joints):
-        master, position = masters[joint.name]
-        if joint.mimic is not None and master.kind is JointKind.FIXED:
+    for i, (joint, master, _, position) in enumerate(masters[joint.name] for joint in joints):
+        if joint.mimic is not None and master in fixed:
             joints[i] = _at_rest(joint, position)
-            notes.append(f"joint {joint.name!r} follows fixed joint {master.name!r} and stays at {position:g}")
+            notes.append(f"joint {joint.name!r} follows fixed joint {master!r} and stays at {position:g}")
     return joints, notes
 
 
@@ -95,33 +95,6 @@ def _mimic(element: Element | None, kind: JointKind) -> Mimic | None:
         if abs(value) > REACH:
             raise BadDimension(f"{what} {value:g} is given", where="mimic", valid=f"{REACH:g} or less")
     return mimic
-
-
-def _masters(joints: list[Joint]) -> dict[str, tuple[Joint, float]]:
-    """The joint that moves each, and where each is when that one is at 0; in time linear in the joints."""
-    by_name = {joint.name: joint for joint in joints}
-    known: dict[str, tuple[Joint, float]] = {}
-    for joint in joints:
-        chain: dict[str, Joint] = {}
-        while joint.name not in known and joint.mimic is not None:
-            chain[joint.name] = joint
-            joint = _next_in(chain, joint, by_name)
-        master, position = known.setdefault(joint.name, (joint, 0.0))
-        for follower in reversed(chain.values()):
-            position = follower.mimic.multiplier * position + follower.mimic.offset
-            known[follower.name] = master, position
-    return known
-
-
-def _next_in(chain: dict[str, Joint], joint: Joint, by_name: dict[str, Joint]) -> Joint:
-    """The joint that the last of a chain follows."""
-    name = joint.mimic.joint
-    with at(f"joint {joint.name!r} mimic"):
-        if name not in by_name:
-            raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, by_name))
-        if name in chain:
-            raise BadInput(f"joints follow each other in a circle: {listed([*chain], 6)}")
-    return by_name[name]
 
 
 def _at_rest(joint: Joint, position: float) -> Joint:

@@ -1,35 +1,12 @@
-"""Joint names given by trajectory and case, held against the robot. Not for: values."""
+"""Joints that trajectory and case of a file give twice, or not at all. Not for: names (`world.moving_joints`)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from clearance.errors import DuplicateName, UnknownJoint, nearest_name
+from clearance.errors import DuplicateName
 from clearance.world.notice import listed
-from clearance.world.robot import JointKind, Robot
-
-
-def check_joint_names(given: Iterable[str], robot: Robot) -> None:
-    """Refuses names that cannot be set.
-
-    Raises:
-        UnknownJoint: not there, with the nearest name; or fixed, or a mimic of another joint.
-    """
-    by_name = {joint.name: joint for joint in robot.joints}
-    moving = [joint.name for joint in robot.moving_joints]
-    for name in given:
-        if name not in by_name:
-            raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, moving))
-        joint = by_name[name]
-        if joint.kind is JointKind.FIXED:
-            raise UnknownJoint(
-                f"joint {name!r} is fixed", valid=f"moving joints: {', '.join(moving)}"
-            )
-        if joint.mimic is not None:
-            raise UnknownJoint(
-                f"joint {name!r} mimics {joint.mimic.joint!r} and cannot be set",
-                valid=f"leave it out or give {joint.mimic.joint!r}",
-            )
+from clearance.world.robot import Robot
 
 
 def check_not_given_twice(in_case: Iterable[str], in_trajectory: Iterable[str]) -> None:

@@ -8,8 +8,6 @@ polygon loses its ears one by one (Meisters, Polygons have ears, 1975), in some 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from clearance.errors import BadPolygon
@@ -44,13 +42,6 @@ def cut_rings(vertices: np.ndarray, corners: np.ndarray, counts: np.ndarray) -> 
         cut = _cut_equal(vertices, rows, chosen, work)
         triangles[(starts[chosen][:, None] + np.arange(size - 2)).ravel()] = cut.reshape(-1, 3)
     return triangles
-
-
-def cut_polygons(vertices: np.ndarray, polygons: Sequence[Sequence[int]]) -> np.ndarray:
-    """`cut_rings` of polygons that are given one by one."""
-    counts = np.array([len(polygon) for polygon in polygons], dtype=np.int64)
-    corners = np.fromiter((i for polygon in polygons for i in polygon), np.int64, int(counts.sum()))
-    return cut_rings(vertices, corners, counts)
 
 
 def _cut_equal(

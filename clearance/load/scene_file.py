@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from clearance.errors import DuplicateName, at
+from clearance.errors import at
 from clearance.geometry.shapes import SHAPES
 from clearance.load import schema
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.notes import grouped
 from clearance.world.body import Body, Obstacle
+from clearance.world.names import require_own_names
 
 
 def make_obstacles(
@@ -25,18 +26,15 @@ def make_obstacles(
         DuplicateName: two obstacles with one name. BadInput: a shape that no solid can have, a bad
         mesh.
     """
-    obstacles: dict[str, Obstacle] = {}
+    require_own_names("obstacle", [item.name for item in given])
+    obstacles: list[Obstacle] = []
     notes: list[tuple[str, str]] = []
     for i, item in enumerate(given):
         with at(f"obstacles[{i}]"):
-            if item.name in obstacles:
-                raise DuplicateName(
-                    f"two obstacles have the name {item.name!r}", valid="each name once"
-                )
             body, body_notes = _body(item, folder, meshes)
-        obstacles[item.name] = Obstacle(body, item.pose.matrix())
+        obstacles.append(Obstacle(body, item.pose.matrix()))
         notes += [(body.origin, note) for note in body_notes]
-    return tuple(obstacles.values()), grouped(notes)
+    return tuple(obstacles), grouped(notes)
 
 
 def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body, list[str]]:

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, DuplicateName, MissingKey, NotFinite, at
+from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, NotFinite, at
 from clearance.geometry.pose import pose_from_rpy
 from clearance.geometry.shapes import SHAPES, Measure
 from clearance.load.plausibility import odd_angles
-from clearance.world.names import checked_name
+from clearance.world.names import checked_name, require_own_names
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -161,16 +161,11 @@ def _reduce(element: Element) -> None:
 
 
 def _check_names(root: Element, kind: str) -> None:
-    seen = set()
-    for i, element in enumerate(root.findall(kind)):
-        name = element.get("name")
+    names = [element.get("name") for element in root.findall(kind)]
+    for i, name in enumerate(names):
         if not name:
             raise MissingKey(f"<{kind}> has no name", where=f"{kind}[{i}]")
-        with at(f"{kind}[{i}]"):
-            checked_name(name)
-        if name in seen:
-            raise DuplicateName(f"two {kind}s have the name {name!r}", valid="each name once")
-        seen.add(name)
+    require_own_names(kind, names)
 
 
 def _check(element: Element, where: str) -> None:

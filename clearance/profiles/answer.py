@@ -19,21 +19,21 @@ from clearance.profiles.picture import picture_bytes
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import holds
 from clearance.profiles.sweep import swept_profile
-from clearance.simulate.record import ProfileAnswer, Record
+from clearance.simulate.record import ProfileAnswer, Samples
 from clearance.world.case import ReservedSpace
 
 
-def answer_profiles(record: Record) -> tuple[ProfileAnswer, ...]:
+def answer_profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
     """One answer for each of the case's profiles, in their order.
 
     Raises:
         BadInput: not a plane, an open contour; with the profile's name.
     """
     found = []
-    for i, space in enumerate(record.case.profiles):
+    for i, space in enumerate(samples.case.profiles):
         with at(f"profiles[{i}] {space.name}"):
             swept = swept_profile(
-                record, space.plane, links=space.links or None, section=space.section
+                samples, space.plane, links=space.links or None, section=space.section
             )
             found.append(_answer(space, swept))
     return tuple(found)

@@ -78,11 +78,6 @@ def grown(region: Region, distance: float) -> Region:
     return _areas(region.buffer(1.03 * distance, quad_segs=4))
 
 
-def shrunk(region: Region, distance: float) -> Region:
-    """The region without what is within about `distance` of its outside."""
-    return _areas(region.buffer(-distance, quad_segs=4))
-
-
 def smoothed(region: Region, distance: float) -> Region:
     """The region with fewer vertices, its boundary within `distance` (Douglas and Peucker 1973)."""
     return _areas(shapely.simplify(region, distance))

@@ -14,7 +14,7 @@ from clearance.errors import UnknownLink, UnknownObstacle, nearest_name
 from clearance.profiles.chords import Knots, knots_of, standing
 from clearance.profiles.plane import Plane
 from clearance.simulate.kinematic import kinematic_motion
-from clearance.simulate.record import Record
+from clearance.simulate.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.motion import Motion
@@ -43,7 +43,7 @@ class Moving:
 def motions_of(run) -> tuple[str, tuple[Motion, ...]]:
     if isinstance(run, Case):
         return run.name, tuple(kinematic_motion(placed) for placed in run.robots)
-    record: Record = getattr(run, "record", run)
+    record: Samples = getattr(run, "record", run)
     return record.case.name, record.motions
 
 

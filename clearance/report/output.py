@@ -19,6 +19,7 @@ from clearance.report.tables import (
 )
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, replay_of
+from clearance.simulate.resumable_rows import IN_MEMORY, Rows
 
 OWN = (
     "steps.parquet",
@@ -32,7 +33,7 @@ OWN = (
 """All files that a report can have."""
 
 
-def write(record: Record, folder: str | Path) -> None:
+def write(record: Record, folder: str | Path, kept: Rows = IN_MEMORY) -> None:
     """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `replay.npz`, `report.html` and, last,
     `summary.json`.
 
@@ -41,24 +42,27 @@ def write(record: Record, folder: str | Path) -> None:
 
     Memory does not grow with the steps: the tables are written a block at a time.
 
+    Args:
+        kept: where the record's rows are; files on the way to `folder` lie beside them.
+
     Raises:
         Unwritable: `folder` cannot be written.
     """
-    summary, replay = summary_of(record), replay_of(record)
+    summary, replay = summary_of(record), replay_of(record, rows=kept)
     pictures = {answer.name: answer.picture() for answer in record.profiles}
-    page = page_of(summary, replay, pictures, pair_curves(record))
+    page = page_of(summary, replay, pictures, pair_curves(record, kept))
 
     def fill(place: Path) -> None:
-        write_parquet(step_batches(record), place / "steps.parquet")
-        write_csv(lambda: step_batches(record), place / "steps.csv")
+        write_parquet(step_batches(record, kept), place / "steps.parquet")
+        write_csv(lambda: step_batches(record, kept), place / "steps.csv")
         if record.every_pair is not None:
-            write_parquet(pair_batches(record), place / "pairs.parquet")
+            write_parquet(pair_batches(record, kept), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         replay.save(place / FILE_NAME)
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")
 
-    fill_folder(Path(folder), fill, OWN, record.room())
+    fill_folder(Path(folder), fill, OWN, kept.folder)
 
 
 def json_text(summary: dict[str, Any]) -> str:

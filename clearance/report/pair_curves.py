@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.simulate.record import Record
+from clearance.simulate.resumable_rows import IN_MEMORY, Rows
 
 MOST_NUMBERS = 250_000
 """Numbers of all curves together: 1.3 MB on the page."""
@@ -28,7 +29,7 @@ class PairCurves:
     clearances: np.ndarray
 
 
-def pair_curves(record: Record) -> PairCurves | None:
+def pair_curves(record: Record, kept: Rows = IN_MEMORY) -> PairCurves | None:
     """The curves; None unless every pair was measured at every step."""
     every = record.every_pair
     if every is None:
@@ -37,7 +38,7 @@ def pair_curves(record: Record) -> PairCurves | None:
     n_parts = min(n_steps, max(1, MOST_NUMBERS // n_pairs))
     starts = np.arange(n_parts) * n_steps // n_parts
     least = np.minimum.reduceat(every.clearance, starts, axis=0)
-    record.let_go()
+    kept.let_go()
     times = record.motions[0].times
     middles = 0.5 * (times[starts] + times[np.append(starts[1:], n_steps) - 1])
     places = {pair: i for i, pair in enumerate(zip(every.links, every.obstacles, strict=True))}

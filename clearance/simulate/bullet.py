@@ -27,8 +27,8 @@ from clearance.world.body import Obstacle
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import asked_at
 from clearance.world.kinematics import moving_positions
+from clearance.world.mimics import followers
 from clearance.world.motion import Motion
-from clearance.world.robot import Joint, JointKind
 
 STEPS_PER_SECOND = 240
 SUBSTEPS = 16
@@ -138,10 +138,11 @@ class _World:
             joint.name for joint, effort in zip(moving, efforts, strict=True) if effort <= 0.0
         ]
         self._efforts = [effort if effort > 0.0 else _UNLIMITED for effort in efforts]
+        columns = {joint.name: i for i, joint in enumerate(moving)}
         self._followers = [
-            _follower(joint, placed, index)
-            for joint in placed.robot.joints
-            if joint.mimic is not None and joint.kind is not JointKind.FIXED
+            _Follower(index[joint.name], columns[master], multiplier, offset)
+            for joint, master, multiplier, offset in followers(placed.robot)
+            if joint.mimic is not None
         ]
 
     def notes_on_efforts(self) -> list[str]:
@@ -226,17 +227,6 @@ class _World:
             position = follower.multiplier * positions[follower.i_master] + follower.offset
             rate = follower.multiplier * rates[follower.i_master]
             self._engine.resetJointState(self._body, follower.index, float(position), float(rate))
-
-
-def _follower(joint: Joint, placed: PlacedRobot, index: dict[str, int]) -> _Follower:
-    by_name = {other.name: other for other in placed.robot.joints}
-    columns = {moving.name: i for i, moving in enumerate(placed.robot.moving_joints)}
-    multiplier, offset, master = 1.0, 0.0, joint
-    while master.mimic is not None:
-        offset += multiplier * master.mimic.offset
-        multiplier *= master.mimic.multiplier
-        master = by_name[master.mimic.joint]
-    return _Follower(index[joint.name], columns[master.name], multiplier, offset)
 
 
 @contextmanager

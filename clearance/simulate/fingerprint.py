@@ -19,7 +19,7 @@ from clearance.world.kinematics import chain_arrays
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
-_ENTRY = PACKAGE / "run.py"
+_ENTRY = PACKAGE / "run" / "__init__.py"
 _BEFORE_AND_AFTER = ("load", "profiles", "crosscheck", "report", "view")
 """Rooms that `run` uses and that decide no row: what is loaded is hashed itself, the others come later."""
 

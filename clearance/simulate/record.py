@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -223,7 +222,28 @@ class ProfileAnswer:
 
 
 @dataclass(frozen=True, eq=False)
-class Record:
+class Samples:
+    """The steps of a run: what a peer is held against, and what sweeps a profile.
+
+    Attributes:
+        motions: one for each of `case.robots`.
+        steps: one row a step, as in `Record`.
+        unmeasured: links and pairs that are left out, and why.
+    """
+
+    case: Case
+    motions: tuple[Motion, ...]
+    steps: pa.Table
+    unmeasured: tuple[Unmeasured, ...]
+
+    @property
+    def clearances(self) -> np.ndarray:
+        """(n,) [m], NaN where only a bound was asked for."""
+        return self.steps["clearance"].to_numpy()
+
+
+@dataclass(frozen=True, eq=False)
+class Record(Samples):
     """The measured run of one case.
 
     Attributes:
@@ -244,15 +264,9 @@ class Record:
         notices: what a reader of the verdict must know: of the case, and found while measuring.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic" or "simulated".
-        let_go: frees the memory of rows that are on disk; it comes back when they are looked at.
-        room: tells a folder on the disk of the report for files on the way there, if there still is one.
     """
 
-    case: Case
-    motions: tuple[Motion, ...]
-    steps: pa.Table
     pair_minima: Sequence[PairMinimum]
-    unmeasured: tuple[Unmeasured, ...]
     tally: dict[str, int]
     method: str = "exact"
     paper_tolerance: float | None = None
@@ -265,8 +279,6 @@ class Record:
     notices: tuple[Notice, ...] = ()
     contacts: Sequence[StepContact] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
-    let_go: Callable[[], None] = lambda: None
-    room: Callable[[], Path | None] = lambda: None
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is told how many of how many."""
@@ -295,11 +307,6 @@ class Record:
         from clearance.simulate.contact_columns import with_contact_columns
 
         return with_contact_columns(self.steps, self.contacts)
-
-    @property
-    def clearances(self) -> np.ndarray:
-        """(n,) [m], NaN where only a bound was asked for."""
-        return self.steps["clearance"].to_numpy()
 
     @property
     def worst_step(self) -> int:

@@ -20,6 +20,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.record import Record
 from clearance.simulate.replay_contact import DrawnContact, drawn_contacts
 from clearance.simulate.replay_frames import Frames, kept_moments, least_of
+from clearance.simulate.resumable_rows import IN_MEMORY, Rows
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion
 
@@ -157,14 +158,14 @@ def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
     )
 
 
-def replay_of(record: Record, max_frames: int = MAX_FRAMES) -> Replay:
+def replay_of(record: Record, max_frames: int = MAX_FRAMES, rows: Rows = IN_MEMORY) -> Replay:
     """The replay of a record: every step, or where there are more than `max_frames` a choice that
     keeps the least clearance of every stretch, the worst step, the step of every pair's minimum,
     and the deepest contact; and moments between them where the motion is worse."""
     kept = kept_steps(record, max_frames)
     moments = kept_moments(record)
     contacts, regions = drawn_contacts(record, kept)
-    frames = Frames.of(record, kept, moments)
+    frames = Frames.of(record, kept, moments, rows)
     bodies, shapes, poses = _drawn_bodies(record, frames.positions)
     index = {(body.kind, body.name): i for i, body in enumerate(bodies)}
     nearest = [(index.get(("link", a), -1), index.get(("obstacle", b), -1)) for a, b in frames.pairs]

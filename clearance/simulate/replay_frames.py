@@ -14,6 +14,7 @@ import pyarrow as pa
 from clearance.simulate.moment import Moment
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
+from clearance.simulate.resumable_rows import Rows
 from clearance.simulate.steps import STATUSES, between_of, status_codes
 from clearance.world.motion import Motion
 
@@ -48,8 +49,8 @@ class Frames:
     positions: list[np.ndarray]
 
     @staticmethod
-    def of(record: Record, kept: np.ndarray, moments: Sequence[Moment]) -> Frames:
-        table, limits = _rows_at(record, kept), record.case.limits
+    def of(record: Record, kept: np.ndarray, moments: Sequence[Moment], rows: Rows) -> Frames:
+        table, limits = _rows_at(record, kept, rows), record.case.limits
         known = table["clearance"].is_valid().to_numpy()
         after = np.searchsorted(kept, [moment.step for moment in moments], side="right")
         shown = {moment.step for moment in moments}
@@ -85,14 +86,14 @@ def _rows(moments: Sequence[Moment], i_robot: int, motion: Motion) -> np.ndarray
     return np.array([moment.positions[i_robot] for moment in moments]).reshape(-1, n_joints)
 
 
-def _rows_at(record: Record, kept: np.ndarray) -> pa.Table:
+def _rows_at(record: Record, kept: np.ndarray, on_disk: Rows) -> pa.Table:
     """The rows of some steps, block by block: taken at once, all rows would be put together first."""
     taken = []
     for block in blocks(record.steps.num_rows):
         here = kept[np.searchsorted(kept, block.start) : np.searchsorted(kept, block.stop)]
         rows = record.steps.slice(block.start, block.stop - block.start)
         taken.append(rows.take(here - block.start))
-        record.let_go()
+        on_disk.let_go()
     return pa.concat_tables(taken).combine_chunks()
 
 

@@ -13,15 +13,19 @@ import mmap
 import os
 import time
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.errors import unwritable
 from clearance.simulate.rows_folder import clear, own_folder, take_away
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 SAVE_AFTER = 1.0
 """[s] between two states of a pass: so much work is lost at most. Writing one takes milliseconds."""
@@ -55,6 +59,12 @@ class Rows:
     def let_go(self) -> None:
         """Frees the memory of what is on disk as well; it comes back when it is looked at."""
 
+    def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
+        """The batches as one table; what they took of memory on the way is let go."""
+        import pyarrow as pa
+
+        return pa.concat_tables(batches)
+
     @property
     def folder(self) -> Path | None:
         """Where there is room for files of the run, if it has any."""
@@ -62,6 +72,10 @@ class Rows:
 
     def ask(self, fingerprint: str) -> None:
         """Tells what decides every row; rows of another fingerprint are thrown away."""
+
+
+IN_MEMORY = Rows()
+"""Rows that nothing else is told of."""
 
 
 @dataclass(eq=False)
@@ -75,6 +89,7 @@ class ResumableRows(Rows):
     place: Path
     say: Callable[[str], None] = lambda line: None
     _maps: dict[str, mmap.mmap] = field(default_factory=dict)
+    _tables: list[mmap.mmap] = field(default_factory=list)
     _fresh: set[str] = field(default_factory=set)
     _told: bool = False
     _closed: bool = False
@@ -124,9 +139,24 @@ class ResumableRows(Rows):
             self.say(f"resuming: {n_done:,} of {n_all:,} steps are kept of an interrupted run")
         return _ResumableLog(done, state, path, arrays)
 
+    def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
+        if self._closed:
+            return super().table(name, batches)
+        from clearance.simulate.table_file import mapped_table
+
+        table, mapped = mapped_table(self._letting_go(batches), self.place / f"{name}.arrow")
+        self._tables.append(mapped)
+        return table
+
+    def _letting_go(self, batches: Iterable[pa.Table]) -> Iterator[pa.Table]:
+        for batch in batches:
+            yield batch
+            self.let_go()
+
     def let_go(self) -> None:
-        for mapped in self._maps.values():
-            let_go(mapped)
+        for mapped in (*self._maps.values(), *self._tables):
+            if hasattr(mmap, "MADV_DONTNEED"):  # what was written to it stays in the file
+                mapped.madvise(mmap.MADV_DONTNEED)
 
 
 @dataclass(eq=False)
@@ -164,12 +194,6 @@ def open_resumable_rows(place: Path, say: Callable[[str], None]) -> Iterator[Res
                 rows.close()
             raise
         rows.close()
-
-
-def let_go(mapped: mmap.mmap) -> None:
-    """Frees the memory of a mapped file; what was written to it stays in the file."""
-    if hasattr(mmap, "MADV_DONTNEED"):
-        mapped.madvise(mmap.MADV_DONTNEED)
 
 
 def _claim(file: io.BufferedRandom, n_bytes: int) -> None:

@@ -6,17 +6,16 @@ Not for: what is in them (`steps`), nor the files of a report.
 from __future__ import annotations
 
 import mmap
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
 import pyarrow as pa
 
 from clearance.errors import unwritable
-from clearance.simulate.resumable_rows import let_go
 
 
-def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, Callable[[], None]]:
-    """The batches as one table in the file `path`, and a way to free the memory that looking at it took.
+def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, mmap.mmap]:
+    """The batches as one table in the file `path`, and the mapping that it lies in.
 
     The file may be removed while the table is in use.
 
@@ -32,4 +31,4 @@ def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, Cal
     with path.open("rb") as file:
         mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     reader = pa.ipc.open_file(pa.BufferReader(pa.py_buffer(mapped)))
-    return reader.read_all(), lambda: let_go(mapped)
+    return reader.read_all(), mapped

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from clearance.errors import BadShape, NotFinite
 
 
-def number(value: float, where: str) -> float:
+def number(value: object, where: str) -> float:
     """The value as a finite float.
 
     Raises:
         NotFinite: it is not a number, or not finite.
     """
     try:
-        out = float(value)
+        out = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError, OverflowError):
         raise NotFinite(
             f"{value!r:.60} is not a number", where=where, valid="a finite number"

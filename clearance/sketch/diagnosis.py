@@ -41,8 +41,8 @@ class Diagnosis:
         self._trial = trial
         self._conflict = conflict
         self.proof = proof
-        self.names = [trial.sketch._ordered[i].name for i in conflict]
-        self.searched = [trial.sketch._ordered[i].name for i in searched or conflict]
+        self.names = [trial.sketch._lists.constraints[i].name for i in conflict]
+        self.searched = [trial.sketch._lists.constraints[i].name for i in searched or conflict]
 
     @cached_property
     def repairs(self) -> list[Repair]:

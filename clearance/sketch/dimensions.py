@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from clearance.errors import BadDimension, UnknownKey, at, nearest_name
 from clearance.sketch.checked import number
@@ -11,22 +11,33 @@ from clearance.sketch.constraints import Constraint, measured
 from clearance.sketch.entities import Point
 from clearance.sketch.expression import evaluated, names_in
 from clearance.sketch.faults import UnknownEntity
+from clearance.sketch.lists import FlatLists
 from clearance.sketch.register import Register
 
 
-class Dimensions(Register):
-    """The part of a sketch that sets, reads and propagates dimensions."""
+class Dimensions:
+    """The dimensions and parameters of a sketch, and which of them are expressions of others.
 
-    def __init__(self) -> None:
-        super().__init__()
+    Args:
+        register: where parameters and constraints are found by name.
+        lists: the numbers by which driven dimensions are measured.
+        on_change: called with every constraint whose dimension has changed.
+    """
+
+    def __init__(
+        self, register: Register, lists: FlatLists, on_change: Callable[[Constraint], None]
+    ) -> None:
+        self._register = register
+        self._lists = lists
+        self._on_change = on_change
         self._users: dict[str, list[Constraint]] = {}
 
     def parameter(self, name: str, value: float) -> None:
         """A new named number for expressions."""
         if not name.isidentifier():
             raise UnknownKey(f"a parameter named {name!r}", valid="letters, digits and _")
-        self._free(name)
-        self.parameters[name] = number(value, name)
+        self._register.check_free(name)
+        self._register.parameters[name] = number(value, name)
 
     def set(self, name: str, value: float | str) -> None:
         """Changes a parameter or a dimension, and every dimension that is an expression of it.
@@ -34,31 +45,37 @@ class Dimensions(Register):
         Raises:
             UnknownEntity: no parameter or dimension has this name.
         """
-        if name in self.parameters:
-            self.parameters[name] = number(value, name)
-        elif name in self.constraints and self.constraints[name].given is not None:
-            constraint = self.constraints[name]
-            now = self._dimension(constraint, value)
+        if name in self._register.parameters:
+            self._register.parameters[name] = number(value, name)
+        elif (
+            name in self._register.constraints
+            and self._register.constraints[name].given is not None
+        ):
+            constraint = self._register.constraints[name]
+            now = self.checked(constraint, value)
             self._forget(constraint)
             constraint.given, constraint.number = (value if isinstance(value, str) else now), now
-            self._remember(constraint)
+            self.remember(constraint)
         else:
-            known = [*self.parameters, *(c.name for c in self._ordered if c.given is not None)]
+            known = [
+                *self._register.parameters,
+                *(c.name for c in self._lists.constraints if c.given is not None),
+            ]
             raise UnknownEntity(f"no dimension named {name!r}", valid=nearest_name(name, known))
         self._propagate(name)
 
     def value(self, name: str) -> float:
         """The value of a parameter or dimension; a driven one is measured now."""
-        if name in self.parameters:
-            return self.parameters[name]
-        constraint = self.constraint(name)
-        return measured(constraint, self._numbers) if constraint.driven else constraint.number
+        if name in self._register.parameters:
+            return self._register.parameters[name]
+        constraint = self._register.constraint(name)
+        return measured(constraint, self._lists.numbers) if constraint.driven else constraint.number
 
-    def _dimension(self, constraint: Constraint, given: float | str) -> float:
+    def checked(self, constraint: Constraint, given: float | str) -> float:
         """The value of a dimension, checked for its kind."""
         with at(f"{constraint.kind} {constraint.name}"):
             if isinstance(given, str):
-                value = evaluated(given, self._scope(names_in(given)))
+                value = evaluated(given, self._values_of(names_in(given)))
             else:
                 value = number(given, "value")
             points = all(isinstance(e, Point) for e in constraint.entities)
@@ -72,14 +89,19 @@ class Dimensions(Register):
                 raise BadDimension(f"a {constraint.kind} of {value}", valid=valid)
         return value
 
-    def _scope(self, names: Iterable[str]) -> dict[str, float]:
-        scope = dict(self.parameters)
+    def _values_of(self, names: Iterable[str]) -> dict[str, float]:
+        """The parameters, and the dimensions of these names."""
+        scope = dict(self._register.parameters)
         for name in names:
-            if name in self.constraints and self.constraints[name].given is not None:
+            if (
+                name in self._register.constraints
+                and self._register.constraints[name].given is not None
+            ):
                 scope[name] = self.value(name)
         return scope
 
-    def _remember(self, constraint: Constraint) -> None:
+    def remember(self, constraint: Constraint) -> None:
+        """Notes which names a constraint's dimension is an expression of."""
         if isinstance(constraint.given, str):
             for name in names_in(constraint.given):
                 self._users.setdefault(name, []).append(constraint)
@@ -93,11 +115,10 @@ class Dimensions(Register):
         """Writes a changed dimension into its rows and follows the expressions that use it."""
         if depth > 100:
             raise BadDimension(f"{name} depends on itself", valid="expressions without a circle")
-        if name in self.constraints:
-            constraint = self.constraints[name]
+        if name in self._register.constraints:
+            constraint = self._register.constraints[name]
             if isinstance(constraint.given, str):
-                constraint.number = self._dimension(constraint, constraint.given)
-            if self._solver is not None:
-                self._solver.changed(constraint)
+                constraint.number = self.checked(constraint, constraint.given)
+            self._on_change(constraint)
         for user in self._users.get(name, []):
             self._propagate(user.name, depth + 1)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Set
 
 import numpy as np
 
@@ -20,61 +20,94 @@ others."""
 
 
 class FlatLists:
-    """What the solver reads: one entry a variable, a line, a row or a constraint."""
+    """What the solver reads: one entry a variable, a line, a row or a constraint.
 
-    def __init__(self) -> None:
-        self._numbers: list[float] = []
+    Attributes:
+        numbers: the value of every variable, counted from the origin.
+        roles: the role of every variable (`clearance.kernels.sketch.graph.graph`).
+        line_ends: three numbers a line: its variable and those of its two points (-1: none).
+        codes, variables, coefficients, scales, offsets, grounds: the equations, row by row; a row has eight
+            variables and four coefficients.
+        owners, ranks: the constraint (by index) and the rank of every row.
+        constraints: every constraint by its index.
+        together: (constraint, row) of every pair of points that coincide.
+
+    Args:
+        on_growth: called when a number or a constraint has come in.
+    """
+
+    def __init__(self, on_growth: Callable[[], None]) -> None:
+        self._on_growth = on_growth
+        self.numbers: list[float] = []
+        self.roles = array("q")
+        self.line_ends = array("q")
+        self.codes = array("q")
+        self.variables = array("q")
+        self.coefficients = array("d")
+        self.scales = array("d")
+        self.offsets = array("d")
+        self.grounds = array("q")
+        self.owners = array("q")
+        self.ranks = array("q")
+        self.constraints: list[Constraint] = []
+        self.together: list[tuple[int, int]] = []
+        self._same_sides: list[Constraint] = []
         self._origin: tuple[float, float] | None = None
-        self._roles = array("q")
-        self._line_ends = array("q")
-        self._codes = array("q")
-        self._vars = array("q")
-        self._coefs = array("d")
-        self._scales = array("d")
-        self._offsets = array("d")
-        self._grounds = array("q")
-        self._owners = array("q")
-        self._ranks = array("q")
-        self._ordered: list[Constraint] = []
-        self._together: list[tuple[int, int]] = []
 
     @property
     def origin(self) -> np.ndarray:
         """(2,) [m] what the numbers are counted from: the first place that was drawn."""
         return np.array(self._origin or (0.0, 0.0))
 
-    def _local(self, x: float, y: float) -> tuple[float, float]:
+    def local(self, x: float, y: float) -> tuple[float, float]:
         """A drawn place as counted from the origin, so that no digits go to where a sketch lies."""
         if self._origin is None:
             self._origin = (x, y)
         return x - self._origin[0], y - self._origin[1]
 
-    def _grow(self, *pairs: tuple[float, int]) -> int:
-        """Takes in numbers with their roles; the first one's place."""
-        first = len(self._numbers)
+    def append_numbers(self, *pairs: tuple[float, int]) -> int:
+        """Appends numbers with their roles; the first one's place."""
+        first = len(self.numbers)
         for number, role in pairs:
-            self._numbers.append(float(number))
-            self._roles.append(role)
+            self.numbers.append(float(number))
+            self.roles.append(role)
+        self._on_growth()
         return first
 
-    def _append(self, constraint: Constraint, rows: Iterable[Row]) -> None:
-        """Takes in a constraint's equations; coincident points are listed apart."""
-        first, rows = len(self._codes), list(rows)
+    def append_rows(self, constraint: Constraint, rows: Iterable[Row]) -> None:
+        """Appends a constraint's equations; coincident points are listed apart."""
+        first, rows = len(self.codes), list(rows)
         for row in rows:
-            self._codes.append(row.code)
-            self._vars.extend(row.var + (-1,) * (8 - len(row.var)))
-            self._coefs.extend(row.coef + (0.0,) * (4 - len(row.coef)))
-            self._scales.append(row.scale)
-            self._offsets.append(row.offset)
-            self._grounds.append(row.ground)
-            self._owners.append(constraint.index)
+            self.codes.append(row.code)
+            self.variables.extend(row.var + (-1,) * (8 - len(row.var)))
+            self.coefficients.extend(row.coef + (0.0,) * (4 - len(row.coef)))
+            self.scales.append(row.scale)
+            self.offsets.append(row.offset)
+            self.grounds.append(row.ground)
+            self.owners.append(constraint.index)
             rank = ALONE if len(rows) == 1 else TOGETHER
-            self._ranks.append(DRAWN if constraint.built_in else (AGAIN if row.again else rank))
-        constraint.n_rows = len(self._codes) - first
+            self.ranks.append(DRAWN if constraint.built_in else (AGAIN if row.again else rank))
+        constraint.n_rows = len(self.codes) - first
         points = constraint.kind == "coincident" and constraint.entities[0].what == "point"
         if constraint.n_rows and (points or constraint.kind == "concentric"):
-            self._together.append((constraint.index, first))
+            self.together.append((constraint.index, first))
 
-    def _dimensions(self) -> list[float]:
+    def dimensions(self) -> list[float]:
         """The dimension of every constraint; 0 for those without."""
-        return [0.0 if math.isnan(c.number) else c.number for c in self._ordered]
+        return [0.0 if math.isnan(c.number) else c.number for c in self.constraints]
+
+    def append_constraint(self, constraint: Constraint) -> None:
+        """Gives a constraint its place among all; its rows come apart."""
+        self.constraints.append(constraint)
+        if constraint.kind == "same_side" and not constraint.driven:
+            self._same_sides.append(constraint)
+        self._on_growth()
+
+    def sides(self, chosen: Set[int] | None = None) -> list[tuple[int, int, int]]:
+        """The variables of every `same_side` (of the chosen constraints by index): two points, a line."""
+        return [
+            (p.variable, q.variable, line.variable)
+            for p, q, line in (
+                c.entities for c in self._same_sides if chosen is None or c.index in chosen
+            )
+        ]

@@ -72,7 +72,7 @@ class _Names:
 
     def __init__(self, sketch, problem) -> None:
         self.of: dict[int, list[str]] = {}
-        self.ordered = sketch._ordered
+        self.ordered = sketch._lists.constraints
         self.owner = problem.tables.owner
         s = problem.system
         for entity in sketch.entities.values():

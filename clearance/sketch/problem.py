@@ -84,19 +84,20 @@ def tables_of(sketch) -> Tables:
 
     The rows are in the order of their ranks: where some follow from others, it is the last that do.
     """
-    order = np.argsort(np.array(sketch._ranks, np.int64), kind="stable")
+    lists = sketch._lists
+    order = np.argsort(np.array(lists.ranks, np.int64), kind="stable")
     return Tables(
-        np.array(sketch._roles, np.int64),
-        np.array(sketch._codes, np.int64)[order],
-        np.array(sketch._vars, np.int64).reshape(-1, 8)[order],
-        np.array(sketch._coefs, float).reshape(-1, 4)[order],
-        np.array(sketch._scales, float)[order],
-        np.array(sketch._offsets, float)[order],
-        np.array(sketch._grounds, np.int64)[order],
-        np.array(sketch._owners, np.int64)[order],
-        np.array(sketch._line_ends, np.int64).reshape(-1, 3),
-        list(sketch._together),
-        np.array(sketch._dimensions()),
+        np.array(lists.roles, np.int64),
+        np.array(lists.codes, np.int64)[order],
+        np.array(lists.variables, np.int64).reshape(-1, 8)[order],
+        np.array(lists.coefficients, float).reshape(-1, 4)[order],
+        np.array(lists.scales, float)[order],
+        np.array(lists.offsets, float)[order],
+        np.array(lists.grounds, np.int64)[order],
+        np.array(lists.owners, np.int64)[order],
+        np.array(lists.line_ends, np.int64).reshape(-1, 3),
+        list(lists.together),
+        np.array(lists.dimensions()),
     )
 
 

@@ -5,24 +5,29 @@ Not for: what they mean (`constraints`), nor their numbers (`lists`).
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 from clearance.errors import DuplicateName, nearest_name
 from clearance.sketch.constraints import Constraint
-from clearance.sketch.entities import Entity
+from clearance.sketch.entities import Entity, Numbers
 from clearance.sketch.faults import UnknownEntity
-from clearance.sketch.lists import FlatLists
+
+E = TypeVar("E", bound=Entity)
 
 
-class Register(FlatLists):
-    """Entities, constraints and parameters by name, each name used once."""
+class Register:
+    """Entities, constraints and parameters by name, each name used once.
 
-    def __init__(self) -> None:
-        super().__init__()
+    Attributes:
+        sketch: the sketch that they belong to.
+    """
+
+    def __init__(self, sketch: Numbers) -> None:
+        self.sketch = sketch
         self.entities: dict[str, Entity] = {}
         self.constraints: dict[str, Constraint] = {}
         self.parameters: dict[str, float] = {}
         self._counts: dict[str, int] = {}
-        self._sides: list[Constraint] = []
-        self._solver = None
 
     def constraint(self, name: str) -> Constraint:
         """The constraint of that name."""
@@ -40,15 +45,14 @@ class Register(FlatLists):
             )
         return self.entities[name]
 
-    def sides(self, chosen: set[int] | None = None) -> list[tuple[int, int, int]]:
-        """The variables of every `same_side` (of the chosen constraints by index): two points, a line."""
-        return [
-            tuple(e.variable for e in c.entities)
-            for c in self._sides
-            if chosen is None or c.index in chosen
-        ]
+    def own(self, entity: Entity | str) -> Entity:
+        """An entity of this sketch, given as itself or by its name."""
+        if isinstance(entity, str):
+            return self.entity(entity)
+        return self.of_kind(entity, Entity)
 
-    def _name(self, given: str | None, what: str) -> str:
+    def new_name(self, given: str | None, what: str) -> str:
+        """The name that is given, or the next one that is free for `what`."""
         if given is None:
             while True:
                 self._counts[what] = self._counts.get(what, 0) + 1
@@ -57,31 +61,28 @@ class Register(FlatLists):
                     return name
         if not isinstance(given, str) or not given:
             raise UnknownEntity(f"a name {given!r}", valid="a text")
-        self._free(given)
+        self.check_free(given)
         return given
 
-    def _free(self, name: str) -> None:
+    def check_free(self, name: str) -> None:
+        """Refuses a name that is taken."""
         if name in self.entities or name in self.constraints or name in self.parameters:
             raise DuplicateName(f"the name {name!r} is taken", valid="a name used once")
 
-    def _own(self, entity: Entity, kind: type) -> None:
+    def of_kind(self, entity: object, kind: type[E]) -> E:
+        """The entity itself, if it is of this kind and of this sketch."""
         if not isinstance(entity, kind):
             what = entity.what if isinstance(entity, Entity) else repr(entity)
             raise UnknownEntity(
                 f"{what} where a {kind.what} is needed", valid=f"a {kind.what} of this sketch"
             )
-        if entity.sketch is not self or self.entities.get(entity.name) is not entity:
+        if entity.sketch is not self.sketch or self.entities.get(entity.name) is not entity:
             raise UnknownEntity(
                 f"{entity.name!r} is of another sketch", valid="an entity of this one"
             )
-
-    def _find(self, entity: Entity | str) -> Entity:
-        if isinstance(entity, str):
-            return self.entity(entity)
-        self._own(entity, Entity)
         return entity
 
-    def _add(self, entity):
+    def add(self, entity: E) -> E:
+        """Enters an entity under its name."""
         self.entities[entity.name] = entity
-        self._solver = None
         return entity

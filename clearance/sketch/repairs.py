@@ -36,7 +36,7 @@ class Repair:
 
 def repairs_of(trial: Trials, conflict: list[int]) -> list[Repair]:
     """One dimension changed at a time, and all together; the least change first."""
-    ordered, size = trial.sketch._ordered, trial.problem.size
+    ordered, size = trial.sketch._lists.constraints, trial.problem.size
     dimensions = [i for i in conflict if ordered[i].given is not None]
     whole = [int(k) for k in np.unique(trial.tables.owner)]
     found = []
@@ -87,7 +87,7 @@ def _shared(trial: Trials, conflict: list[int], dimensions: list[int]) -> dict[i
     exact = trial.run_from(x[alias], [k for k in np.unique(tables.owner) if k not in dimensions])
     if exact.broken != -1:
         return None
-    return {i: measured(trial.sketch._ordered[i], exact.x.tolist()) for i in dimensions}
+    return {i: measured(trial.sketch._lists.constraints[i], exact.x.tolist()) for i in dimensions}
 
 
 def _smallest(trial: Trials, conflict: list[int]) -> Tables | None:

@@ -69,7 +69,7 @@ class SketchResult:
         from clearance.sketch.freedom import redundant_constraints
 
         chosen = redundant_constraints(self._problem, self._outcome.x, self.solved)
-        return [self.sketch._ordered[k].name for k in chosen]
+        return [self.sketch._lists.constraints[k].name for k in chosen]
 
     @cached_property
     def over_constrained(self) -> list[list[str]]:
@@ -78,7 +78,7 @@ class SketchResult:
         out = []
         for k in range(plan.dependent.size):
             rows = plan.circuit[plan.circuit_start[k] : plan.circuit_start[k + 1]]
-            names = dict.fromkeys(self.sketch._ordered[o].name for o in owner[np.sort(rows)])
+            names = dict.fromkeys(self.sketch._lists.constraints[o].name for o in owner[np.sort(rows)])
             out.append(list(names))
         return out
 

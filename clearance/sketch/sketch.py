@@ -1,44 +1,66 @@
 """The sketch as a user builds it: entities, constraints, parameters; checked on entry, solved on demand.
 
-Not for: how a sketch is solved (`execution`), nor its files (`sketch_file`).
+One class with every public method, so that an editor and a type checker see them; what each does is in the
+rooms it is made of. Not for: how entities are drawn (`drawing`), constraints made (`relations`), dimensions
+kept (`dimensions`), nor how a sketch is solved (`execution`), nor its files (`sketch_file`).
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Sequence, Set
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadShape
-from clearance.kernels.sketch.graph.graph import DIRECTION, OFFSET, RADIUS, X, Y
-from clearance.sketch.checked import number, two
+import numpy as np
+
+from clearance.sketch.checked import two
+from clearance.sketch.constraints import Constraint
+from clearance.sketch.dimensions import Dimensions
+from clearance.sketch.drawing import Drawing
 from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Polyline, Segment
-from clearance.sketch.faults import DegenerateSketch
+from clearance.sketch.lists import FlatLists
+from clearance.sketch.register import Register
 from clearance.sketch.relations import Relations
 
 if TYPE_CHECKING:
     from clearance.planar.curve import Curve
+    from clearance.sketch.execution import Outcome
+    from clearance.sketch.problem import Problem
     from clearance.sketch.result import SketchResult
+    from clearance.sketch.solver import Solver
+
+Given = Entity | str
+"""An entity of the sketch, or its name."""
+Dimension = float | str | None
+"""A number, an expression of parameters and dimensions, or None for what is drawn."""
 
 
-class Sketch(Relations):
+class Sketch:
     """A plane sketch of points, lines and circles, and what must be true of them.
 
-    Entities are added by the methods below, constraints by those of `Relations`, dimensions are set by
-    those of `Dimensions`; `solve` moves the entities so that every constraint holds. Lengths [m],
-    angles [rad].
+    The methods add entities and constraints and set dimensions; `solve` moves the entities so that every
+    constraint holds. Lengths [m], angles [rad].
+
+    Attributes:
+        entities, constraints, parameters: by name.
+        polylines: in the order in which they were added.
     """
 
     def __init__(self) -> None:
-        super().__init__()
+        self._register = Register(self)
+        self._lists = FlatLists(self._restructured)
+        self._dimensions = Dimensions(self._register, self._lists, self._dimension_changed)
+        self._relations = Relations(self._register, self._lists, self._dimensions)
+        self._drawing = Drawing(self._register, self._lists, self._relations)
+        self._solver: Solver | None = None
+        self.entities: dict[str, Entity] = self._register.entities
+        self.constraints: dict[str, Constraint] = self._register.constraints
+        self.parameters: dict[str, float] = self._register.parameters
         self.polylines: list[Polyline] = []
 
     def point(self, x: float, y: float, *, name: str | None = None) -> Point:
         """A new point at (x, y) [m]."""
-        name = self._name(name, "point")
-        x, y = self._local(number(x, f"{name}.x"), number(y, f"{name}.y"))
-        return self._add(Point(self, name, self._grow((x, X), (y, Y))))
+        return self._drawing.point(x, y, name)
 
     def line(
         self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: str | None = None
@@ -49,53 +71,197 @@ class Sketch(Relations):
         Raises:
             DegenerateSketch: the two points coincide.
         """
-        return self._line(Line, a, b, name)
+        return self._drawing.line(Line, a, b, name)
 
-    def segment(self, a: Point, b: Point, *, name: str | None = None) -> Segment:
+    def segment(
+        self, a: Point | Sequence[float], b: Point | Sequence[float], *, name: str | None = None
+    ) -> Segment:
         """A new segment between two points of the sketch (or pairs of numbers, which become
         points)."""
-        a, b = (p if isinstance(p, Entity) else self.point(*two(p, "segment")) for p in (a, b))
-        return self._line(Segment, a, b, name)
+        return self._drawing.segment(a, b, name)
 
     def circle(
         self, center: Point | Sequence[float], radius: float, *, name: str | None = None
     ) -> Circle:
         """A new circle about a point of the sketch, or about a new point at a pair of numbers."""
-        name = self._name(name, "circle")
-        radius = number(radius, f"{name}.radius")
-        if radius <= 0.0:
-            raise DegenerateSketch(f"the radius of {name} is {radius}", valid="a radius above 0")
-        return self._add(Circle(self, name, *self._round(center, radius, name)))
+        return self._drawing.circle(center, radius, name)
 
     def arc(
         self, center: Point | Sequence[float], start: Point, end: Point, *, name: str | None = None
     ) -> Arc:
         """A new arc about a centre, counter-clockwise from `start` to `end`, which lie on its
         circle."""
-        name = self._name(name, "arc")
-        for p in (start, end):
-            self._own(p, Point)
-        c = self._place(center) if isinstance(center, Entity) else self._local(*two(center, name))
-        radius = math.dist(c, self._place(start))
-        if radius == 0.0:
-            raise DegenerateSketch(f"{name} starts at its centre", valid="a radius above 0")
-        variable, middle = self._round(center, radius, name)
-        arc = self._add(Arc(self, name, variable, middle, start, end))
-        for which, p in (("start", start), ("end", end)):
-            self._constrain("incident", (p, arc), name=f"{name}.{which}", built_in=True)
-        return arc
+        return self._drawing.arc(center, start, end, name)
 
     def polyline(
         self, points: Iterable[Point | Sequence[float]], *, closed: bool = False
     ) -> Polyline:
         """New segments through points of the sketch (or pairs of numbers, which become points)."""
-        ends = [p if isinstance(p, Entity) else self.point(*two(p, "polyline")) for p in points]
-        if len(ends) < 2:
-            raise BadShape(f"a polyline of {len(ends)} points", valid="at least 2")
-        pairs = list(zip(ends, ends[1:] + ends[:1], strict=True))
-        out = Polyline(ends, [self.segment(*p) for p in (pairs if closed else pairs[:-1])], closed)
+        out = self._drawing.polyline(points, closed)
         self.polylines.append(out)
         return out
+
+    def parameter(self, name: str, value: float) -> None:
+        """A new named number for expressions."""
+        self._dimensions.parameter(name, value)
+
+    def set(self, name: str, value: float | str) -> None:
+        """Changes a parameter or a dimension, and every dimension that is an expression of it.
+
+        Raises:
+            UnknownEntity: no parameter or dimension has this name.
+        """
+        self._dimensions.set(name, value)
+
+    def value(self, name: str) -> float:
+        """The value of a parameter or dimension; a driven one is measured now."""
+        return self._dimensions.value(name)
+
+    def entity(self, name: str) -> Entity:
+        """The entity of that name."""
+        return self._register.entity(name)
+
+    def constraint(self, name: str) -> Constraint:
+        """The constraint of that name."""
+        return self._register.constraint(name)
+
+    def add(
+        self,
+        kind: str,
+        *entities: Given,
+        value: Dimension = None,
+        name: str | None = None,
+        driven: bool = False,
+        inside: bool | None = None,
+    ) -> Constraint:
+        """A new constraint of any kind (a key of `clearance.sketch.constraints.KINDS`).
+
+        Args:
+            entities: entities of this sketch, or their names.
+            value: the dimension, a number or an expression of parameters and dimensions.
+            driven: measure only.
+            inside: for two tangent circles, one within the other; by default as drawn.
+        """
+        own = tuple(self._register.own(e) for e in entities)
+        return self._relations.add(kind, own, value=value, name=name, driven=driven, inside=inside)
+
+    def fix(self, entity: Given, *, name: str | None = None) -> Constraint:
+        """Holds an entity where it is drawn."""
+        return self.add("fix", entity, name=name)
+
+    def distance(
+        self,
+        a: Given,
+        b: Given,
+        value: Dimension = None,
+        *,
+        name: str | None = None,
+        driven: bool = False,
+    ) -> Constraint:
+        """Distance [m] of two points, a point and a line or circle, or two lines (made
+        parallel)."""
+        return self.add("distance", a, b, value=value, name=name, driven=driven)
+
+    def incident(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+        """A point lies on a line or circle."""
+        return self.add("incident", a, b, name=name)
+
+    def coincident(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+        """Two points, or two lines, are one."""
+        return self.add("coincident", a, b, name=name)
+
+    def tangent(
+        self, a: Given, b: Given, *, inside: bool | None = None, name: str | None = None
+    ) -> Constraint:
+        """A line touches a circle, or two circles touch (by default as drawn: inside or
+        outside)."""
+        return self.add("tangent", a, b, inside=inside, name=name)
+
+    def angle(
+        self,
+        a: Given,
+        b: Given,
+        value: Dimension = None,
+        *,
+        name: str | None = None,
+        driven: bool = False,
+    ) -> Constraint:
+        """Angle [rad], 0 to pi, between the directions of two lines; the turn is as drawn."""
+        return self.add("angle", a, b, value=value, name=name, driven=driven)
+
+    def parallel(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+        """Two lines are parallel."""
+        return self.add("parallel", a, b, name=name)
+
+    def perpendicular(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+        """Two lines are perpendicular."""
+        return self.add("perpendicular", a, b, name=name)
+
+    def concentric(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+        """Two circles have one centre, or a point is a circle's centre."""
+        return self.add("concentric", a, b, name=name)
+
+    def horizontal(self, *entities: Given, name: str | None = None) -> Constraint:
+        """A line, or two points, lie along x."""
+        return self.add("horizontal", *entities, name=name)
+
+    def vertical(self, *entities: Given, name: str | None = None) -> Constraint:
+        """A line, or two points, lie along y."""
+        return self.add("vertical", *entities, name=name)
+
+    def radius(
+        self,
+        circle: Given,
+        value: Dimension = None,
+        *,
+        name: str | None = None,
+        driven: bool = False,
+    ) -> Constraint:
+        """Radius [m] of a circle."""
+        return self.add("radius", circle, value=value, name=name, driven=driven)
+
+    def diameter(
+        self,
+        circle: Given,
+        value: Dimension = None,
+        *,
+        name: str | None = None,
+        driven: bool = False,
+    ) -> Constraint:
+        """Diameter [m] of a circle."""
+        return self.add("diameter", circle, value=value, name=name, driven=driven)
+
+    def equal_length(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+        """Two lines with points are equally long."""
+        return self.add("equal_length", a, b, name=name)
+
+    def equal_radius(self, a: Given, b: Given, *, name: str | None = None) -> Constraint:
+        """Two circles have one radius."""
+        return self.add("equal_radius", a, b, name=name)
+
+    def ratio(
+        self,
+        a: Given,
+        b: Given,
+        value: Dimension = None,
+        *,
+        name: str | None = None,
+        driven: bool = False,
+    ) -> Constraint:
+        """Length (or radius) of a over that of b."""
+        return self.add("ratio", a, b, value=value, name=name, driven=driven)
+
+    def midpoint(self, m: Given, *ends: Given, name: str | None = None) -> Constraint:
+        """A point is the middle of a line with points, or of two points."""
+        return self.add("midpoint", m, *ends, name=name)
+
+    def symmetric(self, a: Given, b: Given, line: Given, *, name: str | None = None) -> Constraint:
+        """Two points, or two circles, are mirror images in a line."""
+        return self.add("symmetric", a, b, line, name=name)
+
+    def same_side(self, a: Given, b: Given, line: Given, *, name: str | None = None) -> Constraint:
+        """Two points lie on one side of a line."""
+        return self.add("same_side", a, b, line, name=name)
 
     def solve(self) -> SketchResult:
         """Moves the entities least so that every constraint holds; see `SketchResult`.
@@ -109,7 +275,7 @@ class Sketch(Relations):
 
     def drag(self, point: Point, position: Sequence[float]) -> SketchResult:
         """Brings a point as near to `position` as the constraints allow; all else moves least."""
-        self._own(point, Point)
+        self._register.of_kind(point, Point)
         return self._result(*self._engine().drag(point, two(position, "drag")))
 
     def curves(self) -> Curve:
@@ -131,52 +297,34 @@ class Sketch(Relations):
 
         return read(Path(path), cls)
 
+    @property
+    def origin(self) -> np.ndarray:
+        """(2,) [m] what the numbers are counted from: the first place that was drawn."""
+        return self._lists.origin
+
     def numbers(self, first: int, count: int) -> list[float]:
         """Part of the flat vector of all entities' numbers; for the entities."""
-        return self._numbers[first : first + count]
+        return self._lists.numbers[first : first + count]
 
-    def _place(self, point: Point) -> list[float]:
-        """A point's coordinates as counted from the origin."""
-        return self._numbers[point.variable : point.variable + 2]
+    def sides(self, chosen: Set[int] | None = None) -> list[tuple[int, int, int]]:
+        """The variables of every `same_side` (of the chosen constraints by index): two points, a line."""
+        return self._lists.sides(chosen)
 
-    def _result(self, problem, before, outcome) -> SketchResult:
+    def _restructured(self) -> None:
+        self._solver = None
+
+    def _dimension_changed(self, constraint: Constraint) -> None:
+        if self._solver is not None:
+            self._solver.changed(constraint)
+
+    def _result(self, problem: Problem, before: np.ndarray, outcome: Outcome) -> SketchResult:
         from clearance.sketch.result import SketchResult
 
         return SketchResult(self, problem, before, outcome)
 
-    def _engine(self):
+    def _engine(self) -> Solver:
         from clearance.sketch.solver import Solver
 
         if self._solver is None:
             self._solver = Solver(self)
         return self._solver
-
-    def _line(self, kind: type, a, b, name: str | None):
-        name = self._name(name, kind.what)
-        points = isinstance(a, Entity) or isinstance(b, Entity)
-        if points:
-            for p in (a, b):
-                self._own(p, Point)
-        places = [self._place(p) if points else self._local(*two(p, name)) for p in (a, b)]
-        (px, py), (qx, qy) = places
-        if px == qx and py == qy:
-            raise DegenerateSketch(
-                f"the two points of {name} coincide", valid="two different points"
-            )
-        theta = math.atan2(qy - py, qx - px)
-        offset = math.cos(theta) * 0.5 * (py + qy) - math.sin(theta) * 0.5 * (px + qx)
-        variable = self._grow((theta, DIRECTION), (offset, OFFSET))
-        line = self._add(kind(self, name, variable, (a, b) if points else None))
-        ends = (a.variable, b.variable) if points else (-1, -1)
-        self._line_ends.extend((variable, *ends))
-        if points:
-            for which, p in (("start", a), ("end", b)):
-                self._constrain("incident", (p, line), name=f"{name}.{which}", built_in=True)
-        return line
-
-    def _round(self, center, radius: float, name: str) -> tuple[int, Point]:
-        if isinstance(center, Entity):
-            self._own(center, Point)
-        else:
-            center = self.point(*two(center, name), name=f"{name}.center")
-        return self._grow((radius, RADIUS)), center

@@ -31,7 +31,7 @@ class Solver:
         self.sketch = sketch
         self.tables = tables_of(sketch)
         self.sides = sketch.sides()
-        self.problem = problem_of(self.tables, np.array(sketch._numbers))
+        self.problem = problem_of(self.tables, np.array(sketch._lists.numbers))
         self.stale = False
 
     def changed(self, constraint: Constraint) -> None:
@@ -42,20 +42,20 @@ class Solver:
     def current(self) -> Problem:
         """The problem with the dimensions as they are now."""
         if self.stale:
-            self.problem = problem_of(self.tables, np.array(self.sketch._numbers), self.problem)
+            self.problem = problem_of(self.tables, np.array(self.sketch._lists.numbers), self.problem)
             self.stale = False
         return self.problem
 
     def solve(self) -> tuple[Problem, np.ndarray, Outcome]:
         """See `Sketch.solve`."""
         problem = self.current()
-        before = np.array(self.sketch._numbers)
+        before = np.array(self.sketch._lists.numbers)
         return self._finish(problem, before, run_with_sides(problem, before, self.sides))
 
     def drag(self, point, position: tuple[float, float]) -> tuple[Problem, np.ndarray, Outcome]:
         """See `Sketch.drag`."""
         problem = self.current()
-        before = np.array(self.sketch._numbers)
+        before = np.array(self.sketch._lists.numbers)
         outcome = run_with_sides(problem, before, self.sides)
         if outcome.broken == -1:
             target = outcome.x.copy()
@@ -75,5 +75,5 @@ class Solver:
     ) -> tuple[Problem, np.ndarray, Outcome]:
         if outcome.broken == -1:
             check_degenerate(self.sketch, problem, outcome.x)
-            self.sketch._numbers[:] = outcome.x.tolist()
+            self.sketch._lists.numbers[:] = outcome.x.tolist()
         return problem, before, outcome

@@ -35,7 +35,7 @@ class Trials:
 
     def marks(self, chosen: list[int]) -> np.ndarray:
         """(constraints,) True for the chosen."""
-        out = np.zeros(len(self.sketch._ordered), bool)
+        out = np.zeros(len(self.sketch._lists.constraints), bool)
         out[chosen] = True
         return out
 
@@ -90,7 +90,7 @@ class Trials:
         owner = self.tables.owner
         part = self.problem.row_part[broken] if broken >= 0 else -1
         if part < 0 or not (self.problem.fate == IN_GRAPH).any():
-            sides = [c.index for c in self.sketch._ordered if c.kind == "same_side"]
+            sides = [c.index for c in self.sketch._lists.constraints if c.kind == "same_side"]
             return sorted({int(o) for o in owner} | set(sides))
         inside = (self.problem.row_part == part) | (self.problem.row_part < 0)
         return sorted({int(o) for o in owner[inside]})
@@ -114,7 +114,7 @@ class Trials:
 
     def minimal(self, suspects: list[int]) -> list[int]:
         """A subset that is not solved while every smaller one is; incidences of drawing are tried last."""
-        ordered = self.sketch._ordered
+        ordered = self.sketch._lists.constraints
         background = [i for i in suspects if ordered[i].built_in]
         changeable = [i for i in suspects if not ordered[i].built_in]
         if not self.solvable(background):

@@ -11,17 +11,15 @@ import numpy as np
 from clearance.errors import (
     BadDimension,
     BadTime,
-    DuplicateName,
     NothingToMeasure,
     NoTrajectory,
-    UnknownJoint,
     UnknownRobot,
     at,
-    nearest_name,
 )
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
-from clearance.world.names import checked_name
+from clearance.world.moving_joints import require_moving_joints
+from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
@@ -116,7 +114,7 @@ class PlacedRobot:
             object.__setattr__(self, "world_from_base", validated_pose(self.world_from_base))
         if self.trajectory is not None:
             with at(f"robot {self.robot.name!r}: trajectory"):
-                _require_joints(self.robot, self.trajectory.joint_names)
+                require_moving_joints(self.robot, self.trajectory.joint_names)
 
     @property
     def joints_given(self) -> tuple[str, ...]:
@@ -204,10 +202,10 @@ class Case:
         if not self.robots:
             raise NothingToMeasure(f"case {self.name!r} has no robot", valid="at least one")
         checked_name(self.name)
-        _require_own_names("robot", [placed.robot.name for placed in self.robots])
-        _require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
+        require_own_names("robot", [placed.robot.name for placed in self.robots])
+        require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
         for placed in self.robots:
-            _require_own_names("link", list(placed.robot.link_names))
+            require_own_names("link", list(placed.robot.link_names))
         _require_same_times(self.robots)
 
     def with_trajectory(
@@ -243,22 +241,6 @@ def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
     if names.count(name) != 1:
         raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
     return names.index(name)
-
-
-def _require_joints(robot: Robot, names: Sequence[str]) -> None:
-    moving = [joint.name for joint in robot.moving_joints]
-    for name in names:
-        if name not in moving:
-            raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, moving))
-
-
-def _require_own_names(kind: str, names: Sequence[str]) -> None:
-    """Refuses two of one kind with one name, which no table could tell apart, and names that no line can show."""
-    for i, name in enumerate(names):
-        with at(kind):
-            checked_name(name)
-        if name in names[:i]:
-            raise DuplicateName(f"two {kind}s have the name {name!r}", valid="each name once")
 
 
 def _require_same_times(robots: Sequence[PlacedRobot]) -> None:

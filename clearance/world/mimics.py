@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from clearance.errors import BadInput, UnknownJoint, at, nearest_name
+from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Robot
 
 
 class Follower(NamedTuple):
-    """A joint that moves: position = factor * the master's position + offset.
+    """A joint and what moves it: position = factor * the master's position + offset.
 
     Attributes:
         master: name of a joint that follows none; the joint's own name where it follows none.
@@ -23,18 +26,42 @@ class Follower(NamedTuple):
 
 @lru_cache(maxsize=8)
 def followers(robot: Robot) -> tuple[Follower, ...]:
-    """All joints that move, in the robot's order, and what moves them; in time linear in the joints."""
-    by_name = {joint.name: joint for joint in robot.joints}
-    known: dict[str, tuple[str, float, float]] = {}
-    for joint in robot.joints:
-        chain = []
+    """All joints that move, in the robot's order, and what moves them.
+
+    Raises:
+        UnknownJoint, BadInput: as `masters_of`.
+    """
+    found = masters_of(robot.joints)
+    return tuple(found[joint.name] for joint in robot.joints if joint.kind is not JointKind.FIXED)
+
+
+def masters_of(joints: Sequence[Joint]) -> dict[str, Follower]:
+    """What moves each joint, by name; in time linear in the joints.
+
+    Raises:
+        UnknownJoint: one follows a joint that is not there. BadInput: joints follow each other in a circle.
+    """
+    by_name = {joint.name: joint for joint in joints}
+    known: dict[str, Follower] = {}
+    for joint in joints:
+        chain: dict[str, Joint] = {}
         while joint.name not in known and joint.mimic is not None:
-            chain.append(joint)
-            joint = by_name[joint.mimic.joint]
-        master, factor, offset = known.setdefault(joint.name, (joint.name, 1.0, 0.0))
-        for follower in reversed(chain):
+            chain[joint.name] = joint
+            joint = _followed(joint, chain, by_name)
+        _, master, factor, offset = known.setdefault(joint.name, Follower(joint, joint.name, 1.0, 0.0))
+        for follower in reversed(chain.values()):
             mimic = follower.mimic
             factor, offset = mimic.multiplier * factor, mimic.multiplier * offset + mimic.offset
-            known[follower.name] = master, factor, offset
-    moving = [joint for joint in robot.joints if joint.kind is not JointKind.FIXED]
-    return tuple(Follower(joint, *known[joint.name]) for joint in moving)
+            known[follower.name] = Follower(follower, master, factor, offset)
+    return known
+
+
+def _followed(joint: Joint, chain: Mapping[str, Joint], by_name: Mapping[str, Joint]) -> Joint:
+    """The joint that the last of a chain follows."""
+    name = joint.mimic.joint
+    with at(f"joint {joint.name!r} mimic"):
+        if name not in by_name:
+            raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, by_name))
+        if name in chain:
+            raise BadInput(f"joints follow each other in a circle: {listed([*chain], 6)}")
+    return by_name[name]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Sequence
 
-from clearance.errors import BadInput
+from clearance.errors import BadInput, DuplicateName, at
 
 _BIDIRECTIONAL = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
 """Characters that turn the direction in which text is drawn, and so what it seems to say."""
@@ -28,6 +29,23 @@ def checked_name(name: str) -> str:
         if fault:
             raise BadInput(f"{name!a:.60} holds {fault}", valid="text on one line is needed")
     return name
+
+
+def require_own_names(kind: str, names: Sequence[str]) -> None:
+    """Nothing, if no two of one kind have one name, which no table could tell apart, and each is text on one line.
+
+    Args:
+        kind: "link", "joint", "obstacle" or the like, for the message.
+
+    Raises:
+        DuplicateName, BadInput: the first that is not, at its place in `names`.
+    """
+    seen: set[str] = set()
+    for i, name in enumerate(names):
+        with at(f"{kind}s[{i}]"):
+            if checked_name(name) in seen:
+                raise DuplicateName(f"two {kind}s have the name {name!r}", valid="each name once")
+        seen.add(name)
 
 
 def _fault(letter: str) -> str:

@@ -324,7 +324,7 @@ def bars(table: Table) -> None:
         m = np.array([-d[1], d[0]])
         for k, (u, v) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):
             at = s.entity(f"P{k}").variable
-            s._numbers[at : at + 2] = (middle + 4.5 * u * d + 0.5 * v * m - s.origin).tolist()
+            s._lists.numbers[at : at + 2] = (middle + 4.5 * u * d + 0.5 * v * m - s.origin).tolist()
         result = s.solve()
         solved += result.solved
         lengths.add(round(s.value("length"), 4))

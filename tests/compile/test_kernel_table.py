@@ -92,5 +92,5 @@ def test_an_array_is_not_handed_on_to_a_kernel_that_counts_no_references():
 
     arrays = (np.ones(2), np.zeros(2))
     assert counting(arrays) == 1.0
-    with pytest.raises(Exception, match="first_of returns an array to a kernel that is `borrowing`"):
+    with pytest.raises(Exception, match="first_of returns an array to a kernel without reference counts"):
         not_counting(arrays)

@@ -42,7 +42,7 @@ def rail_record(
     )
     motion = Motion(placed, times, column, np.zeros(len(times)))
     case = Case("rail", (placed,), standing)
-    return Record(case, (motion,), _steps(times, rows), (), unmeasured, {})
+    return Record(case, (motion,), _steps(times, rows), unmeasured, (), {})
 
 
 def _steps(times: np.ndarray, rows: list) -> pa.Table:

@@ -16,7 +16,6 @@ from clearance.errors import (
     EmptyMesh,
     NotFinite,
 )
-from clearance.geometry.faces import split_warped
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box, cylinder, sphere
 from tests.examples import examples
@@ -66,14 +65,6 @@ def test_rounding_far_from_the_origin_is_no_warp():
     moved = cylinder(1e-3, 1e-2).transformed(turn)
     faces = np.split(moved.face_vertices, moved.face_starts[1:-1])
     assert Polyhedron(moved.vertices, faces).n_faces == moved.n_faces
-
-
-def test_split_warped_cuts_only_what_is_not_flat():
-    bent = np.vstack([SQUARE, SQUARE[3] + [0, 0, 0.1]])
-    faces, n_cut = split_warped(bent, [[0, 1, 2, 3], [0, 1, 2, 4]])
-    assert n_cut == 1
-    assert faces == [[0, 1, 2, 3], [0, 1, 2], [0, 2, 4]]
-    assert Polyhedron(bent, faces).n_faces == 3
 
 
 def test_normals_of_a_needle_are_right_and_of_a_line_zero():

@@ -7,10 +7,16 @@ from hypothesis import strategies as st
 
 from clearance.errors import BadPolygon
 from clearance.load import polygon_cut
-from clearance.load.polygon_cut import cut_polygons
+from clearance.load.polygon_cut import cut_rings
 
 L_SHAPE = np.array([[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
 DART = np.array([[0, 0], [2, 2], [0, 1], [-2, 2]], dtype=float)
+
+
+def cut_polygons(vertices, polygons):
+    """(m, 3) the triangles of polygons that are given one by one."""
+    corners = np.array([i for polygon in polygons for i in polygon], dtype=np.int64)
+    return cut_rings(vertices, corners, np.array([len(polygon) for polygon in polygons], dtype=np.int64))
 
 
 def placed(flat, axes=(0, 1)):

@@ -118,8 +118,8 @@ def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
         case,
         motions,
         table(rows, limits),
-        minima,
         (Unmeasured("base", "*", "excluded: bolted"),),
+        minima,
         {"pairs": 9 * n_steps, "polygon_tests": 36 * n_steps},
     )
     return dataclasses.replace(made, **changes)

@@ -62,7 +62,7 @@ def answer(case: Case, place: Path, said: list[str], **asked: object) -> dict[st
     """All that a run found whose rows were kept in `place`, after that is gone."""
     with open_resumable_rows(place, said.append) as kept:
         run = cl.check(case, kept=kept, **asked)
-        run.record.let_go()
+        kept.let_go()
         found = told(run)
     assert not place.exists()
     assert found == told(run)
@@ -268,11 +268,11 @@ def most_memory(case: Case, folder: Path, jobs: int) -> int:
     tracemalloc.start()
     with open_resumable_rows(folder / "kept", print) as kept:
         run = cl.check(case, need="pairs", certify=True, jobs=jobs, kept=kept)
-        write_parquet(step_batches(run.record), folder / "steps.parquet")
-        write_csv(lambda: step_batches(run.record), folder / "steps.csv")
-        write_parquet(pair_batches(run.record), folder / "pairs.parquet")
+        write_parquet(step_batches(run.record, kept), folder / "steps.parquet")
+        write_csv(lambda: step_batches(run.record, kept), folder / "steps.csv")
+        write_parquet(pair_batches(run.record, kept), folder / "pairs.parquet")
         summary_of(run.record)
-        replay_of(run.record, 300)
+        replay_of(run.record, 300, kept)
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     return most

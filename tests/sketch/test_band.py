@@ -12,7 +12,7 @@ from tests.sketch.patterns import distances, irreducible, prism, shaken
 
 def problem(points, drawn, edges):
     s, _ = distances(points, drawn, edges)
-    x = np.array(s._numbers)
+    x = np.array(s._lists.numbers)
     return problem_of(tables_of(s), x), x
 
 

@@ -104,10 +104,10 @@ def test_the_nearest_root_is_taken():
     t = Sketch.load(_file("bar_length"))
     for k in range(4):
         at = t.entity(f"P{k}").variable
-        t._numbers[at : at + 2] = [float(v) for v in other[f"P{k}"]]
+        t._lists.numbers[at : at + 2] = [float(v) for v in other[f"P{k}"]]
     for k in range(4):
         line = t.entity(f"bar{k}")
-        t._numbers[line.variable : line.variable + 2] = [float(v) for v in other[f"bar{k}"]]
+        t._lists.numbers[line.variable : line.variable + 2] = [float(v) for v in other[f"bar{k}"]]
     assert t.solve().solved
     found.add(round(t.value("length"), 4))
     assert found == {10.8149, 12.5679}
@@ -129,7 +129,7 @@ def test_a_line_that_shrinks_to_nothing_is_named():
     for p, x in ((a, 0.0), (c, 3.0)):
         s.fix(p, name=f"at{x}")
     s.horizontal(edge), s.distance(b, c, 3.0)
-    drawn = list(s._numbers)
+    drawn = list(s._lists.numbers)
     with pytest.raises(DegenerateSketch, match="edge"):
         s.solve()
-    assert s._numbers == drawn
+    assert s._lists.numbers == drawn

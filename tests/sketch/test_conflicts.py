@@ -24,10 +24,10 @@ def test_one_wrong_dimension(seed):
     s, p, points, _ = truth(14, seed)
     a, b = 3, 7
     s.distance(p[a], p[b], 1.06 * float(np.linalg.norm(points[a] - points[b])), name="wrong")
-    drawn = list(s._numbers)
+    drawn = list(s._lists.numbers)
     result = s.solve()
     assert result.status == "inconsistent" and "wrong" in result.conflicts
-    assert s._numbers == drawn
+    assert s._lists.numbers == drawn
     others = [n for n in s.constraints if n not in result.conflicts]
     assert not rebuilt(s, others).solve().solved
     for name in result.conflicts:
@@ -95,9 +95,9 @@ def test_a_failed_search_is_not_called_inconsistent():
     for a, spans in enumerate(((1, 1, 1), (1, 1, 0.3), (1, 2.9, 1.7))):
         for b, span in enumerate(spans):
             s.distance(p[a], p[3 + b], span, name=f"d{a}{b}")
-    drawn = list(s._numbers)
+    drawn = list(s._lists.numbers)
     result = s.solve()
-    assert not result.solved and result.status == "unsolved" and s._numbers == drawn
+    assert not result.solved and result.status == "unsolved" and s._lists.numbers == drawn
     assert "no proof" in result.reason and "\n" not in result.reason
     assert set(result.searched) <= set(s.constraints) and result.searched
 

@@ -125,8 +125,8 @@ def test_a_flat_four_bar_linkage_has_one_freedom():
     p = [s.point(x, 0.0) for x in (0.0, 1.0, 3.0, 4.0)]
     for i, j, span in ((0, 1, 1.0), (1, 2, 2.0), (2, 3, 1.0), (0, 3, 2.0)):
         s.distance(p[i], p[j], span)
-    p[3].sketch._numbers[p[3].variable] = 2.0
-    p[2].sketch._numbers[p[2].variable] = 3.0
+    p[3].sketch._lists.numbers[p[3].variable] = 2.0
+    p[2].sketch._lists.numbers[p[2].variable] = 3.0
     assert verdict(s) == ("under", 1, [])
 
 

@@ -25,8 +25,8 @@ def test_drawings_are_solved_and_contacts_are_closed_to_the_last_digits(seed):
     assert max(tangencies(d, points), default=0.0) <= 1e-12 * size
     radii = [e.radius for e in s.entities.values() if e.what == "circle"]
     assert np.abs(d.equations(np.concatenate([points.ravel(), radii]))).max() <= 1e-12 * size
-    before = list(s._numbers)
-    assert s.solve().solved and s._numbers == before
+    before = list(s._lists.numbers)
+    assert s.solve().solved and s._lists.numbers == before
 
 
 @pytest.mark.parametrize("seed", range(0, 60, 4))
@@ -49,7 +49,7 @@ def test_a_shift_changes_nothing(seed, sizes):
     s, p, _, _ = d.sketch(drawn)
     t, q, _, _ = d.sketch(drawn, shift)
     assert s.solve().solved and t.solve().solved
-    assert s._numbers == t._numbers
+    assert s._lists.numbers == t._lists.numbers
     for a, b in zip(p, q, strict=True):
         half = 0.5 * np.spacing(np.abs(b.position)) + np.spacing(np.abs(a.position))
         assert (np.abs((b.position - shift) - a.position) <= half).all()

@@ -85,8 +85,8 @@ def test_verdict_and_freedom(drawn):
         return
     assert result.residual <= 1e-12 * 10.0 or result.redundant
     assert result.freedom == freedom
-    before = list(s._numbers)
-    assert s.solve().solved and s._numbers == before
+    before = list(s._lists.numbers)
+    assert s.solve().solved and s._lists.numbers == before
     for name in result.redundant:
         assert without(s, name).solve().freedom == freedom
     if status == "over":
@@ -126,7 +126,7 @@ def found(s, names, attempts):
     """Whether the sketch without some constraints is solved, drawn as it is or shaken."""
     for k in range(attempts):
         t, random = without(s, *names), np.random.default_rng(k)
-        t._numbers[:] = [v + random.uniform(-0.1, 0.1) * k for v in t._numbers]
+        t._lists.numbers[:] = [v + random.uniform(-0.1, 0.1) * k for v in t._lists.numbers]
         try:
             if t.solve().solved:
                 return True

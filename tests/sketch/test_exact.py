@@ -23,14 +23,14 @@ FILES = (
 
 def scaled(s, factor):
     """Multiplies every length of a sketch, drawn or dimension."""
-    for k, role in enumerate(s._roles):
-        s._numbers[k] *= 1.0 if role == DIRECTION else factor
-    for c in s._ordered:
+    for k, role in enumerate(s._lists.roles):
+        s._lists.numbers[k] *= 1.0 if role == DIRECTION else factor
+    for c in s._lists.constraints:
         if c.given is not None and c.kind not in ("angle", "ratio"):
             c.given = c.number = c.number * factor
-    for k, (code, var) in enumerate(zip(s._codes, s._vars[::8], strict=True)):
-        if not (code == 6 and s._roles[var] == DIRECTION):
-            s._offsets[k] *= 1.0 if code == 7 else factor
+    for k, (code, var) in enumerate(zip(s._lists.codes, s._lists.variables[::8], strict=True)):
+        if not (code == 6 and s._lists.roles[var] == DIRECTION):
+            s._lists.offsets[k] *= 1.0 if code == 7 else factor
     s._solver = None
     return s
 
@@ -41,8 +41,8 @@ def test_scaling_by_a_power_of_two_is_exact(name, power):
     s, t = (Sketch.load(SKETCHES / f"{name}.yaml") for _ in range(2))
     scaled(t, 2.0**power)
     assert s.solve().solved and t.solve().solved
-    factor = np.where(np.array(s._roles) == DIRECTION, 1.0, 2.0**power)
-    assert (np.array(t._numbers) == factor * np.array(s._numbers)).all()
+    factor = np.where(np.array(s._lists.roles) == DIRECTION, 1.0, 2.0**power)
+    assert (np.array(t._lists.numbers) == factor * np.array(s._lists.numbers)).all()
 
 
 @pytest.mark.parametrize("power", [-9, 6])
@@ -52,15 +52,15 @@ def test_scaling_of_patterns_is_exact(power):
                   lambda k: truth(40, 3, missing=2, scale=k)[0]):  # fmt: skip
         s, t = maker(1.0), maker(2.0**power)
         assert s.solve().solved and t.solve().solved
-        assert (np.array(t._numbers) == 2.0**power * np.array(s._numbers)).all()
+        assert (np.array(t._lists.numbers) == 2.0**power * np.array(s._lists.numbers)).all()
 
 
 @pytest.mark.parametrize("name", [*FILES, "bar_length", "midship_b", "midship_c", "midship_e"])
 def test_solved_files_solve_to_themselves_bit_for_bit(name):
     s = Sketch.load(SKETCHES / f"{name}.yaml")
     assert s.solve().solved
-    before = list(s._numbers)
-    assert s.solve().solved and s._numbers == before
+    before = list(s._lists.numbers)
+    assert s.solve().solved and s._lists.numbers == before
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -80,8 +80,8 @@ def test_irreducible_clusters_off_by_20_percent(seed):
     for a, b in edges:
         span = np.linalg.norm(points[a] - points[b])
         assert np.linalg.norm(x[a] - x[b]) == pytest.approx(span, abs=1e-11)
-    before = list(s._numbers)
-    assert s.solve().solved and s._numbers == before
+    before = list(s._lists.numbers)
+    assert s.solve().solved and s._lists.numbers == before
 
 
 def test_a_large_prism_is_solved_on_a_band():

@@ -46,14 +46,14 @@ def test_it_holds_after_solving(kind, k):
     assert result.solved, (kind, k)
     assert result.residual <= 1e-12 * 10
     if form.unit:
-        assert measured(c, s._numbers) == pytest.approx(DIMENSION[form.unit], rel=1e-12)
+        assert measured(c, s._lists.numbers) == pytest.approx(DIMENSION[form.unit], rel=1e-12)
 
 
 @pytest.mark.parametrize(("kind", "k"), CASES)
 def test_derivatives_match_differences(kind, k):
     s, _c, _ = made(kind, k)
     t = tables_of(s)
-    x = np.array(s._numbers) + np.random.default_rng(1).uniform(-0.3, 0.3, len(s._numbers))
+    x = np.array(s._lists.numbers) + np.random.default_rng(1).uniform(-0.3, 0.3, len(s._lists.numbers))
     _, slots = gradients(t.code, t.var, t.coef, t.value, x)
     analytic = np.zeros((t.code.size, x.size))
     for row, var in enumerate(t.var):
@@ -93,7 +93,7 @@ def bent(s, x):
 def test_second_derivatives_match_differences(kind, k):
     s, _c, _ = made(kind, k)
     assert s.solve().solved  # merged numbers agree
-    assembled, differences = bent(s, np.array(s._numbers))
+    assembled, differences = bent(s, np.array(s._lists.numbers))
     assert assembled == pytest.approx(differences, abs=1e-6)
 
 
@@ -103,7 +103,7 @@ def test_second_derivatives_of_lengths_that_share_a_point():
     s.equal_length(s.line(p[0], p[1]), s.line(p[1], p[2]))
     s.midpoint(s.point(1, 1), p[0], p[2])
     assert s.solve().solved
-    assembled, differences = bent(s, np.array(s._numbers))
+    assembled, differences = bent(s, np.array(s._lists.numbers))
     assert np.abs(differences).max() > 0.1
     assert assembled == pytest.approx(differences, abs=1e-6)
 

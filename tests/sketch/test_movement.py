@@ -53,9 +53,9 @@ def test_the_files_of_figure_12(seed):
     s = Sketch.load(Path(__file__).parents[2] / "scenes" / "sketches" / f"{names[seed]}.yaml")
     random = np.random.default_rng(seed)
     points = list(s.entities.values())
-    for k in range(len(s._numbers)):
-        s._numbers[k] += random.uniform(-0.05, 0.05)
-    drawn = np.array(s._numbers)
+    for k in range(len(s._lists.numbers)):
+        s._lists.numbers[k] += random.uniform(-0.05, 0.05)
+    drawn = np.array(s._lists.numbers)
     ends = np.array([[points.index(e) for e in c.entities] for c in s.constraints.values()])
     spans = np.array([c.number for c in s.constraints.values()])
     each = np.arange(spans.size)

@@ -46,14 +46,14 @@ def test_bar_in_the_box_from_60_starts():
         m = np.array([-d[1], d[0]])
         for i, (u, v) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):
             at = sketch.entity(f"P{i}").variable
-            sketch._numbers[at : at + 2] = (place + 4.5 * u * d + 0.5 * v * m).tolist()
+            sketch._lists.numbers[at : at + 2] = (place + 4.5 * u * d + 0.5 * v * m).tolist()
         for i in range(4):
             line = sketch.entity(f"bar{i}")
             a, b = (p.position for p in line.ends)
-            theta = sketch._numbers[line.variable]
+            theta = sketch._lists.numbers[line.variable]
             theta += np.remainder(np.arctan2(*(b - a)[::-1]) - theta + np.pi, 2 * np.pi) - np.pi
             normal = np.array([-np.sin(theta), np.cos(theta)])
-            sketch._numbers[line.variable : line.variable + 2] = [
+            sketch._lists.numbers[line.variable : line.variable + 2] = [
                 theta,
                 float(normal @ (a + b) / 2),
             ]

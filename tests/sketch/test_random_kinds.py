@@ -115,9 +115,9 @@ class Builder:
             self.pick(ways)()
 
     def shake(self, off):
-        numbers = self.s._numbers
+        numbers = self.s._lists.numbers
         for k in range(len(numbers)):
-            numbers[k] += self.random.uniform(-off, off) * (0.1 if self.s._roles[k] == 2 else 1.0)
+            numbers[k] += self.random.uniform(-off, off) * (0.1 if self.s._lists.roles[k] == 2 else 1.0)
 
 
 def _height(p, line):
@@ -198,8 +198,8 @@ def test_under_constrained(count, seed, missing):
             **c.options,
         )
     random = np.random.default_rng(seed)
-    for k in range(len(t._numbers)):
-        t._numbers[k] += random.uniform(-0.01, 0.01) * (0.1 if t._roles[k] == 2 else 1.0)
+    for k in range(len(t._lists.numbers)):
+        t._lists.numbers[k] += random.uniform(-0.01, 0.01) * (0.1 if t._lists.roles[k] == 2 else 1.0)
     result = t.solve()
     free, _ = _checked(t, result)
     assert result.freedom == free
@@ -230,15 +230,15 @@ def test_over_constrained(count, seed):
         return
     extra = b.s.distance(p, q, name="extra")
     b.shake(0.002)
-    drawn = list(b.s._numbers)
+    drawn = list(b.s._lists.numbers)
     result = b.s.solve()
     _checked(b.s, result)
     assert result.status == "over" and result.redundant
-    b.s._numbers[:] = drawn
+    b.s._lists.numbers[:] = drawn
     b.s.set("extra", 3.0 * extra.number + 20.0)
     result = b.s.solve()
     assert not result.solved and result.status in ("inconsistent", "unsolved")
-    assert b.s._numbers == drawn
+    assert b.s._lists.numbers == drawn
     if result.status == "inconsistent":
         assert "extra" in result.conflicts
 
@@ -249,5 +249,5 @@ def test_solved_sketches_of_all_kinds_solve_to_themselves_bit_for_bit(seed):
     b.grow(8)
     b.shake(0.01)
     if b.s.solve().solved:
-        before = list(b.s._numbers)
-        assert b.s.solve().solved and b.s._numbers == before
+        before = list(b.s._lists.numbers)
+        assert b.s.solve().solved and b.s._lists.numbers == before

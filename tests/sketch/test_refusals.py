@@ -36,6 +36,33 @@ def test_names(s):
     refused(lambda: s.set("widht", 1.0), "did you mean 'width'")
 
 
+def test_a_centre_of_another_sketch_is_refused(s):
+    other = Sketch()
+    far = other.segment((0, 0), (0, 9)).ends[1]
+    for k in range(9):
+        other.point(k, 0)
+    last = other.point(5, 5, name="z")
+    for center in (far, last):
+        refused(lambda center=center: s.arc(center, s.entity("a"), s.entity("b")), "another sketch")
+
+
+def test_a_segment_that_is_refused_leaves_a_sketch_that_solves(s):
+    s.fix("a"), s.distance("a", "b", 2.0)
+    assert s.solve().solved
+    refused(lambda: s.segment((7, 7), (7, 7)), "coincide")
+    assert s.solve().solved and math.dist(*(s.entity(e).position for e in "ab")) == 2.0
+
+
+def test_a_parameter_that_some_dimensions_refuse_changes_the_others(s):
+    s.parameter("w", 1.0)
+    s.distance("a", "b", "w", name="width"), s.radius("c", "2 - w", name="r")
+    assert s.solve().solved
+    refused(lambda: s.set("w", 3.0), "radius r")
+    assert s.value("width") == 3.0
+    s.solve()
+    assert math.dist(*(s.entity(e).position for e in "ab")) == pytest.approx(3.0, rel=1e-12)
+
+
 def test_kinds(s):
     refused(lambda: s.radius(s.entity("a"), 1.0), "radius", "circle")
     refused(lambda: s.parallel("a", "b"), "parallel", "line-line")

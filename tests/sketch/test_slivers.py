@@ -38,7 +38,7 @@ def test_large_patches(seed):
 def minimum():
     """A patch whose descent ends in a minimum that is no root: one sliver lies the wrong way."""
     s, _, _ = slivered(300, 0.05, 16)
-    problem, x = at_unit(s._engine().current(), np.array(s._numbers))
+    problem, x = at_unit(s._engine().current(), np.array(s._lists.numbers))
     work = Part(problem, 0)
     return work, descend(work, x)
 

@@ -69,8 +69,8 @@ def test_rigid_motion_and_scaling(n, seed, turn, scale, shift):
 def test_solved_sketches_solve_to_themselves_bit_for_bit(n, seed):
     s, _p, _, _ = truth(n, seed)
     s.solve()
-    before = list(s._numbers)
-    assert s.solve().solved and s._numbers == before
+    before = list(s._lists.numbers)
+    assert s.solve().solved and s._lists.numbers == before
 
 
 def test_no_triangle_flips():

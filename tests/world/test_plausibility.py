@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from clearance import box, check
-from clearance.errors import BadDimension, BadInput
+from clearance.errors import BadDimension, BadInput, UnknownJoint
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot
@@ -135,6 +135,19 @@ def test_a_joint_that_follows_one_that_follows():
     assert [(one.master, one.factor, one.offset) for one in found] == [
         ("j0", 1.0, 0.0), ("j0", 2.0, 1.0), ("j0", 4.0, 3.0), ("j0", 8.0, 7.0)
     ]  # fmt: skip
+
+
+def test_joints_that_follow_each_other_in_memory_are_refused():
+    def follows(name, other, parent, child):
+        return Joint(name, JointKind.REVOLUTE, parent, child, np.eye(4), mimic=Mimic(other))
+
+    for joints, fault, words in [
+        ([follows("j", "k", "a", "b"), follows("k", "j", "b", "c")], BadInput, "joints follow each other"),
+        ([follows("j", "gone", "a", "b")], UnknownJoint, "unknown joint 'gone'"),
+    ]:
+        names = ("a", "b", "c")[: len(joints) + 1]
+        with pytest.raises(fault, match=words):
+            followers(Robot("made", names, tuple(joints), ()))
 
 
 @pytest.mark.parametrize("mimic", [{"offset": 1e160}, {"multiplier": 1e8}, {"offset": -2e6}])

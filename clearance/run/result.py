@@ -1,0 +1,139 @@
+"""What a run has come to, for who asked: verdict, worst moment, events, tables, and a report on disk.
+
+Not for: finding it (`answers`), nor how a report looks (room `report`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from clearance.errors import BadInput
+from clearance.simulate.record import Certificate, CrossCheck, Record
+from clearance.simulate.resumable_rows import IN_MEMORY, Rows
+from clearance.simulate.steps import status_of
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from clearance.report.intervals import Event
+    from clearance.report.verdict import Verdict
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A case and its answer.
+
+    Attributes:
+        rows: where what the record shows of its rows is kept; the report is written by way of it.
+    """
+
+    record: Record
+    rows: Rows = IN_MEMORY
+
+    @property
+    def steps(self) -> pa.Table:
+        """One row a step; columns as in `Record.steps_with_contacts`."""
+        return self.record.steps_with_contacts
+
+    @property
+    def pairs(self) -> pa.Table | None:
+        """One row a step and pair: step, link, obstacle, clearance [m]; None unless that was asked for."""
+        every = self.record.every_pair
+        return None if every is None else every.table
+
+    @property
+    def worst(self) -> dict:
+        """The moment of least clearance, as a row of `steps`; between two steps if the certificate has found a
+        lesser one there: then `between` is true, and `step` the one before it."""
+        moment = self.record.worst
+        row = self._row(moment.step)
+        if moment is self.record.worst_sample:
+            return row
+        ends = {"link": moment.point_link, "obstacle": moment.point_obstacle}
+        told = {f"{body}_{axis}": x for body in ends for axis, x in zip("xyz", ends[body], strict=True)}
+        told |= {name: getattr(moment, name) for name in ("time", "clearance", "link", "obstacle")}
+        status = status_of(moment.clearance, self.record.case.limits)
+        return row | told | {"between": True, "status": status}
+
+    @property
+    def worst_sample(self) -> dict:
+        """The row of the first step of least clearance, with the status of that step by itself."""
+        return self._row(self.record.worst_step)
+
+    def _row(self, step: int) -> dict:
+        row = self.record.steps.slice(step, 1).to_pylist()[0]
+        if row.get("between"):
+            known = row["clearance"]
+            status = None if known is None else status_of(known, self.record.case.limits)
+            row |= {"between": False, "status": status}
+        return row
+
+    @property
+    def verdict(self) -> Verdict:
+        """What the run comes to, why, and what that rests on."""
+        from clearance.report.verdict import verdict_of
+
+        return verdict_of(self.record)
+
+    @property
+    def passed(self) -> bool:
+        """True if nothing is in contact or below the fail limit, at the steps or as far as proven between them,
+        every profile is kept, no input is suspect and no peer disagrees."""
+        return self.verdict.passed
+
+    @property
+    def status(self) -> str:
+        """"clear", "near", "violated" or "contact", whichever is the worst; "violated" where a sweep does not keep
+        to a profile of the case; "suspect" where input is in doubt and the case does not accept it."""
+        return self.verdict.status
+
+    @property
+    def events(self) -> list[Event]:
+        """Where a limit was entered or left, in order of time; see `report.intervals.events`."""
+        from clearance.report.intervals import events
+
+        return events(self.record)
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """What `summary.json` holds, as plain data."""
+        from clearance.report import summary_of
+
+        return summary_of(self.record)
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """What is proven of the motion between the steps; None where only the samples were looked at."""
+        return self.record.certificate
+
+    @property
+    def cross_check(self) -> CrossCheck | None:
+        """How a peer's answers compare, if that was asked for."""
+        return self.record.cross_check
+
+    def __repr__(self) -> str:
+        from clearance.report.notebook import run_text
+
+        return f"<Run {run_text(self.record)}>"
+
+    def _repr_html_(self) -> str:
+        """The verdict and the closest pairs, for a notebook."""
+        from clearance.report.notebook import run_html
+
+        return run_html(self.record)
+
+    def save(self, folder: str | Path) -> Path:
+        """Writes steps.parquet, steps.csv, summary.json and report.html into `folder`; returns it.
+
+        Raises:
+            BadInput: no path. Unwritable: nothing is left half-written.
+        """
+        from clearance.report import write
+
+        if not isinstance(folder, str | PathLike) or not str(folder):
+            raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")
+        write(self.record, folder, self.rows)
+        return Path(folder)
