@@ -2,6 +2,7 @@
 # Sourced by scripts/demo and scripts/test; sets `root`, and `prepare [EXTRA]` does the work.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+venv="$root/.venv"
 
 fail() { echo "error: $*" >&2; exit 2; }
 
@@ -21,38 +22,38 @@ find_python() {
 # Without Debian's python3-venv a new environment has no pip of its own: the outer pip then serves it.
 make_venv() {
     local python=$1
-    rm -rf "$root/.venv"
-    "$python" -m venv "$root/.venv" >/dev/null 2>&1 \
-        || { rm -rf "$root/.venv"; "$python" -m venv --without-pip "$root/.venv"; } \
-        || fail "cannot make $root/.venv with $python"
+    rm -rf "$venv"
+    "$python" -m venv "$venv" >/dev/null 2>&1 \
+        || { rm -rf "$venv"; "$python" -m venv --without-pip "$venv"; } \
+        || fail "cannot make $venv with $python"
 }
 
 pip_install() {
     local python=$1
     shift
-    if "$root/.venv/bin/python" -m pip --version >/dev/null 2>&1; then
-        "$root/.venv/bin/python" -m pip install --quiet --disable-pip-version-check "$@"
+    if "$venv/bin/python" -m pip --version >/dev/null 2>&1; then
+        "$venv/bin/python" -m pip install --quiet --disable-pip-version-check "$@"
     else
-        "$python" -m pip --python "$root/.venv/bin/python" install --quiet \
+        "$python" -m pip --python "$venv/bin/python" install --quiet \
             --disable-pip-version-check "$@"
     fi
 }
 
 # What the installation depends on: the project file, where it stands, the Python, the extra.
 stamp_of() {
-    { cat "$root/pyproject.toml"; "$root/.venv/bin/python" --version; echo "$root $1"; } | sha256sum
+    { cat "$root/pyproject.toml"; "$venv/bin/python" --version; echo "$root $1"; } | sha256sum
 }
 
 prepare() {
-    local extra=${1:-} python target="$root" stamp="$root/.venv/.installed${1:+-$1}"
-    if ! is_new_enough "$root/.venv/bin/python"; then
+    local extra=${1:-} python target="$root" stamp="$venv/.installed${1:+-$1}"
+    if ! is_new_enough "$venv/bin/python"; then
         python=$(find_python)
-        echo "making .venv with $("$python" --version)" >&2
+        echo "making $venv with $("$python" --version)" >&2
         make_venv "$python"
     fi
     [ "$(stamp_of "$extra")" = "$(cat "$stamp" 2>/dev/null || true)" ] && return
     [ -n "$extra" ] && target="$root[$extra]"
-    echo "installing into .venv (a few minutes the first time)" >&2
+    echo "installing into $venv (a few minutes the first time)" >&2
     pip_install "${python:-$(find_python)}" --editable "$target" \
         || fail "the installation failed; the lines above say why"
     stamp_of "$extra" >"$stamp"

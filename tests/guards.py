@@ -1,4 +1,4 @@
-"""A guard on every test: it starts no process and reads no case beside the repository unless it is marked so.
+"""A guard on every test: it starts no process and reads no case beside the repository unless marked so.
 
 An audit hook sees what the interpreter does, whoever asks for it, and refuses. Whatever the code under test makes
 of the refusal, the test fails.
@@ -11,7 +11,6 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from clearance.cli.compile_ahead import IS_SECOND
 from tests.marks import SHARED_CASES
 
 STARTS = {
@@ -47,19 +46,10 @@ def guarded(marks: frozenset[str]) -> Iterator[None]:
 def _see(event: str, arguments: tuple) -> None:
     if _marks is None:
         return
-    if (
-        event in STARTS
-        and not _marks & {"cold", "browser"}
-        and not _compiles_ahead(event, arguments)
-    ):
+    if event in STARTS and not _marks & {"cold", "browser"}:
         _refuse(f"{event} without the mark cold or browser: {arguments[:2]}")
     elif event == "open" and "shared" not in _marks and _is_shared(arguments[0]):
         _refuse(f"{arguments[0]} is read without the mark shared")
-
-
-def _compiles_ahead(event: str, arguments: tuple) -> bool:
-    """True for the compiler's own second process, where the caches are empty."""
-    return event == "subprocess.Popen" and IS_SECOND in (arguments[3] or {})
 
 
 def _is_shared(path: object) -> bool:

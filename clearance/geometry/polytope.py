@@ -15,7 +15,7 @@ import numpy as np
 from clearance.errors import BadPolygon
 from clearance.geometry.edges import rings_of
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.geometry.polytope_exits import Packed, packed
+from clearance.geometry.polytope_exits import packed
 from clearance.geometry.polytope_graph import (
     Trivalent,
     trivalent_form,
@@ -28,6 +28,7 @@ from clearance.geometry.polytope_hull import (
     corners_of_half_spaces,
     hull_faces,
 )
+from clearance.kernels.polytope.body import PackedBody
 from clearance.kernels.polytope.faces import face_areas, ring_moments
 
 
@@ -212,7 +213,7 @@ class Polytope:
         return trivalent_form(self.face_starts, self.face_vertices, self._twin, len(self.vertices))
 
     @cached_property
-    def packed(self) -> Packed:
+    def packed(self) -> PackedBody:
         """The body as the kernels of `query` take it, with its map of directions."""
         rings, planes = (
             (self.face_starts, self.face_vertices),
@@ -229,7 +230,7 @@ class Polytope:
     @cached_property
     def face_areas(self) -> np.ndarray:
         """(f, 4) area [m^2] and centroid [m] of each face."""
-        return face_areas(*self.packed)
+        return face_areas(self.packed)
 
     def prepared(self) -> Self:
         """Itself, with all that intersections need made ahead."""

@@ -1,28 +1,16 @@
 """A convex body packed for the kernels: planes, neighbours and the map of directions in two flat arrays.
 
-Made once a body; the layout is told in `kernels.polytope.exits`. Not for: users.
+Made once a body; the layout is told in `kernels.polytope.body`. Not for: users.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from clearance.kernels.polytope import exits as kernels
+from clearance.kernels.polytope.body import HEAD, LEAD, ROW, PackedBody
 
 FACES_PER_CELL = 0.5
-
-
-class Packed(NamedTuple):
-    """A body as the kernels take it.
-
-    Attributes:
-        numbers: (p,) float64; indices: (q,) int32.
-    """
-
-    numbers: np.ndarray
-    indices: np.ndarray
 
 
 def packed(
@@ -31,7 +19,7 @@ def packed(
     centroid: np.ndarray,
     planes: tuple[np.ndarray, np.ndarray, np.ndarray],
     neighbours: np.ndarray,
-) -> Packed:
+) -> PackedBody:
     """The arrays of a body with faces `rings` (starts, corners), planes (normals, a corner of each, distance
     from the centroid) and `neighbours`, the face over each edge, as the edges stand in `rings`."""
     normals, anchors, widths = planes
@@ -41,18 +29,19 @@ def packed(
     round_from_body, body_from_round, pad = _rounding_map(vertices - centroid)
     cells, faces = kernels.exit_cells((vertices - centroid) @ round_from_body.T, *rings, k, pad)
     order = np.argsort(cells, kind="stable")
-    lead = kernels.LEAD + 6 * k * k + 1
+    lead = LEAD + 6 * k * k + 1
     starts = lead + np.searchsorted(cells[order], np.arange(6 * k * k + 1))
     begin = lead + len(faces)
     first, n_edges = begin + f + 1, len(neighbours)
-    lead_numbers = [f, k, begin, n_edges, kernels.HEAD + kernels.ROW * f + 6 * k * k, 0, 0, 0]
+    lead_numbers = [f, k, begin, n_edges, HEAD + ROW * f + 6 * k * k, 0, 0, 0]
     parts = lead_numbers, starts, faces[order], rings[0] + first, rings[1], neighbours
     indices = np.concatenate(parts).astype(np.int32)
     head = np.concatenate([centroid, round_from_body.ravel(), [widths.max(), size, 0.0, 0.0]])
     rows = np.column_stack([normals, 1.0 / widths, anchors, widths])
     numbers = np.concatenate([head, rows.ravel(), np.zeros(6 * k * k), vertices.ravel()])
-    kernels.bound_cells(numbers, indices, body_from_round)
-    return Packed(numbers, indices)
+    body = PackedBody(numbers, indices)
+    kernels.bound_cells(body, body_from_round)
+    return body
 
 
 def _rounding_map(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from clearance.kernels.curve.arc_fit import Leaves, box_tree, fit_leaves
 from clearance.kernels.curve.bezier import Pieces, control_box, points_on, rough_joints
-from clearance.kernels.hausdorff.polyline import segment_boxes
+from clearance.kernels.hausdorff.segments import segment_boxes
 from clearance.planar.entries import BadCurve
 from clearance.planar.extent import least_box
 from clearance.tolerance import BIARC, CLOSED, MEETING, TANGENT, UNIT_ROUNDOFF

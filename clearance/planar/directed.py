@@ -12,23 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.kernels.hausdorff.state import (
-    ARCS,
-    AT_A,
-    AT_B,
-    BISECTORS,
-    CUTS,
-    DISTANCE,
-    ENDS,
-    GIVEN_UP,
-    KEPT,
-    LOWER,
-    NORMALS,
-    PIECE_A,
-    PIECE_B,
-    PIXELS,
-    UPPER,
-)
+from clearance.kernels.hausdorff.pair import CurveArrays
 from clearance.planar.curve import Curve
 
 KINDS = ("end", "common_normal", "self_bisector")
@@ -100,34 +84,44 @@ def placed(a: Curve, b: Curve) -> tuple[np.ndarray, float]:
     return a.origin - b.origin, size
 
 
+def arrays_of(curve: Curve) -> CurveArrays:
+    """The curve as the kernels take it."""
+    return CurveArrays(curve.pieces, curve.leaves, curve.is_end)
+
+
 def directed_of(
-    one: Curve, two: Curve, state: list, points: np.ndarray, margin: float, forward: bool
-):
-    """The `Directed` of a searched curve `one`; `forward` says that it is the caller's a."""
+    one: Curve, two: Curve, state: np.void, points: np.ndarray, margin: float, forward: bool
+) -> Directed:
+    """The `Directed` of a searched curve `one`; `forward` says that it is the caller's a.
+
+    Args:
+        state: a record of SEARCH_STATE; points: (5,) its witness.
+    """
+    known = dict(zip(state.dtype.names, state.item(), strict=True))
     here, there = points[:2] + one.origin, points[2:4] + two.origin
-    at_here = one.parameter_of(int(state[PIECE_A]), state[AT_A])
-    at_there = two.parameter_of(int(state[PIECE_B]), state[AT_B])
+    at_here = one.parameter_of(known["piece_a"], known["at_a"])
+    at_there = two.parameter_of(known["piece_b"], known["at_b"])
     return Directed(
-        distance=state[DISTANCE],
-        lower=max(0.0, state[LOWER] - margin),
-        upper=max(state[UPPER], state[DISTANCE]) + margin,
+        distance=known["distance"],
+        lower=max(0.0, known["lower"] - margin),
+        upper=max(known["upper"], known["distance"]) + margin,
         point_a=here if forward else there,
         point_b=there if forward else here,
         parameter_a=at_here if forward else at_there,
         parameter_b=at_there if forward else at_here,
         kind=KINDS[int(points[4])],
-        tally=_tally(state),
+        tally=_tally(known),
     )
 
 
-def _tally(state: list) -> Tally:
+def _tally(known: dict) -> Tally:
     return Tally(
-        arcs=int(state[ARCS]),
-        trimmed_arcs=int(state[ARCS] - state[KEPT]),
-        pixels=int(state[PIXELS]),
-        end_systems=int(state[ENDS]),
-        normal_systems=int(state[NORMALS]),
-        bisector_systems=int(state[BISECTORS]),
-        intervals=int(state[CUTS]),
-        given_up=int(state[GIVEN_UP]),
+        arcs=known["n_arcs"],
+        trimmed_arcs=known["n_arcs"] - known["n_kept"],
+        pixels=known["n_pixels"],
+        end_systems=known["n_ends"],
+        normal_systems=known["n_normals"],
+        bisector_systems=known["n_bisectors"],
+        intervals=known["n_cuts"],
+        given_up=known["n_given_up"],
     )

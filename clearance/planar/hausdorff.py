@@ -13,9 +13,9 @@ import numpy as np
 
 from clearance.errors import BadInput, ClearanceError
 from clearance.kernels.hausdorff.both_directions import both_directions
-from clearance.kernels.hausdorff.state import LOWER, UPPER, Aim
+from clearance.kernels.hausdorff.state import Aim
 from clearance.planar.curve import Curve
-from clearance.planar.directed import Directed, Tally, directed_of, placed
+from clearance.planar.directed import Directed, Tally, arrays_of, directed_of, placed
 from clearance.planar.entries import checked_number
 from clearance.planar.polylines import solve_polylines
 from clearance.planar.steady import steady
@@ -138,7 +138,7 @@ def within(a: Curve, b: Curve, distance: float) -> bool:
     gap = LAST_BITS * size
     aim = Aim(gap, gap, math.inf, distance, distance + slack, _budget(a, b))
     found, _ = _solve(a, b, shift, aim)
-    lower, upper = float(found[:, LOWER].max()), float(found[:, UPPER].max())
+    lower, upper = float(found["lower"].max()), float(found["upper"].max())
     if lower > distance + slack:
         return False
     if upper > distance + TIE * size + slack:
@@ -185,9 +185,7 @@ def _budget(a: Curve, b: Curve) -> float:
 def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
     if a.is_polyline and b.is_polyline:
         return solve_polylines(a, b, shift, aim)
-    return both_directions(
-        a.pieces, a.leaves, a.is_end, b.pieces, b.leaves, b.is_end, shift[0], shift[1], aim
-    )
+    return both_directions(arrays_of(a), arrays_of(b), shift[0], shift[1], aim)
 
 
 def _trimmed(a: Curve, b: Curve, tolerance: float) -> tuple[Directed, Directed]:
@@ -197,5 +195,5 @@ def _trimmed(a: Curve, b: Curve, tolerance: float) -> tuple[Directed, Directed]:
     wide = max(gap, ASKED * tolerance * size)
     found, points = _solve(a, b, shift, Aim(gap, wide, sharp, 0.0, math.inf, _budget(a, b)))
     margin = a.rounding + b.rounding + LAST_BITS * size
-    forth = directed_of(a, b, found[0].tolist(), points[0], margin, True)
-    return forth, directed_of(b, a, found[1].tolist(), points[1], margin, False)
+    forth = directed_of(a, b, found[0], points[0], margin, True)
+    return forth, directed_of(b, a, found[1], points[1], margin, False)

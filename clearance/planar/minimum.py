@@ -39,13 +39,14 @@ def minimum_distance(a: Curve, b: Curve) -> Minimum:
     """
     shift, size = placed(a, b)
     gap = LEAST_GAP * size
-    best = least_distance(a.pieces, a.leaves, b.pieces, b.leaves, shift[0], shift[1], gap).tolist()
+    found = least_distance(a.pieces, a.leaves, b.pieces, b.leaves, shift[0], shift[1], gap)
+    best = dict(zip(found.dtype.names, found[0].item(), strict=True))
     margin = a.rounding + b.rounding + gap
-    at_a = a.parameter_of(int(best[2]), best[3])
-    at_b = b.parameter_of(int(best[4]), best[5])
+    at_a = a.parameter_of(best["piece_a"], best["at_a"])
+    at_b = b.parameter_of(best["piece_b"], best["at_b"])
     return Minimum(
-        distance=best[0],
-        error_bound=best[0] - max(0.0, best[1] - margin) + margin,
+        distance=best["distance"],
+        error_bound=best["distance"] - max(0.0, best["lower"] - margin) + margin,
         point_a=a.point(at_a),
         point_b=b.point(at_b),
         parameter_a=at_a,

@@ -11,48 +11,44 @@ import math
 import numpy as np
 
 from clearance.kernels.hausdorff.polyline import directed_polyline
-from clearance.kernels.hausdorff.state import (
-    AT_A,
-    AT_B,
-    LOWER,
-    PIECE_A,
-    PIECE_B,
-    STATE,
-    Aim,
-)
+from clearance.kernels.hausdorff.segments import Segments
+from clearance.kernels.hausdorff.state import COMMON_NORMAL, END, SEARCH_STATE, SELF_BISECTOR, Aim
 from clearance.planar.curve import Curve
 from clearance.tolerance import MEETING, NORMAL, PARAMETER, TANGENT
 
 
 def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
-    """Both directed searches, (2, STATE) numbers and witnesses (2, 5), as those of other curves."""
-    state, points = np.empty((2, STATE)), np.empty((2, 5))
+    """Both directed searches, (2,) SEARCH_STATE and witnesses (2, 5), as those of other curves."""
+    states, points = np.zeros(2, SEARCH_STATE), np.empty((2, 5))
     for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):
-        directed_polyline(
-            one.pieces.control, one.segment_boxes, two.pieces.control, two.segment_boxes, step[0], step[1],
-            aim, state[k],
-        )  # fmt: skip
-        if state[k, LOWER] > aim.limit:
-            state[1 - k :, LOWER] = state[k, LOWER]
+        directed_polyline(_segments(one), _segments(two), step[0], step[1], aim, states[k : k + 1])
+        if states["lower"][k] > aim.limit:
+            states["lower"][1 - k :] = states["lower"][k]
             break
-        points[k] = _witness(one, two, step, state[k])
-    return state, points
+        points[k] = _witness(one, two, step, states[k])
+    return states, points
 
 
-def _witness(one: Curve, two: Curve, shift: np.ndarray, state: np.ndarray) -> tuple[float, ...]:
-    """The points that `state` names, each in its curve's frame, and the kind of solution (0, 1 or 2)."""
-    i, j, t, s = int(state[PIECE_A]), int(state[PIECE_B]), state[AT_A], state[AT_B]
+def _segments(curve: Curve) -> Segments:
+    return Segments(curve.pieces.control, curve.segment_boxes)
+
+
+def _witness(one: Curve, two: Curve, shift: np.ndarray, state: np.void) -> tuple[float, ...]:
+    """The points that `state` names, each in its curve's frame, and the kind of solution."""
+    i, j, t, s = (state[name].item() for name in ("piece_a", "piece_b", "at_a", "at_b"))
     (ax, ay), (bx, by) = _on(one, i, t), _on(two, j, s)
-    return ax, ay, bx, by, _kind(one, i, t, two, j, s, (ax + shift[0] - bx, ay + shift[1] - by))
+    gap = (ax + shift[0] - bx, ay + shift[1] - by)
+    return ax, ay, bx, by, _kind((one, i, t), (two, j, s), gap)
 
 
-def _kind(one: Curve, i: int, t: float, two: Curve, j: int, s: float, gap) -> float:
-    if _is_corner(one, i, t):
-        return 0.0
-    dx, dy = _direction(one, i)
+def _kind(here: tuple[Curve, int, float], there: tuple[Curve, int, float], gap) -> float:
+    """The kind of solution at a segment and parameter of each of two curves, `gap` apart."""
+    if _is_corner(*here):
+        return END
+    dx, dy = _direction(*here[:2])
     if abs(gap[0] * dx + gap[1] * dy) > NORMAL * math.hypot(*gap):
-        return 2.0
-    return 0.0 if _is_corner(two, j, s) else 1.0
+        return SELF_BISECTOR
+    return END if _is_corner(*there) else COMMON_NORMAL
 
 
 def _on(curve: Curve, k: int, t: float) -> tuple[float, float]:

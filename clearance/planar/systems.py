@@ -12,28 +12,11 @@ import numpy as np
 
 from clearance.kernels.curve.arc import EPS
 from clearance.kernels.hausdorff.paper import draw_page, greatest_depth, paper_kept
-from clearance.kernels.hausdorff.state import (
-    ARCS,
-    AT_A,
-    AT_B,
-    DISTANCE,
-    KEPT,
-    LOWER,
-    MAP_BOUND,
-    PIECE_A,
-    PIECE_B,
-    PIXELS,
-    ROOT,
-    ROOT_AT_A,
-    ROOT_AT_B,
-    ROOT_PIECE_A,
-    ROOT_PIECE_B,
-    STATE,
-    UPPER,
-)
-from clearance.kernels.hausdorff.systems import solve_directed, witness_of
+from clearance.kernels.hausdorff.state import SEARCH_STATE
+from clearance.kernels.hausdorff.systems import solve_directed
+from clearance.kernels.hausdorff.witness import witness_of
 from clearance.planar.curve import Curve
-from clearance.planar.directed import Directed, directed_of, placed
+from clearance.planar.directed import Directed, arrays_of, directed_of, placed
 from clearance.tolerance import LAST_BITS
 
 BUDGET = 4e5
@@ -91,15 +74,16 @@ def paper(a: Curve, b: Curve, *, literal: bool = False) -> tuple[Directed, Direc
         if (
             not kept.all()
         ):  # what is trimmed is within the reach of (8) to (10) and both biarc errors
-            worst = state[MAP_BOUND] + way.one.leaves.arcs[:, EPS].max()
-            state[UPPER] = max(state[UPPER], worst)
+            worst = state["map_bound"] + way.one.leaves.arcs[:, EPS].max()
+            state["upper"] = np.maximum(state["upper"], worst)
         found.append(_published(way, state))
     return found[0], found[1]
 
 
 def _empty() -> np.ndarray:
-    state = np.zeros(STATE)
-    state[PIECE_A] = state[ROOT] = -1.0
+    """A state of nothing found, (1,)."""
+    state = np.zeros(1, SEARCH_STATE)
+    state["piece_a"], state["root"] = -1, -1.0
     return state
 
 
@@ -126,43 +110,43 @@ def _trimmed(way: _Way) -> tuple[np.ndarray, np.ndarray]:
     pixel = float(span.max()) / PAGE
     columns, rows = (int(k) for k in np.ceil(span / pixel) + 1)
     x0, y0 = low - 0.5 * pixel
-    depth, colour = draw_page(two.leaves, x0, y0, pixel, rows, columns)
-    page = (x0, y0, pixel, depth)
-    deepest = greatest_depth(one.pieces, one.leaves, shift_x, shift_y, *page)
+    page = draw_page(two.leaves, x0, y0, pixel, rows, columns)
+    deepest = greatest_depth(one.pieces, one.leaves, shift_x, shift_y, page)
     bound = max(0.0, deepest - two.leaves.arcs[:, EPS].max() - np.sqrt(2.0) * pixel)
-    kept = paper_kept(one.leaves, two.leaves, shift_x, shift_y, *page, colour, bound)
+    kept = paper_kept(one.leaves, two.leaves, shift_x, shift_y, page, bound)
     state = _empty()
-    state[ARCS], state[KEPT] = len(kept), kept.sum()
-    state[PIXELS], state[MAP_BOUND] = depth.size, bound
+    state["n_arcs"], state["n_kept"] = len(kept), kept.sum()
+    state["n_pixels"], state["map_bound"] = page.depth.size, bound
     return state, kept
 
 
 def _solved(way: _Way, parts: np.ndarray, other: np.ndarray, state: np.ndarray) -> np.ndarray:
-    one, two = way.one, way.two
     solve_directed(
-        one.pieces, one.is_end, parts, two.pieces, two.leaves, two.is_end, other, way.shift[0], way.shift[1],
-        BUDGET, state,
-    )  # fmt: skip
+        arrays_of(way.one),
+        parts,
+        arrays_of(way.two),
+        other,
+        way.shift[0],
+        way.shift[1],
+        BUDGET,
+        state,
+    )
     return state
 
 
 def _directed(way: _Way, state: np.ndarray) -> Directed:
     one, two = way.one, way.two
-    points = witness_of(
-        one.pieces, one.is_end, two.pieces, two.is_end, way.shift[0], way.shift[1], state
-    )
-    return directed_of(one, two, state.tolist(), points, way.margin, way.forward)
+    points = witness_of(arrays_of(one), arrays_of(two), way.shift[0], way.shift[1], state)
+    return directed_of(one, two, state[0], points, way.margin, way.forward)
 
 
 def _published(way: _Way, state: np.ndarray) -> Directed:
     """The greatest root as the answer, with what is proven of the true distance."""
-    lower, upper = state[LOWER], max(state[UPPER], state[DISTANCE])
-    if state[ROOT] >= 0.0:
-        state[DISTANCE], state[PIECE_A], state[AT_A] = (
-            state[ROOT],
-            state[ROOT_PIECE_A],
-            state[ROOT_AT_A],
-        )
-        state[PIECE_B], state[AT_B] = state[ROOT_PIECE_B], state[ROOT_AT_B]
+    lower = float(state["lower"][0])
+    upper = float(np.maximum(state["upper"], state["distance"])[0])
+    if state["root"][0] >= 0.0:
+        state["distance"] = state["root"]
+        for place in ("piece_a", "at_a", "piece_b", "at_b"):
+            state[place] = state[f"root_{place}"]
     found = _directed(way, state)
     return replace(found, lower=max(0.0, lower - way.margin), upper=upper + way.margin)

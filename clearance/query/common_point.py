@@ -14,7 +14,16 @@ import numpy as np
 
 from clearance.errors import BadShape, EmptyMesh, NotFinite
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.depth import COLD, N_ROWS, ON, POINT, SHARE, WARM, deepen_two
+from clearance.kernels.polytope.depth import (
+    COLD,
+    N_ROWS,
+    ON,
+    POINT,
+    SHARE,
+    WARM,
+    PlacedBody,
+    deepen_two,
+)
 
 ROUNDING = 16 * 2.0**-53
 """[-] What counts as touching, relative to the bodies' size: a few roundings of the planes' offsets."""
@@ -139,42 +148,16 @@ def _names_a_face(bodies: list[Polytope], name: int) -> bool:
 
 def _deepened(bodies, frames, origin, basis, names, begin) -> tuple[bool, int, int]:
     """(settled, faces brought in, passes): two bodies at a time until none has a worse face."""
-    packs, m = [body.packed for body in bodies], len(bodies)
+    m = len(bodies)
+    placed = [PlacedBody(bodies[k].packed, frames[k], k) for k in range(m)]
     if m < 3:
-        b = m - 1
-        return deepen_two(
-            *packs[0],
-            frames[0],
-            0,
-            *packs[b],
-            frames[b],
-            b,
-            origin,
-            basis,
-            names,
-            MARGIN,
-            begin,
-            MAX_PASSES,
-        )
+        return deepen_two(placed[0], placed[-1], origin, basis, names, MARGIN, begin, MAX_PASSES)
     total = 0
     for passes in range(1, MAX_PASSES + 1):
         before, settled = total, True
-        for a in range(0, m, 2):
-            b = min(a + 1, m - 1)
-            sure, n, _ = deepen_two(
-                *packs[a],
-                frames[a],
-                a,
-                *packs[b],
-                frames[b],
-                b,
-                origin,
-                basis,
-                names,
-                MARGIN,
-                begin,
-                2,
-            )
+        for k in range(0, m, 2):
+            a, b = placed[k], placed[min(k + 1, m - 1)]
+            sure, n, _ = deepen_two(a, b, origin, basis, names, MARGIN, begin, 2)
             begin, total, settled = ON, total + n, settled and sure
             if basis[POINT, 3] < -1e-6 and names.min() >= 0:
                 return settled, total, passes

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.clip import cut_by_bodies, rooms_about
+from clearance.kernels.polytope.clip import Cutters, Limits, cut_by_bodies, rooms_about
 from clearance.kernels.polytope.cut import (
     BROKEN,
     CUT,
@@ -21,11 +21,11 @@ from clearance.kernels.polytope.cut import (
     LOOKED,
     N_FREE,
     N_ROWS,
-    STAMP,
+    Cut,
     begin,
     cut_by_planes,
 )
-from clearance.kernels.polytope.faces import face_rings, trivalent_moments
+from clearance.kernels.polytope.faces import WholeFaces, face_rings, trivalent_moments
 from clearance.kernels.polytope.patch import lay_patch, mark_patch
 
 ON_PLANE = 8 * 2.0**-53
@@ -79,13 +79,14 @@ class Task:
         rest = [k for k in range(len(bodies)) if k != first]
         rooms = np.zeros(len(bodies))
         if rest[1:]:
-            rooms_about(self.rows, self.origin, rooms, *bodies[0].packed)
+            rooms_about(self.cutters, rooms)
         return [first, *sorted(rest, key=lambda k: (rooms[k], bodies[k].volume, k))]
 
     @cached_property
-    def rows(self) -> np.ndarray:
-        """(m, 4) where the bodies' arrays are, for kernels that take them all (`kernels.polytope.bodies`)."""
-        return np.array([body.packed_at for body in self.bodies])
+    def cutters(self) -> Cutters:
+        """Where the bodies' arrays are, for kernels that take them all (`kernels.polytope.bodies`)."""
+        rows = np.array([body.packed_at for body in self.bodies])
+        return Cutters(rows, self.bases, self.origin, self.bodies[0].packed)
 
     @property
     def seam(self) -> int:
@@ -103,7 +104,7 @@ class Cutting:
         self.task = task
         self._room(ROOM * n)
         begin(
-            self.spots, self.mesh, *body.packed, form.corner, form.mesh, task.origin, task.bases[i_first]
+            self.spots, self.mesh, body.packed, form.corner, form.mesh, task.origin, task.bases[i_first]
         )  # fmt: skip
         self.state = np.array([0, 0, n], dtype=np.int64)
         self.table = np.zeros((task.seam + 1, 3), dtype=np.int32)
@@ -121,6 +122,11 @@ class Cutting:
         self.work = block[8 * n_rows : 10 * n_rows].view(np.int32).reshape(4, -1)
         self.rim = block[10 * n_rows :].view(np.int32).reshape(-1, 4)
 
+    @property
+    def arrays(self) -> Cut:
+        """The polytope as the kernels take it."""
+        return Cut(self.spots, self.mesh, self.state, self.work, self.rim, self.table)
+
     def _grown(self) -> None:
         spots, mesh, work, used = self.spots, self.mesh, self.work, self.state[N_ROWS]
         self._room(2 * len(spots))
@@ -135,10 +141,7 @@ class Cutting:
             Broken: see there.
         """
         plane = np.append(side * ACROSS_ALL, 0.0)[None, :]
-        status = cut_by_planes(
-            self.spots, self.mesh, self.state, self.work, self.rim, self.table, plane, self.task.seam, 0.0
-        )  # fmt: skip
-        if status != CUT:
+        if cut_by_planes(self.arrays, plane, self.task.seam, 0.0) != CUT:
             raise Broken
 
     def by(self, *i_bodies: int) -> bool:
@@ -148,11 +151,9 @@ class Cutting:
             Broken: see there.
         """
         task, turns = self.task, np.array(i_bodies, dtype=np.int64)
+        limits = Limits(task.tolerance, NOISE * task.tolerance, SPARSE)
         while True:
-            status, n_done = cut_by_bodies(
-                self.spots, self.mesh, self.state, self.work, self.rim, self.table, task.rows, task.bases,
-                turns, task.origin, task.tolerance, NOISE * task.tolerance, SPARSE, *task.bodies[0].packed,
-            )  # fmt: skip
+            status, n_done = cut_by_bodies(self.arrays, task.cutters, turns, limits)
             if status != FULL:
                 break
             turns = turns[n_done:]
@@ -170,17 +171,14 @@ class Cutting:
         task, other = self.task, self.task.bodies[i_body]
         base = task.bases[i_body]
         inside, in_patch = np.zeros((2, len(other.vertices)), dtype=bool)
-        mark_patch(
-            *task.bodies[i_first].packed, *other.packed, base, self.table, inside, in_patch
-        )  # fmt: skip
+        mark_patch(task.bodies[i_first].packed, other.packed, base, self.table, inside, in_patch)
         if not self.by(i_body):
             return False
         form = other.trivalent
+        rows = np.empty(len(form.corner), dtype=np.int32)
         laid = lay_patch(
-            self.spots, self.mesh, self.state, self.work, self.rim, self.table,
-            *other.packed, form.corner, form.mesh, in_patch, np.empty(len(form.corner), dtype=np.int32),
-            task.origin, base,
-        )  # fmt: skip
+            self.arrays, other.packed, form.corner, form.mesh, in_patch, rows, task.origin, base
+        )
         self.i_laid = i_body if laid else i_first
         return self.by(i_body)
 
@@ -195,24 +193,19 @@ class Cutting:
 
     def moments(self) -> np.ndarray:
         """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate [m], about the origin."""
-        self.state[STAMP] += 2
-        task, (a, b) = self.task, (self.i_first, self.i_laid)
-        return np.array(trivalent_moments(
-            self.spots, self.mesh, self.state[N_ROWS], self.table, self.state[STAMP],
-            task.bases[a], task.bodies[a].packed.numbers, task.bodies[a].face_areas,
-            task.bases[b], task.bodies[b].packed.numbers, task.bodies[b].face_areas, task.origin,
-        ))  # fmt: skip
+        bases, bodies = self.task.bases, self.task.bodies
+        a, b = (
+            WholeFaces(bases[k], bodies[k].packed.numbers, bodies[k].face_areas)
+            for k in (self.i_first, self.i_laid)
+        )
+        return np.array(trivalent_moments(self.arrays, a, b, self.task.origin))
 
 
-def by_edges(
-    spots: np.ndarray, mesh: np.ndarray, state: np.ndarray, table: np.ndarray
-) -> np.ndarray:
+def by_edges(cut: Cut) -> np.ndarray:
     """As `Cutting.moments`, for a polytope that was made of no body."""
     none = np.empty((0, 4))
-    return np.array(trivalent_moments(
-        spots, mesh, state[N_ROWS], table, state[STAMP] + 2,
-        0, none.ravel(), none, 0, none.ravel(), none, none.ravel(),
-    ))  # fmt: skip
+    no_body = WholeFaces(0, none.ravel(), none)
+    return np.array(trivalent_moments(cut, no_body, no_body, none.ravel()))
 
 
 def cut_down(task: Task, side: float = 0.0) -> Cutting | None:

@@ -12,7 +12,7 @@ import functools
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.cut import CUT, N_ROWS, cut_by_planes
+from clearance.kernels.polytope.cut import CUT, N_ROWS, Cut, cut_by_planes
 from clearance.kernels.polytope.faces import face_rings
 from clearance.kernels.polytope.thin import stretched_planes, supporting_triples
 from clearance.query.cutting import ON_PLANE, Task, by_edges
@@ -106,9 +106,10 @@ def _cut_box(planes: np.ndarray):
     spots[:8, :3], mesh[:8] = _box()
     state, table = np.array([0, 0, 8]), np.zeros((6 + len(planes), 3), dtype=np.int32)
     work, rim = np.empty((4, rows), dtype=np.int32), np.empty((rows, 4), dtype=np.int32)
-    if cut_by_planes(spots, mesh, state, work, rim, table, planes, 6, ON_PLANE) != CUT:
+    cut = Cut(spots, mesh, state, work, rim, table)
+    if cut_by_planes(cut, planes, 6, ON_PLANE) != CUT:
         return None
-    moments = by_edges(spots, mesh, state, table)
+    moments = by_edges(cut)
     return spots[:, :3], face_rings(mesh, state[N_ROWS]), moments[:4]
 
 

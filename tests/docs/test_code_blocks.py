@@ -49,6 +49,8 @@ def test_every_block_says_what_it_is(page):
     assert {block.language for block in blocks_of(page)} <= LANGUAGES
 
 
+@pytest.mark.slow
+@pytest.mark.peer
 @pytest.mark.parametrize("page", with_blocks("python", "bash"))
 def test_what_a_page_runs_runs(page, tmp_path, monkeypatch):
     """Blocks of a page follow each other: files are written, Python shares its names, commands end well."""

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff.state import CUTS, Aim
+from clearance.kernels.hausdorff.state import Aim
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import _solve, hausdorff, within
@@ -316,7 +316,7 @@ def test_within_stops_at_the_first_point_beyond():
     a, b = Curve.bspline(c), Curve.bspline(c + 0.3 * np.random.default_rng(6).normal(size=c.shape))
     shift, size = placed(a, b)
     intervals = [
-        int(_solve(a, b, shift, aim_of(1e-15 * size, limit=limit))[0][:, CUTS].sum())
+        int(_solve(a, b, shift, aim_of(1e-15 * size, limit=limit))[0]["n_cuts"].sum())
         for limit in (1e-3, math.inf)
     ]
     assert intervals[0] * 20 < intervals[1]

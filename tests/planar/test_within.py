@@ -6,7 +6,7 @@ from click.testing import CliRunner
 
 from clearance.cli.commands import clearance as command
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff.state import CUTS, Aim
+from clearance.kernels.hausdorff.state import Aim
 from clearance.planar import hausdorff as room
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
@@ -58,7 +58,7 @@ def test_within_does_not_refine_beyond_the_limit():
     a, b = NEAR[1]
     shift, size = placed(a, b)
     aims = [Aim(2.0**-50 * size, 0.0, np.inf, enough, np.inf, 1e5) for enough in (1e-3, 0.0)]
-    few, many = (int(room._solve(a, b, shift, aim)[0][:, CUTS].sum()) for aim in aims)
+    few, many = (int(room._solve(a, b, shift, aim)[0]["n_cuts"].sum()) for aim in aims)
     assert few <= 24 and few * 8 < many
     assert within(a, b, 1e-3) and within(a, b, 1e-9)
 

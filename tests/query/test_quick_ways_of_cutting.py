@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, is_in_ball
+from clearance.kernels.polytope.body import HEAD, INVERSE_WIDTH, ROW
+from clearance.kernels.polytope.exits import cell_of, is_in_ball
 from clearance.query import cutting, intersection
 from clearance.query.common_point import common_point
 from clearance.query.cutting import Cutting, Task, cut_down
@@ -30,26 +31,26 @@ def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
     rng = np.random.default_rng(n)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     body = Polytope(rng.normal(size=(n, 3)) * shape @ turn)
-    numbers, indices = body.packed
+    packed = body.packed
     gauges = (body.normals / body.face_widths[:, None]).T
     standing_out = max(0.0, ((body.vertices - body.centroid) @ gauges).max() - 1.0)
     on_surface = rng.normal(size=(2000, 3)) * shape @ turn
     on_surface /= (on_surface @ gauges).max(axis=1)[:, None]
     for x in on_surface:
-        assert not reached(is_in_ball)(numbers, *(x * (1.0 - 1e-9)))
-        assert reached(cell_of)(numbers, indices, *x)[1] >= 1.0 - 1e-13 - standing_out
+        assert not reached(is_in_ball)(packed, *(x * (1.0 - 1e-9)))
+        assert reached(cell_of)(packed, *x)[1] >= 1.0 - 1e-13 - standing_out
     if n == 300:
-        assert any(reached(is_in_ball)(numbers, *(0.9 * x)) for x in on_surface)
+        assert any(reached(is_in_ball)(packed, *(0.9 * x)) for x in on_surface)
 
 
 def test_the_ball_touches_the_nearest_plane_of_a_cube():
     cube = Polytope(np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T * 1.0)
-    numbers = cube.packed.numbers
-    assert reached(is_in_ball)(numbers, 1.0 - 1e-8, 0, 0) and not reached(is_in_ball)(
-        numbers, 1.0 - 1e-9, 0, 0
+    packed, numbers = cube.packed, cube.packed.numbers
+    assert reached(is_in_ball)(packed, 1.0 - 1e-8, 0, 0) and not reached(is_in_ball)(
+        packed, 1.0 - 1e-9, 0, 0
     )
-    assert not reached(is_in_ball)(numbers, 0.6, 0.6, 0.6)
-    assert numbers[HEAD + 3] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
+    assert not reached(is_in_ball)(packed, 0.6, 0.6, 0.6)
+    assert numbers[HEAD + INVERSE_WIDTH] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -84,7 +85,7 @@ def test_whole_faces_hold_what_their_edges_hold(m, n, spread):
     task = Task.about(bodies, common_point(bodies).point)
     cut = cut_down(task)
     by_faces = cut.moments()
-    by_edges = cutting.by_edges(cut.spots, cut.mesh, cut.state, cut.table)
+    by_edges = cutting.by_edges(cut.arrays)
     assert by_faces == pytest.approx(by_edges, rel=1e-14, abs=1e-15)
 
 

@@ -13,12 +13,12 @@ import math
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.curve.arc import ROUNDOFF
 from clearance.kernels.curve.bernstein import greatest
 from clearance.kernels.curve.bezier import CHOOSE, cut, hypotenuse
+from clearance.kernels.curve.scratch import LARGEST_DEGREE, MAP, PART_A, PART_B, SQUARES
 
 HIGHEST_ORDER = 5
-LARGEST_DEGREE = 48  # of B(s(t)) and A together; binomials are at hand up to twice that
-ROUNDOFF = 2.0**-53
 
 
 def _feet_shares() -> np.ndarray:
@@ -190,7 +190,7 @@ def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, wo
     will do where it is below `enough`; else the squares' coefficients are the bound. Returns (bound, share of
     [t0, t1], rounding), (inf, 0, 0) where the feet span nothing. `composed` is (points, 3, coefficients).
     """
-    p, q, curve_map = work[6], work[7], work[5]
+    p, q, curve_map = work[PART_A], work[PART_B], work[MAP]
     low, high = _set_map(feet, order, curve_map)
     if not high > low:
         return np.inf, 0.0, 0.0
@@ -215,8 +215,8 @@ def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, wo
     largest_sq, which = _largest_sq(gap, degree, rational)
     if largest_sq <= enough * enough:
         return math.sqrt(largest_sq), which / degree, rounding
-    degree = _squares(gap, degree, rational, work[9])
-    most, which = greatest(work[9], degree)
+    degree = _squares(gap, degree, rational, work[SQUARES])
+    most, which = greatest(work[SQUARES], degree)
     bound = math.sqrt(most)
     # half as many terms as the gap's degree in each sum, as many in the weights', and a few operations more
     rounding += math.sqrt(most + ROUNDOFF * (degree // 2 + 12) * largest_sq) - bound

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.curve.arc import EPS, S0, S1, arc_distance
+from clearance.kernels.curve.arc import EPS, ROUNDOFF, S0, S1, arc_distance
 from clearance.kernels.curve.arc_fit import BUCKET, box_gap_sq
 from clearance.kernels.curve.bernstein import cubic_square
 from clearance.kernels.curve.bezier import CHOOSE, cut, hypotenuse, jet
+from clearance.kernels.curve.scratch import MAP
 
-ROUNDOFF = 2.0**-53
 DEEPEST = 60
 SETTLED = (
     1e-9  # a Newton step so short that the next, of the order of its square, would be rounding
@@ -293,7 +293,7 @@ def nearest(pieces, leaves, x, y, hint, bound, work):
     leaf = hint
     if best > bound:
         best = bound
-    stack = work[5]
+    stack = work[MAP]  # no map is made meanwhile
     stack[0, 0], stack[0, 1] = 1.0, 0.0
     top = 1
     while top > 0:

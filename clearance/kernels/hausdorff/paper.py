@@ -6,6 +6,7 @@ what answers by default is `hausdorff`. Not for: the systems on what is left (`h
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,25 +16,41 @@ from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.hausdorff.trim import arc_covers, field
 
 
+class Page(NamedTuple):
+    """A page of pixels about one curve, in that curve's frame.
+
+    Attributes:
+        x0, y0: its lower left corner; pixel: the side of a pixel.
+        depth, colour: (rows, columns) distance of each pixel's centre to the arcs, and the nearest arc.
+    """
+
+    x0: float
+    y0: float
+    pixel: float
+    depth: np.ndarray
+    colour: np.ndarray
+
+
 @inline
-def _pixel_of(x, y, x0, y0, pixel, depth):
+def _pixel_of(x, y, page):
     """Row and column of the pixel that (x, y) lies on; the page's edge for points off it."""
-    row = min(depth.shape[0] - 1, max(0, math.floor((y - y0) / pixel)))
-    return row, min(depth.shape[1] - 1, max(0, math.floor((x - x0) / pixel)))
+    n_rows, n_columns = page.depth.shape
+    row = min(n_rows - 1, max(0, math.floor((y - page.y0) / page.pixel)))
+    return row, min(n_columns - 1, max(0, math.floor((x - page.x0) / page.pixel)))
 
 
 @kernel
-def greatest_depth(pa, la, shift_x, shift_y, x0, y0, pixel, depth):
-    """The greatest depth read along curve A."""
+def greatest_depth(pa, la, shift_x, shift_y, page):
+    """The greatest depth read along curve A on the page of B."""
     most = 0.0
     for k in range(la.arcs.shape[0]):
         row = la.arcs[k]
-        steps = max(1, math.ceil(hypotenuse(row[X1] - row[X0], row[Y1] - row[Y0]) / pixel))
+        steps = max(1, math.ceil(hypotenuse(row[X1] - row[X0], row[Y1] - row[Y0]) / page.pixel))
         for j in range(steps + 1):
             t = row[S0] + (row[S1] - row[S0]) * j / steps
             here = jet(pa, la.piece[k], t)
-            r, c = _pixel_of(here.x + shift_x, here.y + shift_y, x0, y0, pixel, depth)
-            most = max(most, depth[r, c])
+            r, c = _pixel_of(here.x + shift_x, here.y + shift_y, page)
+            most = max(most, page.depth[r, c])
     return most
 
 
@@ -51,7 +68,7 @@ def _likeliest(points, candidates, arcs):
 
 
 @kernel
-def paper_kept(la, lb, shift_x, shift_y, x0, y0, pixel, depth, colour, lower_bound):
+def paper_kept(la, lb, shift_x, shift_y, page, lower_bound):
     """Which arcs of A (n,) equations (8) to (10) leave: one arc of B for each, epsilon 1 taken off once."""
     kept = np.ones(la.arcs.shape[0], np.bool_)
     points, candidates = np.empty((3, 2)), np.empty(3, np.int64)
@@ -65,8 +82,8 @@ def paper_kept(la, lb, shift_x, shift_y, x0, y0, pixel, depth, colour, lower_bou
         points[1, 0], points[1, 1] = mx + shift_x, my + shift_y
         points[2, 0], points[2, 1] = row[X1] + shift_x, row[Y1] + shift_y
         for i in range(3):
-            r, c = _pixel_of(points[i, 0], points[i, 1], x0, y0, pixel, depth)
-            candidates[i] = colour[r, c]
+            r, c = _pixel_of(points[i, 0], points[i, 1], page)
+            candidates[i] = page.colour[r, c]
         facing = lb.arcs[_likeliest(points, candidates, lb.arcs)]
         reach = lower_bound - epsilon
         kept[k] = not (reach > 0.0 and arc_covers(points, facing, reach))
@@ -75,9 +92,9 @@ def paper_kept(la, lb, shift_x, shift_y, x0, y0, pixel, depth, colour, lower_bou
 
 @kernel
 def draw_page(lb, x0, y0, pixel, n_rows, n_columns):
-    """Depth and colour (n_rows, n_columns) of the page whose lower left corner is (x0, y0), in B's frame."""
+    """The `Page` (n_rows, n_columns) whose lower left corner is (x0, y0), drawn about B."""
     depth, colour = np.empty((n_rows, n_columns)), np.empty((n_rows, n_columns), np.int64)
     xs = x0 + pixel * (np.arange(n_columns) + 0.5)
     ys = y0 + pixel * (np.arange(n_rows) + 0.5)
     field(lb, xs, ys, depth, colour)
-    return depth, colour
+    return Page(x0, y0, pixel, depth, colour)

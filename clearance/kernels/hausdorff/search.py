@@ -1,11 +1,8 @@
 """Compiled search of a directed Hausdorff distance: the interval of the greatest bound first.
 
 An interval T of curve A is settled when a bound of its distance to B does not pass the best value known by
-more than the gap, or not the distance that is enough. Otherwise it is cut where the systems say: at an end
-(11), at a common normal found by Newton's method (12), where the curve meets B's self-bisector (13), or
-beside a joint of B that it passes closely. To cut at a root makes the distance monotone on both sides, so
-that the next bound is exact: the certificate. What the budget leaves open is never above the greatest bound
-in the queue, which the answer's error then shows.
+more than the gap, or not the distance that is enough. Otherwise it is cut (`hausdorff.cutting`). What the
+budget leaves open is never above the greatest bound in the queue, which the answer's error then shows.
 """
 
 import math
@@ -14,311 +11,224 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.curve.arc_fit import Leaves
-from clearance.kernels.curve.bezier import Pieces, hypotenuse, jet
+from clearance.kernels.curve.bezier import hypotenuse, jet
 from clearance.kernels.curve.follow import SHARES, drift, follow_bound, least_order, order_for
-from clearance.kernels.curve.nearest import slide_to_foot
-from clearance.kernels.hausdorff.exact import (
-    chain_bound,
-    chord_bound,
-    common_normal,
-    consider,
-    line_covered,
-    self_bisector,
-    slide_from,
-    upper_bound,
-)
-from clearance.kernels.hausdorff.state import (
-    BISECTORS,
-    CUTS,
-    DISTANCE,
-    ENDS,
-    GIVEN_UP,
-    LOWER,
-    NORMALS,
-    UPPER,
-)
+from clearance.kernels.curve.scratch import FEET
+from clearance.kernels.hausdorff.bounds import chord_bound, consider, line_covered, upper_bound
+from clearance.kernels.hausdorff.cutting import ROOM, Place, cut_interval
+from clearance.kernels.hausdorff.pair import Part
+from clearance.kernels.hausdorff.queue import BOUND, interval_at, pop, with_room
+from clearance.kernels.hausdorff.roots import common_normal, slide_from
+from clearance.kernels.hausdorff.run import Run, arc_run_bound
 
-MANY = 512  # arcs of B from which on a straight part of A is first held against runs of them
+MANY = 512  # arcs from which on whole runs of them are tried first
 WORTH = 0.25  # the drift's share of what a bound is too large, from which on a map of higher order is tried
 SMALLEST = 4e-16  # an interval that floats cannot cut
-BESIDE = 1e-9  # share of an interval next to its ends where no cut beside a joint is made
-CLOSELY = 0.01  # how near a joint must be, as a share of the part of A that it cuts off
-MOST_PARTS = 32  # that an interval is cut into at once
-ROOM = MOST_PARTS + 2  # what the queue must have left
-BOUND, T0, T1, HINT, WAS_CUT, PIECE = 0, 1, 2, 3, 4, 5
 
 
-class Pair(NamedTuple):
-    """The curve searched, the other one with its arcs, and the step into the other's frame."""
+class Workspace(NamedTuple):
+    """Scratch of a search: the planes of `curve.scratch`, and room for composed maps (`curve.follow`)."""
 
-    a: Pieces
-    b: Pieces
-    leaves: Leaves
-    shift_x: float
-    shift_y: float
+    planes: np.ndarray
+    composed: np.ndarray
+
+
+class Feet(NamedTuple):
+    """The feet of an interval's start, middle and end on one piece of B, and how far they are."""
+
+    piece: int
+    start: float
+    middle: float
+    end: float
+    distance: float
+    farther_end: float
+
+
+class Bound(NamedTuple):
+    """An upper bound, where in the interval it is largest (a share), and the digits that it may have lost."""
+
+    value: float
+    share: float
+    lost: float
+
+
+@inline
+def gap_of(aim, state):
+    """How near the upper bound has to come: wider once the search has lasted."""
+    return aim.gap if state.n_cuts <= aim.sharp else aim.wide
 
 
 @inline
 def settled_below(aim, state):
     """The bound up to which an interval is settled."""
-    gap = aim.gap if state[CUTS] <= aim.sharp else aim.wide
-    return max(state[DISTANCE] + gap, aim.enough)
+    return max(state.distance + gap_of(aim, state), aim.enough)
 
 
 @inline
-def is_settled(bound, lost, aim, state):
-    """Whether a bound that may have `lost` digits settles an interval; what is enough is held to all of them."""
-    gap = aim.gap if state[CUTS] <= aim.sharp else aim.wide
-    return bound <= state[DISTANCE] + gap or bound + lost <= aim.enough
+def is_settled(bound, aim, state):
+    """Whether a bound settles an interval; what is enough is held to all digits that it may have lost."""
+    below = bound.value <= state.distance + gap_of(aim, state)
+    return below or bound.value + bound.lost <= aim.enough
 
 
 @inline
-def _before(heap, i, j):
-    """Whether entry `i` comes before `j`: the greater bound, of equals the earlier part of the curve."""
-    if heap[i, BOUND] != heap[j, BOUND]:
-        return heap[i, BOUND] > heap[j, BOUND]
-    if heap[i, PIECE] != heap[j, PIECE]:
-        return heap[i, PIECE] < heap[j, PIECE]
-    return heap[i, T0] < heap[j, T0]
+def _feet_of(curves, interval, foot):
+    s0, d0 = slide_from(curves, interval.piece, interval.t0, foot.piece, foot.local)
+    s1, d1 = slide_from(curves, interval.piece, interval.t1, foot.piece, foot.local)
+    return Feet(foot.piece, s0, foot.local, s1, foot.distance, max(d0, d1))
 
 
 @inline
-def _swap(heap, i, j):
-    for c in range(heap.shape[1]):
-        heap[i, c], heap[j, c] = heap[j, c], heap[i, c]
-
-
-@inline
-def _push(heap, n, bound, t0, t1, hint, was_cut, piece):
-    """Puts an interval into the queue (a binary heap of `n` entries); returns the new number."""
-    row = heap[n]
-    row[BOUND], row[T0], row[T1], row[HINT] = bound, t0, t1, hint
-    row[WAS_CUT], row[PIECE] = was_cut, piece
-    k = n
-    while k > 0 and _before(heap, k, (k - 1) // 2):
-        _swap(heap, k, (k - 1) // 2)
-        k = (k - 1) // 2
-    return n + 1
-
-
-@inline
-def _pop(heap, n):
-    """Moves the first entry behind the others; returns the new number."""
-    n -= 1
-    _swap(heap, 0, n)
-    k = 0
-    while True:
-        first = k
-        for child in (2 * k + 1, 2 * k + 2):
-            if child < n and _before(heap, child, first):
-                first = child
-        if first == k:
-            return n
-        _swap(heap, k, first)
-        k = first
-
-
-@inline
-def grown(heap):
-    wider = np.empty((2 * heap.shape[0], heap.shape[1]))
-    wider[: heap.shape[0]] = heap
-    return wider
-
-
-@inline
-def _follow(pair, i, t0, t1, j, s0, s_middle, s1, bound, share, order, enough, work, composed):
-    """A known bound, or `follow_bound` where less: through the feet of a part of A on piece `j` of B.
-
-    The feet of its ends and middle are given.
-    """
+def _follow(curves, interval, feet, bound, order, enough, work):
+    """The given bound, or `follow_bound` where less: through more feet on the same piece of B."""
     if order < 2:
-        return bound, share, 0.0
-    feet = work[10, :, 0]
-    feet[0], feet[order] = s0, s1
+        return Bound(bound.value, bound.share, 0.0)
+    i, t0, t1, s0, s1 = interval.piece, interval.t0, interval.t1, feet.start, feet.end
+    more = work.planes[FEET, :, 0]
+    more[0], more[order] = s0, s1
     for r in range(1, order):
         place = SHARES[order, r]
         near = 2.0 * place
-        s = s0 + near * (s_middle - s0) if place <= 0.5 else s1 + (2.0 - near) * (s_middle - s1)
-        t = t0 + place * (t1 - t0)
-        feet[r], _ = slide_from(pair.a, pair.b, i, t, j, s, pair.shift_x, pair.shift_y)
+        s = (
+            s0 + near * (feet.middle - s0)
+            if place <= 0.5
+            else s1 + (2.0 - near) * (feet.middle - s1)
+        )
+        more[r], _ = slide_from(curves, i, t0 + place * (t1 - t0), feet.piece, s)
     closer, where, rounding = follow_bound(
-        pair.a,
-        pair.b,
-        i,
-        t0,
-        t1,
-        j,
-        feet,
-        order,
-        pair.shift_x,
-        pair.shift_y,
-        enough,
-        work,
-        composed,
-    )
-    if closer < bound:
-        return closer, where, rounding
-    return bound, share, 0.0
+        curves.a, curves.b, i, t0, t1, feet.piece, more, order, curves.shift_x, curves.shift_y, enough,
+        work.planes, work.composed,
+    )  # fmt: skip
+    if closer < bound.value:
+        return Bound(closer, where, rounding)
+    return Bound(bound.value, bound.share, 0.0)
 
 
 @inline
-def _cut_beside_joints(pair, heap, n_open, bound, i, t0, t1, t, j, other, hint):
-    """Cuts an interval next to B's joints between piece `j`, nearest to its middle, and `other`, nearest to `t`.
+def _run_bound(pair, interval, leaf, aim, state, planes):
+    """The bound by the run of arcs between those nearest to both ends, whose distances are considered."""
+    one = consider(pair, interval.piece, interval.t0, leaf, state, planes)
+    two = consider(pair, interval.piece, interval.t1, one.leaf, state, planes)
+    run = Run(one.leaf, two.leaf, one.distance, two.distance)
+    part = Part(interval.piece, interval.t0, interval.t1)
+    return arc_run_bound(pair.curves, part, pair.leaves.arcs, run, settled_below(aim, state))
 
-    Only where A passes them closely: elsewhere the branches cross at another place. Returns the number of open
-    intervals, the same where no cut was made.
-    """
-    forward, count = t > 0.5 * (t0 + t1), abs(other - j)
-    stride = (count + MOST_PARTS - 1) // MOST_PARTS
-    near, before = BESIDE * (t1 - t0), n_open
-    last = t0 if forward else t1
-    for step in range(stride // 2, count, stride):
-        piece = j + step if other > j else j - step
-        joint = jet(pair.b, piece, 1.0 if other > j else 0.0)
-        x, y = joint.x - pair.shift_x, joint.y - pair.shift_y
-        guess = 0.5 * (t0 + t1) + (t - 0.5 * (t0 + t1)) * (step + 0.5) / count
-        cut_at = slide_to_foot(pair.a, i, x, y, guess, t0, t1)
-        here = jet(pair.a, i, cut_at)
-        apart = hypotenuse(here.x - x, here.y - y) * count
-        low, high = (last, t1) if forward else (t0, last)
-        if not low + near < cut_at < high - near:
-            continue
-        if apart < CLOSELY * hypotenuse(here.dx, here.dy) * (t1 - t0):
-            if forward:
-                n_open = _push(heap, n_open, bound, last, cut_at, hint, 0.0, i)
-            else:
-                n_open = _push(heap, n_open, bound, cut_at, last, hint, 0.0, i)
-            last = cut_at
-    if n_open > before:
-        low, high = (last, t1) if forward else (t0, last)
-        n_open = _push(heap, n_open, bound, low, high, hint, 0.0, i)
-    return n_open
+
+@inline
+def _highest_order(curves, i, j):
+    n = curves.a.first[i + 1] - curves.a.first[i] - 1
+    return order_for(n, curves.b.first[j + 1] - curves.b.first[j] - 1)
+
+
+@inline
+def _followed_where_worth(curves, interval, feet, bound, aim, enough, work):
+    """The bound by a map of higher order where the drift of the affine one spoils it; and whether it was tried."""
+    there = jet(curves.b, feet.piece, feet.middle)
+    speed = hypotenuse(there.dx, there.dy)
+    off = abs(feet.middle - 0.5 * (feet.start + feet.end)) * speed
+    if not drift(off, feet.distance) > WORTH * (bound.value - enough):
+        return bound, False
+    length = abs(feet.end - feet.start) * speed
+    fine = aim.gap + math.sqrt(2.0 * aim.gap * feet.distance)
+    order = _highest_order(curves, interval.piece, feet.piece)
+    if length > 0.0:
+        order = least_order(off / length, length, fine, order)
+    return _follow(curves, interval, feet, bound, order, enough, work), True
+
+
+@inline
+def _bounded(pair, interval, feet, leaf, straight, aim, state, work):
+    """An upper bound of the interval's distance, and whether a map of higher order was tried for it."""
+    curves = pair.curves
+    part = Part(interval.piece, interval.t0, interval.t1)
+    other = Part(feet.piece, feet.start, feet.end)
+    value, share = upper_bound(curves, part, other, work.planes)
+    if straight and pair.leaves.arcs.shape[0] >= MANY and value > 1.5 * state.distance:
+        run = _run_bound(pair, interval, leaf, aim, state, work.planes)
+        value = min(value, max(run, feet.distance))
+    bound, followed, enough = Bound(value, share, 0.0), False, settled_below(aim, state)
+    if value > enough and feet.farther_end <= enough:
+        bound, followed = _followed_where_worth(curves, interval, feet, bound, aim, enough, work)
+    if bound.value > enough:
+        chord = max(chord_bound(curves, part, other, work.planes), feet.distance)
+        if chord < bound.value:
+            bound = Bound(chord, bound.share, 0.0)
+    return bound, followed
+
+
+@inline
+def _place_of_bound(curves, interval, feet, share, state):
+    """Where to cut: the end at which the bound is largest, or the common normal near the place where it is."""
+    t0, t1 = interval.t0, interval.t1
+    if share == 1.0:
+        state.n_ends += 1
+        return t1, feet.end
+    if share > 0.0:
+        state.n_normals += 1
+        t, s = t0 + share * (t1 - t0), feet.start + share * (feet.end - feet.start)
+        return common_normal(curves, Part(interval.piece, t0, t1), t, feet.piece, s)
+    state.n_ends += 1
+    return t0, feet.start
 
 
 @kernel
-def examine(pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_open):
-    """Settles an interval of piece `i` of A or puts its two parts into the queue.
+def examine(pair, aim, interval, state, work, heap, n_open):
+    """Settles an interval of A or puts its parts into the queue.
 
     Raises the lower bound in `state` on the way. Returns a leaf of B nearby and the number of open intervals.
     """
-    pa, pb, lb, shift_x, shift_y = pair.a, pair.b, pair.leaves, pair.shift_x, pair.shift_y
-    straight = pa.first[i + 1] - pa.first[i] == 2 and not pa.rational[i]
-    middle = 0.5 * (t0 + t1)
-    state[CUTS] += 1.0
-    known = max(state[LOWER], aim.enough)
-    if straight and line_covered(pa, i, t0, t1, lb, hint, shift_x, shift_y, known):
-        state[UPPER] = max(state[UPPER], known)
-        return hint, n_open
-    foot = consider(pa, pb, lb, i, middle, shift_x, shift_y, hint, state, work)
-    if state[LOWER] > aim.limit:
+    curves, i = pair.curves, interval.piece
+    straight = curves.a.first[i + 1] - curves.a.first[i] == 2 and not curves.a.rational[i]
+    state.n_cuts += 1
+    known = max(state.lower, aim.enough)
+    part = Part(i, interval.t0, interval.t1)
+    if straight and line_covered(pair, part, interval.hint, known):
+        state.upper = max(state.upper, known)
+        return interval.hint, n_open
+    middle = 0.5 * (interval.t0 + interval.t1)
+    foot = consider(pair, i, middle, interval.hint, state, work.planes)
+    if state.lower > aim.limit:
         return foot.leaf, n_open
-    j = foot.piece
-    s0, d0 = slide_from(pa, pb, i, t0, j, foot.local, shift_x, shift_y)
-    s1, d1 = slide_from(pa, pb, i, t1, j, foot.local, shift_x, shift_y)
-    bound, share = upper_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
-    if straight and lb.arcs.shape[0] >= MANY and bound > 1.5 * state[DISTANCE]:
-        one = consider(pa, pb, lb, i, t0, shift_x, shift_y, foot.leaf, state, work)
-        two = consider(pa, pb, lb, i, t1, shift_x, shift_y, one.leaf, state, work)
-        run = chain_bound(
-            pa, i, t0, t1, lb, one.leaf, two.leaf, one.distance, two.distance, shift_x, shift_y,
-            settled_below(aim, state),
-        )  # fmt: skip
-        bound = min(bound, max(run, foot.distance))
-    enough, lost, followed = settled_below(aim, state), 0.0, False
-    highest = order_for(pa.first[i + 1] - pa.first[i] - 1, pb.first[j + 1] - pb.first[j] - 1)
-    if bound > enough and max(d0, d1) <= enough:
-        there = jet(pb, j, foot.local)
-        off = abs(foot.local - 0.5 * (s0 + s1)) * hypotenuse(there.dx, there.dy)
-        if drift(off, foot.distance) > WORTH * (bound - enough):
-            followed = True
-            length = abs(s1 - s0) * hypotenuse(there.dx, there.dy)
-            fine = aim.gap + math.sqrt(2.0 * aim.gap * foot.distance)
-            order = least_order(off / length, length, fine, highest) if length > 0.0 else highest
-            bound, share, lost = _follow(
-                pair, i, t0, t1, j, s0, foot.local, s1, bound, share, order, enough, work, composed
-            )
-    if bound > enough:
-        other = chord_bound(pa, pb, i, t0, t1, j, s0, s1, shift_x, shift_y, work)
-        other = max(other, foot.distance)
-        if other < bound:
-            bound, lost = other, 0.0
-    if is_settled(bound, lost, aim, state):
-        state[UPPER] = max(state[UPPER], bound + lost)
+    feet = _feet_of(curves, interval, foot)
+    bound, followed = _bounded(pair, interval, feet, foot.leaf, straight, aim, state, work)
+    if is_settled(bound, aim, state):
+        state.upper = max(state.upper, bound.value + bound.lost)
         return foot.leaf, n_open
-    t, s = t0, s0
-    if share == 1.0:
-        t, s = t1, s1
-        state[ENDS] += 1.0
-    elif share > 0.0:
-        t, s = t0 + share * (t1 - t0), s0 + share * (s1 - s0)
-        t, s = common_normal(pa, pb, i, t, t0, t1, j, s, shift_x, shift_y)
-        state[NORMALS] += 1.0
-    else:
-        state[ENDS] += 1.0
-    seen = consider(pa, pb, lb, i, t, shift_x, shift_y, foot.leaf, state, work)
-    open_still = not is_settled(bound, lost, aim, state)
-    if open_still and not followed and seen.piece == j and max(d0, d1) <= enough:
+    t, s = _place_of_bound(curves, interval, feet, bound.share, state)
+    may_follow = not followed and feet.farther_end <= settled_below(aim, state)
+    seen = consider(pair, i, t, foot.leaf, state, work.planes)
+    is_open = not is_settled(bound, aim, state)
+    if is_open and may_follow and seen.piece == foot.piece:
         # near an inflection of the feet's map the middle does not tell how far the two drift apart
-        bound, share, lost = _follow(
-            pair, i, t0, t1, j, s0, foot.local, s1, bound, share, highest, settled_below(aim, state),
-            work, composed,
-        )  # fmt: skip
-        open_still = not is_settled(bound, lost, aim, state)
-    if not open_still or t1 - t0 < SMALLEST:
-        state[GIVEN_UP] += open_still
-        state[UPPER] = max(state[UPPER], bound + lost)
+        order, enough = _highest_order(curves, i, feet.piece), settled_below(aim, state)
+        bound = _follow(curves, interval, feet, bound, order, enough, work)
+        is_open = not is_settled(bound, aim, state)
+    if not is_open or interval.t1 - interval.t0 < SMALLEST:
+        state.n_given_up += is_open
+        state.upper = max(state.upper, bound.value + bound.lost)
         return foot.leaf, n_open
-    bound += lost
-    if seen.piece != j:
-        before = n_open
-        n_open = _cut_beside_joints(
-            pair, heap, n_open, bound, i, t0, t1, t, j, seen.piece, foot.leaf
-        )
-        if n_open > before:
-            return foot.leaf, n_open
-    chosen = math.nan
-    # next to each other the two branches cross where B's pieces meet: there, or halving creeps up on it
-    beside = abs(seen.leaf - foot.leaf) <= 1
-    if was_cut == 0.0 and (beside or bound < 2.0 * state[DISTANCE]):
-        s, reached = slide_from(pa, pb, i, t, j, s, shift_x, shift_y)
-        if seen.distance < reached * (1.0 - 1e-12):
-            crossing = self_bisector(
-                pa, pb, i, middle, t, j, foot.local, seen.piece, seen.local, shift_x, shift_y
-            )
-            state[BISECTORS] += 1.0
-            if not math.isnan(crossing):
-                chosen = crossing
-                consider(pa, pb, lb, i, crossing, shift_x, shift_y, foot.leaf, state, work)
-        elif 0.0 < share < 1.0:
-            chosen = t
-    special = 1.0
-    if not t0 < chosen < t1:
-        chosen, special = middle, 0.0
-    n_open = _push(heap, n_open, bound, t0, chosen, foot.leaf, special, i)
-    n_open = _push(heap, n_open, bound, chosen, t1, foot.leaf, special, i)
+    place, value = Place(t, s, bound.share), bound.value + bound.lost
+    n_open = cut_interval(
+        pair, interval, foot, seen, place, value, state, work.planes, heap, n_open
+    )
     return foot.leaf, n_open
 
 
 @kernel
-def close(pair, aim, state, work, composed, heap, n_open):
+def close(pair, aim, state, work, heap, n_open):
     """Works the queue off, the greatest bound first, until nothing open matters; returns the heap.
 
     What the budget leaves is bounded by the first entry left.
     """
-    while n_open > 0 and state[LOWER] <= aim.limit:
+    while n_open > 0 and state.lower <= aim.limit:
         first = heap[0, BOUND]
         done = first <= settled_below(aim, state)
-        if done or state[CUTS] > aim.budget:
-            state[UPPER] = max(state[UPPER], first)
-            state[GIVEN_UP] += 0 if done else n_open
+        if done or state.n_cuts > aim.budget:
+            state.upper = max(state.upper, first)
+            state.n_given_up += 0 if done else n_open
             break
-        n_open = _pop(heap, n_open)
-        row = heap[n_open]
-        t0, t1, hint, was_cut, i = row[T0], row[T1], int(row[HINT]), row[WAS_CUT], int(row[PIECE])
-        if n_open + ROOM > heap.shape[0]:
-            heap = grown(heap)
-        _, n_open = examine(
-            pair, aim, i, t0, t1, hint, was_cut, state, work, composed, heap, n_open
-        )
+        n_open = pop(heap, n_open)
+        interval = interval_at(heap, n_open)
+        heap = with_room(heap, n_open, ROOM)
+        _, n_open = examine(pair, aim, interval, state, work, heap, n_open)
     return heap

@@ -1,16 +1,43 @@
-"""The places of a search's numbers in its state, one name each.
+"""What a search for a directed distance knows, wants and did: one record, every number by its name.
 
-The best point so far, the bounds of the directed distance, and what the search did. `LOWER` is proven where
-`DISTANCE` is the value at the witnesses; they differ by the rounding of the nearest point. `ROOT` is the
-greatest distance of any root of the systems, of whatever branch of B, and where it is.
+Kernels read and write `state.lower`; Python reads `state["lower"]`. Not for: the search itself.
 """
 
 from typing import NamedTuple
 
-LOWER, DISTANCE, PIECE_A, AT_A, PIECE_B, AT_B, UPPER = 0, 1, 2, 3, 4, 5, 6
-ENDS, NORMALS, BISECTORS, CUTS, ARCS, KEPT, PIXELS, MAP_BOUND, GIVEN_UP = range(7, 16)
-ROOT, ROOT_PIECE_A, ROOT_AT_A, ROOT_PIECE_B, ROOT_AT_B = range(16, 21)
-STATE = 21
+import numpy as np
+
+SEARCH_STATE = np.dtype(
+    (
+        np.record,
+        [
+            ("lower", np.float64),  # proven lower bound of the directed distance
+            (
+                "distance",
+                np.float64,
+            ),  # the value at the best point; differs from `lower` by rounding
+            ("piece_a", np.int64),  # the best point: a piece of A, -1 while there is none,
+            ("at_a", np.float64),  # and its local parameter
+            ("piece_b", np.int64),  # its nearest point on B
+            ("at_b", np.float64),
+            ("upper", np.float64),  # proven upper bound of what was settled
+            ("n_ends", np.int64),  # systems (11), (12) and (13) solved
+            ("n_normals", np.int64),
+            ("n_bisectors", np.int64),
+            ("n_cuts", np.int64),  # intervals bounded
+            ("n_arcs", np.int64),  # arcs of A, and those that trimming left
+            ("n_kept", np.int64),
+            ("n_pixels", np.int64),  # of the distance map, and the lower bound read from it
+            ("map_bound", np.float64),
+            ("n_given_up", np.int64),  # intervals left to their bounds
+            ("root", np.float64),  # the greatest distance of any root, of whatever branch of B
+            ("root_piece_a", np.int64),
+            ("root_at_a", np.float64),
+            ("root_piece_b", np.int64),
+            ("root_at_b", np.float64),
+        ],
+    )
+)
 
 
 class Aim(NamedTuple):
@@ -29,3 +56,7 @@ class Aim(NamedTuple):
     enough: float
     limit: float
     budget: float
+
+
+END, COMMON_NORMAL, SELF_BISECTOR = 0.0, 1.0, 2.0
+"""Kinds of a witness: the systems (11), (12) and (13) that it solves."""

@@ -4,13 +4,27 @@ A body cuts by the planes of the faces through which rays from its centroid to t
 it, found in its map of directions. Each vertex is looked at once; when the last one is inside, the polytope
 is inside the body, to the tolerance, and planes that cut nothing were never touched.
 
-Arrays as in `polytope.cut`. Not for: the order of the bodies (`query.cutting`).
+Not for: the order of the bodies (`query.cutting`).
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.polytope.bodies import INDICES, NUMBERS, array_at
+from clearance.kernels.polytope.body import (
+    GREATEST_WIDTH,
+    WIDTH,
+    PackedBody,
+    centroid_of,
+    face_edges,
+    face_number,
+    face_over,
+    plane_about,
+)
 from clearance.kernels.polytope.cut import (
     CUT,
     FULL,
@@ -20,6 +34,7 @@ from clearance.kernels.polytope.cut import (
     MARK,
     N_FREE,
     N_ROWS,
+    NEW,
     QUEUE,
     SEEN,
     STACK,
@@ -29,28 +44,49 @@ from clearance.kernels.polytope.cut import (
     cut_by_plane,
     over,
 )
-from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, exit_in, is_in_ball
+from clearance.kernels.polytope.exits import cell_of, exit_in, is_in_ball
+
+
+class Cutters(NamedTuple):
+    """Bodies to cut by.
+
+    Attributes:
+        rows: (m, 4) int64 as `polytope.bodies` says; bases: the number of each one's first plane.
+        origin: (3,) what the places of the polytope that is cut are about.
+        like: shows the types of a body's arrays.
+    """
+
+    rows: np.ndarray
+    bases: np.ndarray
+    origin: np.ndarray
+    like: PackedBody
+
+
+class Limits(NamedTuple):
+    """What counts as what.
+
+    Attributes:
+        on_plane: [m] no farther above a plane is on it; noise: [m] how far rounding may make false tops stand out.
+        sparse: the part of the rows that may be free before those in use are moved together.
+    """
+
+    on_plane: float
+    noise: float
+    sparse: float
 
 
 @inline(one_caller=True)
-def plane_of(numbers, face, origin):
-    """(normal, offset [m]) of a face's plane about `origin`."""
-    row = HEAD + ROW * face
-    x, y, z = numbers[row], numbers[row + 1], numbers[row + 2]
-    offset = x * (numbers[row + 4] - origin[0])
-    offset += y * (numbers[row + 5] - origin[1])
-    offset += z * (numbers[row + 6] - origin[2])
-    return x, y, z, offset
-
-
-@inline(one_caller=True)
-def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp, base, work):
+def other_face(cut, body, face, origin, v, tolerance, base):
     """A face that has not cut yet and that `v` is above by more than `tolerance`, near `face`, or -1.
 
     In a flat body a face may be little violated in metres and most in parts of its distance. All faces that
     a point violates are connected over their neighbours: they are the corners of the polar body above a
     plane.
     """
+    spots, work, table, state = cut.spots, cut.work, cut.table, cut.state
+    numbers, indices = body.numbers, body.indices
+    state[STAMP] += 2
+    stamp = state[STAMP]
     work[QUEUE, 0] = face
     table[base + face, SEEN] = stamp
     n_queue = 1
@@ -59,13 +95,14 @@ def other_face(numbers, indices, face, origin, spots, v, table, tolerance, stamp
         f = work[QUEUE, i]
         if (
             table[base + f, USED] % 2 == 0
-            and over(spots, v, plane_of(numbers, f, origin)) > tolerance
+            and over(spots, v, plane_about(numbers, f, origin)) > tolerance
         ):
             return f
-        for at in range(indices[indices[2] + f], indices[indices[2] + f + 1]):
-            g = indices[at + indices[3]]
+        begin, end = face_edges(indices, f)
+        for edge in range(begin, end):
+            g = face_over(indices, edge)
             if table[base + g, SEEN] != stamp and n_queue < work.shape[1]:
-                if over(spots, v, plane_of(numbers, g, origin)) > 0.0:
+                if over(spots, v, plane_about(numbers, g, origin)) > 0.0:
                     table[base + g, SEEN] = stamp
                     work[QUEUE, n_queue] = g
                     n_queue += 1
@@ -122,40 +159,63 @@ def is_copy(spots, mesh, v, base):
     return spots[u, 0] == spots[v, 0] and spots[u, 1] == spots[v, 1] and spots[u, 2] == spots[v, 2]
 
 
+@inline(one_caller=True)
+def body_at(cutters, i):
+    """Body `i`."""
+    numbers = array_at(cutters.rows, i, NUMBERS, cutters.like.numbers)
+    return PackedBody(numbers, array_at(cutters.rows, i, INDICES, cutters.like.indices))
+
+
 @kernel(reference_counts=False)
-def rooms_about(bodies, origin, rooms, numbers_like, indices_like):
-    """Fills `rooms` [m]: how far the plane is through which the ray from each centroid to `origin` leaves."""
-    for i in range(len(bodies)):
-        numbers = array_at(bodies, i, NUMBERS, numbers_like)
-        indices = array_at(bodies, i, INDICES, indices_like)
-        x, y, z = origin[0] - numbers[0], origin[1] - numbers[1], origin[2] - numbers[2]
-        cell, _ = cell_of(numbers, indices, x, y, z)
-        face, gauge = exit_in(numbers, indices, cell, x, y, z)
-        rooms[i] = (1.0 - gauge) * numbers[HEAD + ROW * face + 7]
+def rooms_about(cutters, rooms):
+    """Fills `rooms` [m]: how far the plane is through which the ray from each centroid to the origin leaves."""
+    origin = cutters.origin
+    for i in range(len(cutters.rows)):
+        body = body_at(cutters, i)
+        cx, cy, cz = centroid_of(body.numbers)
+        x, y, z = origin[0] - cx, origin[1] - cy, origin[2] - cz
+        cell, _ = cell_of(body, x, y, z)
+        face, gauge = exit_in(body, cell, x, y, z)
+        rooms[i] = (1.0 - gauge) * face_number(body.numbers, face, WIDTH)
 
 
 @inline(one_caller=True)
-def cut_by_body(
-    spots, mesh, state, work, rim, table, numbers, indices, origin, base, tolerance, noise
-):
+def face_to_cut_by(cut, body, v, place, origin, base, tolerance):
+    """A face of the body that `v`, whose place is given about the centroid, is above, and that may cut; or -1."""
+    cell, bound = cell_of(body, place[0], place[1], place[2])
+    if bound < 1.0:
+        return -1
+    face, gauge = exit_in(body, cell, place[0], place[1], place[2])
+    if (gauge - 1.0) * body.numbers[GREATEST_WIDTH] <= tolerance:
+        return -1
+    above = over(cut.spots, v, plane_about(body.numbers, face, origin))
+    if cut.table[base + face, USED] % 2 == 1 or above <= tolerance:
+        return other_face(cut, body, face, origin, v, tolerance, base)
+    return face
+
+
+@inline(one_caller=True)
+def cut_by_body(cut, body, origin, base, limits):
     """Cuts the polytope by one body; (status, planes that cut).
 
-    Vertices more than `noise` above a plane are surely connected to its top and cut at once. Where the best
+    Vertices more than `limits.noise` above a plane are surely connected to its top and cut at once. Where the best
     plane is nearer, rounding may have left a false top: these are looked at last, and the top is searched.
 
+    The two rounds share one walk, and so one long function: apart they would be spliced in twice, and the walk is
+    half of what its caller takes to compile.
+
     Args:
-        spots, mesh, state, table: the polytope, see above. work: (4, c) and rim: (c, 4) scratch, but
-            `work[FREE]` holds the free rows.
-        numbers, indices: the body, see `polytope.exits`; base: the number of its first plane.
-        tolerance: [m] what counts as on a plane; noise: [m] how far rounding may make false tops stand out.
-            FULL asks for more rows; the same call may then go on.
+        base: the number of the body's first plane. FULL asks for more rows; the same call may then go on.
     """
+    spots, mesh, state, work, rim, table = cut
+    numbers, tolerance = body.numbers, limits.on_plane
     n_cuts = 0
     n_later = 0
     n_rows = state[N_ROWS]
-    shift_x = origin[0] - numbers[0]
-    shift_y = origin[1] - numbers[1]
-    shift_z = origin[2] - numbers[2]
+    cx, cy, cz = centroid_of(numbers)
+    shift_x = origin[0] - cx
+    shift_y = origin[1] - cy
+    shift_z = origin[2] - cz
     for turn in range(2):
         row = 0
         while row < (n_rows if turn == 0 else n_later):
@@ -165,7 +225,7 @@ def cut_by_body(
                 mesh[v, 0] < 0
                 or mesh[v, LOOKED] == base + 1
                 or is_in_ball(
-                    numbers, spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
+                    body, spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
                 )
             ):
                 continue
@@ -180,38 +240,24 @@ def cut_by_body(
                 if turn == 0 and v > 0 and is_copy(spots, mesh, v, base):
                     mesh[v, LOOKED] = mesh[v - 1, LOOKED]
                     continue
-                x, y, z = spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
-                cell, bound = cell_of(numbers, indices, x, y, z)
-                if bound < 1.0:
+                place = spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
+                face = face_to_cut_by(cut, body, v, place, origin, base, tolerance)
+                if face < 0:
                     continue
-                face, gauge = exit_in(numbers, indices, cell, x, y, z)
-                if (gauge - 1.0) * numbers[12] <= tolerance:
-                    continue
-                plane = plane_of(numbers, face, origin)
-                above = over(spots, v, plane)
-                if table[base + face, USED] % 2 == 1 or above <= tolerance:
-                    state[STAMP] += 2
-                    face = other_face(
-                        numbers, indices, face, origin, spots, v, table, tolerance, state[STAMP], base, work
-                    )  # fmt: skip
-                    if face < 0:
-                        continue
-                    plane = plane_of(numbers, face, origin)
-                    above = over(spots, v, plane)
                 if table[base + face, USED] == LATENT:
                     mesh[v, LOOKED] = -1
                     continue
-                if turn == 0 and above <= noise:
+                plane = plane_about(numbers, face, origin)
+                if turn == 0 and over(spots, v, plane) <= limits.noise:
                     work[LATER, n_later] = v
                     n_later += 1
                     if n_later == work.shape[1]:
                         return FULL, n_cuts
                     continue
-                top = v if turn == 0 else climb(spots, mesh, v, plane, noise, state, work)
+                top = v if turn == 0 else climb(spots, mesh, v, plane, limits.noise, state, work)
                 status, n_new = cut_by_plane(
-                    spots, mesh, state, work, rim, table, top, plane, base + face, tolerance,
-                    numbers, indices, base, origin,
-                )  # fmt: skip
+                    cut, top, plane, base + face, tolerance, body, base, origin
+                )
                 if status != CUT:
                     return status, n_cuts
                 table[base + face, USED] = 1
@@ -222,43 +268,26 @@ def cut_by_body(
                     work[STACK, n_stack] = v
                     n_stack += 1
                 for i in range(n_new):
-                    work[STACK, n_stack] = rim[i, 0]
+                    work[STACK, n_stack] = rim[i, NEW]
                     n_stack += 1
     return CUT, n_cuts
 
 
 @kernel(reference_counts=False)
-def cut_by_bodies(
-    spots, mesh, state, work, rim, table, bodies, bases, turns, origin, tolerance, noise, sparse,
-    numbers_like, indices_like,
-):  # fmt: skip
+def cut_by_bodies(cut, cutters, turns, limits):
     """Cuts the polytope by bodies in turn; (status, how many of `turns` are done).
 
-    Rows are closed up after a body that leaves more than `sparse` of them free.
+    Rows are closed up after a body that leaves more than `limits.sparse` of them free.
 
     Args:
-        bodies: rows as `polytope.bodies` says; bases: the number of each one's first plane; turns: which bodies,
-            in order. The others as in `cut_by_body`; FULL asks for more rows, and to go on from there.
+        turns: which bodies, in order; FULL asks for more rows, and to go on from there.
     """
+    state = cut.state
     for i in range(len(turns)):
-        numbers = array_at(bodies, turns[i], NUMBERS, numbers_like)
-        indices = array_at(bodies, turns[i], INDICES, indices_like)
-        status, _ = cut_by_body(
-            spots,
-            mesh,
-            state,
-            work,
-            rim,
-            table,
-            numbers,
-            indices,
-            origin,
-            bases[turns[i]],
-            tolerance,
-            noise,
-        )
+        body, base = body_at(cutters, turns[i]), cutters.bases[turns[i]]
+        status, _ = cut_by_body(cut, body, cutters.origin, base, limits)
         if status != CUT:
             return status, i
-        if state[N_FREE] > sparse * state[N_ROWS]:
-            close_up(spots, mesh, state, work)
+        if state[N_FREE] > limits.sparse * state[N_ROWS]:
+            close_up(cut.spots, cut.mesh, state, cut.work)
     return CUT, len(turns)

@@ -5,20 +5,17 @@ by edges of length zero. So every cut is one operation: take away the connected 
 one new vertex on each edge that leads out of them. This is the dual of inserting a point into a convex hull;
 new places are interpolated on edges and cannot run away.
 
-Arrays, a row a vertex: `spots` (c, 4) float64, its place [m] about the origin and its last height over a
-plane; `mesh` (c, 8) int32, columns `ACROSS` + k the vertex at the other end of the edge that leaves plane k
-(-1 first: a free row), `PLANES` + k the planes in order, a stamp, the last body it was held against. A row a
-plane: `table` (p, 3) int32, scratch, a stamp, 1 once it has cut, 2 if it is `LATENT`, to come in with a
-patch (`polytope.patch`), 3 once it has (`WHOLE`). `state`: free rows, last stamp, rows used.
-
 Not for: choosing the planes (`polytope.clip`).
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.polytope.body import N_FACES, PackedBody, face_edges, place_of
 
 CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
 N_FREE, STAMP, N_ROWS = 0, 1, 2
@@ -26,6 +23,31 @@ ACROSS, PLANES, MARK, LOOKED = 0, 3, 6, 7
 FIRST, SEEN, USED = 0, 1, 2
 LATENT, WHOLE = 2, 3
 QUEUE, STACK, LATER, FREE = 0, 1, 2, 3
+NEW, OUTSIDE, SLOT, AFTER = 0, 1, 2, 3
+
+
+class Cut(NamedTuple):
+    """A trivalent polytope that is being cut.
+
+    Attributes:
+        spots: (c, 4) float64, a row a vertex: its place [m] about the origin, its last height over a plane.
+        mesh: (c, 8) int32, a row a vertex: `ACROSS` + k the vertex at the other end of the edge that leaves plane
+            k (-1 first: a free row), `PLANES` + k the planes in order, `MARK` a stamp, `LOOKED` the last body it
+            was held against.
+        state: (3,) free rows, last stamp, rows used.
+        work: (4, c) int32 scratch, but `work[FREE]` holds the free rows.
+        rim: (c, 4) int32, the last cut's new vertices: `NEW` itself, `OUTSIDE` its neighbour there, `SLOT` that
+            one's slot, `AFTER` the plane that follows.
+        table: (p, 3) int32, a row a plane: `FIRST` scratch, `SEEN` a stamp, `USED` 1 once it has cut, `LATENT` if
+            it is to come in with a patch (`polytope.patch`), `WHOLE` once it has.
+    """
+
+    spots: np.ndarray
+    mesh: np.ndarray
+    state: np.ndarray
+    work: np.ndarray
+    rim: np.ndarray
+    table: np.ndarray
 
 
 @inline(one_caller=True)
@@ -65,8 +87,9 @@ def gather_above(spots, mesh, top, plane, tolerance, stamp, work):
 @inline(one_caller=True)
 def has_corner(indices, face, corner):
     """True if the face has the corner."""
-    for at in range(indices[indices[2] + face], indices[indices[2] + face + 1]):
-        if indices[at] == corner:
+    begin, end = face_edges(indices, face)
+    for edge in range(begin, end):
+        if indices[edge] == corner:
             return True
     return False
 
@@ -74,27 +97,25 @@ def has_corner(indices, face, corner):
 @inline(one_caller=True)
 def own_corner(indices, base, a, b, c):
     """The corner of the body that its planes `a`, `b`, `c` share, or -1 if they are not its or share none."""
-    n = indices[0]
+    n = indices[N_FACES]
     if b < base or c < base or b >= base + n or c >= base + n:
         return -1
-    for at in range(indices[indices[2] + a - base], indices[indices[2] + a - base + 1]):
-        if has_corner(indices, b - base, indices[at]) and has_corner(
-            indices, c - base, indices[at]
-        ):
-            return indices[at]
+    begin, end = face_edges(indices, a - base)
+    for edge in range(begin, end):
+        corner = indices[edge]
+        if has_corner(indices, b - base, corner) and has_corner(indices, c - base, corner):
+            return corner
     return -1
 
 
 @inline(one_caller=True)
-def put_rim(
-    spots, mesh, state, n_above, stamp, name, work, rim, table, numbers, indices, base, origin
-):
+def put_rim(cut, n_above, stamp, name, body, base, origin):
     """Number of new vertices, one on each edge that leaves the marked region, or -1 if two lie on one plane.
 
-    A corner of the body itself, whose planes are `numbers`, `indices` and `base`, gets its given place.
-    Row i of `rim` is (new vertex, its neighbour outside, the neighbour's slot, the plane that follows). The
-    outside is not linked yet.
+    A corner of the body itself, whose planes are `body` and `base`, gets its given place. The outside is not
+    linked yet.
     """
+    spots, mesh, state, work, rim, table = cut
     n_rim = 0
     for i in range(n_above):
         u = work[QUEUE, i]
@@ -115,10 +136,11 @@ def put_rim(
             v = state[N_ROWS] + n_rim - state[N_FREE]
             if n_rim < state[N_FREE]:
                 v = work[FREE, state[N_FREE] - 1 - n_rim]
-            corner = own_corner(indices, base, name, a, b)
+            corner = own_corner(body.indices, base, name, a, b)
             if corner >= 0:
-                for c in range(3):
-                    spots[v, c] = numbers[indices[4] + 3 * corner + c] - origin[c]
+                x, y, z = place_of(body, corner)
+                spots[v, 0], spots[v, 1] = x - origin[0], y - origin[1]
+                spots[v, 2] = z - origin[2]
             else:
                 down = spots[w, 3]
                 share = 0.0 if down >= 0.0 else down / (down - spots[u, 3])
@@ -128,10 +150,10 @@ def put_rim(
             mesh[v, PLANES] = name
             mesh[v, PLANES + 1] = a
             mesh[v, PLANES + 2] = b
-            rim[n_rim, 0] = v
-            rim[n_rim, 1] = w
-            rim[n_rim, 2] = slot
-            rim[n_rim, 3] = b
+            rim[n_rim, NEW] = v
+            rim[n_rim, OUTSIDE] = w
+            rim[n_rim, SLOT] = slot
+            rim[n_rim, AFTER] = b
             n_rim += 1
     return n_rim
 
@@ -141,7 +163,7 @@ def rim_is_one_ring(rim, n_rim, table, stamp):
     """True if the rim's edges follow each other through their planes in one ring."""
     i = 0
     for n_met in range(1, n_rim + 1):
-        b = rim[i, 3]
+        b = rim[i, AFTER]
         if table[b, SEEN] != stamp:
             return False
         i = table[b, FIRST]
@@ -166,41 +188,25 @@ def swap_rows(state, mesh, n_above, n_rim, work):
 def close_rim(mesh, rim, n_rim, table):
     """Links the new vertices to the outside and to each other."""
     for i in range(n_rim):
-        v = rim[i, 0]
+        v = rim[i, NEW]
         mesh[v, MARK] = 0
         mesh[v, LOOKED] = 0
-        mesh[rim[i, 1], rim[i, 2]] = v
-        after = rim[table[rim[i, 3], FIRST], 0]
+        mesh[rim[i, OUTSIDE], rim[i, SLOT]] = v
+        after = rim[table[rim[i, AFTER], FIRST], NEW]
         mesh[v, 1] = after
         mesh[after, 2] = v
 
 
 @inline(one_caller=True)
-def cut_by_plane(
-    spots,
-    mesh,
-    state,
-    work,
-    rim,
-    table,
-    top,
-    plane,
-    name,
-    tolerance,
-    numbers,
-    indices,
-    base,
-    origin,
-):
-    """(status, number of new vertices, which are `rim[:n, 0]`) of the cut by a plane that `top` is above."""
+def cut_by_plane(cut, top, plane, name, tolerance, body, base, origin):
+    """(status, number of new vertices, which are `rim[:n, NEW]`) of the cut by a plane that `top` is above."""
+    spots, mesh, state, work, rim, table = cut
     state[STAMP] += 2
     stamp = state[STAMP]
     n_above = gather_above(spots, mesh, top, plane, tolerance, stamp, work)
     if state[N_ROWS] - state[N_FREE] + n_above + 2 > len(spots):
         return FULL, 0
-    n_rim = put_rim(
-        spots, mesh, state, n_above, stamp, name, work, rim, table, numbers, indices, base, origin
-    )
+    n_rim = put_rim(cut, n_above, stamp, name, body, base, origin)
     if n_rim == 0:
         return EMPTY, 0
     if n_rim < 0 or not rim_is_one_ring(rim, n_rim, table, stamp):
@@ -211,12 +217,12 @@ def cut_by_plane(
 
 
 @kernel(reference_counts=False)
-def begin(spots, mesh, numbers, indices, corner, form, origin, base):
+def begin(spots, mesh, body, corner, form, origin, base):
     """Puts a body's trivalent form (`corner`, `form`) into the first rows, about `origin`."""
     for v in range(len(corner)):
-        at = indices[4] + 3 * corner[v]
+        x, y, z = place_of(body, corner[v])
+        spots[v, 0], spots[v, 1], spots[v, 2] = x - origin[0], y - origin[1], z - origin[2]
         for c in range(3):
-            spots[v, c] = numbers[at + c] - origin[c]
             mesh[v, c] = form[v, c]
             mesh[v, PLANES + c] = form[v, PLANES + c] + base
         mesh[v, MARK] = 0
@@ -243,12 +249,13 @@ def close_up(spots, mesh, state, work):
 
 
 @kernel
-def cut_by_planes(spots, mesh, state, work, rim, table, planes, name, tolerance):
+def cut_by_planes(cut, planes, name, tolerance):
     """The status after cutting a small polytope, or a large one a few times, by planes (k, 4) in turn.
 
     A plane is (normal, offset [m]), and plane i is number `name` + i. The top is found by looking at all.
     """
-    nothing = np.zeros(8, dtype=np.int32)
+    spots, mesh, state = cut.spots, cut.mesh, cut.state
+    no_body = PackedBody(planes[0], np.zeros(8, dtype=np.int32))
     for i in range(len(planes)):
         plane = (planes[i, 0], planes[i, 1], planes[i, 2], planes[i, 3])
         top = -1
@@ -260,9 +267,8 @@ def cut_by_planes(spots, mesh, state, work, rim, table, planes, name, tolerance)
         if top < 0:
             continue
         status, _ = cut_by_plane(
-            spots, mesh, state, work, rim, table, top, plane, name + i, tolerance, planes[0], nothing,
-            len(table), planes[0],
-        )  # fmt: skip
+            cut, top, plane, name + i, tolerance, no_body, len(cut.table), planes[0]
+        )
         if status != CUT:
             return status
     return CUT

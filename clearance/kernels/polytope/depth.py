@@ -14,9 +14,21 @@ start. All x are about a common origin.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
+
+import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.polytope.exits import HEAD, ROW, cell_of, exit_in
+from clearance.kernels.polytope.body import (
+    NORMAL,
+    SIZE,
+    WIDTH,
+    PackedBody,
+    centroid_of,
+    face_number,
+    face_vector,
+)
+from clearance.kernels.polytope.exits import cell_of, exit_in
 
 TURN = 4
 """Faces of one body at a time: settling one body fully before the next takes 5 times as long for 5000 corners."""
@@ -26,6 +38,14 @@ N_ROWS = 15
 LEVEL = 12
 """Rounds in which the depth does not fall before the method is said to turn in a circle."""
 COLD, WARM, ON = 0, 1, 2
+
+
+class PlacedBody(NamedTuple):
+    """A body, its number, and (4, 4) world_from_body."""
+
+    body: PackedBody
+    pose: np.ndarray
+    name: int
 
 
 @inline(one_caller=True)
@@ -93,38 +113,34 @@ def start_around(basis, names, reach):
 
 
 @inline(one_caller=True)
-def put_face(basis, names, j, numbers, pose, away, body, face):
+def put_face(basis, names, j, placed, away, face):
     """Puts a face at place `j` of the basis; `away` is from the origin to the body's centroid."""
-    row = HEAD + ROW * face
-    bound = numbers[row + 7]
+    pose, numbers = placed.pose, placed.body.numbers
+    width = face_number(numbers, face, WIDTH)
+    x, y, z = face_vector(numbers, face, NORMAL)
+    bound = width
     for i in range(3):
-        n = (
-            pose[i, 0] * numbers[row]
-            + pose[i, 1] * numbers[row + 1]
-            + pose[i, 2] * numbers[row + 2]
-        )
+        n = pose[i, 0] * x + pose[i, 1] * y + pose[i, 2] * z
         basis[j, i] = n
         bound += n * away[i]
-    basis[j, 3] = numbers[row + 7]
+    basis[j, 3] = width
     basis[BOUND, j] = bound
-    names[j] = (body << 32) + face
+    names[j] = (placed.name << 32) + np.int64(face)
 
 
 @inline(one_caller=True)
-def leaving(basis, numbers, pose, face):
+def leaving(basis, placed, face):
     """The place in the basis that the ratio test gives to a face, or -1."""
-    row = HEAD + ROW * face
+    pose, numbers = placed.pose, placed.body.numbers
+    width = face_number(numbers, face, WIDTH)
+    x, y, z = face_vector(numbers, face, NORMAL)
     leave = -1
     least = math.inf
     steepest = 0.0
     for j in range(4):
-        slope = numbers[row + 7] * basis[INVERSE + 3, j]
+        slope = width * basis[INVERSE + 3, j]
         for i in range(3):
-            n = (
-                pose[i, 0] * numbers[row]
-                + pose[i, 1] * numbers[row + 1]
-                + pose[i, 2] * numbers[row + 2]
-            )
+            n = pose[i, 0] * x + pose[i, 1] * y + pose[i, 2] * z
             slope += n * basis[INVERSE + i, j]
         if slope <= 1e-12:
             continue
@@ -137,9 +153,10 @@ def leaving(basis, numbers, pose, face):
 
 
 @inline(one_caller=True)
-def centre_of(numbers, pose, origin):
+def centre_of(placed, origin):
     """From the origin to the body's centroid in the world."""
-    x, y, z = numbers[0], numbers[1], numbers[2]
+    pose = placed.pose
+    x, y, z = centroid_of(placed.body.numbers)
     return (
         (pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3]) - origin[0],
         (pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3]) - origin[1],
@@ -148,9 +165,9 @@ def centre_of(numbers, pose, origin):
 
 
 @inline(one_caller=True)
-def deepen(numbers, indices, pose, body, origin, basis, names, margin):
+def deepen(placed, origin, basis, names, margin):
     """(settled, faces brought in): brings in a body's worst faces, `TURN` at most, in widths by `margin` worse."""
-    away = centre_of(numbers, pose, origin)
+    pose, body, away = placed.pose, placed.body, centre_of(placed, origin)
     for n_entered in range(TURN):
         x = basis[POINT, 0] - away[0]
         y = basis[POINT, 1] - away[1]
@@ -158,54 +175,51 @@ def deepen(numbers, indices, pose, body, origin, basis, names, margin):
         u = pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z
         v = pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z
         w = pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z
-        cell, _ = cell_of(numbers, indices, u, v, w)
-        face, gauge = exit_in(numbers, indices, cell, u, v, w)
+        cell, _ = cell_of(body, u, v, w)
+        face, gauge = exit_in(body, cell, u, v, w)
         if gauge <= 1.0 - basis[POINT, 3] + margin:
             return True, n_entered
-        name = (body << 32) + face
+        name = (placed.name << 32) + np.int64(face)
         if name == names[0] or name == names[1] or name == names[2] or name == names[3]:
             return False, n_entered
-        leave = leaving(basis, numbers, pose, face)
+        leave = leaving(basis, placed, face)
         if leave < 0:
             return False, n_entered
-        put_face(basis, names, leave, numbers, pose, away, body, face)
+        put_face(basis, names, leave, placed, away, face)
         solve(basis)
     return False, TURN
 
 
 @inline(one_caller=True)
-def recall(numbers, pose, body, origin, basis, names):
+def recall(placed, origin, basis, names):
     """Puts the faces that the basis names of one body where they are now."""
-    away = centre_of(numbers, pose, origin)
+    away = centre_of(placed, origin)
     for j in range(4):
-        if names[j] >= 0 and names[j] >> 32 == body:
-            put_face(basis, names, j, numbers, pose, away, body, names[j] & 0xFFFFFFFF)
+        if names[j] >= 0 and names[j] >> 32 == placed.name:
+            put_face(basis, names, j, placed, away, names[j] & 0xFFFFFFFF)
 
 
 @kernel(reference_counts=False)
-def deepen_two(
-    numbers_a, indices_a, pose_a, a, numbers_b, indices_b, pose_b, b, origin, basis, names, margin,
-    begin, passes,
-):  # fmt: skip
+def deepen_two(a, b, origin, basis, names, margin, begin, passes):
     """Brings in faces of bodies `a` and `b` by turns until neither has a worse one; (settled, faces, passes).
 
     Args:
-        numbers, indices: the bodies, see `polytope.exits`; pose: (4, 4) world_from_body of each.
+        a, b: `PlacedBody`.
         origin: (3,) what all x are about; basis, names: see above, changed in place.
         begin: COLD, WARM (from the faces named, if they still hold) or ON (from the basis as it is).
         passes: how many rounds at most; stops when four real faces have t < -1e-6.
     """
     if begin == WARM:
-        recall(numbers_a, pose_a, a, origin, basis, names)
-        recall(numbers_b, pose_b, b, origin, basis, names)
+        recall(a, origin, basis, names)
+        recall(b, origin, basis, names)
     if begin == COLD or (begin == WARM and not solve(basis)):
-        start_around(basis, names, 16.0 * (numbers_a[13] + numbers_b[13]))
+        start_around(basis, names, 16.0 * (a.body.numbers[SIZE] + b.body.numbers[SIZE]))
     n_entered = 0
     n_level = 0
     for i_pass in range(1, passes + 1):
         before = basis[POINT, 3]
-        one, n_one = deepen(numbers_a, indices_a, pose_a, a, origin, basis, names, margin)
-        other, n_other = deepen(numbers_b, indices_b, pose_b, b, origin, basis, names, margin)
+        one, n_one = deepen(a, origin, basis, names, margin)
+        other, n_other = deepen(b, origin, basis, names, margin)
         n_entered += n_one + n_other
         far = basis[POINT, 3] < -1e-6 and min(names[0], names[1], names[2], names[3]) >= 0
         if n_one + n_other == 0 or far:

@@ -7,13 +7,6 @@ has a bound: the gauge is convex, hence at most its greatest value in the cell's
 
 If rounding puts another face's plane in front, the listed one falls short of it by no more than the corners
 of the body stand out of its own planes, relatively. Not for: deciding what a body's faces are.
-
-A body is two arrays. `numbers`: centroid (3), the linear map (9), greatest width, size, the square of the radius
-of a ball of the round frame that is wholly inside, one spare; eight a face: outward unit normal n, 1/w, a corner,
-the plane's distance w from the centroid; a bound for each cell; the corners, three each. `indices`: number of
-faces f, k, where the faces' starts begin, how much later than their corners their neighbours stand (the
-neighbour over an edge stands with the corner it leaves), where the corners begin in `numbers`, three spare; the
-cells' starts and faces; the faces' starts, corners, neighbours.
 """
 
 from __future__ import annotations
@@ -23,10 +16,20 @@ import math
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-
-HEAD = 16
-ROW = 8
-LEAD = 8
+from clearance.kernels.polytope.body import (
+    INNER_SQ,
+    INVERSE_WIDTH,
+    N_CELLS,
+    N_FACES,
+    NORMAL,
+    ROUND_FROM_BODY,
+    WIDTH,
+    bound_at,
+    cell_entries,
+    face_number,
+    face_vector,
+    into_round,
+)
 
 BALL_SLACK = 4e-9
 """[-] How much less than its greatest possible radius the inner ball has: what lies in it is inside for all."""
@@ -53,34 +56,33 @@ def cell_at(x, y, z, k):
 
 
 @inline(one_caller=True)
-def cell_of(numbers, indices, x, y, z):
+def cell_of(body, x, y, z):
     """(cell, upper bound on the gauge) of the point (x, y, z) about the centroid."""
-    u = numbers[3] * x + numbers[4] * y + numbers[5] * z
-    v = numbers[6] * x + numbers[7] * y + numbers[8] * z
-    w = numbers[9] * x + numbers[10] * y + numbers[11] * z
-    cell, most = cell_at(u, v, w, indices[1])
-    return cell, most * numbers[HEAD + ROW * indices[0] + cell]
+    numbers, indices = body.numbers, body.indices
+    u, v, w = into_round(numbers, x, y, z)
+    cell, most = cell_at(u, v, w, indices[N_CELLS])
+    return cell, most * numbers[bound_at(indices, cell)]
 
 
 @inline(one_caller=True)
-def is_in_ball(numbers, x, y, z):
+def is_in_ball(body, x, y, z):
     """True if (x, y, z) about the centroid lies in a ball of the round frame that is wholly inside the body."""
-    u = numbers[3] * x + numbers[4] * y + numbers[5] * z
-    v = numbers[6] * x + numbers[7] * y + numbers[8] * z
-    w = numbers[9] * x + numbers[10] * y + numbers[11] * z
-    return u * u + v * v + w * w < numbers[14]
+    u, v, w = into_round(body.numbers, x, y, z)
+    return u * u + v * v + w * w < body.numbers[INNER_SQ]
 
 
 @inline(one_caller=True)
-def exit_in(numbers, indices, cell, x, y, z):
+def exit_in(body, cell, x, y, z):
     """(face, gauge): the face of the cell's list with the greatest n.v/w at (x, y, z) about the centroid."""
+    numbers, indices = body.numbers, body.indices
     best = -math.inf
     face = 0
-    for at in range(indices[LEAD + cell], indices[LEAD + cell + 1]):
+    begin, end = cell_entries(indices, cell)
+    for at in range(begin, end):
         i = indices[at]
-        row = HEAD + ROW * i
-        value = numbers[row] * x + numbers[row + 1] * y + numbers[row + 2] * z
-        value *= numbers[row + 3]
+        nx, ny, nz = face_vector(numbers, i, NORMAL)
+        value = nx * x + ny * y + nz * z
+        value *= face_number(numbers, i, INVERSE_WIDTH)
         if value > best:
             best = value
             face = i
@@ -216,19 +218,20 @@ def inner_radius_sq(numbers, n_faces, back, slack):
     """
     least = math.inf
     for face in range(n_faces):
-        row = HEAD + ROW * face
+        n = face_vector(numbers, face, NORMAL)
         length_sq = 0.0
         for c in range(3):
             part = 0.0
             for d in range(3):
-                part += numbers[row + d] * back[d, c]
+                part += n[d] * back[d, c]
             length_sq += part * part
-        least = min(least, numbers[row + 7] * numbers[row + 7] / length_sq)
+        width = face_number(numbers, face, WIDTH)
+        least = min(least, width * width / length_sq)
     return least * max(0.0, 1.0 - slack) ** 2
 
 
 @kernel
-def bound_cells(numbers, indices, back):
+def bound_cells(body, back):
     """Fills in each cell's bound: the greatest gauge of its faces in its four corners; and the ball.
 
     The bounds are raised by 1e-12, and by what rounding in the round frame may hide: 8 u |there| |back|.
@@ -236,14 +239,16 @@ def bound_cells(numbers, indices, back):
     Args:
         back: (3, 3) from the round frame to the body's.
     """
-    k = indices[1]
+    numbers, indices = body.numbers, body.indices
+    k = indices[N_CELLS]
     there_sq = 0.0
     back_sq = 0.0
     for c in range(9):
-        there_sq += numbers[3 + c] ** 2
+        there_sq += numbers[ROUND_FROM_BODY + c] ** 2
         back_sq += back[c // 3, c % 3] ** 2
     hidden = 8.0 * 2.0**-53 * math.sqrt(there_sq * back_sq)
-    numbers[14] = inner_radius_sq(numbers, indices[0], back, BALL_SLACK + hidden)
+    slack = BALL_SLACK + hidden
+    numbers[INNER_SQ] = inner_radius_sq(numbers, indices[N_FACES], back, slack)
     for side in range(6):
         axis = side // 2
         sign = 1.0 if side % 2 == 0 else -1.0
@@ -261,5 +266,5 @@ def bound_cells(numbers, indices, back):
                             + s * back[c, (axis + 1) % 3]
                             + t * back[c, (axis + 2) % 3]
                         )
-                    most = max(most, exit_in(numbers, indices, cell, d[0], d[1], d[2])[1])
-                numbers[HEAD + ROW * indices[0] + cell] = most * (1.0 + 1e-12 + hidden)
+                    most = max(most, exit_in(body, cell, d[0], d[1], d[2])[1])
+                numbers[bound_at(indices, cell)] = most * (1.0 + 1e-12 + hidden)

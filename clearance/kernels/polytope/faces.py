@@ -5,12 +5,32 @@ Not for: changing the polytope (`polytope.cut`).
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.expansion import two_sum
-from clearance.kernels.polytope.cut import FIRST, PLANES, SEEN, USED, WHOLE
-from clearance.kernels.polytope.exits import HEAD, ROW
+from clearance.kernels.polytope.body import (
+    N_FACES,
+    NORMAL,
+    face_edges,
+    face_vector,
+    place_of,
+    plane_about,
+)
+from clearance.kernels.polytope.cut import FIRST, N_ROWS, PLANES, SEEN, STAMP, USED, WHOLE
+
+
+class WholeFaces(NamedTuple):
+    """The faces of a body that were put into a surface: the number of the first, the body's, and `face_areas`.
+
+    No rows in `areas` (0, 4): all faces are taken by their edges.
+    """
+
+    base: int
+    numbers: np.ndarray
+    areas: np.ndarray
 
 
 @kernel
@@ -69,44 +89,38 @@ def ring_moments(places, starts, corners, origin):
 
 
 @kernel
-def face_areas(numbers, indices):
-    """(f, 4) area [m^2] and centroid [m] of each face of a packed body (`polytope.exits`)."""
-    areas = np.empty((indices[0], 4))
-    for face in range(indices[0]):
-        begin = indices[indices[2] + face]
-        o = indices[4] + 3 * indices[begin]
-        row = HEAD + ROW * face
+def face_areas(body):
+    """(f, 4) area [m^2] and centroid [m] of each face."""
+    numbers, indices = body.numbers, body.indices
+    areas = np.empty((indices[N_FACES], 4))
+    for face in range(indices[N_FACES]):
+        begin, end = face_edges(indices, face)
+        ox, oy, oz = place_of(body, indices[begin])
+        nx, ny, nz = face_vector(numbers, face, NORMAL)
         twice = x = y = z = 0.0
-        for at in range(begin + 1, indices[indices[2] + face + 1] - 1):
-            b = indices[4] + 3 * indices[at]
-            c = indices[4] + 3 * indices[at + 1]
-            bx = numbers[b] - numbers[o]
-            by = numbers[b + 1] - numbers[o + 1]
-            bz = numbers[b + 2] - numbers[o + 2]
-            cx = numbers[c] - numbers[o]
-            cy = numbers[c + 1] - numbers[o + 1]
-            cz = numbers[c + 2] - numbers[o + 2]
-            part = numbers[row] * (by * cz - bz * cy)
-            part += numbers[row + 1] * (bz * cx - bx * cz)
-            part += numbers[row + 2] * (bx * cy - by * cx)
+        for edge in range(begin + 1, end - 1):
+            bx, by, bz = place_of(body, indices[edge])
+            cx, cy, cz = place_of(body, indices[edge + 1])
+            bx, by, bz = bx - ox, by - oy, bz - oz
+            cx, cy, cz = cx - ox, cy - oy, cz - oz
+            part = nx * (by * cz - bz * cy)
+            part += ny * (bz * cx - bx * cz)
+            part += nz * (bx * cy - by * cx)
             twice += part
             x += part * (bx + cx)
             y += part * (by + cy)
             z += part * (bz + cz)
         areas[face, 0] = 0.5 * twice
-        areas[face, 1] = numbers[o] + x / (3.0 * twice)
-        areas[face, 2] = numbers[o + 1] + y / (3.0 * twice)
-        areas[face, 3] = numbers[o + 2] + z / (3.0 * twice)
+        areas[face, 1] = ox + x / (3.0 * twice)
+        areas[face, 2] = oy + y / (3.0 * twice)
+        areas[face, 3] = oz + z / (3.0 * twice)
     return areas
 
 
 @inline(one_caller=True)
 def whole_face(numbers, areas, face, origin):
     """(volume, volume times centroid about `origin`) of the cone from `origin` over a body's face."""
-    row = HEAD + ROW * face
-    high = numbers[row] * (numbers[row + 4] - origin[0])
-    high += numbers[row + 1] * (numbers[row + 5] - origin[1])
-    high += numbers[row + 2] * (numbers[row + 6] - origin[2])
+    _, _, _, high = plane_about(numbers, face, origin)
     cone = areas[face, 0] * high / 3.0
     x = 0.75 * cone * (areas[face, 1] - origin[0])
     y = 0.75 * cone * (areas[face, 2] - origin[1])
@@ -126,21 +140,22 @@ def cone_over(places, o, u, w):
 
 
 @kernel(reference_counts=False)
-def trivalent_moments(
-    places, mesh, n_rows, table, stamp, base_a, numbers_a, areas_a, base_b, numbers_b, areas_b, origin
-):  # fmt: skip
-    """Volume [m^3], volume times centroid (3) [m^4], greatest coordinate, about the origin of `places`.
+def trivalent_moments(cut, a, b, origin):
+    """Volume [m^3], volume times centroid (3) [m^4], greatest coordinate, about the origin of a `Cut`.
 
     Each edge of each face makes a tetrahedron with the face's first corner met and the origin; a face that no
-    cut has touched is one cone. Arrays as in `polytope.cut`; `stamp`: a number that `table` does not hold.
+    cut has touched is one cone.
 
     Args:
-        base, numbers, areas: the body that was cut and the one whose patch was laid, with `face_areas`, none
-            (0, 4) to take all faces by their edges; origin: (3,) of `places` in the bodies' frame.
+        a, b: `WholeFaces` of the body that was cut and of the one whose patch was laid; origin: (3,) of the places
+            in the bodies' frame.
     """
+    places, mesh, table, state = cut.spots, cut.mesh, cut.table, cut.state
+    state[STAMP] += 2
+    stamp = state[STAMP]
     most = volume = x = y = z = 0.0
     rest = rest_x = rest_y = rest_z = 0.0  # what rounding drops of each sum
-    for u in range(n_rows):
+    for u in range(state[N_ROWS]):
         if mesh[u, 0] < 0:
             continue
         most = max(most, abs(places[u, 0]), abs(places[u, 1]), abs(places[u, 2]))
@@ -149,10 +164,10 @@ def trivalent_moments(
             if table[name, SEEN] != stamp:
                 whole = table[name, SEEN] == 0
                 table[name, SEEN] = stamp
-                if whole and name >= base_a and name < base_a + len(areas_a):
-                    part = whole_face(numbers_a, areas_a, name - base_a, origin)
-                elif whole and table[name, USED] == WHOLE and len(areas_b) > 0:
-                    part = whole_face(numbers_b, areas_b, name - base_b, origin)
+                if whole and name >= a.base and name < a.base + len(a.areas):
+                    part = whole_face(a.numbers, a.areas, name - a.base, origin)
+                elif whole and table[name, USED] == WHOLE and len(b.areas) > 0:
+                    part = whole_face(b.numbers, b.areas, name - b.base, origin)
                 else:
                     table[name, FIRST] = u
                     continue

@@ -9,6 +9,7 @@ matched. Not for: deciding anything; if the edges do not match one to one, nothi
 from __future__ import annotations
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.polytope.body import N_FACES, centroid_of, face_edges, place_of
 from clearance.kernels.polytope.cut import (
     FIRST,
     FREE,
@@ -27,34 +28,40 @@ from clearance.kernels.polytope.cut import (
 )
 from clearance.kernels.polytope.exits import cell_of, exit_in, is_in_ball
 
+OUTER, OUTER_SLOT, OUTER_PLANE, EDGE = 0, 1, 2, 3
+"""Columns of `Cut.rim` here: an open edge's vertex outside, that one's slot, the plane that follows, and the
+patch's edge that it is matched to, -1 while there is none."""
+
 INSIDE = 1.0 - 1e-9
 """[-] Greatest gauge of a corner that counts as wholly inside: the rest are left to the seam."""
 
 
 @kernel(reference_counts=False)
-def mark_patch(numbers_a, indices_a, numbers_b, indices_b, base, table, inside, in_patch):
+def mark_patch(body_a, body_b, base, table, inside, in_patch):
     """Sets `in_patch` (n,) for the corners of faces of B wholly inside A; these faces become `LATENT`.
 
     Args:
         inside: (n,) scratch; in_patch: all False.
     """
+    cx, cy, cz = centroid_of(body_a.numbers)
     for i in range(len(inside)):
-        x = numbers_b[indices_b[4] + 3 * i] - numbers_a[0]
-        y = numbers_b[indices_b[4] + 3 * i + 1] - numbers_a[1]
-        z = numbers_b[indices_b[4] + 3 * i + 2] - numbers_a[2]
-        if is_in_ball(numbers_a, x, y, z):
+        x, y, z = place_of(body_b, i)
+        x, y, z = x - cx, y - cy, z - cz
+        if is_in_ball(body_a, x, y, z):
             inside[i] = True
             continue
-        cell, bound = cell_of(numbers_a, indices_a, x, y, z)
-        inside[i] = bound < INSIDE or exit_in(numbers_a, indices_a, cell, x, y, z)[1] < INSIDE
-    for face in range(indices_b[0]):
+        cell, bound = cell_of(body_a, x, y, z)
+        inside[i] = bound < INSIDE or exit_in(body_a, cell, x, y, z)[1] < INSIDE
+    indices = body_b.indices
+    for face in range(indices[N_FACES]):
         whole = True
-        for at in range(indices_b[indices_b[2] + face], indices_b[indices_b[2] + face + 1]):
-            whole = whole and inside[indices_b[at]]
+        begin, end = face_edges(indices, face)
+        for edge in range(begin, end):
+            whole = whole and inside[indices[edge]]
         if whole:
             table[base + face, USED] = LATENT
-            for at in range(indices_b[indices_b[2] + face], indices_b[indices_b[2] + face + 1]):
-                in_patch[indices_b[at]] = True
+            for edge in range(begin, end):
+                in_patch[indices[edge]] = True
 
 
 @inline(one_caller=True)
@@ -65,7 +72,7 @@ def is_under_patch(mesh, v, indices, base, in_patch):
     if mesh[v, LOOKED] == -1:
         return True
     a = mesh[v, PLANES]
-    if a < base or a >= base + indices[0]:
+    if a < base or a >= base + indices[N_FACES]:
         return False
     corner = own_corner(indices, base, a, mesh[v, PLANES + 1], mesh[v, PLANES + 2])
     return corner >= 0 and in_patch[corner]
@@ -87,13 +94,13 @@ def open_edges(mesh, state, stamp, n_gone, work, rim, table):
                 return -1
             table[a, SEEN] = stamp
             table[a, FIRST] = n_rim
-            rim[n_rim, 0] = w
-            rim[n_rim, 1] = 0
+            rim[n_rim, OUTER] = w
+            rim[n_rim, OUTER_SLOT] = 0
             for j in range(3):
                 if mesh[w, j] == u and mesh[w, PLANES + j] != a and mesh[w, PLANES + j] != b:
-                    rim[n_rim, 1] = j
-            rim[n_rim, 2] = b
-            rim[n_rim, 3] = -1
+                    rim[n_rim, OUTER_SLOT] = j
+            rim[n_rim, OUTER_PLANE] = b
+            rim[n_rim, EDGE] = -1
             n_rim += 1
     return n_rim
 
@@ -112,9 +119,9 @@ def matched(corner, form, in_patch, base, rim, n_rim, table, stamp):
             if table[a, SEEN] != stamp:
                 return False
             i = table[a, FIRST]
-            if rim[i, 2] != base + form[t, PLANES + (k + 2) % 3] or rim[i, 3] >= 0:
+            if rim[i, OUTER_PLANE] != base + form[t, PLANES + (k + 2) % 3] or rim[i, EDGE] >= 0:
                 return False
-            rim[i, 3] = 3 * t + k
+            rim[i, EDGE] = 3 * t + k
             n_out += 1
     return n_out == n_rim
 
@@ -145,28 +152,15 @@ def rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows):
 
 
 @kernel(reference_counts=False)
-def lay_patch(
-    spots,
-    mesh,
-    state,
-    work,
-    rim,
-    table,
-    numbers,
-    indices,
-    corner,
-    form,
-    in_patch,
-    rows,
-    origin,
-    base,
-):
+def lay_patch(cut, body, corner, form, in_patch, rows, origin, base):
     """True if the patch took the place of the vertices over it; faces left `LATENT` may then cut or not.
 
     Args:
         corner, form: the body's trivalent form; in_patch: from `mark_patch`;
-        rows: (t,) scratch. Else as `cut_by_body`.
+        rows: (t,) scratch. Else as `polytope.clip.cut_by_body`.
     """
+    spots, mesh, state, work, rim, table = cut
+    indices = body.indices
     state[STAMP] += 2
     stamp = state[STAMP]
     n_gone = 0
@@ -179,7 +173,7 @@ def lay_patch(
     laid = n_rim > 2 and matched(corner, form, in_patch, base, rim, n_rim, table, stamp)
     if laid:
         laid = rows_for_patch(mesh, state, n_gone, work, corner, in_patch, rows)
-    for face in range(indices[0]):
+    for face in range(indices[N_FACES]):
         if table[base + face, USED] == LATENT:
             table[base + face, USED] = WHOLE if laid else 0
     if not laid:
@@ -188,14 +182,15 @@ def lay_patch(
         v = rows[t]
         if v < 0:
             continue
+        x, y, z = place_of(body, corner[t])
+        spots[v, 0], spots[v, 1], spots[v, 2] = x - origin[0], y - origin[1], z - origin[2]
         for c in range(3):
-            spots[v, c] = numbers[indices[4] + 3 * corner[t] + c] - origin[c]
             mesh[v, PLANES + c] = base + form[t, PLANES + c]
             mesh[v, c] = rows[form[t, c]]
         mesh[v, MARK] = 0
         mesh[v, LOOKED] = base + 1
     for i in range(n_rim):
-        v = rows[rim[i, 3] // 3]
-        mesh[v, rim[i, 3] % 3] = rim[i, 0]
-        mesh[rim[i, 0], rim[i, 1]] = v
+        v = rows[rim[i, EDGE] // 3]
+        mesh[v, rim[i, EDGE] % 3] = rim[i, OUTER]
+        mesh[rim[i, OUTER], rim[i, OUTER_SLOT]] = v
     return True

@@ -1,0 +1,144 @@
+"""Segments of a polyline, straight from its control points, in a tree of boxes: which is nearest, which covers.
+
+Segment k lies between the rows 2 k and 2 k + 1 of the control points. Not for: searches (`hausdorff.polyline`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+
+BUCKET = 8  # segments in a box
+STACK = 128  # nodes of a tree that may be open at once
+
+
+class Segments(NamedTuple):
+    """A polyline: its control points (2 n, 3) and their `segment_boxes` (2 P, 4)."""
+
+    control: np.ndarray
+    boxes: np.ndarray
+
+
+class OpenNodes(NamedTuple):
+    """Scratch of `nearest_segment`: (STACK,) nodes, and (STACK,) how near each may be, squared."""
+
+    nodes: np.ndarray
+    gaps: np.ndarray
+
+
+@kernel
+def segment_boxes(control):
+    """The implicit tree of boxes (2 P, 4) over segments, rows 2 k and 2 k + 1 of `control`, in their order.
+
+    Node k has the children 2 k and 2 k + 1; node P + b holds the segments from BUCKET b on.
+    """
+    n = control.shape[0] // 2
+    size = 1
+    while size * BUCKET < n:
+        size *= 2
+    boxes = np.empty((2 * size, 4))
+    for b in range(size):
+        x0, y0, x1, y1 = np.inf, np.inf, -np.inf, -np.inf
+        for r in range(2 * BUCKET * b, min(2 * n, 2 * BUCKET * (b + 1))):
+            x, y = control[r, 0], control[r, 1]
+            x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
+        box = boxes[size + b]
+        box[0], box[1], box[2], box[3] = x0, y0, x1, y1
+    for node in range(size - 1, 0, -1):
+        for c in range(2):
+            boxes[node, c] = min(boxes[2 * node, c], boxes[2 * node + 1, c])
+            boxes[node, c + 2] = max(boxes[2 * node, c + 2], boxes[2 * node + 1, c + 2])
+    return boxes
+
+
+@inline
+def foot_on(control, k, x, y):
+    """The squared distance from (x, y) to segment `k`, and the local parameter of its foot."""
+    x0, y0 = control[2 * k, 0], control[2 * k, 1]
+    dx, dy = control[2 * k + 1, 0] - x0, control[2 * k + 1, 1] - y0
+    ex, ey = x - x0, y - y0
+    along, length_sq = ex * dx + ey * dy, dx * dx + dy * dy
+    if along <= 0.0:
+        return ex * ex + ey * ey, 0.0
+    if along >= length_sq:
+        ex, ey = x - control[2 * k + 1, 0], y - control[2 * k + 1, 1]
+        return ex * ex + ey * ey, 1.0
+    t = along / length_sq
+    ex, ey = ex - t * dx, ey - t * dy
+    return ex * ex + ey * ey, t
+
+
+@inline
+def distance_to(control, k, x, y):
+    """The distance from (x, y) to segment `k`."""
+    return math.sqrt(foot_on(control, k, x, y)[0])
+
+
+@inline
+def _box_sq(boxes, node, x, y):
+    dx = max(boxes[node, 0] - x, 0.0, x - boxes[node, 2])
+    dy = max(boxes[node, 1] - y, 0.0, y - boxes[node, 3])
+    return dx * dx + dy * dy
+
+
+@kernel
+def nearest_segment(segments, x, y, hint, open_nodes):
+    """The distance from (x, y) to the nearest segment, and its index; `hint` is tried first."""
+    control, boxes, (nodes, gaps) = segments.control, segments.boxes, open_nodes
+    n, size = control.shape[0] // 2, boxes.shape[0] // 2
+    best, which = foot_on(control, hint, x, y)[0], hint
+    nodes[0], gaps[0], top = 1, 0.0, 1
+    while top > 0:
+        top -= 1
+        node = nodes[top]
+        if gaps[top] >= best:
+            continue
+        if node >= size:
+            first = (node - size) * BUCKET
+            for k in range(first, min(n, first + BUCKET)):
+                square = foot_on(control, k, x, y)[0]
+                if square < best:
+                    best, which = square, k
+            continue
+        a, b = _box_sq(boxes, 2 * node, x, y), _box_sq(boxes, 2 * node + 1, x, y)
+        nearer = 2 * node if a <= b else 2 * node + 1
+        nodes[top], gaps[top] = 4 * node + 1 - nearer, max(a, b)
+        nodes[top + 1], gaps[top + 1] = nearer, min(a, b)
+        top += 2
+    return math.sqrt(best), which
+
+
+@inline
+def point_at(control, k, t):
+    """The point of segment `k` at the local parameter `t`."""
+    s = 1.0 - t
+    return (
+        s * control[2 * k, 0] + t * control[2 * k + 1, 0],
+        s * control[2 * k, 1] + t * control[2 * k + 1, 1],
+    )
+
+
+@inline
+def is_box_covered(boxes, node, qc, k, shift_x, shift_y, reach_sq):
+    """Whether a box lies within reach of segment `k`: its four corners decide, what is in reach is convex."""
+    for corner in range(4):
+        x = boxes[node, 2 * (corner & 1)] + shift_x
+        y = boxes[node, 1 + (corner & 2)] + shift_y
+        if not foot_on(qc, k, x, y)[0] <= reach_sq:
+            return False
+    return True
+
+
+@inline
+def covering_segment(pc, i, qc, hint, shift_x, shift_y, reach_sq):
+    """The segment of B within whose reach segment `i` of A lies: the hint, the next, the one before; else -1."""
+    x0, y0 = pc[2 * i, 0] + shift_x, pc[2 * i, 1] + shift_y
+    x1, y1 = pc[2 * i + 1, 0] + shift_x, pc[2 * i + 1, 1] + shift_y
+    for step in (0, 1, -1):
+        k = hint + step
+        if 0 <= k < qc.shape[0] // 2 and foot_on(qc, k, x1, y1)[0] <= reach_sq:
+            if foot_on(qc, k, x0, y0)[0] <= reach_sq:
+                return k
+    return -1
