@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import inspect
 import subprocess
 import sys
 from pathlib import Path
@@ -55,3 +56,25 @@ def test_importing_the_package_imports_no_large_library():
 def test_a_mesh_file_is_read_by_the_room_that_the_package_attaches(tmp_path):
     (tmp_path / "corner.off").write_text(TETRAHEDRON)
     assert cl.Polyhedron.from_file(tmp_path / "corner.off", scale=2.0).vertices.max() == 2.0
+
+
+def public_functions():
+    """Each public function, and each method that a public class has of its own, with its name."""
+    for name in sorted(ROOM_OF):
+        value = getattr(cl, name)
+        if not inspect.isclass(value):
+            yield name, value
+            continue
+        for method, made in vars(value).items():
+            made = getattr(made, "__func__", getattr(made, "fget", made))
+            if inspect.isfunction(made) and not method.startswith("_"):
+                yield f"{name}.{method}", made
+
+
+@pytest.mark.parametrize(("name", "function"), list(public_functions()))
+def test_each_public_function_says_what_it_takes_and_gives(name, function):
+    signature = inspect.signature(function)
+    said = {one.name: one.annotation for one in signature.parameters.values()}
+    said["return"] = signature.return_annotation
+    open_ones = [one for one, type_ in said.items() if type_ is signature.empty]
+    assert set(open_ones) <= {"self", "cls"}, name

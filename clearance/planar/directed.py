@@ -97,6 +97,7 @@ def directed_of(
     Args:
         state: a record of SEARCH_STATE; points: (5,) its witness.
     """
+    assert state.dtype.names is not None
     known = dict(zip(state.dtype.names, state.item(), strict=True))
     here, there = points[:2] + one.origin, points[2:4] + two.origin
     at_here = one.parameter_of(known["piece_a"], known["at_a"])

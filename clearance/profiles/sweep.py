@@ -19,7 +19,15 @@ from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import covered_region
 from clearance.profiles.silhouette import Silhouette
-from clearance.profiles.swept_bodies import Moving, chosen_links, motions_of, standing_obstacles
+from clearance.profiles.swept_bodies import (
+    Moving,
+    WithRecord,
+    chosen_links,
+    motions_of,
+    standing_obstacles,
+)
+from clearance.simulate.record import Samples
+from clearance.world.case import Case
 
 TOLERANCE = 5e-4
 """[m] How far a swept profile may exceed what is swept, by default."""
@@ -43,7 +51,7 @@ Progress = Callable[[int, int], None]
 
 
 def swept_profile(
-    run,
+    run: Case | Samples | WithRecord,
     plane: str = "xy",
     *,
     links: Sequence[str] | None = None,

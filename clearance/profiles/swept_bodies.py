@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -40,7 +41,14 @@ class Moving:
         return knots_of(self.motion, self.body, plane, limit, solid=solid)
 
 
-def motions_of(run) -> tuple[str, tuple[Motion, ...]]:
+class WithRecord(Protocol):
+    """What has a record, as a run."""
+
+    @property
+    def record(self) -> Samples: ...
+
+
+def motions_of(run: Case | Samples | WithRecord) -> tuple[str, tuple[Motion, ...]]:
     if isinstance(run, Case):
         return run.name, tuple(kinematic_motion(placed) for placed in run.robots)
     record: Samples = getattr(run, "record", run)

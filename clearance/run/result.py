@@ -88,8 +88,8 @@ class Run:
 
     @property
     def status(self) -> str:
-        """The worst of "clear", "near", "violated" and "contact"; "violated" where a sweep does not keep to a profile
-        of the case; "suspect" where input is in doubt and the case does not accept it."""
+        """The worst of "clear", "near", "violated" and "contact"; "violated" where a sweep does not keep to a
+        profile of the case; "suspect" where input is in doubt and the case does not accept it."""
         return self.verdict.status
 
     @property

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from ruamel.yaml import YAML
 
 ROOT = Path(__file__).parents[2]
 MODULES = sorted((ROOT / "clearance").rglob("*.py"))
@@ -20,10 +21,31 @@ def test_imports_keep_to_the_layers_and_doors():
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_ruff_finds_nothing_in_the_package():
-    command = [sys.executable, "-m", "ruff", "check", "--output-format", "concise", "."]
+def test_ruff_finds_nothing():
+    passes("ruff", "check", "--output-format", "concise", ".")
+
+
+def test_every_file_has_the_form_that_ruff_gives_it():
+    passes("ruff", "format", "--check", ".")
+
+
+@pytest.mark.slow
+def test_mypy_finds_nothing_in_the_package(tmp_path):
+    passes("mypy", "--cache-dir", str(tmp_path))
+
+
+def passes(tool: str, *arguments: str) -> None:
+    command = [sys.executable, "-m", tool, *arguments]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_pre_commit_asks_with_the_tools_that_are_installed_here():
+    (local,) = YAML(typ="safe").load((ROOT / ".pre-commit-config.yaml").read_text())["repos"]
+    assert local["repo"] == "local"
+    asked = {hook["id"]: hook["entry"].split()[0] for hook in local["hooks"]}
+    assert set(asked) == {"ruff", "ruff-format", "lint-imports"}
+    assert all(Path(sys.executable).with_name(tool).is_file() for tool in asked.values())
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))

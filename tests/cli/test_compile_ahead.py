@@ -114,7 +114,7 @@ print(json.dumps([compile_ahead.start(), len(kernel_table._elsewhere)]))
 BEHIND_ONE_THAT_KEEPS_ITS_TURN = """
 import json, os
 from filelock import FileLock
-from clearance import ahead
+from clearance.cli import compile_ahead as ahead
 from clearance.compile.kernel_cache import cache_root
 ahead.LONGEST = 0
 there, (end, kept_open) = os.dup(1), os.pipe()
