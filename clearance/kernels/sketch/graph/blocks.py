@@ -10,13 +10,42 @@ Source: Kwon, Lee, Lee 2001, section 3.5; Hoffmann, Lomonosov, Sitharam 1997 for
 subgraphs.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
 
 
-@inline
+class Bodies(NamedTuple):
+    """Rigid bodies and the steps that build them.
+
+    Attributes:
+        body_of: (v,) the body of every vertex, -1 outside bodies.
+        steps: (s, 4) vertex, partner and two edges, -1 pads.
+        start: (b + 1,) where the steps of every body begin.
+    """
+
+    body_of: np.ndarray
+    steps: np.ndarray
+    start: np.ndarray
+
+
+class BodyGrowth(NamedTuple):
+    """Bodies while they grow: the edges (m,) and vertices (v,) that may be taken in, and what was taken in.
+
+    `hooks` (2,) is room for the edges by which a vertex hangs on a body.
+    """
+
+    live: np.ndarray
+    free: np.ndarray
+    body_of: np.ndarray
+    steps: np.ndarray
+    hooks: np.ndarray
+
+
+@inline(force=True)
 def _hangs(row, v, line, ends, body_of, body):
     """Whether all ends of the edge other than v (and `line`, its direction) belong to the body."""
     for k in range(5):
@@ -26,55 +55,74 @@ def _hangs(row, v, line, ends, body_of, body):
     return True
 
 
-@inline
-def _hanging(v, line, ends, starts, rows, live, body_of, body, found):
-    """Up to two edges that tie v to the body, in `found`; how many."""
+@inline(force=True)
+def _n_hooks(graph, growth, v, line, body):
+    """Up to two edges that tie v to the body, in `hooks`; how many."""
     count = 0
-    for at in range(starts[v], starts[v + 1]):
-        if count < 2 and live[rows[at]] and _hangs(rows[at], v, line, ends, body_of, body):
-            found[count] = rows[at]
-            count += 1
+    for at in range(graph.start[v], graph.start[v + 1]):
+        row = graph.rows[at]
+        if count < 2 and growth.live[row]:
+            if _hangs(row, v, line, graph.ends, growth.body_of, body):
+                growth.hooks[count] = row
+                count += 1
     return count
 
 
+@inline(force=True)
+def _line_with(graph, growth, v, body):
+    """The direction that an offset brings into a body with it: -1 for none, -2 where it must not."""
+    if graph.kind[v] != SLIDE or growth.body_of[graph.theta_of[v]] == body:
+        return -1
+    line = graph.theta_of[v]
+    if line == 0 or growth.body_of[line] >= 0 or not growth.free[line]:
+        return -2
+    return line
+
+
 @inline
-def _grow(
-    seeds, n_seeds, body, kind, ends, starts, rows, live, theta_of, free, body_of, log, n_log, found
-):
-    """Grows a body from its seeds; appends (vertex, partner, edges) to `log` from `n_log` on; its
-    new end."""
+def _take_in(graph, growth, v, body, n_steps):
+    """Takes v into the body if it hangs on it by as many edges as it has freedom.
+
+    Returns (the steps' new end, the direction that came with v or -1); the same end if it does not hang.
+    """
+    line = _line_with(graph, growth, v, body)
+    if line == -2:
+        return n_steps, -1
+    need = 2 if graph.kind[v] == POINT or line >= 0 else 1
+    if _n_hooks(graph, growth, v, line, body) < need:
+        return n_steps, -1
+    growth.body_of[v] = body
+    step = growth.steps[n_steps]
+    step[0], step[1] = v, -1
+    if line >= 0:
+        growth.body_of[line] = body
+        step[0], step[1] = line, v
+    step[2], step[3] = growth.hooks[0], growth.hooks[1] if need == 2 else -1
+    return n_steps + 1, line
+
+
+@inline
+def _grow(graph, growth, seeds, body, n_steps):
+    """Grows a body from its seeds; appends its steps from `n_steps` on; their new end."""
     queue = np.empty(64, np.int64)
-    tail = 0
-    for k in range(n_seeds):
-        queue[tail] = seeds[k]
-        tail += 1
+    tail = seeds.shape[0]
+    queue[:tail] = seeds
     head = 0
     while head < tail:
         u = queue[head]
         head += 1
-        for at in range(starts[u], starts[u + 1]):
-            row = rows[at]
-            if not live[row]:
+        for at in range(graph.start[u], graph.start[u + 1]):
+            row = graph.rows[at]
+            if not growth.live[row]:
                 continue
             for k in range(5):
-                v = ends[row, k]
-                if v <= 0 or not free[v] or body_of[v] >= 0 or kind[v] == TURN:
+                v = graph.ends[row, k]
+                if v <= 0 or not growth.free[v] or growth.body_of[v] >= 0 or graph.kind[v] == TURN:
                     continue
-                line = -1
-                if kind[v] == SLIDE and body_of[theta_of[v]] != body:
-                    line = theta_of[v]
-                    if line == 0 or body_of[line] >= 0 or not free[line]:
-                        continue
-                need = 2 if kind[v] == POINT or line >= 0 else 1
-                if _hanging(v, line, ends, starts, rows, live, body_of, body, found) < need:
+                before = n_steps
+                n_steps, line = _take_in(graph, growth, v, body, n_steps)
+                if n_steps == before:
                     continue
-                body_of[v] = body
-                log[n_log, 0], log[n_log, 1] = v, -1
-                if line >= 0:
-                    body_of[line] = body
-                    log[n_log, 0], log[n_log, 1] = line, v
-                log[n_log, 2], log[n_log, 3] = found[0], found[1] if need == 2 else -1
-                n_log += 1
                 if tail + 2 > queue.shape[0]:
                     larger = np.empty(2 * queue.shape[0], np.int64)
                     larger[:tail] = queue[:tail]
@@ -84,112 +132,147 @@ def _grow(
                 if line >= 0:
                     queue[tail] = line
                     tail += 1
-    return n_log
+    return n_steps
+
+
+@inline(force=True)
+def _seeds_of(graph, growth, row, seeds):
+    """The ends of an edge that can begin a body, in `seeds`: a point, what it is tied to, a direction.
+
+    Returns how many: 3 for a point on a line (offset and direction), 2 for two points, 0 where none can.
+    """
+    a, b, c, usable = -1, -1, -1, graph.ends[row, 3] < 0
+    kind = graph.kind
+    for k in range(3):
+        v = graph.ends[row, k]
+        if v >= 0:
+            usable = usable and v > 0 and growth.free[v] and growth.body_of[v] < 0
+            if v > 0 and kind[v] == POINT:
+                usable = usable and b < 0  # an edge of two points, not of three
+                a, b = (v, a)
+            elif v > 0 and kind[v] == TURN:
+                c = v
+            elif v > 0 and kind[v] == SLIDE and b < 0:
+                b = v
+            else:
+                usable = False
+    if not usable or a < 0 or b < 0 or (kind[b] == POINT) != (c < 0):
+        return 0
+    seeds[0], seeds[1], seeds[2] = a, b, c
+    return 3 if c >= 0 else 2
 
 
 @kernel
-def bodies(kind, ends, starts, rows, live, theta_of, free):
-    """Rigid bodies of at least three entities among the `free` vertices, each entity in at most
-    one.
+def bodies(graph, live, free):
+    """Rigid bodies of at least three entities among the `free` vertices, each entity in at most one.
 
-    Returns (body_of (v,), steps (s, 4) of vertex, partner and two edges, step starts of every
-    body). The first steps of a body are its initial cluster: they have fewer edges than freedoms.
+    The first steps of a body are its initial cluster: they have fewer edges than freedoms.
     """
-    n = kind.shape[0]
+    n = graph.kind.shape[0]
     body_of = np.full(n, -1, np.int64)
-    log = np.full((n + 4, 4), -1, np.int64)
-    body_start = np.zeros(n + 1, np.int64)
-    found = np.empty(2, np.int64)
+    steps = np.full((n + 4, 4), -1, np.int64)
+    start = np.zeros(n + 1, np.int64)
+    growth = BodyGrowth(live, free, body_of, steps, np.empty(2, np.int64))
     seeds = np.empty(3, np.int64)
-    count, n_log = 0, 0
-    for row in range(ends.shape[0]):
-        if not live[row] or ends[row, 1] <= 0:
+    count, n_steps = 0, 0
+    for row in range(graph.ends.shape[0]):
+        if not live[row] or graph.ends[row, 1] <= 0:
             continue
-        a, b, c, usable = -1, -1, -1, ends[row, 3] < 0
-        for k in range(3):
-            v = ends[row, k]
-            if v >= 0:
-                usable = usable and v > 0 and free[v] and body_of[v] < 0
-                if v > 0 and kind[v] == POINT:
-                    usable = usable and b < 0  # an edge of two points, not of three
-                    a, b = (v, a)
-                elif v > 0 and kind[v] == TURN:
-                    c = v
-                elif v > 0 and kind[v] == SLIDE and b < 0:
-                    b = v
-                else:
-                    usable = False
-        if not usable or a < 0 or b < 0 or (kind[b] == POINT) != (c < 0):
+        n_seeds = _seeds_of(graph, growth, row, seeds)
+        if n_seeds == 0:
             continue
-        begin = n_log
-        body_of[a] = body_of[b] = count
-        seeds[0], seeds[1], seeds[2] = a, b, c
-        if c >= 0:
-            body_of[c] = count
-            log[begin, :] = np.array([c, b, -1, -1])
-            log[begin + 1, :] = np.array([a, -1, row, -1])
-        else:
-            log[begin, :] = np.array([b, -1, -1, -1])
-            log[begin + 1, :] = np.array([a, -1, row, -1])
-        n_log = _grow(
-            seeds, 3 if c >= 0 else 2, count, kind, ends, starts, rows, live, theta_of, free,
-            body_of, log, begin + 2, found,
-        )  # fmt: skip
-        if n_log == begin + 2:
-            body_of[a] = body_of[b] = -1
-            if c >= 0:
-                body_of[c] = -1
-            n_log = begin
+        for v in seeds[:n_seeds]:
+            body_of[v] = count
+        steps[n_steps, :] = -1
+        steps[n_steps + 1, :] = -1
+        steps[n_steps, 0] = seeds[n_seeds - 1]
+        steps[n_steps, 1] = seeds[1] if n_seeds == 3 else -1
+        steps[n_steps + 1, 0], steps[n_steps + 1, 2] = seeds[0], row
+        end = _grow(graph, growth, seeds[:n_seeds], count, n_steps + 2)
+        if end == n_steps + 2:
+            for v in seeds[:n_seeds]:
+                body_of[v] = -1
             continue
-        count += 1
-        body_start[count] = n_log
-    return body_of, log[:n_log], body_start[: count + 1]
+        count, n_steps = count + 1, end
+        start[count] = n_steps
+    return Bodies(body_of, steps[:n_steps], start[: count + 1])
 
 
 @inline
-def assumed_bodies(kind, ends, starts, rows, live, body_of, n_bodies, turn, lack, home):
-    """Makes bodies of homes of at least three points, each hung on those before it by at most two edges.
+def with_assumed(graph, live, bodies, order):
+    """The bodies, and after them bodies made of homes of at least three points, each hung on those before
+    it by at most two edges.
 
-    What they lack is assumed inside (Fig. 13 a and b); `lack` (v,) becomes 0 there. Returns (steps as of
-    `bodies`, their starts).
+    What they lack is assumed inside (Fig. 13 a and b): `order.lacking` becomes 0 there. `bodies.body_of`
+    changes in place.
     """
-    n = kind.shape[0]
-    log, start = np.full((n, 4), -1, np.int64), np.zeros(n + 1, np.int64)
-    order = np.argsort(turn, kind="mergesort")
-    count, n_log = 0, 0
+    n, body_of = graph.kind.shape[0], bodies.body_of
+    n_bodies = bodies.start.shape[0] - 1
+    steps, start = np.full((n, 4), -1, np.int64), np.zeros(n + 1, np.int64)
+    by_turn = np.argsort(order.turn, kind="mergesort")
+    count, n_steps = 0, 0
     for h in range(n):
-        at_log, good = n_log, True
-        for v in order:
-            if home[v] != h or v == 0:
+        end, good = n_steps, True
+        for v in by_turn:
+            if order.home[v] != h or v == 0:
                 continue
             hung = 0
-            for at in range(starts[v], starts[v + 1]):
-                if live[rows[at]] and _hangs(rows[at], v, -1, ends, body_of, n_bodies + count):
+            for at in range(graph.start[v], graph.start[v + 1]):
+                row = graph.rows[at]
+                if live[row] and _hangs(row, v, -1, graph.ends, body_of, n_bodies + count):
                     if hung < 2:
-                        log[at_log, 2 + hung] = rows[at]
+                        steps[end, 2 + hung] = row
                     hung += 1
-            first = at_log - n_log
-            good = good and kind[v] == POINT and hung <= 2
+            first = end - n_steps
+            good = good and graph.kind[v] == POINT and hung <= 2
             good = good and (first > 1 or hung == first)
-            log[at_log, 0] = v
+            steps[end, 0] = v
             body_of[v] = n_bodies + count
-            at_log += 1
-        if good and at_log >= n_log + 3:
-            for at in range(n_log, at_log):
-                lack[log[at, 0]] = 0
-            count, n_log = count + 1, at_log
-            start[count] = n_log
+            end += 1
+        if good and end >= n_steps + 3:
+            for at in range(n_steps, end):
+                order.lacking[steps[at, 0]] = 0
+            count, n_steps = count + 1, end
+            start[count] = n_steps
             continue
-        for at in range(n_log, at_log):
-            body_of[log[at, 0]] = -1
-            log[at, :] = -1
-    return log[:n_log], start[: count + 1]
+        for at in range(n_steps, end):
+            body_of[steps[at, 0]] = -1
+            steps[at, :] = -1
+    return Bodies(
+        body_of,
+        np.concatenate((bodies.steps, steps[:n_steps])),
+        np.concatenate((bodies.start, bodies.start[-1] + start[1 : count + 1])),
+    )
 
 
-@inline
-def _augment(row, stamp, hold, ends, owner, capacity, paid, seen, came, queue):
-    """Finds a freedom for an edge by moving others; True when it has one. `hold` maps vertices to
-    nodes."""
+class Matching(NamedTuple):
+    """Edges assigned to freedoms of nodes, and the search for a freedom of one more.
+
+    Attributes:
+        ends: (m, 5) the vertices of every edge, -1 pads.
+        hold: (v,) the node of every vertex, -1: held fast.
+        capacity: (nodes,) the freedoms of every node that are not used yet.
+        owner: (m,) the node of every edge, -1 for none.
+        paid: (2, ...) the first edge of every node, and of every edge the next one of its node.
+        seen: (nodes,) the last edge whose search came by.
+        came: (m,) the edge by which the search came; queue: (m + 1,) its edges.
+    """
+
+    ends: np.ndarray
+    hold: np.ndarray
+    capacity: np.ndarray
+    owner: np.ndarray
+    paid: np.ndarray
+    seen: np.ndarray
+    came: np.ndarray
+    queue: np.ndarray
+
+
+@inline(force=True)
+def _augment(matching, row):
+    """Finds a freedom for an edge by moving others; True when it has one."""
+    ends, hold, queue, came = matching.ends, matching.hold, matching.queue, matching.came
+    seen, paid = matching.seen, matching.paid
     head, tail = 0, 1
     queue[0] = row
     came[row] = -1
@@ -201,19 +284,12 @@ def _augment(row, stamp, hold, ends, owner, capacity, paid, seen, came, queue):
             if v < 0:
                 continue
             node = hold[v]
-            if node < 0 or seen[node] == stamp:
+            if node < 0 or seen[node] == row:
                 continue
-            seen[node] = stamp
-            if capacity[node] > 0:
-                capacity[node] -= 1
-                while (
-                    e >= 0
-                ):  # e takes this node; the node it leaves is taken by the edge before it
-                    before = owner[e]
-                    _move_payment(e, before, node, paid)
-                    owner[e] = node
-                    node = before
-                    e = came[e]
+            seen[node] = row
+            if matching.capacity[node] > 0:
+                matching.capacity[node] -= 1
+                _hand_over(matching, e, node)
                 return True
             at = paid[0, node]
             while at >= 0:
@@ -224,7 +300,19 @@ def _augment(row, stamp, hold, ends, owner, capacity, paid, seen, came, queue):
     return False
 
 
-@inline
+@inline(force=True)
+def _hand_over(matching, e, node):
+    """Gives e the node; the node that it leaves goes to the edge before it, and so on to the first."""
+    owner = matching.owner
+    while e >= 0:
+        before = owner[e]
+        _move_payment(e, before, node, matching.paid)
+        owner[e] = node
+        node = before
+        e = matching.came[e]
+
+
+@inline(force=True)
 def _move_payment(e, before, node, paid):
     """Takes edge e off the list of node `before` (-1: none) and puts it on that of `node`."""
     if before >= 0:
@@ -253,10 +341,28 @@ def match(order, ends, live, hold, capacity):
     seen = np.full(capacity.shape[0], -1, np.int64)
     came = np.empty(m, np.int64)
     queue = np.empty(m + 1, np.int64)
+    matching = Matching(ends, hold, capacity, owner, paid, seen, came, queue)
     for row in order:
         if live[row]:
-            _augment(row, row, hold, ends, owner, capacity, paid, seen, came, queue)
+            _augment(matching, row)
     return owner
+
+
+@inline
+def _rows_of_nodes(live, owner, n_nodes):
+    """The live edges that every node owns as (starts (nodes + 1,), rows)."""
+    start = np.zeros(n_nodes + 1, np.int64)
+    for row in range(owner.shape[0]):
+        if live[row] and owner[row] >= 0:
+            start[owner[row] + 1] += 1
+    start = np.cumsum(start)
+    rows = np.empty(start[-1], np.int64)
+    fill = start[:-1].copy()
+    for row in range(owner.shape[0]):
+        if live[row] and owner[row] >= 0:
+            rows[fill[owner[row]]] = row
+            fill[owner[row]] += 1
+    return start, rows
 
 
 @kernel
@@ -266,17 +372,7 @@ def ordered_parts(ends, live, hold, owner, n_nodes, present):
     Returns (part of every node (-1 where absent), number of parts). Tarjan's algorithm, without
     recursion.
     """
-    start = np.zeros(n_nodes + 1, np.int64)
-    for row in range(ends.shape[0]):
-        if live[row] and owner[row] >= 0:
-            start[owner[row] + 1] += 1
-    start = np.cumsum(start)
-    mine = np.empty(start[-1], np.int64)
-    fill = start[:-1].copy()
-    for row in range(ends.shape[0]):
-        if live[row] and owner[row] >= 0:
-            mine[fill[owner[row]]] = row
-            fill[owner[row]] += 1
+    start, mine = _rows_of_nodes(live, owner, n_nodes)
     part = np.full(n_nodes, -1, np.int64)
     index = np.full(n_nodes, -1, np.int64)
     low = np.zeros(n_nodes, np.int64)

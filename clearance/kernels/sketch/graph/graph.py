@@ -8,6 +8,8 @@ of directions, of offsets or of radii (1 each), or the ground (vertex 0: a rigid
 is one equation.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
@@ -19,6 +21,26 @@ GROUND, POINT, TURN, SLIDE, SIZE = 0, 1, 2, 3, 4
 """Kinds of vertices: TURN is a class of directions, SLIDE of offsets, SIZE of radii."""
 IN_GRAPH, MERGED, REPEATED, CONTRADICTED = 0, 1, 2, 3
 """What became of an equation: an edge, used by a merge, implied by merges, or contrary to them."""
+
+
+class ConstraintGraph(NamedTuple):
+    """Vertices and edges, and the edges of every vertex.
+
+    Attributes:
+        kind: (v,) GROUND, POINT, TURN, SLIDE or SIZE.
+        ends: (m, 5) the vertices of every edge, -1 pads.
+        absolute: (m,) 1 where an edge refers to the ground by position.
+        theta_of: (v,) the class of directions that a class of offsets belongs to.
+        start: (v + 1,) where the edges of every vertex begin in `rows`.
+        rows: the edges by vertex.
+    """
+
+    kind: np.ndarray
+    ends: np.ndarray
+    absolute: np.ndarray
+    theta_of: np.ndarray
+    start: np.ndarray
+    rows: np.ndarray
 
 
 @inline
@@ -172,6 +194,13 @@ def lists(ends, n_vertices):
                 rows[fill[ends[row, k]]] = row
                 fill[ends[row, k]] += 1
     return starts, rows
+
+
+@inline
+def graph_of(kind, ends, absolute, theta_of):
+    """The constraint graph of these vertices and edges."""
+    start, rows = lists(ends, kind.shape[0])
+    return ConstraintGraph(kind, ends, absolute, theta_of, start, rows)
 
 
 @kernel

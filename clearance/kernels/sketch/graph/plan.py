@@ -9,27 +9,26 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.compile.jit import kernel
-from clearance.kernels.sketch.graph.blocks import assumed_bodies, bodies, ordered_parts
+from clearance.compile.jit import inline, kernel
+from clearance.kernels.sketch.graph.blocks import bodies, with_assumed
 from clearance.kernels.sketch.graph.core import (
-    bases,
+    clusters_of,
     components,
-    edges_between,
-    matched_by_turn,
-    nodes_of_core,
-    rows_by_part,
+    initial_clusters,
     turns_by_rule,
-    vertices_by_part,
 )
-from clearance.kernels.sketch.graph.graph import SLIDE, TURN, lists
-from clearance.kernels.sketch.graph.pebble import play
-from clearance.kernels.sketch.graph.peel import peel
+from clearance.kernels.sketch.graph.graph import SLIDE, TURN, graph_of
+from clearance.kernels.sketch.graph.pebble import no_circuits, play
+from clearance.kernels.sketch.graph.peel import ClosedSteps, peel
+
+PEELED, IN_BODY, IN_CORE = 0, 1, 2
+"""Where a step comes from: peeled off, inside a body, a cluster of the core."""
 
 
 class Plan(NamedTuple):
     """Steps (s,) in order: vertex and partner (closed) or block (numeric, else -1), edges (s, 3).
 
-    `origin` says where a step comes from: 0 peeled, 1 inside a body, 2 a cluster of the core.
+    `origin` says where a step comes from: PEELED, IN_BODY or IN_CORE.
     Blocks list their vertices and rows. `body_of` (v,) is -1 outside bodies; `held` (b,) marks the
     initial clusters.
     """
@@ -50,127 +49,184 @@ class Plan(NamedTuple):
     circuit: np.ndarray
 
 
+class PlanDraft(NamedTuple):
+    """A plan while it is written: the room for its steps and blocks, as of `Plan`, and how much is filled.
+
+    `filled` (2,) holds the number of steps and of blocks.
+    """
+
+    vertex: np.ndarray
+    partner: np.ndarray
+    edges: np.ndarray
+    block: np.ndarray
+    origin: np.ndarray
+    block_vertex_start: np.ndarray
+    block_vertex: np.ndarray
+    block_row_start: np.ndarray
+    block_row: np.ndarray
+    filled: np.ndarray
+
+
+class Core(NamedTuple):
+    """What the core's phases leave behind: bodies by vertex (v,), and which of them are held (b,)."""
+
+    body_of: np.ndarray
+    held: np.ndarray
+
+
+@inline
+def _new_draft(size, n, m):
+    """A draft with room for `size` steps and for the blocks of n vertices and m edges."""
+    return PlanDraft(
+        np.full(size, -1, np.int64),
+        np.full(size, -1, np.int64),
+        np.full((size, 3), -1, np.int64),
+        np.full(size, -1, np.int64),
+        np.zeros(size, np.int64),
+        np.zeros(n + 1, np.int64),
+        np.empty(n, np.int64),
+        np.zeros(n + 1, np.int64),
+        np.empty(m, np.int64),
+        np.zeros(2, np.int64),
+    )
+
+
+@inline(force=True)
+def _next_step(draft, origin):
+    """The number of a new step of this origin."""
+    k = draft.filled[0]
+    draft.origin[k] = origin
+    draft.filled[0] += 1
+    return k
+
+
+@inline
+def _write_bodies(draft, graph, bodies, initial):
+    """Writes the steps of the bodies, and the first step of those that only begin with an edge."""
+    for at in range(bodies.steps.shape[0]):
+        k = _next_step(draft, IN_BODY)
+        draft.vertex[k], draft.partner[k] = bodies.steps[at, 0], bodies.steps[at, 1]
+        draft.edges[k, 0], draft.edges[k, 1] = bodies.steps[at, 2], bodies.steps[at, 3]
+    for b in range(bodies.start.shape[0] - 1, initial.held.shape[0]):
+        row = initial.seed[b]
+        if row >= 0:
+            k = _next_step(draft, IN_BODY)
+            draft.vertex[k], draft.edges[k, 0] = graph.ends[row, 0], row
+
+
+@inline
+def _write_block(draft, k, vertices, rows):
+    """Makes step k numeric: a block of these vertices and rows."""
+    b = draft.filled[1]
+    draft.block[k] = b
+    at, end = draft.block_vertex_start[b], draft.block_vertex_start[b] + vertices.shape[0]
+    draft.block_vertex_start[b + 1] = end
+    draft.block_vertex[at:end] = vertices
+    at, end = draft.block_row_start[b], draft.block_row_start[b] + rows.shape[0]
+    draft.block_row_start[b + 1] = end
+    draft.block_row[at:end] = rows
+    draft.filled[1] += 1
+
+
+@inline
+def _write_clusters(draft, graph, clusters, body_of):
+    """Writes the core's clusters: closed steps for one vertex or one line, blocks for all others."""
+    for c in range(clusters.count):
+        vertices = clusters.vertex[clusters.vertex_start[c] : clusters.vertex_start[c + 1]]
+        rows = clusters.row[clusters.row_start[c] : clusters.row_start[c + 1]]
+        k, v = _next_step(draft, IN_CORE), vertices[0]
+        closed = vertices.shape[0] == 1 and body_of[v] < 0
+        if vertices.shape[0] == 2 and graph.kind[v] == TURN and graph.kind[vertices[1]] == SLIDE:
+            closed = graph.theta_of[vertices[1]] == v and body_of[v] < 0
+            draft.partner[k] = vertices[1] if closed else -1
+        if closed:
+            draft.vertex[k] = v
+            draft.edges[k, : rows.shape[0]] = rows
+        else:
+            _write_block(draft, k, vertices, rows)
+
+
+@inline
+def _write_reversed(draft, steps):
+    """Writes peeled steps, the last taken off first."""
+    for at in range(steps.vertex.shape[0] - 1, -1, -1):
+        k = _next_step(draft, PEELED)
+        draft.vertex[k], draft.partner[k] = steps.vertex[at], steps.partner[at]
+        draft.edges[k] = steps.edges[at]
+
+
+@inline
+def _plan_core(draft, graph, live, removed):
+    """Plans what peeling leaves: bodies, the order of the rules, what is held first, clusters."""
+    free = (removed == 0).astype(np.uint8)
+    free[0] = 0
+    grown = bodies(graph, live, free)
+    ends = graph.ends.copy()
+    for row in range(ends.shape[0]):
+        if not live[row]:
+            ends[row, :] = -1
+    parts = components(graph.kind, ends, graph.theta_of, graph.absolute)
+    order = turns_by_rule(graph, live, free, parts, grown)
+    every = with_assumed(graph, live, grown, order)
+    initial = initial_clusters(graph, live, free, parts, every, order.turn)
+    _write_bodies(draft, graph, every, initial)
+    clusters = clusters_of(graph, live, free, every.body_of, initial.held, order)
+    _write_clusters(draft, graph, clusters, every.body_of)
+    return Core(every.body_of, initial.held)
+
+
+@inline
+def _finished(draft, core, circuits):
+    """The plan as far as the draft is filled."""
+    steps, blocks = draft.filled[0], draft.filled[1]
+    return Plan(
+        draft.vertex[:steps], draft.partner[:steps], draft.edges[:steps], draft.block[:steps],
+        draft.origin[:steps], draft.block_vertex_start[: blocks + 1],
+        draft.block_vertex[: draft.block_vertex_start[blocks]], draft.block_row_start[: blocks + 1],
+        draft.block_row[: draft.block_row_start[blocks]], core.body_of, core.held,
+        circuits.dependent, circuits.start, circuits.rows,
+    )  # fmt: skip
+
+
 @kernel
 def peeled_plan(kind, ends, absolute, theta_of):
     """(the plan, True) of a graph that can be peeled as a whole, else (a part of it, False)."""
     n = kind.shape[0]
-    starts, rows = lists(ends, n)
+    graph = graph_of(kind, ends, absolute, theta_of)
     live, removed = (ends[:, 0] >= 0).astype(np.uint8), np.zeros(n, np.uint8)
-    vertex, partner, edges = peel(kind, ends, starts, rows, absolute, theta_of, live, removed)
-    size = vertex.shape[0]
+    steps = peel(graph, live, removed)
+    size = steps.vertex.shape[0]
     none, zero = np.empty(0, np.int64), np.zeros(1, np.int64)
     plan = Plan(
-        vertex[::-1].copy(), partner[::-1].copy(), edges[::-1].copy(), np.full(size, -1, np.int64),
-        np.zeros(size, np.int64), zero, none, zero, none, np.full(n, -1, np.int64),
-        np.zeros(0, np.uint8), none, zero, none,
+        steps.vertex[::-1].copy(), steps.partner[::-1].copy(), steps.edges[::-1].copy(),
+        np.full(size, -1, np.int64), np.zeros(size, np.int64), zero, none, zero, none,
+        np.full(n, -1, np.int64), np.zeros(0, np.uint8), none, zero, none,
     )  # fmt: skip
     return plan, not live.any()
 
 
 @kernel
 def make_plan(kind, ends, absolute, theta_of):
-    """The plan of a constraint graph; see `Plan`."""
+    """The plan of a constraint graph; see `Plan`.
+
+    Dependent edges are left out; where there are some, what hung on them is peeled as well.
+    """
     n, m = kind.shape[0], ends.shape[0]
-    starts, rows = lists(ends, n)
-    live = np.zeros(m, np.uint8)
-    n_live = 0
-    for row in range(m):
-        live[row] = ends[row, 0] >= 0
-        n_live += live[row]
-    removed = np.zeros(n, np.uint8)
-    v1, p1, e1 = peel(kind, ends, starts, rows, absolute, theta_of, live, removed)
-    v2, p2, e2 = v1[:0], p1[:0], e1[:0]
-    dependent, circuit_start, circuit = (
-        np.empty(0, np.int64),
-        np.zeros(1, np.int64),
-        np.empty(0, np.int64),
-    )
+    graph = graph_of(kind, ends, absolute, theta_of)
+    live, removed = (ends[:, 0] >= 0).astype(np.uint8), np.zeros(n, np.uint8)
+    last = peel(graph, live, removed)
+    before = ClosedSteps(last.vertex[:0], last.partner[:0], last.edges[:0])
+    circuits = no_circuits()
     if live.any():
-        dependent, circuit_start, circuit = play(kind, ends, absolute, live)
-        for row in dependent:
+        circuits = play(kind, ends, absolute, live)
+        for row in circuits.dependent:
             live[row] = 0
-        if dependent.shape[0] > 0:
-            v2, p2, e2 = peel(kind, ends, starts, rows, absolute, theta_of, live, removed)
-    body_of = np.full(n, -1, np.int64)
-    held = np.zeros(0, np.uint8)
-    size = v1.shape[0] + v2.shape[0] + 2 * n
-    vertex, partner = np.full(size, -1, np.int64), np.full(size, -1, np.int64)
-    edges, block = np.full((size, 3), -1, np.int64), np.full(size, -1, np.int64)
-    origin = np.zeros(size, np.int64)
-    bvs, bv = np.zeros(n + 1, np.int64), np.empty(n, np.int64)
-    brs, br = np.zeros(n + 1, np.int64), np.empty(m, np.int64)
-    steps, blocks = 0, 0
+        if circuits.dependent.shape[0] > 0:
+            before = peel(graph, live, removed)
+    draft = _new_draft(last.vertex.shape[0] + before.vertex.shape[0] + 2 * n, n, m)
+    core = Core(np.full(n, -1, np.int64), np.zeros(0, np.uint8))
     if live.any():
-        free = (removed == 0).astype(np.uint8)
-        free[0] = 0
-        body_of, log, log_start = bodies(kind, ends, starts, rows, live, theta_of, free)
-        core_ends = ends.copy()
-        for row in range(m):
-            if not live[row]:
-                core_ends[row, :] = -1
-        part, n_parts, hold_kind = components(kind, core_ends, theta_of, absolute)
-        n_bodies = log_start.shape[0] - 1
-        turn, lack, home = turns_by_rule(
-            kind, ends, live, free, part, n_parts, hold_kind, body_of, n_bodies, absolute
-        )
-        more, more_start = assumed_bodies(
-            kind, ends, starts, rows, live, body_of, n_bodies, turn, lack, home
-        )
-        log = np.concatenate((log, more))
-        log_start = np.concatenate((log_start, log_start[-1] + more_start[1:]))
-        n_bodies = log_start.shape[0] - 1
-        held, n_bodies, seed = bases(
-            kind, ends, live, free, part, n_parts, hold_kind, body_of, n_bodies, turn
-        )
-        for at in range(log.shape[0]):
-            vertex[steps], partner[steps] = log[at, 0], log[at, 1]
-            edges[steps, 0], edges[steps, 1] = log[at, 2], log[at, 3]
-            origin[steps] = 1
-            steps += 1
-        for b in range(log_start.shape[0] - 1, n_bodies):
-            if seed[b] >= 0:
-                vertex[steps], edges[steps, 0], origin[steps] = ends[seed[b], 0], seed[b], 1
-                steps += 1
-        hold, capacity = nodes_of_core(kind, free, body_of, held, n_bodies)
-        between = edges_between(ends, live, hold, body_of)
-        owner = matched_by_turn(ends, between, hold, capacity, turn, lack)
-        present = np.zeros(capacity.shape[0], np.uint8)
-        for v in range(n):
-            if hold[v] >= 0:
-                present[hold[v]] = 1
-        node_part, n_clusters = ordered_parts(
-            ends, between, hold, owner, capacity.shape[0], present
-        )
-        vs, vl = vertices_by_part(hold, node_part, body_of, n_clusters)
-        es, el = rows_by_part(owner, between, node_part, n_clusters)
-        for c in range(n_clusters):
-            chosen, mine = vl[vs[c] : vs[c + 1]], el[es[c] : es[c + 1]]
-            origin[steps] = 2
-            count = chosen.shape[0]
-            closed = count == 1 and body_of[chosen[0]] < 0
-            if count == 2 and kind[chosen[0]] == TURN and kind[chosen[1]] == SLIDE:
-                closed = theta_of[chosen[1]] == chosen[0] and body_of[chosen[0]] < 0
-                partner[steps] = chosen[1] if closed else -1
-            if closed:
-                vertex[steps] = chosen[0]
-                for k in range(mine.shape[0]):
-                    edges[steps, k] = mine[k]
-            else:
-                block[steps] = blocks
-                bvs[blocks + 1] = bvs[blocks] + count
-                bv[bvs[blocks] : bvs[blocks + 1]] = chosen
-                brs[blocks + 1] = brs[blocks] + mine.shape[0]
-                br[brs[blocks] : brs[blocks + 1]] = mine
-                blocks += 1
-            steps += 1
-    for at in range(v2.shape[0] - 1, -1, -1):
-        vertex[steps], partner[steps], edges[steps] = v2[at], p2[at], e2[at]
-        steps += 1
-    for at in range(v1.shape[0] - 1, -1, -1):
-        vertex[steps], partner[steps], edges[steps] = v1[at], p1[at], e1[at]
-        steps += 1
-    return Plan(
-        vertex[:steps], partner[:steps], edges[:steps], block[:steps], origin[:steps], bvs[: blocks
-        + 1], bv[: bvs[blocks]], brs[: blocks + 1], br[: brs[blocks]], body_of, held, dependent,
-        circuit_start, circuit,
-    )  # fmt: skip
+        core = _plan_core(draft, graph, live, removed)
+    _write_reversed(draft, before)
+    _write_reversed(draft, last)
+    return _finished(draft, core, circuits)

@@ -8,12 +8,29 @@ would leave a rest that no basic cluster takes in (Fig. 14).
 Source: Kwon, Lee, Lee 2001, section 4.1; candidates for the least cycle: Horton 1987.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
 
 RULED = 100
 """Nodes of a core up to which the rules are applied: the search for cycles grows with the cube."""
+
+
+class MergeOrder(NamedTuple):
+    """The order in which nodes (or the vertices in them) are taken in.
+
+    Attributes:
+        turn: (n,) counted from 0; ties are those merged at once.
+        lacking: (n,) how many conditions are missing then.
+        home: (n,) a cluster that began without a body and took in single nodes until it met another
+            cluster; -1 outside such.
+    """
+
+    turn: np.ndarray
+    lacking: np.ndarray
+    home: np.ndarray
 
 
 @inline
@@ -74,7 +91,7 @@ def _basic(joined, dof):
             if not joined[a, b]:
                 continue
             for c in range(b + 1, n):
-                bodies = (dof[a] == 3) + (dof[b] == 3) + (dof[c] == 3)
+                bodies = int(dof[a] == 3) + int(dof[b] == 3) + int(dof[c] == 3)
                 if joined[a, c] and joined[b, c] and bodies >= 2:
                     within = joined[a, b] + joined[a, c] + joined[b, c]
                     if dof[a] + dof[b] + dof[c] - within <= 3:
@@ -166,14 +183,15 @@ def _under(inside, joined, dof):
 
 
 @inline
-def _take_in(a, b, c, group, own, turn, now, missing, lacking):
-    """Gives the nodes of the clusters a, b and c their turns, where a body starts it goes first; the next.
+def _take_in(order, chosen, own, now, missing):
+    """Gives the chosen nodes (n,) their turns, where a body starts it goes first; the next turn.
 
-    What is missing is noted at the first of the nodes that come in.
+    What is missing is noted at the first of the nodes that come in. `own` (n,) are the nodes' freedoms.
     """
+    turn = order.turn
     begun, leader = False, -1
     for g in range(turn.shape[0]):
-        if group[g] == a or group[g] == b or group[g] == c:
+        if chosen[g]:
             begun = begun or turn[g] >= 0
             if leader < 0 or (own[g] == 3 and own[leader] < 3):
                 leader = g
@@ -181,55 +199,61 @@ def _take_in(a, b, c, group, own, turn, now, missing, lacking):
         turn[leader] = now
         now += 1
     for g in range(turn.shape[0]):
-        if turn[g] < 0 and (group[g] == a or group[g] == b or group[g] == c):
+        if turn[g] < 0 and chosen[g]:
             turn[g] = now
-            lacking[g] = missing
+            order.lacking[g] = missing
             missing = 0
     return now + 1
 
 
+@inline
+def _next_merge(row_nodes, group, dof):
+    """The clusters a, b and c to merge next (-1 pads; a is -1 where nothing is joined), and what they lack."""
+    joined = _between(row_nodes, group, dof.shape[0])
+    a, b, c = _basic(joined, dof)
+    if a >= 0:
+        return a, b, c, 0
+    inside = rule_b(joined, row_nodes, group, dof)
+    if not inside.any():
+        inside = rule_a(joined)
+    a, b = _under(inside, joined, dof)
+    missing = max(dof[a] + dof[b] - joined[a, b] - 3, 0) if a >= 0 else 0
+    return a, b, -1, missing
+
+
 @kernel
 def merge_order(row_nodes, dof):
-    """The turn (n,) at which every node is taken in, how many conditions it lacks then (n,), and its home (n,).
-
-    Turns count from 0; ties are those merged at once. A home is a cluster that began without a body and
-    took in single nodes until it met another cluster; -1 outside such.
+    """The order in which the nodes are taken in; see `MergeOrder`.
 
     Args:
         row_nodes: (m, 5) the distinct nodes of every equation between nodes, -1 pads.
         dof: (n,) freedoms of the nodes: 3 of a body, 2 or 1 of a vertex; becomes those of clusters.
     """
     n = dof.shape[0]
-    group, turn, own = np.arange(n), np.full(n, -1, np.int64), dof.copy()
-    lacking, now = np.zeros(n, np.int64), 0
-    home, closed = np.full(n, -1, np.int64), np.zeros(n, np.uint8)
+    order = MergeOrder(np.full(n, -1, np.int64), np.zeros(n, np.int64), np.full(n, -1, np.int64))
+    group, own, now = np.arange(n), dof.copy(), 0
+    closed, chosen = np.zeros(n, np.uint8), np.zeros(n, np.uint8)
     while True:
-        joined = _between(row_nodes, group, n)
-        a, b, c = _basic(joined, dof)
-        missing = 0
+        a, b, c, missing = _next_merge(row_nodes, group, dof)
         if a < 0:
-            inside = rule_b(joined, row_nodes, group, dof)
-            if not inside.any():
-                inside = rule_a(joined)
-            a, b = _under(inside, joined, dof)
-            if a < 0:
-                break
-            missing = max(dof[a] + dof[b] - joined[a, b] - 3, 0)
-        now = _take_in(a, b, c, group, own, turn, now, missing, lacking)
-        clusters = (dof[a] == 3) + (dof[b] == 3) + (c >= 0 and dof[c] == 3)
+            break
+        for g in range(n):
+            chosen[g] = group[g] == a or group[g] == b or (c >= 0 and group[g] == c)
+        now = _take_in(order, chosen, own, now, missing)
+        clusters = int(dof[a] == 3) + int(dof[b] == 3) + int(c >= 0 and dof[c] == 3)
         if clusters > 1 or closed[a] or closed[b] or own[a] == 3 or own[b] == 3:
             closed[a] = 1
         else:
             for g in range(n):
-                if group[g] == a or group[g] == b or (c >= 0 and group[g] == c):
-                    home[g] = a
+                if chosen[g]:
+                    order.home[g] = a
         for g in range(n):
-            if group[g] == b or (c >= 0 and group[g] == c):
+            if chosen[g]:
                 group[g] = a
         dof[a], dof[b] = 3, 0
         if c >= 0:
             dof[c] = 0
     for g in range(n):
-        if turn[g] < 0:
-            turn[g] = now
-    return turn, lacking, home
+        if order.turn[g] < 0:
+            order.turn[g] = now
+    return order

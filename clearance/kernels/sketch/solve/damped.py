@@ -214,7 +214,7 @@ def descend_damped(
     `first` (v,) holds the columns by vertex, `half` the width of their band; `damping` is the first
     one, in units of the diagonal. The sum must fall by a fifth in `patience` steps; below `enough` the
     first step that gains nothing ends it.
-    Returns (sum, steps).
+    Returns (sum, steps). Over 60 lines by its arguments, one a line.
     """
     band, factor = np.empty((n, half)), np.empty((n, half))
     right, step, unit = np.empty(n), np.empty(n), np.empty(n)

@@ -137,7 +137,8 @@ def _spacing(s, vertices, x):
 def search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks):
     """Moves the vertices of a large cluster until their equations hold; True when they do.
 
-    On failure x is as it was. `first` (v,) is scratch: -1 on entry and on return.
+    On failure x is as it was. `first` (v,) is scratch: -1 on entry and on return. Over 60 lines: kicks and
+    descents share the numbering, the random state and what is kept; a phase apart would take all of it.
     """
     n = columns(s, vertices, body_of, first)
     node_at, width, of_row = nodes_of(s, vertices, rows, first, n)
