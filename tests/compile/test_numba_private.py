@@ -102,7 +102,8 @@ def test_our_functions_have_our_level_and_others_keep_theirs(monkeypatch):
     """Others are compiled before, after, and by a thread that comes while ours is at it."""
     ours = kernel_of(lambda x: 2.0 * x)
     before, meanwhile, after = (numba.njit(theirs) for _ in range(3))
-    log, level, found = PassLog(monkeypatch), numba.config.OPT, []
+    log, level, found = PassLog(monkeypatch), type(numba.config.OPT)(2), []
+    monkeypatch.setattr(numba.config, "OPT", level)
     waiting = threading.Thread(target=lambda: found.append(log.of(meanwhile)))
 
     def begin_another() -> None:
