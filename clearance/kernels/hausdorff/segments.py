@@ -83,7 +83,7 @@ def _box_sq(boxes, node, x, y):
     return dx * dx + dy * dy
 
 
-@kernel
+@kernel(reference_counts=False)
 def nearest_segment(segments, x, y, hint, open_nodes):
     """The distance from (x, y) to the nearest segment, and its index; `hint` is tried first."""
     control, boxes, (nodes, gaps) = segments.control, segments.boxes, open_nodes
