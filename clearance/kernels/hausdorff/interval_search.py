@@ -171,7 +171,7 @@ def _place_of_bound(curves, interval, feet, share, state):
     return t0, feet.start
 
 
-@kernel
+@kernel(reference_counts=False)
 def examine(pair, aim, interval, state, work, heap, n_open):
     """Settles an interval of A or puts its parts into the queue.
 

@@ -17,7 +17,7 @@ from clearance.kernels.hausdorff.bracket import (
 )
 
 
-@kernel
+@kernel(reference_counts=False)
 def slide_from(curves, i, t, j, s):
     """The foot of A's point at (i, t) on piece `j` of B, followed from the parameter `s`: (s, distance)."""
     here = jet(curves.a, i, t)
@@ -27,7 +27,7 @@ def slide_from(curves, i, t, j, s):
     return s, hypotenuse(there.x - x, there.y - y)
 
 
-@kernel
+@kernel(reference_counts=False)
 def common_normal(curves, part, t, j, s):
     """A root (t, s) of system (12) near the given one, held to A's `part` and to [0, 1]: Newton's method.
 
@@ -55,7 +55,7 @@ def common_normal(curves, part, t, j, s):
     return t, s
 
 
-@kernel
+@kernel(reference_counts=False)
 def self_bisector(curves, i, t_one, t_two, j, s, k, r):
     """Where A between two parameters is equally far from two branches of B: system (13), regula falsi.
 

@@ -57,7 +57,7 @@ class Boxes(NamedTuple):
     room: np.ndarray
 
 
-@kernel
+@kernel(reference_counts=False)
 def _leave(pair, part, state, work):
     """Bounds an interval whose systems stay open: by its middle and extent, or side by side with B."""
     curves, i = pair.curves, part.piece
@@ -90,7 +90,7 @@ def _settle_normals(systems, part, table, level, n, boxes, state, work):
     return cost
 
 
-@kernel
+@kernel(reference_counts=False)
 def _pair_is_settled(systems, part, table, level, k, m, boxes, state, work):
     """Whether system (13) for two cells has no root in T, or one, which is then found; and what that cost.
 
