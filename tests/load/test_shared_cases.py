@@ -15,9 +15,10 @@ from clearance.load.mesh import mesh_from_bytes, triangles_from_bytes
 
 CASES = Path(__file__).resolve().parents[2].parent / "shared" / "cases"
 
-pytestmark = pytest.mark.skipif(
-    not CASES.is_dir(), reason="shared/cases is not beside the checkout"
-)
+pytestmark = [
+    pytest.mark.shared,
+    pytest.mark.skipif(not CASES.is_dir(), reason="shared/cases is not beside the checkout"),
+]
 
 # links measured, triangles of their meshes, obstacles, triangles of flat obstacles, steps
 EXPECTED = {

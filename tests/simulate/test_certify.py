@@ -15,6 +15,8 @@ from clearance.world.trajectory import Trajectory
 from tests.simulate.certified import assert_as_tight_as_asked, assert_never_above_samples
 
 SCENES = Path(__file__).parents[2] / "scenes"
+pytestmark = pytest.mark.shared
+
 SHARED = Path(__file__).parents[3] / "shared" / "cases"
 
 

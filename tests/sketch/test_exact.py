@@ -7,7 +7,7 @@ import pytest
 
 from clearance.kernels.sketch.graph.graph import DIRECTION
 from clearance.sketch import Sketch
-from scripts.bench.sketch import flipped, patch
+from scripts.bench.sketches.lattices import flipped, patch
 from tests.sketch.patterns import distances, irreducible, prism, shaken, truth
 
 SKETCHES = Path(__file__).parents[2] / "scenes" / "sketches"

@@ -7,7 +7,7 @@ import pytest
 from clearance.sketch.descent import Part, descend
 from clearance.sketch.execution import at_unit
 from clearance.sketch.folds import folds
-from scripts.bench.sketch import slivered
+from scripts.bench.sketches.lattices import slivered
 
 
 def checked(seed, n):
