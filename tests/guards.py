@@ -46,15 +46,10 @@ def guarded(marks: frozenset[str]) -> Iterator[None]:
 def _see(event: str, arguments: tuple) -> None:
     if _marks is None:
         return
-    if event in STARTS and not _marks & {"cold", "browser"} and not _decomposes(arguments):
+    if event in STARTS and not _marks & {"cold", "browser"}:
         _refuse(f"{event} without the mark cold or browser: {arguments[:2]}")
     elif event == "open" and "shared" not in _marks and _is_shared(arguments[0]):
         _refuse(f"{arguments[0]} is read without the mark shared")
-
-
-def _decomposes(arguments: tuple) -> bool:
-    """True for the process in which the package itself cuts concave bodies into convex ones."""
-    return any("coacd_process.py" in str(argument) for argument in arguments[:2])
 
 
 def _is_shared(path: object) -> bool:

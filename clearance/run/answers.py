@@ -28,7 +28,6 @@ from clearance.world.case import Unmeasured
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, worst_first
 from clearance.world.pairs import Pair, measured_pairs
-from clearance.world.plausibility import notices_of
 from clearance.world.reach import require_within_reach
 
 
@@ -164,7 +163,7 @@ def _notices(plan: Plan, certificate: Certificate | None) -> tuple[Notice, ...]:
     exact = question.method == "exact"
     measured = inside.notices(question.case, plan.motions, plan.pairs) if exact else ()
     proven = () if certificate is None else certificate.notices
-    return worst_first([*notices_of(question.case), *measured, *proven])
+    return worst_first([*question.case.notices, *measured, *proven])
 
 
 def _profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:

@@ -53,6 +53,7 @@ def test_facets_are_drawn_in_by_what_they_stand_out():
 
 @needs(boolean)
 @needs(decompose)
+@pytest.mark.cold
 def test_parts_of_an_l_hold_it_and_lie_in_it():
     body = l_prism()
     assert body.volume == L_VOLUME
@@ -68,6 +69,7 @@ def test_parts_of_an_l_hold_it_and_lie_in_it():
 
 @needs(boolean)
 @needs(decompose)
+@pytest.mark.cold
 def test_the_same_mesh_gives_the_same_parts():
     one, two = convex_parts(l_prism()), convex_parts(l_prism())
     assert [p.vertices.tolist() for p in one.outer] == [p.vertices.tolist() for p in two.outer]

@@ -112,6 +112,7 @@ def test_facets_are_told_and_bound_both_figures():
 
 
 @WITH_LIBRARIES
+@pytest.mark.cold
 def test_a_concave_body_is_left_by_its_hollow():
     """A box in the corner of an L leaves through the hollow, not through the hull."""
     body, peg = l_prism(), cl.box((0.4, 0.4, 0.4))
@@ -128,6 +129,7 @@ def test_a_concave_body_is_left_by_its_hollow():
 
 
 @WITH_LIBRARIES
+@pytest.mark.cold
 def test_touching_a_wall_of_a_hollow_is_hardly_deep():
     found = cl.contact(cl.box((0.5, 0.5, 0.5)), l_prism(), pose_a=at(1.25, 2.0, 0.5))
     assert found.penetration <= 1e-5 and found.volume == 0.0
@@ -143,6 +145,7 @@ def test_a_sheet_of_overlap_has_a_volume_of_its_area_times_its_depth(thin):
 
 
 @WITH_LIBRARIES
+@pytest.mark.cold
 def test_containment_in_a_concave_body():
     found = cl.contact(cl.box((0.4, 0.4, 0.4)), l_prism(), pose_a=at(0.5, 2.0, 0.5))
     assert found.volume == pytest.approx(0.064, rel=1e-9)
@@ -150,6 +153,7 @@ def test_containment_in_a_concave_body():
 
 
 @WITH_LIBRARIES
+@pytest.mark.cold
 def test_a_rod_across_a_pipe_overlaps_its_two_walls_only():
     tube, rod = cl.pipe(inner_radius=0.05, outer_radius=0.06, length=0.5), cl.box((0.3, 0.02, 0.02))
     found = cl.contact(rod, tube)
@@ -159,6 +163,7 @@ def test_a_rod_across_a_pipe_overlaps_its_two_walls_only():
 
 
 @WITH_LIBRARIES
+@pytest.mark.cold
 def test_two_concave_bodies_keep_every_promise():
     random = np.random.default_rng(11)
     body = l_prism()

@@ -59,6 +59,7 @@ def test_the_thinnest_way_comes_first_and_pieces_count_by_themselves():
 
 @needs_manifold
 @pytest.mark.parametrize("seed", range(12))
+@pytest.mark.cold
 def test_rough_bounds_hold_those_of_cut_bodies_apart(seed):
     """Both enclose the same depth, so that neither's lower bound is above the other's upper one."""
     a, b, pose = channel(), channel(), posed(seed, 0.5)
@@ -140,6 +141,7 @@ def test_bounds_alone_are_bounds(seed):
     assert cl.distance(a, b, pose_a=moved).distance > 0.0
 
 
+@pytest.mark.cold
 def test_notes_call_only_the_depth_a_bound_where_volumes_are_exact():
     """A body that is not cut has the volumes of its own mesh."""
     body = channel()

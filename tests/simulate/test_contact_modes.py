@@ -79,6 +79,7 @@ def test_the_verdict_works_out_nothing(asked, shape):
 
 
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
+@pytest.mark.cold
 def test_what_is_worked_out_is_none_the_deepest_moments_or_all(asked, shape):
     found = {}
     for how, n_asked in (("none", 0), ("events", 2), ("every", 5)):
@@ -94,6 +95,7 @@ def test_what_is_worked_out_is_none_the_deepest_moments_or_all(asked, shape):
 
 
 @pytest.mark.parametrize("shape", [wall(), channel()], ids=["convex", "concave"])
+@pytest.mark.cold
 def test_the_other_rows_are_worked_out_when_they_are_looked_at(asked, shape):
     run = cl.check(sliding(shape), contact="none")
     row = run.record.contacts[1]
@@ -132,6 +134,7 @@ def test_the_deepest_moment_of_the_shelf_is_that_of_all_its_steps():
     assert events.known.penetration == pytest.approx(every.known.penetration, rel=1e-3)
 
 
+@pytest.mark.cold
 def test_beyond_the_budget_there_are_bounds_and_it_is_said(monkeypatch, asked):
     monkeypatch.setattr(contact_budget, "WORK", int(1.5 * contact_budget.ROW))
     exact = [row.known for row in cl.check(sliding(channel()), contact="every").record.contacts]

@@ -166,6 +166,7 @@ def test_the_region_of_two_arms_is_what_pairs_of_pieces_share():
 
 
 @WITH_MANIFOLD
+@pytest.mark.cold
 def test_concave_links_can_be_taken_by_their_parts():
     """An L that slides over a cube's way: its hull meets the cube, its parts do not."""
     rim = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 3), (0, 3)]
