@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, NotFinite, at
+from clearance.errors import BadInput, BadShape, MissingKey, NotFinite, at
 from clearance.geometry.pose import pose_from_rpy
 from clearance.geometry.shapes import SHAPES, Measure
 from clearance.load.plausibility import odd_angles

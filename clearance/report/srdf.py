@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 from xml.sax.saxutils import quoteattr
@@ -53,7 +53,7 @@ def _seriousness(pair: ExcusedPair) -> int:
     return order.index(pair.finding.status) + len(order) * (pair.reason != NEVER)
 
 
-def _told(found: PairFinding, kinds: dict[str, str]) -> str:
+def _told(found: PairFinding, kinds: Mapping[str, str]) -> str:
     where = ", ".join(
         f"{name} {joint_value(kinds[name], value)}" for name, value in found.positions.items()
     )

@@ -5,9 +5,9 @@ Two lower bounds, in the frame of the first link. No point of the second link mo
     sum over joints k of half_k arm_k,
 
 arm_k how far the link gets from the axis of joint k (Lipschitz bound). Where both links are seen apart along the
-direction u of their nearest points, sliding past each other costs nothing in the first order: a point x of the second
-link keeps u.x - sum |half_k u.v_k(x)| - rest, with v_k the velocity by joint k. That is concave in x, so the corners of
-the link's hull decide; rest is of second order (source: as in `kernels.motion.joint_motion_bound`).
+direction u of their nearest points, sliding past each other costs nothing in the first order: a point x of the
+second link keeps u.x - sum |half_k u.v_k(x)| - rest, with v_k the velocity by joint k. It is concave in x, so the
+corners of the link's hull decide; rest is of second order (source: `kernels.motion.joint_motion_bound`).
 
 Not for: which boxes are asked (`pair_audit`).
 """
@@ -135,7 +135,7 @@ class JointBox:
         return Motion(share, rest)
 
     def seen_apart(self, half: np.ndarray, seen: Seen) -> np.ndarray:
-        """(n,) [m] how far apart both stay along their direction over boxes of half widths (n, k), but for the rest."""
+        """(n,) [m] how far apart both stay along their direction over boxes of half widths (n, k), less `rest`."""
         u = seen.directions
         corners = _moved(seen.frames[:, -1], self.corners_b)
         velocities = np.zeros((half.shape[1], *corners.shape[:2]))

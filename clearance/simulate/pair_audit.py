@@ -1,9 +1,9 @@
 """Whether two links of one robot can ever meet within their joints' limits, by branch and bound.
 
-Poses all over the joints' ranges are looked at first, and the nearest followed downhill: most pairs that can meet are
-seen to. Of the others, a box of positions that no bound keeps apart is halved, across the joint that moves most, until
-all are proven apart, or one is so small that the links come within `GAP` there. Not for: motions (`certify`), the
-bounds (`joint_box`), and which pairs are asked (`world.self_pairs`).
+Poses all over the joints' ranges are looked at first, and the nearest followed downhill: most pairs that can
+meet are seen to. Of the others, a box of positions that no bound keeps apart is halved, across the joint that
+moves most, until all are proven apart, or one is so small that the links come within `GAP` there. Not for:
+motions (`certify`), the bounds (`joint_box`), and which pairs are asked (`world.self_pairs`).
 """
 
 from __future__ import annotations
@@ -102,10 +102,11 @@ class _Search:
 
     def answer(self, most_boxes: int) -> tuple[Status, float, str]:
         """What is known of the pair, [m] a proven lower bound, and why it is undecided."""
-        whole = _whole(self.chain)
-        if not np.isfinite(whole.half).all():
-            self._look(np.zeros((1, len(self.chain.masters))))
+        ranges = _ranges(self.chain)
+        if not np.isfinite(ranges).all():
+            self._look(np.zeros((1, len(ranges))))
             return Status.UNDECIDED, 0.0, "a joint between them slides without limits"
+        whole = Boxes(ranges.mean(axis=1)[None], 0.5 * np.ptp(ranges, axis=1)[None])
         self._look_around(whole)
         lower_bound, why = self._proven(whole, most_boxes) if self.least > 0.0 else (0.0, "")
         if self.least <= 0.0:
@@ -114,7 +115,7 @@ class _Search:
             why = "a surface is open, so that inside and outside cannot be told"
         if why:
             return Status.UNDECIDED, 0.0, why
-        return Status.APART, min(lower_bound, self.least), ""
+        return Status.APART, float(min(lower_bound, self.least)), ""
 
     def _look(self, positions: np.ndarray) -> Seen:
         """Measures the pair at n positions (n, k)."""
@@ -188,10 +189,9 @@ class _Search:
         return bounds, motion
 
 
-def _whole(chain: KinematicChain) -> Boxes:
-    """The one box of all positions that the limits allow; a turn of a joint that turns without limits."""
-    ranges = np.array([_range(joint) for joint in chain.masters]).reshape(-1, 2)
-    return Boxes(ranges.mean(axis=1)[None], 0.5 * (ranges[:, 1] - ranges[:, 0])[None])
+def _ranges(chain: KinematicChain) -> np.ndarray:
+    """(k, 2) from where to where each free joint can be; a turn where it turns without limits."""
+    return np.array([_range(joint) for joint in chain.masters]).reshape(-1, 2)
 
 
 def _range(joint: Joint) -> tuple[float, float]:
