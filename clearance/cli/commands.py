@@ -8,6 +8,7 @@ from clearance import __version__
 from clearance.cli.check import check
 from clearance.cli.profile import profile
 from clearance.cli.schema import schema
+from clearance.cli.srdf import srdf
 from clearance.cli.view import view
 from clearance.cli.workspace import workspace
 
@@ -21,5 +22,6 @@ def clearance() -> None:
 clearance.add_command(check)
 clearance.add_command(profile)
 clearance.add_command(schema)
+clearance.add_command(srdf)
 clearance.add_command(view)
 clearance.add_command(workspace)

@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, NotFinite, at
+from clearance.errors import BadInput, BadShape, MissingKey, NotFinite, at
 from clearance.geometry.pose import pose_from_rpy
 from clearance.geometry.shapes import SHAPES, Measure
 from clearance.load.plausibility import odd_angles
+from clearance.load.robot_element import robot_element
 from clearance.world.names import checked_name, require_own_names
 
 if TYPE_CHECKING:
@@ -66,7 +67,7 @@ def parse_document(data: bytes) -> Element:
         BadSyntax: not XML, not URDF, or a xacro file. MissingKey, BadShape, NotFinite,
             DuplicateName, BadInput: an element that cannot be used, with its place in the document.
     """
-    root = _root(data)
+    root = robot_element(data, "a URDF file")
     checked_name(root.get("name") or "")
     _reduce(root)
     for kind in ("link", "joint"):
@@ -116,41 +117,6 @@ def _origin(origin: Element) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Place [m], and roll, pitch, yaw [rad]."""
     zeros = (0.0, 0.0, 0.0)
     return numbers(origin, "xyz", zeros), numbers(origin, "rpy", zeros)
-
-
-def _root(data: bytes) -> Element:
-    from lxml import etree
-
-    parser = etree.XMLParser(remove_comments=True, remove_pis=True, resolve_entities=False)
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as error:
-        raise BadSyntax(f"not XML: {error.msg}", valid="a URDF file is needed") from None
-    if etree.QName(root).localname != "robot":
-        raise BadSyntax(
-            f"the root element is <{etree.QName(root).localname}>", valid="<robot> is needed"
-        )
-    entity = next(root.iter(etree.Entity), None)
-    if entity is not None:
-        raise BadSyntax(
-            f"{entity.text} stands for something among the elements",
-            valid="write out what it stands for",
-        )
-    if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter()):
-        raise BadSyntax(
-            "this is a xacro file", valid="turn it into URDF with the xacro command first"
-        )
-    _take_out_of(etree.QName(root).namespace, root)
-    return root
-
-
-def _take_out_of(namespace: str | None, root: Element) -> None:
-    """Gives the elements of a namespace the names that they have in URDF, which has none of its own."""
-    if namespace is None:
-        return
-    prefix = f"{{{namespace}}}"
-    for element in root.iter():
-        element.tag = element.tag.removeprefix(prefix)
 
 
 def _reduce(element: Element) -> None:

@@ -1,0 +1,150 @@
+"""`clearance srdf`: which links of a robot may touch; `audit` a file, or `make` one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import click
+
+from clearance.cli import ExitCode
+from clearance.cli.options import OutputPath
+
+if TYPE_CHECKING:
+    from clearance.world.robot import Robot
+
+_Command = TypeVar("_Command", bound=Callable)
+
+
+@click.group()
+def srdf() -> None:
+    """Pairs of links that are excused from self-clearance, held against the robot's geometry."""
+
+
+def _robot_options(command: _Command) -> _Command:
+    """How a URDF file is read, as the keys of a case's `robot` say it."""
+    for option in (
+        click.option(
+            "--collada-up-axis",
+            type=click.Choice(["ros", "file"]),
+            default="ros",
+            show_default=True,
+            help="Whether COLLADA meshes are turned as their files say.",
+        ),
+        click.option(
+            "--geometry",
+            type=click.Choice(["collision", "visual", "collision_or_visual"]),
+            default="collision",
+            show_default=True,
+            help="Which shapes of the links are looked at.",
+        ),
+        click.option(
+            "--package-dir",
+            "package_dirs",
+            metavar="DIR",
+            multiple=True,
+            type=click.Path(path_type=Path),
+            help="Where package:// is looked for; may be given again.",
+        ),
+    ):
+        command = option(command)
+    return command
+
+
+@srdf.command()
+@click.argument("urdf", metavar="ROBOT.urdf", type=click.Path(path_type=Path))
+@click.argument("srdf_file", metavar="ROBOT.srdf", type=click.Path(path_type=Path))
+@_robot_options
+@click.option("--json", "as_json", is_flag=True, help="Print the findings as one JSON object only.")
+def audit(
+    urdf: Path,
+    srdf_file: Path,
+    package_dirs: tuple[Path, ...],
+    geometry: str,
+    collada_up_axis: str,
+    as_json: bool,
+) -> int:
+    """Whether the pairs that ROBOT.srdf excuses can ever meet within the joint limits of ROBOT.urdf.
+
+    Each is proven apart, found to meet (with the joint positions), or left undecided. Exit code: 0
+    all pairs excused as Never are proven apart, 1 one of them is not, 2 bad input.
+    """
+    from clearance.cli.progress import shown_progress
+    from clearance.load.srdf import load_srdf
+    from clearance.report import json_text
+    from clearance.report.srdf import audit_headline, audit_rows, audit_summary
+    from clearance.simulate.srdf_audit import audit as audited
+
+    robot = _robot(urdf, package_dirs, geometry, collada_up_axis)
+    matrix = load_srdf(srdf_file, robot)
+    with shown_progress(as_json, ["auditing"]) as progress:
+        pairs = audited(robot, matrix, progress)
+    if as_json:
+        click.echo(json_text(audit_summary(pairs)), nl=False)
+    else:
+        click.echo(audit_headline(pairs))
+        _print_rows(list(audit_rows(robot, pairs)))
+        _print_notes([*matrix.notes, *robot.notes])
+    wrong = any(pair.refuted or pair.unproven for pair in pairs)
+    return ExitCode.VIOLATED if wrong else ExitCode.CLEAR
+
+
+@srdf.command()
+@click.argument("urdf", metavar="ROBOT.urdf", type=click.Path(path_type=Path))
+@_robot_options
+@click.option("--out", metavar="FILE", type=OutputPath(), help="Write it here, not on stdout.")
+def make(
+    urdf: Path,
+    package_dirs: tuple[Path, ...],
+    geometry: str,
+    collada_up_axis: str,
+    out: Path | None,
+) -> int:
+    """An SRDF for ROBOT.urdf: neighbours, and pairs that are proven never to meet, are excused.
+
+    What can meet, and what is undecided, is told in comments. Exit code: 0, or 2 for bad input.
+    """
+    from clearance.cli.places import refuse_inputs, require_file_place
+    from clearance.cli.progress import shown_progress
+    from clearance.errors import unwritable
+    from clearance.report.srdf import proposal_headline, proposed_srdf
+    from clearance.simulate.srdf_audit import propose
+
+    require_file_place(out)
+    if out is not None:
+        refuse_inputs([out], [urdf])
+    robot = _robot(urdf, package_dirs, geometry, collada_up_axis)
+    with shown_progress(False, ["proving"]) as progress:
+        pairs = propose(robot, progress)
+    text = proposed_srdf(robot, pairs)
+    if out is None:
+        click.echo(text, nl=False)
+    else:
+        with unwritable(out):
+            out.write_text(text, encoding="utf-8")
+        click.echo(f"written {out}")
+    click.echo(proposal_headline(pairs), err=True)
+    return ExitCode.CLEAR
+
+
+def _robot(urdf: Path, package_dirs: tuple[Path, ...], geometry: str, up_axis: str) -> Robot:
+    from clearance.load.urdf import load_urdf
+
+    return load_urdf(
+        urdf,
+        package_dirs=package_dirs,
+        geometry=geometry,  # type: ignore[arg-type]  # one of the choices
+        collada_up_axis=up_axis,  # type: ignore[arg-type]
+    )
+
+
+def _print_rows(rows: list[tuple[str, str, str]]) -> None:
+    widths = [max((len(row[i]) for row in rows), default=0) for i in range(2)]
+    for pair, reason, finding in rows:
+        click.echo(f"  {pair:{widths[0]}}  {reason:{widths[1]}}  {finding}")
+
+
+def _print_notes(notes: list[str]) -> None:
+    for note in notes:
+        click.echo(f"note: {note}")

@@ -1,0 +1,96 @@
+"""What an audit of an SRDF found, as lines, as JSON, and as an SRDF to use. Not for: finding it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+from clearance.report.wording import count, joint_value, mm
+from clearance.simulate.pair_audit import PairFinding, Status
+from clearance.simulate.srdf_audit import ExcusedPair, ProposedPair
+from clearance.world.collision_matrix import ADJACENT, NEVER
+from clearance.world.robot import Robot
+
+
+def audit_summary(pairs: Sequence[ExcusedPair]) -> dict[str, Any]:
+    """The findings as JSON-ready values: lengths in metres, positions in radians or metres."""
+    return {
+        "never_refuted": sum(pair.refuted for pair in pairs),
+        "never_unproven": sum(pair.unproven for pair in pairs),
+        "pairs": [
+            {"reason": pair.reason, **asdict(pair.finding), "status": str(pair.finding.status)}
+            for pair in pairs
+        ],
+    }
+
+
+def audit_headline(pairs: Sequence[ExcusedPair]) -> str:
+    """What became of those that are said never to meet."""
+    never = [pair for pair in pairs if pair.reason == NEVER]
+    if not never:
+        return f"no pair is excused as {NEVER}; {count(len(pairs), 'excused pair')} looked at"
+    parts = [
+        (sum(pair.refuted for pair in never), "can meet"),
+        (sum(pair.unproven for pair in never), "undecided"),
+        (sum(pair.finding.status is Status.APART for pair in never), "proven apart"),
+    ]
+    told = ", ".join(f"{n} {what}" for n, what in parts if n)
+    return f"of {count(len(never), 'pair')} excused as {NEVER}: {told}"
+
+
+def audit_rows(robot: Robot, pairs: Sequence[ExcusedPair]) -> Iterator[tuple[str, str, str]]:
+    """(pair, reason, finding) of each, what is refuted first, then what is undecided."""
+    kinds = {joint.name: joint.kind for joint in robot.joints}
+    for pair in sorted(pairs, key=_seriousness):
+        found = pair.finding
+        yield f"{found.link_a} - {found.link_b}", pair.reason, _told(found, kinds)
+
+
+def _seriousness(pair: ExcusedPair) -> int:
+    order = [Status.MEETS, Status.UNDECIDED, Status.APART]
+    return order.index(pair.finding.status) + len(order) * (pair.reason != NEVER)
+
+
+def _told(found: PairFinding, kinds: Mapping[str, str]) -> str:
+    where = ", ".join(
+        f"{name} {joint_value(kinds[name], value)}" for name, value in found.positions.items()
+    )
+    if found.status is Status.APART:
+        return f"proven apart: at least {mm(found.lower_bound)} mm; {mm(found.least)} mm occurs"
+    at = f" at {where}" if where else ""
+    if found.status is Status.MEETS:
+        return f"can meet{at}"
+    return f"undecided: {found.why}; {mm(found.least)} mm{at}"
+
+
+def proposed_srdf(robot: Robot, pairs: Sequence[ProposedPair]) -> str:
+    """An SRDF with a row for each pair that can be excused, and a comment on each that cannot and why.
+
+    Rows of reason `Never` are proven, within the joint limits of the URDF; those of `Adjacent` are neighbours,
+    which are not looked at.
+    """
+    kinds = {joint.name: joint.kind for joint in robot.joints}
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>', f"<robot name={quoteattr(robot.name)}>"]
+    lines.append("  <!-- Never: proven for all positions within the joint limits. -->")
+    lines.append("  <!-- Adjacent: neighbours along the tree of joints; not looked at. -->")
+    for each in pairs:
+        ends = f"link1={quoteattr(each.pair.link_a)} link2={quoteattr(each.pair.link_b)}"
+        if each.reason is not None:
+            lines.append(f'  <disable_collisions {ends} reason="{each.reason}"/>')
+    for each in pairs:
+        if each.reason is None and each.finding is not None:
+            told = f"{each.pair.link_a} - {each.pair.link_b}: {_told(each.finding, kinds)}"
+            lines.append(f"  <!-- measured: {told.replace('--', '- -')} -->")
+    return "\n".join([*lines, "</robot>", ""])
+
+
+def proposal_headline(pairs: Sequence[ProposedPair]) -> str:
+    """How many pairs are excused, why, and how many are left to measure."""
+    n_never = sum(each.reason == NEVER for each in pairs)
+    n_adjacent = sum(each.reason == ADJACENT for each in pairs)
+    left = [each.finding.status for each in pairs if each.reason is None and each.finding]
+    n_meet, n_open = left.count(Status.MEETS), left.count(Status.UNDECIDED)
+    told = f"{n_never} proven never to meet, {n_adjacent} adjacent (not looked at)"
+    return f"{count(len(pairs), 'pair')}: {told}; to be measured: {n_meet} can meet, {n_open} undecided"

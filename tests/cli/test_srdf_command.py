@@ -1,0 +1,116 @@
+"""`clearance srdf` from outside: what it tells, proposes, refuses, and its exit codes."""
+
+import json
+
+import pytest
+
+from clearance.cli import run
+from clearance.load.srdf import load_srdf
+from clearance.load.urdf import load_urdf
+
+
+def _box(name, x, size):
+    shape = f'<origin xyz="{x} 0 0"/><geometry><box size="{size}"/></geometry>'
+    return f'<link name="{name}"><collision>{shape}</collision></link>'
+
+
+def _turn(name, parent, child, limit):
+    ends = f'<parent link="{parent}"/><child link="{child}"/><axis xyz="0 0 1"/>'
+    limits = f'<limit lower="-{limit}" upper="{limit}" effort="1" velocity="1"/>'
+    return f'<joint name="{name}" type="revolute">{ends}{limits}</joint>'
+
+
+URDF = f"""<robot name="arm">
+  {_box("base", 1, "0.2 0.2 1")}{_box("lower", 0.2, "0.4 0.1 0.1")}<link name="flange"/>
+  {_box("upper", "{upper}", "0.3 0.1 0.1")}
+  {_turn("shoulder", "base", "lower", 3)}{_turn("elbow", "flange", "upper", 2)}
+  <joint name="bolts" type="fixed"><parent link="lower"/><child link="flange"/>
+    <origin xyz="0.4 0 0"/></joint>
+</robot>"""
+
+SRDF = """<robot name="arm">
+  <disable_collisions link1="base" link2="lower" reason="Adjacent"/>
+  <disable_collisions link1="lower" link2="upper" reason="Adjacent"/>
+  <disable_collisions link1="base" link2="upper" reason="Never"/>
+</robot>"""
+
+
+@pytest.fixture
+def robot(tmp_path):
+    def write(upper=0.15, srdf=SRDF):
+        (tmp_path / "arm.urdf").write_text(URDF.format(upper=upper))
+        (tmp_path / "arm.srdf").write_text(srdf)
+        return str(tmp_path / "arm.urdf"), str(tmp_path / "arm.srdf")
+
+    return write
+
+
+def test_pairs_that_never_meet_are_proven(robot, capsys):
+    assert run(["srdf", "audit", *robot()]) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "of 1 pair excused as Never: 1 proven apart"
+    assert told[1].startswith("  base - upper   Never     proven apart: at least ")
+    assert any(line.startswith("  lower - upper  Adjacent  can meet") for line in told)
+
+
+def test_a_pair_that_can_meet_is_told_first_with_its_pose(robot, capsys):
+    assert run(["srdf", "audit", *robot(upper=0.4)]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "of 1 pair excused as Never: 1 can meet"
+    assert told[1].startswith("  base - upper   Never     can meet at shoulder ")
+    assert ", elbow " in told[1] and told[1].endswith("°")
+
+
+def test_json_holds_the_same(robot, capsys):
+    assert run(["srdf", "audit", *robot(upper=0.4), "--json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    assert found["never_refuted"] == 1 and found["never_unproven"] == 0
+    (worst,) = [pair for pair in found["pairs"] if pair["reason"] == "Never"]
+    assert worst["status"] == "meets" and worst["least"] == 0.0
+    assert set(worst["positions"]) == {"shoulder", "elbow"}
+
+
+def test_a_proposal_excuses_what_is_proven_and_reads_back(robot, tmp_path, capsys):
+    urdf, _ = robot()
+    out = tmp_path / "made.srdf"
+    assert run(["srdf", "make", urdf, "--out", str(out)]) == 0
+    told = capsys.readouterr()
+    assert told.err.strip() == (
+        "3 pairs: 1 proven never to meet, 2 adjacent (not looked at); "
+        "to be measured: 0 can meet, 0 undecided"
+    )
+    matrix = load_srdf(out, load_urdf(urdf))
+    assert matrix.reason("base", "upper") == "Never"
+    assert matrix.reason("upper", "lower") == "Adjacent"
+    assert run(["srdf", "audit", urdf, str(out)]) == 0
+
+
+def test_a_proposal_leaves_what_can_meet_to_be_measured(robot, tmp_path, capsys):
+    urdf, _ = robot(upper=0.4)
+    assert run(["srdf", "make", urdf]) == 0
+    told = capsys.readouterr().out
+    assert "<!-- measured: base - upper: can meet at shoulder " in told
+    (tmp_path / "made.srdf").write_text(told)
+    assert load_srdf(tmp_path / "made.srdf", load_urdf(urdf)).reason("base", "upper") is None
+
+
+def test_the_same_robot_gives_the_same_bytes(robot, capsys):
+    urdf, srdf = robot(upper=0.4)
+    told = []
+    for _ in range(2):
+        run(["srdf", "make", urdf])
+        run(["srdf", "audit", urdf, srdf])
+        told.append(capsys.readouterr().out)
+    assert told[0] == told[1]
+
+
+def test_bad_input_is_one_line_and_2(robot, tmp_path, capsys):
+    urdf, srdf = robot(srdf=SRDF.replace("base", "torso").replace("lower", "arm"))
+    assert run(["srdf", "audit", urdf, srdf]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: arm.srdf: none of its 3 rows speaks of links of robot 'arm'")
+    assert run(["srdf", "audit", urdf, urdf]) == 2
+    assert "this is a URDF file" in capsys.readouterr().err
+    assert run(["srdf", "make", urdf, "--out", urdf]) == 2
+    assert "would overwrite" in capsys.readouterr().err
+    assert (tmp_path / "arm.urdf").read_text() == URDF.format(upper=0.15)

@@ -1,0 +1,258 @@
+"""Whether two links can ever meet: against geometry known by hand, dense samples and the exact oracle."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.shapes import box
+from clearance.query.distance import distance
+from clearance.query.pair_query import Query
+from clearance.simulate.joint_box import JointBox, Seen
+from clearance.simulate.pair_audit import GAP, Status, audit_pair
+from clearance.world.body import Body
+from clearance.world.kinematic_chain import chain_between
+from clearance.world.robot import Joint, JointKind, Mimic, Robot
+from tests import oracle
+from tests.examples import examples
+from tests.made_cases import random_robot
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+def shift(x=0.0, y=0.0, z=0.0):
+    pose = np.eye(4)
+    pose[:3, 3] = x, y, z
+    return pose
+
+
+def turning(parent, child, at, lower=-math.pi, upper=math.pi, axis=Z, **options):
+    kind = options.pop("kind", JointKind.REVOLUTE)
+    return Joint(parent + child, kind, parent, child, at, axis, lower, upper, **options)
+
+
+def robot_of(bodies, *joints):
+    return Robot("r", tuple("abcdefgh"[: len(joints) + 1]), joints, tuple(bodies))
+
+
+def arm(reach, half_width=0.05):
+    """A bar of a length along x from its axis."""
+    return box((reach, 2 * half_width, 0.1)).transformed(shift(reach / 2))
+
+
+POST = box((0.2, 0.2, 1.0)).transformed(shift(1.0))
+"""Its near face is at x = 0.9, one metre wide of the axis of link a."""
+
+
+@pytest.mark.parametrize("reach", [0.5, 0.85, 0.895])
+def test_an_arm_that_is_too_short_is_proven_apart(reach):
+    robot = robot_of([Body("a", POST), Body("b", arm(reach))], turning("a", "b", np.eye(4)))
+    found = audit_pair(robot, "a", "b")
+    least = 0.9 - math.hypot(reach, 0.05) if math.atan2(0.05, reach) < 0.1 else 0.9 - reach
+    assert found.status is Status.APART
+    assert 0.25 * found.least <= found.lower_bound + 1e-9 and found.lower_bound <= least + 1e-9
+    assert found.least >= 0.9 - math.hypot(reach, 0.05) - 1e-12
+
+
+def test_an_arm_that_is_long_enough_is_seen_to_meet():
+    robot = robot_of([Body("a", POST), Body("b", arm(0.91))], turning("a", "b", np.eye(4)))
+    found = audit_pair(robot, "a", "b")
+    assert found.status is Status.MEETS and found.least == found.lower_bound == 0.0
+    assert abs(found.positions["ab"]) < 0.2
+
+
+def test_limits_keep_apart_what_would_meet():
+    body = [Body("a", POST), Body("b", arm(0.95))]
+    robot = robot_of(body, turning("a", "b", np.eye(4), lower=0.5, upper=3.0))
+    assert audit_pair(robot, "a", "b").status is Status.APART
+    robot = robot_of(body, turning("a", "b", np.eye(4), lower=0.5, upper=2 * math.pi))
+    assert audit_pair(robot, "a", "b").status is Status.MEETS
+
+
+def test_a_narrow_meeting_between_the_samples_is_found():
+    """A pin through a slot of 0.2 mrad: no sample hits it, the halving does."""
+    pin = box((1e-4, 1e-4, 0.1)).transformed(shift(1.0))
+    robot = robot_of(
+        [Body("a", pin), Body("b", pin)],
+        turning("a", "b", np.eye(4), lower=-3.0, upper=2.9),
+    )
+    assert audit_pair(robot, "a", "b").status is Status.MEETS
+
+
+def disc(radius, height, n=64):
+    angles = 2 * np.pi * np.arange(n) / n
+    ring = np.stack([radius * np.cos(angles), radius * np.sin(angles)], axis=1)
+    vertices = np.concatenate([np.c_[ring, np.full(n, z)] for z in (0.0, height)])
+    sides = [(i, (i + 1) % n, n + (i + 1) % n, n + i) for i in range(n)]
+    return Polyhedron(vertices, [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
+
+
+@pytest.mark.parametrize("gap", [2e-4, 1e-3])
+def test_faces_that_slide_past_each_other_at_a_constant_gap_are_proven(gap):
+    robot = robot_of(
+        [Body("a", disc(0.2, 0.05)), Body("b", disc(0.2, 0.05))],
+        turning("a", "b", shift(z=0.05 + gap)),
+    )
+    found = audit_pair(robot, "a", "b")
+    assert found.status is Status.APART and found.least == pytest.approx(gap, abs=1e-12)
+    assert 0.25 * gap <= found.lower_bound <= gap
+    n_by_length = 2 * math.pi * 0.2 / gap  # boxes, if sliding counted as coming nearer
+    assert found.n_boxes < 0.5 * n_by_length
+
+
+def test_a_gap_below_the_resolution_is_undecided_and_told():
+    robot = robot_of(
+        [Body("a", disc(0.2, 0.05)), Body("b", disc(0.2, 0.05))],
+        turning("a", "b", shift(z=0.05 + 0.4 * GAP)),
+    )
+    found = audit_pair(robot, "a", "b")
+    assert found.status is Status.UNDECIDED and found.lower_bound == 0.0
+    assert found.why == "they come within 0.1 mm of each other"
+    assert 0.0 < found.least < GAP
+
+
+def test_the_budget_is_told():
+    robot = robot_of(
+        [Body("a", POST), Body("b", arm(0.45)), Body("c", arm(0.445))],
+        turning("a", "b", np.eye(4)), turning("b", "c", shift(0.45)),
+    )  # fmt: skip
+    found = audit_pair(robot, "a", "c", most_boxes=10)
+    assert found.status is Status.UNDECIDED and found.why.startswith("not settled by ")
+    assert found.least > 0.0
+
+
+def test_links_that_nothing_moves_are_looked_at_once():
+    apart = robot_of(
+        [Body("a", POST), Body("b", arm(0.5))], turning("a", "b", np.eye(4), kind=JointKind.FIXED)
+    )
+    found = audit_pair(apart, "a", "b")
+    assert (found.status, found.n_boxes, found.positions) == (Status.APART, 1, {})
+    assert found.lower_bound == pytest.approx(0.4, abs=1e-6) and found.lower_bound <= 0.4
+    assert (
+        audit_pair(replace(apart, bodies=(Body("a", POST), Body("b", POST))), "a", "b").status
+        is Status.MEETS
+    )
+
+
+def test_a_joint_that_slides_without_limits_is_said():
+    robot = robot_of(
+        [Body("a", POST), Body("b", arm(0.5))],
+        turning("a", "b", np.eye(4), -np.inf, np.inf, kind=JointKind.PRISMATIC),
+    )
+    found = audit_pair(robot, "a", "b")
+    assert found.status is Status.UNDECIDED and "slides without limits" in found.why
+
+
+def test_a_joint_that_turns_without_limits_is_looked_at_all_round():
+    far_round = box((0.2, 0.2, 1.0)).transformed(shift(-1.0))
+    robot = robot_of(
+        [Body("a", far_round), Body("b", arm(0.95))],
+        turning("a", "b", np.eye(4), -np.inf, np.inf, kind=JointKind.CONTINUOUS),
+    )
+    assert audit_pair(robot, "a", "b").status is Status.MEETS
+
+
+def test_joints_that_follow_move_with_their_master():
+    """Two fingers that open together never meet, though each alone could reach the other."""
+    finger = box((0.02, 0.02, 0.1))
+    left = turning(
+        "a", "b", shift(0.02), 0.0, 0.04, np.array([1.0, 0.0, 0.0]), kind=JointKind.PRISMATIC
+    )
+    right = turning(
+        "a", "c", shift(-0.02), 0.0, 0.04, np.array([-1.0, 0.0, 0.0]), kind=JointKind.PRISMATIC
+    )
+    shapes = [Body("b", finger), Body("c", finger)]
+    found = audit_pair(robot_of(shapes, left, replace(right, mimic=Mimic("ab"))), "b", "c")
+    assert found.status is Status.APART and found.lower_bound == pytest.approx(0.02, abs=0.016)
+    closing = replace(right, mimic=Mimic("ab", -1.0, 0.0))
+    assert set(audit_pair(robot_of(shapes, left, closing), "b", "c").positions) == {"ab"}
+
+
+def test_an_open_surface_is_never_proven_apart():
+    shell = disc(2.0, 4.0).transformed(shift(z=-2.0))
+    holed = Polyhedron(shell.vertices, shell.triangles()[:-16])  # a stripe of its side is missing
+    robot = robot_of(
+        [Body("a", holed), Body("b", arm(0.5))],
+        turning("a", "b", np.eye(4)),
+    )
+    found = audit_pair(robot, "a", "b")
+    assert found.status is Status.UNDECIDED and "a surface is open" in found.why
+
+
+def random_pair(rng, n_joints):
+    """A robot with boxes on its first and its last link, and limits to all joints."""
+    robot = random_robot(rng, n_joints, mimics=0.2)
+    joints = []
+    for joint in robot.joints:
+        low = rng.uniform(-1.5, 1.5)
+        joints.append(replace(joint, lower=low, upper=low + rng.uniform(0.0, 1.5)))
+    links = robot.link_names[0], robot.link_names[-1]
+    bodies = tuple(Body(link, box(rng.uniform(0.05, 0.4, 3))) for link in links)
+    return replace(robot, joints=tuple(joints), bodies=bodies), *links
+
+
+def within_limits(rng, chain, n):
+    low = np.array([joint.lower for joint in chain.masters])
+    high = np.array([joint.upper for joint in chain.masters])
+    low, high = (
+        np.where(np.isfinite(high - low), low, -math.pi),
+        np.where(np.isfinite(high - low), high, math.pi),
+    )
+    return low + (high - low) * rng.random((n, len(low)))
+
+
+@examples(60)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 3))
+def test_findings_hold_against_samples_and_the_oracle(seed, n_joints):
+    rng = np.random.default_rng(seed)
+    robot, a, b = random_pair(rng, n_joints)
+    found = audit_pair(robot, a, b, most_boxes=20_000)
+    chain = chain_between(robot, a, b)
+    shapes = {body.name: body.shape for body in robot.bodies}
+    poses = chain.frames(within_limits(rng, chain, 1000))[:, -1]
+    sampled = Query(shapes[a], shapes[b]).distances(None, poses).distances.min()
+    if found.status is Status.APART:
+        assert found.lower_bound <= sampled and 0.0 < found.lower_bound <= found.least
+    at = np.array([[found.positions[joint.name] for joint in chain.masters]])
+    pose = chain.frames(at)[0, -1]
+    exact = oracle.solid_distance_sq(
+        shapes[a].vertices,
+        shapes[a].triangles(),
+        shapes[b].vertices,
+        shapes[b].triangles(),
+        None,
+        pose,
+    )
+    assert oracle.error(found.least, exact) < 1e-12
+    if found.status is Status.MEETS:
+        assert exact == 0
+        for joint in chain.masters:
+            assert joint.lower - 1e-12 <= found.positions[joint.name] <= joint.upper + 1e-12
+
+
+@examples(120)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 4), st.sampled_from([1e-3, 0.03, 0.3, 1.0]))
+def test_both_bounds_of_a_box_hold_at_every_position_in_it(seed, n_joints, size):
+    rng = np.random.default_rng(seed)
+    robot, a, b = random_pair(rng, n_joints)
+    chain = chain_between(robot, a, b)
+    shapes = {body.name: body.shape for body in robot.bodies}
+    middle = within_limits(rng, chain, 1)
+    half = size * rng.random(middle.shape)
+    frames = chain.frames(middle)
+    seen = distance(shapes[a], shapes[b], pose_b=frames[0, -1])
+    if seen.contact:
+        return
+    points = np.stack([seen.point_a, seen.point_b])[None]
+    bounds = JointBox.of(chain, shapes[a], shapes[b])
+    motion = bounds.motion(half, frames)
+    apart = bounds.seen_apart(half, Seen(np.array([seen.distance]), points, frames))
+    proven = max(seen.distance - motion.way[0], apart[0] - motion.rest[0]) - bounds.slack
+    corners = rng.choice([-1.0, 1.0], (200, middle.shape[1]))
+    inside = rng.uniform(-1.0, 1.0, (200, middle.shape[1]))
+    poses = chain.frames(middle + half * np.concatenate([corners, inside]))[:, -1]
+    assert Query(shapes[a], shapes[b]).distances(None, poses).distances.min() >= proven
