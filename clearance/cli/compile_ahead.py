@@ -24,13 +24,20 @@ import clearance.kernels.motion.certify
 import clearance.kernels.search.body_pair  # noqa: F401 - both enter their kernels in the table
 from clearance.compile import kernel_table
 from clearance.compile.kernel_cache import cache_root
-from clearance.compile.kernel_table import CERTIFY, FEATURES, PARTING, REFINE, SEARCH, TOGETHER
+from clearance.compile.kernel_table import (
+    CERTIFY,
+    FEATURES,
+    REFINE,
+    SEARCH,
+    SEPARATING_PLANES,
+    TOGETHER,
+)
 from clearance.simulate.parts import usable_cores
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
 """Set in the environment of the second process, so that no other one follows whatever it comes to run."""
 
-FIRST = (SEARCH, REFINE, PARTING)
+FIRST = (SEARCH, REFINE, SEPARATING_PLANES)
 """What questions about distances need, in the order in which it is come to; the last one where bodies move."""
 
 ALL = (*FIRST, CERTIFY, *TOGETHER, FEATURES)

@@ -11,13 +11,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from clearance.simulate.resumable_rows import Rows, open_resumable_rows
+from clearance.simulate.resumable_rows import MeasuredRows, open_resumable_rows
 
 SUFFIX = ".unfinished"
 
 
 @contextmanager
-def kept_rows(out: Path | None, quiet: bool) -> Iterator[Rows | None]:
+def kept_rows(out: Path | None, quiet: bool) -> Iterator[MeasuredRows | None]:
     """The resumable rows for the report folder `out`; None where no report is wanted.
 
     Raises:

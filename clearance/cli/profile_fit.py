@@ -41,7 +41,7 @@ def fit(
     from clearance.cli.places import refuse_inputs, require_file_place
     from clearance.errors import BadInput, at
     from clearance.profiles.fit import fit as fitted
-    from clearance.profiles.outline_file import Drawn, read_outline
+    from clearance.profiles.outline_file import DrawnOutline, read_outline
     from clearance.sketch import Sketch
 
     if out.suffix.lower() not in (".yaml", ".yml"):
@@ -59,7 +59,7 @@ def fit(
     if picture is not None:
         from clearance.profiles.picture import draw_outlines
 
-        sketch = Drawn(out.name, found.curve)
+        sketch = DrawnOutline(out.name, found.curve)
         shade = ("only in the sketch", "only in the outline")
         draw_outlines(outline, sketch, found.ends, found.title, picture, shade=shade)
         click.echo(f"picture {picture}")

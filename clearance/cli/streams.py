@@ -28,7 +28,7 @@ def make_streams_safe() -> None:
         except OSError:
             os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
     if sys.stdout is None:
-        sys.stdout = _Closed()
+        sys.stdout = _ClosedStream()
     if sys.stderr is None:
         sys.stderr = open(os.devnull, "w")
     for stream in (sys.stdout, sys.stderr):
@@ -41,7 +41,7 @@ def _in_one_line(message: Warning | str, *_: object) -> str:
     return f"warning: {message}\n"
 
 
-class _Closed(io.TextIOBase):
+class _ClosedStream(io.TextIOBase):
     """Output that the shell has closed."""
 
     encoding = "utf-8"

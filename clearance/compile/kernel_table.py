@@ -43,7 +43,7 @@ from clearance.compile.numba_private import (
     WINDING_NUMBER,
     SEARCH,
     POLYGONS,
-    PARTING,
+    SEPARATING_PLANES,
     FEATURES,
     FANS,
 ) = range(10)
@@ -69,7 +69,7 @@ class NotCompiled(Exception):
     """A kernel has come to a call of one that is not compiled; the argument is its place in the table."""
 
 
-class Lent:
+class LentArgument:
     """Stands for the type of what `lend` gives, among arguments that show types."""
 
     def __init__(self, value: tuple) -> None:
@@ -181,7 +181,7 @@ def _compile_here(place: int) -> None:
 
 
 def _type_of(value: object) -> types.Type:
-    if isinstance(value, Lent):
+    if isinstance(value, LentArgument):
         return types.CPointer(numba.typeof(value.value))
     return numba.typeof(value)
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from clearance.crosscheck.fcl_door import peer_name
+from clearance.crosscheck.fcl_adapter import peer_name
 from clearance.crosscheck.peer_run import PeerAnswers, PeerRun
 from clearance.crosscheck.settle import off_body, peer_is_wrong
 from clearance.simulate.record import CrossCheck, Disagreement, Samples

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.crosscheck.containment import is_inside
-from clearance.crosscheck.fcl_door import PeerBody
+from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
 from clearance.simulate.record import Samples

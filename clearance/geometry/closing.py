@@ -47,7 +47,7 @@ class Closing(NamedTuple):
     loops: np.ndarray
 
 
-class _Open(NamedTuple):
+class _OpenComponents(NamedTuple):
     """The components that are not closed.
 
     Attributes:
@@ -62,7 +62,7 @@ class _Open(NamedTuple):
     share: np.ndarray
 
 
-_found: weakref.WeakKeyDictionary[Polyhedron, _Open] = weakref.WeakKeyDictionary()
+_found: weakref.WeakKeyDictionary[Polyhedron, _OpenComponents] = weakref.WeakKeyDictionary()
 
 
 def closing_of(shape: Polyhedron, least: float = -1.0, most: float = FEW) -> Closing | None:
@@ -108,13 +108,13 @@ def loose_triangles(shape: Polyhedron) -> np.ndarray:
     return np.ascontiguousarray(shape.vertices[triangles[way != 0]])
 
 
-def _open_of(shape: Polyhedron) -> _Open:
+def _open_of(shape: Polyhedron) -> _OpenComponents:
     if shape not in _found:
         _found[shape] = _open_components(shape)
     return _found[shape]
 
 
-def _open_components(shape: Polyhedron) -> _Open:
+def _open_components(shape: Polyhedron) -> _OpenComponents:
     starts, component = shape.face_starts, shape.face_component
     firsts, kinds = distinct_vertices(shape.vertices)
     corners, ring = kinds[shape.face_vertices], rings_of(starts)
@@ -123,7 +123,7 @@ def _open_components(shape: Polyhedron) -> _Open:
     used = np.flatnonzero((ways[ring.face] != 0) & (corners != corners[ring.ahead]))
     share = np.full(len(asked), np.inf)
     if not len(used):
-        return _Open(ways, np.empty(0, dtype=np.int64), [], share)
+        return _OpenComponents(ways, np.empty(0, dtype=np.int64), [], share)
     tails, heads, face = corners[used], corners[ring.ahead][used], ring.face[used]
     ways = ways * _alike(tails, heads, face, shape.n_faces)
     tails, heads, of_edge, n_edges = _rim(tails, heads, ways[face], component[face], len(asked))
@@ -138,7 +138,7 @@ def _open_components(shape: Polyhedron) -> _Open:
         share[i] = holes / (holes + area[i]) if area[i] > 0.0 else np.inf
         loops += found
         of_loop += [i] * len(found)
-    return _Open(ways, np.array(of_loop, dtype=np.int64), loops, share)
+    return _OpenComponents(ways, np.array(of_loop, dtype=np.int64), loops, share)
 
 
 def _alike(tails: np.ndarray, heads: np.ndarray, face: np.ndarray, n_faces: int) -> np.ndarray:

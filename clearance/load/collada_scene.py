@@ -14,7 +14,7 @@ import numpy as np
 from clearance.errors import BadDimension, BadSyntax, NotFinite, at
 from clearance.load.collada_geometry import Ids, geometry_pieces, local_name, words_of
 from clearance.load.number_text import floats
-from clearance.load.placing import MOST_COPIED_NODES, Copies, placed
+from clearance.load.placing import MOST_COPIED_NODES, CopyCount, placed
 from clearance.load.triangles import Triangles
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class _Scene:
         self.root = root
         self.ids = Ids(root)
         self._made: dict[Element, list[Triangles]] = {}
-        self._visits = Copies(MOST_COPIED_NODES, "nodes")
+        self._visits = CopyCount(MOST_COPIED_NODES, "nodes")
 
     def pieces(self) -> Iterator[tuple[Hashable, Triangles]]:
         for instance in self.root.iterfind("{*}scene/{*}instance_visual_scene"):

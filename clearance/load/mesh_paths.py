@@ -16,7 +16,7 @@ _PACKAGE_SCHEMES = ("package", "model")
 _VARIABLES = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
 
 
-class FoundMesh(NamedTuple):
+class MeshPath(NamedTuple):
     """A mesh file.
 
     Attributes:
@@ -27,7 +27,7 @@ class FoundMesh(NamedTuple):
     package: str = ""
 
 
-def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> FoundMesh:
+def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
     """The file that `given` means.
 
     `package://x/y` is y in the package x, which is looked for in each of the package folders, in the URDF's
@@ -48,17 +48,15 @@ def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> Fo
     raise BadSyntax(f"{given!r} is given", valid="package://, file:// or a path is needed")
 
 
-def _in_package(
-    given: str, rest: str, urdf_folder: Path, package_dirs: Sequence[Path]
-) -> FoundMesh:
+def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
     package, *parts = PurePosixPath(rest.replace("\\", "/").lstrip("/")).parts or ("",)
     for folder in _package_folders(package, urdf_folder, package_dirs):
         if folder.joinpath(*parts).is_file():
-            return FoundMesh(folder.joinpath(*parts))
+            return MeshPath(folder.joinpath(*parts))
     for n_dropped in range(len(parts)):
         for folder in (*package_dirs, urdf_folder):
             if folder.joinpath(*parts[n_dropped:]).is_file():
-                return FoundMesh(folder.joinpath(*parts[n_dropped:]), package)
+                return MeshPath(folder.joinpath(*parts[n_dropped:]), package)
     raise MissingFile(
         f"there is no mesh {given!r}; looked for it {_places(urdf_folder, package_dirs)}",
         valid="give its package's folder in robot.package_dirs",
@@ -105,8 +103,8 @@ def _places(urdf_folder: Path, package_dirs: Sequence[Path]) -> str:
     )
 
 
-def _existing(given: str, candidates: list[Path]) -> FoundMesh:
+def _existing(given: str, candidates: list[Path]) -> MeshPath:
     for candidate in candidates:
         if candidate.is_file():
-            return FoundMesh(candidate)
+            return MeshPath(candidate)
     raise MissingFile(f"there is no mesh {given!r}")

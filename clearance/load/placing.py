@@ -23,7 +23,7 @@ MOST_COPIED_NODES = 20_000
 """Nodes that instances may add to those that the file holds."""
 
 
-class Copies:
+class CopyCount:
     """Counts how often things come again, and refuses too many.
 
     Args:
@@ -74,7 +74,7 @@ def joined(pieces: Iterable[tuple[Hashable, Triangles]]) -> Triangles:
     Raises:
         EmptyMesh: there is no triangle. BadSyntax: copies of too many triangles.
     """
-    copies = Copies(MOST_COPIED_TRIANGLES, "triangles")
+    copies = CopyCount(MOST_COPIED_TRIANGLES, "triangles")
     kept = []
     for key, piece in pieces:
         copies.count(key, len(piece.corners))

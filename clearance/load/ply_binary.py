@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.errors import BadSyntax
-from clearance.load.ply_rows import Element, Rows
+from clearance.load.ply_rows import Element, PlyRows
 
 
 class BinaryRows:
@@ -15,7 +15,7 @@ class BinaryRows:
         self.body = body
         self.place = 0
 
-    def rows(self, element: Element) -> Rows:
+    def rows(self, element: Element) -> PlyRows:
         """The next rows."""
         lists = [item for item in element.properties if item.length_kind is not None]
         sizes = [(item.length_kind or item.kind).itemsize for item in element.properties]
@@ -45,7 +45,7 @@ class BinaryRows:
         )
         return lengths if fits else None
 
-    def _block(self, element: Element, lengths: dict[str, int]) -> Rows | None:
+    def _block(self, element: Element, lengths: dict[str, int]) -> PlyRows | None:
         """All rows at once, if all lists are of the given lengths; else None."""
         fields = []
         for k, item in enumerate(element.properties):
@@ -68,9 +68,9 @@ class BinaryRows:
                 return None
             lists[item.name] = (table[f"v{k}"].reshape(-1), counts)
         self.place += element.count * kind.itemsize
-        return Rows(element.count, columns, lists)
+        return PlyRows(element.count, columns, lists)
 
-    def _one_by_one(self, element: Element) -> Rows:
+    def _one_by_one(self, element: Element) -> PlyRows:
         found: dict[str, list[np.ndarray]] = {item.name: [] for item in element.properties}
         counts: dict[str, list[int]] = {item.name: [] for item in element.properties}
         for _ in range(element.count):
@@ -87,7 +87,7 @@ class BinaryRows:
                 columns[item.name] = flat
             else:
                 lists[item.name] = (flat, np.array(counts[item.name]))
-        return Rows(element.count, columns, lists)
+        return PlyRows(element.count, columns, lists)
 
     def _next(self, kind: np.dtype, count: int) -> np.ndarray:
         values = self._take(kind, count, self.place)

@@ -10,7 +10,7 @@ import numpy as np
 from clearance.errors import BadSyntax, DuplicateName, at
 from clearance.load.number_text import integers
 from clearance.load.ply_binary import BinaryRows
-from clearance.load.ply_rows import Element, Property, Rows
+from clearance.load.ply_rows import Element, PlyRows, Property
 from clearance.load.ply_text import TextRows
 
 _TYPES = {
@@ -22,7 +22,7 @@ _TYPES = {
 _ORDERS = {"ascii": "=", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
-def elements_of(data: bytes) -> dict[str, Rows]:
+def elements_of(data: bytes) -> dict[str, PlyRows]:
     """All elements of a PLY file, by name.
 
     Raises:

@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh, MissingKey, at
 from clearance.load.ply_elements import elements_of
-from clearance.load.ply_rows import Rows
+from clearance.load.ply_rows import PlyRows
 from clearance.load.polygon_cut import cut_rings
 from clearance.load.strips import strip
 from clearance.load.triangles import Triangles, checked, refuse_missing_corners
@@ -35,7 +35,7 @@ def read_ply(data: bytes) -> Triangles:
     return Triangles(points, np.concatenate(corners))
 
 
-def _points(elements: dict[str, Rows]) -> np.ndarray:
+def _points(elements: dict[str, PlyRows]) -> np.ndarray:
     columns = elements["vertex"].columns if "vertex" in elements else {}
     missing = [name for name in "xyz" if name not in columns]
     if missing:
@@ -43,7 +43,7 @@ def _points(elements: dict[str, Rows]) -> np.ndarray:
     return np.stack([columns[name].astype(np.float64) for name in "xyz"], axis=1)
 
 
-def _rings(elements: dict[str, Rows], name: str, points: np.ndarray, ends: bool = False):
+def _rings(elements: dict[str, PlyRows], name: str, points: np.ndarray, ends: bool = False):
     """The corners of all faces or strips and how many each has, if there are any; `ends`: -1 stands between."""
     if name not in elements or not elements[name].count:
         return

@@ -23,7 +23,7 @@ class Element(NamedTuple):
     properties: list[Property]
 
 
-class Rows(NamedTuple):
+class PlyRows(NamedTuple):
     """All rows of one element.
 
     Attributes:

@@ -6,7 +6,7 @@ import numpy as np
 
 from clearance.errors import BadSyntax
 from clearance.load.number_text import floats, integers
-from clearance.load.ply_rows import Element, Property, Rows
+from clearance.load.ply_rows import Element, PlyRows, Property
 
 
 class TextRows:
@@ -16,7 +16,7 @@ class TextRows:
         self.lines = [row for line in body.splitlines() if (row := line.split())]
         self.place = 0
 
-    def rows(self, element: Element) -> Rows:
+    def rows(self, element: Element) -> PlyRows:
         """The next rows."""
         lines = self.lines[self.place : self.place + element.count]
         if len(lines) < element.count:
@@ -29,7 +29,7 @@ class TextRows:
             return self._table(lines, element.properties)
         return self._with_lists(lines, element.properties)
 
-    def _table(self, lines: list[list[bytes]], properties: list[Property]) -> Rows:
+    def _table(self, lines: list[list[bytes]], properties: list[Property]) -> PlyRows:
         for i, row in enumerate(lines):
             if len(row) != len(properties):
                 raise BadSyntax(f"row {i} has {len(row)} numbers", valid=f"{len(properties)}")
@@ -37,9 +37,9 @@ class TextRows:
             item.name: _column([row[k] for row in lines], item.kind)
             for k, item in enumerate(properties)
         }
-        return Rows(len(lines), columns, {})
+        return PlyRows(len(lines), columns, {})
 
-    def _with_lists(self, lines: list[list[bytes]], properties: list[Property]) -> Rows:
+    def _with_lists(self, lines: list[list[bytes]], properties: list[Property]) -> PlyRows:
         single: dict[str, list[bytes]] = {p.name: [] for p in properties if p.length_kind is None}
         flat: dict[str, list[bytes]] = {p.name: [] for p in properties if p.length_kind is not None}
         counts: dict[str, list[int]] = {name: [] for name in flat}
@@ -59,7 +59,7 @@ class TextRows:
         kinds = {item.name: item.kind for item in properties}
         columns = {name: _column(words, kinds[name]) for name, words in single.items()}
         lists = {n: (_column(words, kinds[n]), np.array(counts[n])) for n, words in flat.items()}
-        return Rows(len(lines), columns, lists)
+        return PlyRows(len(lines), columns, lists)
 
     def refuse_rest(self) -> None:
         """Refuses lines that no element has."""

@@ -27,7 +27,7 @@ Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
 Name = Annotated[str, Field(min_length=1), AfterValidator(checked_name)]
 
 
-class Strict(BaseModel):
+class StrictModel(BaseModel):
     """A mapping whose keys are all known."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
@@ -48,7 +48,7 @@ class Strict(BaseModel):
         return data
 
 
-class Pose(Strict):
+class Pose(StrictModel):
     """Where something stands: a point and a rotation (quaternion xyzw, or roll, pitch, yaw about
     fixed axes).
     """
@@ -83,7 +83,7 @@ def _is_double(number: int | float) -> bool:
         return False
 
 
-class Mesh(Strict):
+class Mesh(StrictModel):
     """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
 
     file: Name
@@ -112,14 +112,14 @@ class Mesh(Strict):
 SHAPES = (*shapes.SHAPES, "mesh")
 
 
-class Standing(Strict):
+class NamedPose(StrictModel):
     """A name, and where what has it stands."""
 
     name: Name
     pose: Pose = Pose()
 
 
-class Obstacle(with_shapes(Standing, Strict)):
+class Obstacle(with_shapes(NamedPose, StrictModel)):
     """A named solid that stands somewhere."""
 
     mesh: Mesh | None = None
@@ -143,13 +143,13 @@ class Obstacle(with_shapes(Standing, Strict)):
         return self
 
 
-class Scene(Strict):
+class Scene(StrictModel):
     """What stands around the robot."""
 
     obstacles: list[Obstacle]
 
 
-class Robot(Strict):
+class Robot(StrictModel):
     """The robot, and what of it is measured."""
 
     urdf: Name
@@ -161,7 +161,7 @@ class Robot(Strict):
     collada_up_axis: Literal["ros", "file"] = "ros"
 
 
-class TrajectoryFile(Strict):
+class TrajectoryFile(StrictModel):
     """Where the trajectory is: `{file: t.csv}`, or the path alone."""
 
     file: Name
@@ -172,7 +172,7 @@ class TrajectoryFile(Strict):
         return {"file": data} if isinstance(data, str) else data
 
 
-class Limits(Strict):
+class Limits(StrictModel):
     """Least clearances [m]: below `fail` the case is violated, below `warn` it is a near miss; and what a
     joint beyond its limits is.
     """
@@ -190,7 +190,7 @@ class Limits(Strict):
         return self
 
 
-class Profile(Strict):
+class Profile(StrictModel):
     """A sketched outline that what the robot sweeps in a plane must keep to; lengths in metres."""
 
     name: Name
@@ -213,14 +213,14 @@ def _known_kind(kind: str) -> str:
 Kind = Annotated[str, AfterValidator(_known_kind)]
 
 
-class Report(Strict):
+class Report(StrictModel):
     """What the report is signed with."""
 
     author: Name | None = None
     revision: Name | None = None
 
 
-class Case(Strict):
+class Case(StrictModel):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
     name: Name | None = None

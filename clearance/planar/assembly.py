@@ -15,7 +15,7 @@ from clearance.planar.entries import BadCurve
 from clearance.tolerance import CURVE_SIZES
 
 
-class Assembled(NamedTuple):
+class CurveFields(NamedTuple):
     """The fields of a curve; see `Curve`."""
 
     pieces: Pieces
@@ -46,7 +46,7 @@ def checked_size(extent: np.ndarray) -> float:
     return size
 
 
-def assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> Assembled:
+def assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> CurveFields:
     """The curve of Cartesian control points about `base` with weights, `rows` (m, 3); pieces of no extent go."""
     first = np.ascontiguousarray(first, np.int64)
     contour = np.zeros(len(limits), np.int64) if contour is None else np.asarray(contour, np.int64)
@@ -66,4 +66,4 @@ def assembled(rows, first, limits, contour=None, base=(0.0, 0.0)) -> Assembled:
     control = np.empty((len(rows), 3))
     control[:, :2], control[:, 2] = (rows[:, :2] - origin) * weight[:, None], weight
     pieces = Pieces(control, first, np.ascontiguousarray(rational))
-    return Assembled(pieces, origin + base, np.ascontiguousarray(limits), contour)
+    return CurveFields(pieces, origin + base, np.ascontiguousarray(limits), contour)

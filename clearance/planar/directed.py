@@ -19,7 +19,7 @@ KINDS = ("end", "common_normal", "self_bisector")
 
 
 @dataclass(frozen=True)
-class Tally:
+class SearchTally:
     """What a search did.
 
     Attributes:
@@ -46,7 +46,7 @@ class Tally:
 
 
 @dataclass(frozen=True)
-class Directed:
+class DirectedDistance:
     """The distance from each point of one curve to the other curve, at its greatest.
 
     Attributes:
@@ -66,7 +66,7 @@ class Directed:
     parameter_a: float
     parameter_b: float
     kind: str
-    tally: Tally
+    tally: SearchTally
 
     @property
     def error_bound(self) -> float:
@@ -91,8 +91,8 @@ def arrays_of(curve: Curve) -> CurveArrays:
 
 def directed_of(
     one: Curve, two: Curve, state: np.void, points: np.ndarray, margin: float, forward: bool
-) -> Directed:
-    """The `Directed` of a searched curve `one`; `forward` says that it is the caller's a.
+) -> DirectedDistance:
+    """The `DirectedDistance` of a searched curve `one`; `forward` says that it is the caller's a.
 
     Args:
         state: a record of SEARCH_STATE; points: (5,) its witness.
@@ -102,7 +102,7 @@ def directed_of(
     here, there = points[:2] + one.origin, points[2:4] + two.origin
     at_here = one.parameter_of(known["piece_a"], known["at_a"])
     at_there = two.parameter_of(known["piece_b"], known["at_b"])
-    return Directed(
+    return DirectedDistance(
         distance=known["distance"],
         lower=max(0.0, known["lower"] - margin),
         upper=max(known["upper"], known["distance"]) + margin,
@@ -115,8 +115,8 @@ def directed_of(
     )
 
 
-def _tally(known: dict) -> Tally:
-    return Tally(
+def _tally(known: dict) -> SearchTally:
+    return SearchTally(
         arcs=known["n_arcs"],
         trimmed_arcs=known["n_arcs"] - known["n_kept"],
         pixels=known["n_pixels"],

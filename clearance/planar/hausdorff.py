@@ -13,9 +13,9 @@ import numpy as np
 
 from clearance.errors import BadInput, ClearanceError
 from clearance.kernels.hausdorff.both_directions import both_directions
-from clearance.kernels.hausdorff.state import Aim
+from clearance.kernels.hausdorff.state import SearchGoal
 from clearance.planar.curve import Curve
-from clearance.planar.directed import Directed, Tally, arrays_of, directed_of, placed
+from clearance.planar.directed import DirectedDistance, SearchTally, arrays_of, directed_of, placed
 from clearance.planar.entries import checked_number
 from clearance.planar.polylines import solve_polylines
 from clearance.planar.steady import steady
@@ -78,8 +78,8 @@ class Hausdorff:
     parameter_b: float
     direction: str
     kind: str
-    directed: dict[str, Directed]
-    tally: Tally
+    directed: dict[str, DirectedDistance]
+    tally: SearchTally
 
     @property
     def lower(self) -> float:
@@ -136,7 +136,7 @@ def within(a: Curve, b: Curve, distance: float) -> bool:
     shift, size = placed(a, b)
     slack = a.rounding + b.rounding + LAST_BITS * size
     gap = LAST_BITS * size
-    aim = Aim(gap, gap, math.inf, distance, distance + slack, _budget(a, b))
+    aim = SearchGoal(gap, gap, math.inf, distance, distance + slack, _budget(a, b))
     found, _ = _solve(a, b, shift, aim)
     lower, upper = float(found["lower"].max()), float(found["upper"].max())
     if lower > distance + slack:
@@ -146,7 +146,7 @@ def within(a: Curve, b: Curve, distance: float) -> bool:
     return True
 
 
-def greater_of(forth: Directed, back: Directed) -> Hausdorff:
+def greater_of(forth: DirectedDistance, back: DirectedDistance) -> Hausdorff:
     """The `Hausdorff` of two directed distances."""
     first = forth.distance >= back.distance
     top = forth if first else back
@@ -165,8 +165,8 @@ def greater_of(forth: Directed, back: Directed) -> Hausdorff:
     )
 
 
-def _sum_of(one: Tally, two: Tally) -> Tally:
-    return Tally(
+def _sum_of(one: SearchTally, two: SearchTally) -> SearchTally:
+    return SearchTally(
         one.arcs + two.arcs,
         one.trimmed_arcs + two.trimmed_arcs,
         one.pixels + two.pixels,
@@ -182,18 +182,18 @@ def _budget(a: Curve, b: Curve) -> float:
     return BUDGET + INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces)
 
 
-def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
+def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: SearchGoal):
     if a.is_polyline and b.is_polyline:
         return solve_polylines(a, b, shift, aim)
     return both_directions(arrays_of(a), arrays_of(b), shift[0], shift[1], aim)
 
 
-def _trimmed(a: Curve, b: Curve, tolerance: float) -> tuple[Directed, Directed]:
+def _trimmed(a: Curve, b: Curve, tolerance: float) -> tuple[DirectedDistance, DirectedDistance]:
     shift, size = placed(a, b)
     gap = max(tolerance * SHARPER, LAST_BITS) * size
     sharp = min(MOST_SHARP, SHARP_INTERVALS + SHARP_INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces))
     wide = max(gap, ASKED * tolerance * size)
-    found, points = _solve(a, b, shift, Aim(gap, wide, sharp, 0.0, math.inf, _budget(a, b)))
+    found, points = _solve(a, b, shift, SearchGoal(gap, wide, sharp, 0.0, math.inf, _budget(a, b)))
     margin = a.rounding + b.rounding + LAST_BITS * size
     forth = directed_of(a, b, found[0], points[0], margin, True)
     return forth, directed_of(b, a, found[1], points[1], margin, False)

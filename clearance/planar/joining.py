@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from clearance.planar.assembly import Assembled, assembled
+from clearance.planar.assembly import CurveFields, assembled
 from clearance.planar.curve_facts import CurveFacts
 from clearance.planar.entries import BadCurve
 from clearance.tolerance import MEETING
 
 
-def joined(parts: Sequence[CurveFacts], *, together: bool) -> Assembled:
+def joined(parts: Sequence[CurveFacts], *, together: bool) -> CurveFields:
     """Several curves as one: `together` as one contour, each starting where the last ended.
 
     Raises: BadCurve where two parts do not meet, or there is none.

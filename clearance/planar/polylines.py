@@ -12,12 +12,18 @@ import numpy as np
 
 from clearance.kernels.hausdorff.polyline import directed_polyline
 from clearance.kernels.hausdorff.segments import Segments
-from clearance.kernels.hausdorff.state import COMMON_NORMAL, END, SEARCH_STATE, SELF_BISECTOR, Aim
+from clearance.kernels.hausdorff.state import (
+    COMMON_NORMAL,
+    END,
+    SEARCH_STATE,
+    SELF_BISECTOR,
+    SearchGoal,
+)
 from clearance.planar.curve import Curve
 from clearance.tolerance import MEETING, NORMAL, PARAMETER, TANGENT
 
 
-def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, aim: Aim):
+def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, aim: SearchGoal):
     """Both directed searches, (2,) SEARCH_STATE and witnesses (2, 5), as those of other curves."""
     states, points = np.zeros(2, SEARCH_STATE), np.empty((2, 5))
     for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):

@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from clearance.kernels.curve.bezier import HIGHEST_DEGREE, Pieces, pieces_of_spline
-from clearance.planar.assembly import Assembled, assembled, checked_size, origin_of
+from clearance.planar.assembly import CurveFields, assembled, checked_size, origin_of
 from clearance.planar.entries import (
     BadCurve,
     checked_knots,
@@ -21,7 +21,7 @@ from clearance.planar.entries import (
 from clearance.tolerance import PARAMETER
 
 
-def polyline_of(points: np.ndarray, closed: bool) -> Assembled:
+def polyline_of(points: np.ndarray, closed: bool) -> CurveFields:
     """See `Curve.polyline`."""
     points = checked_points(points, "points", least=2)
     if closed and np.any(points[0] != points[-1]):
@@ -39,10 +39,10 @@ def polyline_of(points: np.ndarray, closed: bool) -> Assembled:
         limits[:, end] = step + end
     control[:, :, 2] = 1.0
     pieces = Pieces(control.reshape(-1, 3), 2 * np.arange(n + 1), np.zeros(n, bool))
-    return Assembled(pieces, origin, limits, np.zeros(n, np.int64))
+    return CurveFields(pieces, origin, limits, np.zeros(n, np.int64))
 
 
-def bspline_of(control, degree: int, knots, weights) -> Assembled:
+def bspline_of(control, degree: int, knots, weights) -> CurveFields:
     """See `Curve.bspline`."""
     degree = _checked_degree(degree)
     control = checked_points(control, "control", least=degree + 1)
@@ -55,7 +55,7 @@ def bspline_of(control, degree: int, knots, weights) -> Assembled:
     return assembled(rows, np.arange(len(limits) + 1) * (degree + 1), limits, base=base)
 
 
-def bezier_of(control: np.ndarray, weights: np.ndarray | None) -> Assembled:
+def bezier_of(control: np.ndarray, weights: np.ndarray | None) -> CurveFields:
     """See `Curve.bezier`."""
     control = checked_points(control, "control", least=2)
     _checked_degree(len(control) - 1)
@@ -64,7 +64,7 @@ def bezier_of(control: np.ndarray, weights: np.ndarray | None) -> Assembled:
     return assembled(rows, np.array([0, len(control)]), np.array([[0.0, 1.0]]))
 
 
-def arc_of(center, radius: float, start: float, end: float) -> Assembled:
+def arc_of(center, radius: float, start: float, end: float) -> CurveFields:
     """See `Curve.arc`."""
     center, radius, sweep = sweep_of(center, radius, start, end)
     n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - PARAMETER))

@@ -16,7 +16,7 @@ from clearance.kernels.hausdorff.state import SEARCH_STATE
 from clearance.kernels.hausdorff.systems import solve_directed
 from clearance.kernels.hausdorff.witness import witness_of
 from clearance.planar.curve import Curve
-from clearance.planar.directed import Directed, arrays_of, directed_of, placed
+from clearance.planar.directed import DirectedDistance, arrays_of, directed_of, placed
 from clearance.tolerance import LAST_BITS
 
 BUDGET = 4e5
@@ -42,7 +42,7 @@ def _ways(a: Curve, b: Curve) -> tuple[_Way, _Way]:
     return _Way(a, b, shift, margin, True), _Way(b, a, -shift, margin, False)
 
 
-def untrimmed(a: Curve, b: Curve) -> tuple[Directed, Directed]:
+def untrimmed(a: Curve, b: Curve) -> tuple[DirectedDistance, DirectedDistance]:
     """Both directed distances of `a` and `b`, each the greatest distance over all roots of the systems.
 
     On overlapping curves, whose systems have no end of solutions, the budget ends the search; the bounds tell.
@@ -51,12 +51,14 @@ def untrimmed(a: Curve, b: Curve) -> tuple[Directed, Directed]:
     return forth, back
 
 
-def _untrimmed(way: _Way) -> Directed:
+def _untrimmed(way: _Way) -> DirectedDistance:
     state = _solved(way, _whole(way.one), _whole(way.two), _empty())
     return _directed(way, state)
 
 
-def paper(a: Curve, b: Curve, *, literal: bool = False) -> tuple[Directed, Directed]:
+def paper(
+    a: Curve, b: Curve, *, literal: bool = False
+) -> tuple[DirectedDistance, DirectedDistance]:
     """Both directed distances as Kim, Oh, Kim (2010) publish them: the greatest distance of *all* roots.
 
     That can be above the true distance, by roots that are no nearest points; `lower` and `upper` are proven of
@@ -134,13 +136,13 @@ def _solved(way: _Way, parts: np.ndarray, other: np.ndarray, state: np.ndarray) 
     return state
 
 
-def _directed(way: _Way, state: np.ndarray) -> Directed:
+def _directed(way: _Way, state: np.ndarray) -> DirectedDistance:
     one, two = way.one, way.two
     points = witness_of(arrays_of(one), arrays_of(two), way.shift[0], way.shift[1], state)
     return directed_of(one, two, state[0], points, way.margin, way.forward)
 
 
-def _published(way: _Way, state: np.ndarray) -> Directed:
+def _published(way: _Way, state: np.ndarray) -> DirectedDistance:
     """The greatest root as the answer, with what is proven of the true distance."""
     lower = float(state["lower"][0])
     upper = float(np.maximum(state["upper"], state["distance"])[0])

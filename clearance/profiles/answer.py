@@ -13,8 +13,8 @@ import numpy as np
 from clearance.errors import at
 from clearance.planar.deviation import deviation
 from clearance.planar.hausdorff import hausdorff
-from clearance.profiles.gap import Closed, proven_gap
-from clearance.profiles.outline_file import Drawn, require_closed
+from clearance.profiles.gap import ClosedContours, proven_gap
+from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.picture import picture_bytes
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import holds
@@ -42,7 +42,7 @@ def answer_profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
 def _answer(space: ReservedSpace, swept: Profile) -> ProfileAnswer:
     curve = space.sketch.curves()
     require_closed(curve, "sketch")
-    sketch, outline = Closed.of_curve(curve), Closed.of(swept.contours)
+    sketch, outline = ClosedContours.of_curve(curve), ClosedContours.of(swept.contours)
     if space.mode == "nearest":
         whole = hausdorff(curve, swept.curve)
         gap, ends = whole.distance, np.stack([whole.point_b, whole.point_a])
@@ -69,11 +69,11 @@ def _answer(space: ReservedSpace, swept: Profile) -> ProfileAnswer:
         point_sketch=_pair(ends[1]),
         link=link,
         step=step,
-        picture=partial(_picture, space, swept, Drawn("sketch", curve), ends),
+        picture=partial(_picture, space, swept, DrawnOutline("sketch", curve), ends),
     )
 
 
-def _beyond(sketch: Closed, swept: Profile, around: bool, ends: np.ndarray):
+def _beyond(sketch: ClosedContours, swept: Profile, around: bool, ends: np.ndarray):
     """How far the swept outline is beyond the sketch, at the worst of many samples, negative; and where."""
     along = deviation(swept.curve, sketch.curve, samples=4000)
     wrong = holds(sketch.region, along.point) != around
@@ -84,14 +84,14 @@ def _beyond(sketch: Closed, swept: Profile, around: bool, ends: np.ndarray):
 
 
 def _maker(swept: Profile, point: np.ndarray) -> tuple[str, int]:
-    piece, _, _ = Closed.of(swept.contours).pieces.feet(point[None])
+    piece, _, _ = ClosedContours.of(swept.contours).pieces.feet(point[None])
     made = swept.maker(int(piece[0]))
     assert made is not None
     return made
 
 
-def _picture(space: ReservedSpace, swept: Profile, sketch: Drawn, ends: np.ndarray) -> str:
-    drawn = Drawn("swept", swept.curve, swept)
+def _picture(space: ReservedSpace, swept: Profile, sketch: DrawnOutline, ends: np.ndarray) -> str:
+    drawn = DrawnOutline("swept", swept.curve, swept)
     title = f"{space.name}: {space.mode}, plane {space.plane}"
     shade = ("only in the sketch", "only swept")
     return picture_bytes(drawn, sketch, ends, title, ".svg", shade=shade).decode()

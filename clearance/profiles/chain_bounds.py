@@ -15,7 +15,7 @@ from clearance.profiles.course import Course, course_of, positions_at
 from clearance.profiles.plane import Plane
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematics import chain_arrays, link_poses
+from clearance.world.kinematics import kinematic_tree_arrays, link_poses
 from clearance.world.motion import Motion
 
 
@@ -25,7 +25,7 @@ class ChainBounds:
     def __init__(self, placed: PlacedRobot, body: Body, plane: Plane, solid: bool) -> None:
         self.placed = placed
         self.link = placed.robot.link_names.index(body.name)
-        self.parents, self.kinds, self.fixed, self.axes = chain_arrays(placed.robot)
+        self.parents, self.kinds, self.fixed, self.axes = kinematic_tree_arrays(placed.robot)
         self.path = [self.link] if self.link else []
         while self.path and self.parents[self.path[0]]:
             self.path.insert(0, int(self.parents[self.path[0]]))

@@ -14,7 +14,7 @@ MOST_KEPT = 20_000
 """Polygons that are held before those inside the outline so far are let go."""
 
 
-class Collected:
+class PolygonCollection:
     """The polygons kept so far; those that no longer come to the outline are let go now and then."""
 
     def __init__(self, covered: Region) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 
 from clearance.planar.deviation import Deviation, deviation
 from clearance.planar.hausdorff import Hausdorff, hausdorff
-from clearance.profiles.outline_file import Drawn
+from clearance.profiles.outline_file import DrawnOutline
 
 SAMPLES = 600
 """Points along each outline at which its deviation is measured, all joints among them."""
@@ -21,7 +21,7 @@ PERCENTILES = (50, 95, 99)
 
 
 @dataclass(frozen=True)
-class Beyond:
+class Exceedance:
     """A stretch of an outline that is farther than the limit from the other.
 
     Attributes:
@@ -50,15 +50,15 @@ class Comparison:
         makers: for "a" and "b" the link and step that made the worst point there, where it is a sweep.
     """
 
-    a: Drawn
-    b: Drawn
+    a: DrawnOutline
+    b: DrawnOutline
     found: Hausdorff
     forth: Deviation
     back: Deviation
     gained: float | None
     lost: float | None
     limit: float | None
-    beyond: tuple[Beyond, ...]
+    beyond: tuple[Exceedance, ...]
     makers: dict[str, tuple[str, int]]
 
     @property
@@ -74,7 +74,7 @@ class Comparison:
         return self.verdict == "within"
 
 
-def compare(a: Drawn, b: Drawn, *, limit: float | None = None) -> Comparison:
+def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> Comparison:
     """Outline a against outline b.
 
     Args:
@@ -97,7 +97,7 @@ def compare(a: Drawn, b: Drawn, *, limit: float | None = None) -> Comparison:
     return Comparison(a, b, found, forth, back, gained, lost, limit, beyond, makers)
 
 
-def _beyond(side: str, drawn: Drawn, profile: Deviation) -> list[Beyond]:
+def _beyond(side: str, drawn: DrawnOutline, profile: Deviation) -> list[Exceedance]:
     found = []
     for low, high in profile.beyond:
         ends = drawn.curve.point(np.array([low, high]))
@@ -109,7 +109,7 @@ def _beyond(side: str, drawn: Drawn, profile: Deviation) -> list[Beyond]:
         length += np.hypot(*(ends[0] - profile.point[inside[0]]))
         length += np.hypot(*(ends[1] - profile.point[inside[-1]]))
         found.append(
-            Beyond(
+            Exceedance(
                 side,
                 tuple(ends[0].tolist()),
                 tuple(ends[1].tolist()),

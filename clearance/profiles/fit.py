@@ -21,8 +21,8 @@ from clearance.profiles.fit_report import held_rates, sensitivities, touching
 from clearance.profiles.fit_result import Fit
 from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_starts import starts_of
-from clearance.profiles.fit_target import Found, Target
-from clearance.profiles.outline_file import Drawn, require_closed
+from clearance.profiles.fit_target import FitCandidate, Target
+from clearance.profiles.outline_file import DrawnOutline, require_closed
 from clearance.profiles.profile import Profile
 from clearance.sketch import Sketch
 
@@ -35,7 +35,7 @@ class NoFit(BadShape):
 
 def fit(
     sketch: Sketch,
-    profile: Profile | Drawn | Curve,
+    profile: Profile | DrawnOutline | Curve,
     mode: str = "nearest",
     *,
     free: Sequence[str] | None = None,
@@ -92,12 +92,12 @@ def _no_fit(search: NearestFit | BoundedFit, mode: str, margin: float, tried: in
     )
 
 
-def _drawn(profile: Profile | Drawn | Curve) -> Drawn:
-    if isinstance(profile, Drawn):
+def _drawn(profile: Profile | DrawnOutline | Curve) -> DrawnOutline:
+    if isinstance(profile, DrawnOutline):
         return profile
     if isinstance(profile, Curve):
-        return Drawn("outline", profile)
-    return Drawn(profile.name or "profile", profile.curve, profile)
+        return DrawnOutline("outline", profile)
+    return DrawnOutline(profile.name or "profile", profile.curve, profile)
 
 
 def _best(search: NearestFit | BoundedFit, starts: list[np.ndarray]):
@@ -115,7 +115,11 @@ def _best(search: NearestFit | BoundedFit, starts: list[np.ndarray]):
 
 
 def _told(
-    sketch: Sketch, shape: SketchShape, search: NearestFit | BoundedFit, best: Found, tried: int
+    sketch: Sketch,
+    shape: SketchShape,
+    search: NearestFit | BoundedFit,
+    best: FitCandidate,
+    tried: int,
 ) -> Fit:
     here, target = best.placed, search.target
     n = len(shape.free)

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_placed import Placed
+from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_program import AreaGoal, least_area
-from clearance.profiles.fit_rows import Gaps, Rows, rows_of
+from clearance.profiles.fit_rows import FitRows, Gaps, rows_of
 from clearance.profiles.fit_search import MOST_ROWS, STEPS, FitSearch
-from clearance.profiles.fit_target import Found, Places
+from clearance.profiles.fit_target import FitCandidate, Places
 
 MOST_NEAR = 60
 """Places of the outline whose pieces are looked at more closely once the shape is near them."""
@@ -33,14 +33,14 @@ class BoundedFit(FitSearch):
 
     endless = False
 
-    def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:
+    def run(self, start: np.ndarray, beat: float = np.inf) -> FitCandidate | None:
         """The shape that the search ends with; None where it is not what was asked, or no better than the
         score `beat` once it has come near.
         """
         here = self.shape.at(start)
         return None if here is None else self._certified(here, beat)
 
-    def _certified(self, here: Placed, beat: float) -> Found | None:
+    def _certified(self, here: PlacedShape, beat: float) -> FitCandidate | None:
         target, wanted, near = self.target, self.target.margin, 1e-6 * self.shape.size
         extra, samples = np.zeros((0, 2)), self.samples
         for k in range(ROUNDS):
@@ -53,7 +53,7 @@ class BoundedFit(FitSearch):
                 return None
             gap, least = target.clearance(here)
             if gap >= target.margin and (gap > 0.0 or target.margin > 0.0):
-                return Found(here, target.score(here), gap, rows, marginals, *used)
+                return FitCandidate(here, target.score(here), gap, rows, marginals, *used)
             if gap < 0.0 and least.distance > near:
                 return None
             extra = np.vstack([extra, least.point_b, self._near_points(here, wanted)])
@@ -61,7 +61,9 @@ class BoundedFit(FitSearch):
             wanted += 1.05 * (target.margin - max(gap, 0.0)) + 4.0**k * 1e-9 * self.shape.size
         return None
 
-    def _steps(self, here: Placed, wanted: float, samples: Places, extra: np.ndarray, reach: float):
+    def _steps(
+        self, here: PlacedShape, wanted: float, samples: Places, extra: np.ndarray, reach: float
+    ):
         """Linear programs until none promises more: the shape, the rows of the last, which they are, and whether
         it was still growing, far beyond the outline.
         """
@@ -97,7 +99,7 @@ class BoundedFit(FitSearch):
     def _beside(self) -> bool:
         return self.target.mode == "inside" and not self.target.room
 
-    def _rows(self, here: Placed, gaps: Gaps) -> tuple[Rows, np.ndarray, np.ndarray]:
+    def _rows(self, here: PlacedShape, gaps: Gaps) -> tuple[FitRows, np.ndarray, np.ndarray]:
         """The rows nearest to mattering, which they are, and the change of the score by each number."""
         chosen = np.sort(np.argsort(gaps.distance, kind="stable")[:MOST_ROWS])
         slopes = self.shape.slopes(here)
@@ -105,7 +107,7 @@ class BoundedFit(FitSearch):
         change = sign * np.array([slope.area for slope in slopes])
         return rows_of(gaps.at(chosen), here.pieces, slopes), chosen, change
 
-    def _near_points(self, here: Placed, wanted: float) -> np.ndarray:
+    def _near_points(self, here: PlacedShape, wanted: float) -> np.ndarray:
         """Many points of those pieces of the outline that come near the shape: where it may touch."""
         outline = self.target.pieces
         piece, share = outline.spread(2)

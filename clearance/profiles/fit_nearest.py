@@ -8,22 +8,22 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.planar.hausdorff import Hausdorff, hausdorff
-from clearance.profiles.fit_placed import Placed
+from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_program import least_greatest
-from clearance.profiles.fit_rows import Gaps, Rows, rows_of
+from clearance.profiles.fit_rows import FitRows, Gaps, rows_of
 from clearance.profiles.fit_search import MOST_ROWS, STEPS, FitSearch
-from clearance.profiles.fit_target import Found, Places
+from clearance.profiles.fit_target import FitCandidate, Places
 
 
 class NearestFit(FitSearch):
     """The search for the least Hausdorff distance."""
 
-    def run(self, start: np.ndarray, beat: float = np.inf) -> Found | None:
+    def run(self, start: np.ndarray, beat: float = np.inf) -> FitCandidate | None:
         """The shape that the search ends with; None where the sketch cannot be drawn at its start."""
         here = self.shape.at(start)
         return None if here is None else self._minimax(self._least_squares(here))
 
-    def _least_squares(self, here: Placed) -> Placed:
+    def _least_squares(self, here: PlacedShape) -> PlacedShape:
         """Levenberg and Marquardt on all distances: fast where they vanish together."""
         damping, rows = 1e-3, self._rows(here)
         for _ in range(25):
@@ -45,7 +45,7 @@ class NearestFit(FitSearch):
                     break
         return here
 
-    def _minimax(self, here: Placed) -> Found:
+    def _minimax(self, here: PlacedShape) -> FitCandidate:
         """Linear programs for the least greatest distance; the distance itself is certified each time."""
         whole, reach, looked = self._distance(here), 0.05, (self.samples, self.target.given)
         slopes = self.shape.slopes(here)
@@ -71,25 +71,27 @@ class NearestFit(FitSearch):
                 reach *= 0.25
             rows, chosen = self._chosen_rows(here, slopes, *looked)
         last = least_greatest(rows, self.shape.scale, *self.bounds(here, 1e-6))
-        return Found(here, whole.distance, None, rows, last.marginals, *looked, chosen)
+        return FitCandidate(here, whole.distance, None, rows, last.marginals, *looked, chosen)
 
-    def _distance(self, here: Placed) -> Hausdorff:
+    def _distance(self, here: PlacedShape) -> Hausdorff:
         return hausdorff(here.curve, self.target.outline.curve)
 
-    def _with_witness(self, here: Placed, whole: Hausdorff, samples: Places, given: np.ndarray):
+    def _with_witness(
+        self, here: PlacedShape, whole: Hausdorff, samples: Places, given: np.ndarray
+    ):
         """The places that are looked at and the certified witnesses: of steps that failed as well."""
         own = np.stack([whole.point_a, whole.directed["a_to_b"].point_a])
         theirs = np.stack([whole.point_b, whole.directed["b_to_a"].point_a])
         return self.with_places(here, own, samples), np.vstack([given, theirs])
 
-    def _chosen_rows(self, here: Placed, slopes: list, samples: Places, given: np.ndarray):
+    def _chosen_rows(self, here: PlacedShape, slopes: list, samples: Places, given: np.ndarray):
         """The rows that matter most, and which they are."""
         gaps = self.target.distances(here.pieces, samples, given)
         chosen = np.sort(np.argsort(-np.abs(gaps.distance), kind="stable")[:MOST_ROWS])
         return rows_of(gaps.at(chosen), here.pieces, slopes), chosen
 
-    def _gaps(self, here: Placed) -> Gaps:
+    def _gaps(self, here: PlacedShape) -> Gaps:
         return self.target.distances(here.pieces, self.samples, self.target.given)
 
-    def _rows(self, here: Placed) -> Rows:
+    def _rows(self, here: PlacedShape) -> FitRows:
         return rows_of(self._gaps(here), here.pieces, self.shape.slopes(here))

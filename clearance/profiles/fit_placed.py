@@ -14,7 +14,7 @@ import numpy as np
 
 from clearance.planar.curve import Curve
 from clearance.profiles.contour import Contour, joined
-from clearance.profiles.pieces import Pieces
+from clearance.profiles.pieces import ContourPieces
 
 SHRINK = 0.05
 """[-] What at least is left of a length after one step."""
@@ -24,7 +24,7 @@ FLOOR = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class PlacedShape:
     """A shape: what the sketch draws, moved to where it stands.
 
     Attributes:
@@ -36,9 +36,9 @@ class Placed:
     contours: tuple[Contour, ...]
 
     @cached_property
-    def pieces(self) -> Pieces:
+    def pieces(self) -> ContourPieces:
         """For the search."""
-        return Pieces(self.contours)
+        return ContourPieces(self.contours)
 
     @cached_property
     def curve(self) -> Curve:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.profiles.fit_rows import Rows
+from clearance.profiles.fit_rows import FitRows
 
 FIRST = 48
 """Rows that a program begins with: those nearest to mattering."""
@@ -18,7 +18,7 @@ BROKEN = 1e-9
 """[-] How far a row may be broken that is left out; the solver's own tolerance is 1e-7."""
 
 
-class Programmed(NamedTuple):
+class ProgramStep(NamedTuple):
     """Attributes: step (n,); value of the objective there; marginals of the rows, 0 or less."""
 
     step: np.ndarray
@@ -26,7 +26,9 @@ class Programmed(NamedTuple):
     marginals: np.ndarray
 
 
-def least_greatest(rows: Rows, scale: np.ndarray, low: np.ndarray, high: np.ndarray) -> Programmed:
+def least_greatest(
+    rows: FitRows, scale: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> ProgramStep:
     """The step that makes the greatest |distance| least to first order.
 
     Args:
@@ -44,9 +46,9 @@ def least_greatest(rows: Rows, scale: np.ndarray, low: np.ndarray, high: np.ndar
         [*zip(low / unit, high / unit, strict=True), (0.0, None)],
     )
     if found is None:
-        return Programmed(np.zeros(n), unit, np.zeros(2 * len(scaled)))
+        return ProgramStep(np.zeros(n), unit, np.zeros(2 * len(scaled)))
     x, marginals = found
-    return Programmed(x[:n] * unit * scale, float(x[n]) * unit, marginals)
+    return ProgramStep(x[:n] * unit * scale, float(x[n]) * unit, marginals)
 
 
 class AreaGoal(NamedTuple):
@@ -62,14 +64,14 @@ class AreaGoal(NamedTuple):
 
 
 def least_area(
-    rows: Rows,
+    rows: FitRows,
     goal: AreaGoal,
     size: float,
     reach: float,
     scale: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
-) -> Programmed:
+) -> ProgramStep:
     """The step that makes area and price times the missing gap least to first order; value: the gain.
 
     Args:
@@ -87,11 +89,11 @@ def least_area(
         [*zip(low / reach, high / reach, strict=True), (0.0, None)],
     )
     if found is None:
-        return Programmed(np.zeros(n), 0.0, np.zeros(len(scaled)))
+        return ProgramStep(np.zeros(n), 0.0, np.zeros(len(scaled)))
     x, marginals = found
     missing = max(0.0, wanted - float(rows.distance.min()))
     left = float((change * scale) @ x[:n] + price * size * x[n]) * reach
-    return Programmed(x[:n] * reach * scale, price * missing - left, marginals)
+    return ProgramStep(x[:n] * reach * scale, price * missing - left, marginals)
 
 
 def _least(cost: np.ndarray, matrix: np.ndarray, right: np.ndarray, bounds: list):

@@ -7,15 +7,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_rows import Rows, Slope, rows_of
+from clearance.profiles.fit_rows import FitRows, Slope, rows_of
 from clearance.profiles.fit_shape import SketchShape
-from clearance.profiles.fit_target import Found, Target
+from clearance.profiles.fit_target import FitCandidate, Target
 
 MOST_TOLD = 32
 """Touching points that are told."""
 
 
-def tight_rows(shape: SketchShape, target: Target, best: Found) -> tuple[Rows, np.ndarray]:
+def tight_rows(
+    shape: SketchShape, target: Target, best: FitCandidate
+) -> tuple[FitRows, np.ndarray]:
     """The rows that attain the distance (nearest) or the gap, and the sign that makes each grow."""
     rows = best.rows
     nearest = target.mode == "nearest"
@@ -23,11 +25,11 @@ def tight_rows(shape: SketchShape, target: Target, best: Found) -> tuple[Rows, n
     far = level.max() if nearest else level.min()
     tight = np.abs(level - far) <= 1e-6 * max(0.01 * shape.size, abs(far))
     sign = np.where(rows.distance[tight] < 0.0, -1.0, 1.0) if nearest else np.ones(tight.sum())
-    return Rows(*(column[tight] for column in rows)), sign
+    return FitRows(*(column[tight] for column in rows)), sign
 
 
 def sensitivities(
-    shape: SketchShape, target: Target, best: Found
+    shape: SketchShape, target: Target, best: FitCandidate
 ) -> dict[str, tuple[float, float]]:
     """For each free dimension how the distance, or the gap, changes when it grows and when it shrinks."""
     rows, sign = tight_rows(shape, target, best)
@@ -37,14 +39,14 @@ def sensitivities(
     return {name: (float(up[i]), float(down[i])) for i, name in enumerate(shape.free)}
 
 
-def touching(shape: SketchShape, target: Target, best: Found) -> np.ndarray:
+def touching(shape: SketchShape, target: Target, best: FitCandidate) -> np.ndarray:
     """(k, 2) different points that attain the distance or the gap."""
     points = tight_rows(shape, target, best)[0].point
     _, first = np.unique(np.round(points / (1e-7 * shape.size)), axis=0, return_index=True)
     return points[np.sort(first)][:MOST_TOLD]
 
 
-def held_rates(shape: SketchShape, target: Target, best: Found) -> dict[str, float]:
+def held_rates(shape: SketchShape, target: Target, best: FitCandidate) -> dict[str, float]:
     """How the objective changes with each held dimension that matters, the strongest first."""
     names, slopes, change = _held_slopes(shape, target, best)
     if not names:
@@ -61,7 +63,7 @@ def held_rates(shape: SketchShape, target: Target, best: Found) -> dict[str, flo
     return dict(sorted(found.items(), key=lambda item: -abs(item[1])))
 
 
-def _held_slopes(shape: SketchShape, target: Target, best: Found):
+def _held_slopes(shape: SketchShape, target: Target, best: FitCandidate):
     """Names, neighbouring shapes and change of the score of the held dimensions that can change."""
     names, slopes, change = [], [], []
     step = 1e-6 * shape.size

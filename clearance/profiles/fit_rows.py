@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from clearance.profiles.pieces import Pieces
+from clearance.profiles.pieces import ContourPieces
 from clearance.profiles.region import Region, holds
 
 
-class Rows(NamedTuple):
+class FitRows(NamedTuple):
     """Attributes: distance (k,) with its sign; slope (k, n) by the shape's numbers; point (k, 2) where."""
 
     distance: np.ndarray
@@ -51,8 +51,8 @@ class Slope(NamedTuple):
     """Two neighbouring shapes, how far apart one of their numbers is (0 where it cannot change), and the change
     of the area for each unit of it."""
 
-    behind: Pieces
-    ahead: Pieces
+    behind: ContourPieces
+    ahead: ContourPieces
     width: float
     area: float = 0.0
 
@@ -64,7 +64,7 @@ class Slope(NamedTuple):
         return (ahead - self.behind.point(gaps.piece, gaps.share)) / self.width
 
 
-class Rigid(NamedTuple):
+class RigidSlope(NamedTuple):
     """The shape as a whole: by `shift` (2,) for each unit, and turned to the left about `pivot` (2,)."""
 
     shift: np.ndarray
@@ -78,7 +78,7 @@ class Rigid(NamedTuple):
         return self.shift + self.turn * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
 
 
-def sides_of(pieces: Pieces, region: Region) -> np.ndarray:
+def sides_of(pieces: ContourPieces, region: Region) -> np.ndarray:
     """For each contour 1 where its inside is on the left, -1 where it is on the right."""
     length = np.hypot(*(pieces.end - pieces.start).T)
     longest = np.array(
@@ -92,14 +92,14 @@ def sides_of(pieces: Pieces, region: Region) -> np.ndarray:
     return np.where(holds(region, pieces.point(longest, half) + step), 1.0, -1.0)
 
 
-def gaps_of_shape(outline: Pieces, sides: np.ndarray, here: Pieces, samples) -> Gaps:
+def gaps_of_shape(outline: ContourPieces, sides: np.ndarray, here: ContourPieces, samples) -> Gaps:
     """Gaps of the shape's places `samples` (pieces, shares), positive inside the outline."""
     own = here.point(*samples)
     distance, normal, _ = _measured(outline, sides, own)
     return Gaps(distance, own, normal, *samples)
 
 
-def gaps_of_outline(here: Pieces, sides: np.ndarray, given: np.ndarray) -> Gaps:
+def gaps_of_outline(here: ContourPieces, sides: np.ndarray, given: np.ndarray) -> Gaps:
     """Gaps of the outline's points `given` (k, 2), positive inside the shape."""
     distance, normal, place = _measured(here, sides, given)
     return Gaps(distance, given, -normal, *place)
@@ -110,14 +110,14 @@ def joined_gaps(*parts: Gaps) -> Gaps:
     return Gaps(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def rows_of(gaps: Gaps, here: Pieces, slopes: list[Slope | Rigid]) -> Rows:
+def rows_of(gaps: Gaps, here: ContourPieces, slopes: list[Slope | RigidSlope]) -> FitRows:
     """Gaps of the shape `here` with their slopes."""
     own = here.point(gaps.piece, gaps.share)
     columns = [(slope.moved(gaps, own) * gaps.normal).sum(axis=1) for slope in slopes]
-    return Rows(gaps.distance, np.stack(columns, axis=1), gaps.point)
+    return FitRows(gaps.distance, np.stack(columns, axis=1), gaps.point)
 
 
-def _measured(curve: Pieces, sides: np.ndarray, points: np.ndarray):
+def _measured(curve: ContourPieces, sides: np.ndarray, points: np.ndarray):
     """Distance of points inside a curve, the direction in which it grows, and where their feet are."""
     piece, share, foot = curve.feet(points)
     left = curve.left(piece, share)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from clearance.profiles.fit_placed import Placed, greatest_numbers, least_numbers
+from clearance.profiles.fit_placed import PlacedShape, greatest_numbers, least_numbers
 from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_target import Places, Target
 
@@ -24,19 +24,19 @@ STEPS = 30
 class FitSearch:
     """A shape, what it is to be, and the places on it that are looked at."""
 
-    def __init__(self, shape: SketchShape, target: Target, drawn: Placed) -> None:
+    def __init__(self, shape: SketchShape, target: Target, drawn: PlacedShape) -> None:
         self.shape, self.target = shape, target
         self.samples = drawn.pieces.spread(SAMPLES)
         self.tiny = 1e-12 * shape.size
 
-    def bounds(self, here: Placed, reach: float) -> tuple[np.ndarray, np.ndarray]:
+    def bounds(self, here: PlacedShape, reach: float) -> tuple[np.ndarray, np.ndarray]:
         """(n,) each: least and greatest step, in units of the shape's scale, within `reach`."""
         shape, numbers = self.shape, here.numbers
         low = least_numbers(shape.kinds, numbers, shape.size) - numbers
         high = greatest_numbers(shape.kinds, numbers) - numbers
         return np.maximum(low / shape.scale, -reach), np.minimum(high / shape.scale, reach)
 
-    def with_places(self, here: Placed, points: np.ndarray, samples: Places) -> Places:
+    def with_places(self, here: PlacedShape, points: np.ndarray, samples: Places) -> Places:
         """The samples and the places of more points of the shape."""
         piece, share, _ = here.pieces.feet(points)
         return np.append(samples[0], piece), np.append(samples[1], share)

@@ -14,8 +14,8 @@ import numpy as np
 from clearance.errors import BadInput, BadShape, ClearanceError, nearest_name
 from clearance.profiles.contour import Contour
 from clearance.profiles.drawn_chains import contours_of_chains, drawn_chains
-from clearance.profiles.fit_placed import Placed
-from clearance.profiles.fit_rows import Rigid, Slope
+from clearance.profiles.fit_placed import PlacedShape
+from clearance.profiles.fit_rows import RigidSlope, Slope
 from clearance.profiles.outline_file import require_closed, require_solved
 from clearance.profiles.sketch_copy import copied
 from clearance.sketch import Sketch
@@ -75,7 +75,7 @@ class SketchShape:
         ]
         return [name for name in self.sketch.parameters if name not in self.free] + given
 
-    def at(self, numbers: np.ndarray) -> Placed | None:
+    def at(self, numbers: np.ndarray) -> PlacedShape | None:
         """The shape of these numbers; None where the sketch cannot be drawn so."""
         try:
             for name, number in zip(self.free, numbers, strict=False):
@@ -87,12 +87,12 @@ class SketchShape:
             return None
         motion = self._motion(numbers[len(self.free) :], *self._stand(contours))
         moved = (c.vertices @ motion[:, :2].T + motion[:, 2] for c in contours)
-        return Placed(
+        return PlacedShape(
             numbers.copy(),
             tuple(Contour(v, c.bulges) for v, c in zip(moved, contours, strict=True)),
         )
 
-    def changed(self, name: str, change: float, numbers: np.ndarray) -> Placed | None:
+    def changed(self, name: str, change: float, numbers: np.ndarray) -> PlacedShape | None:
         """The shape with a held dimension changed; it is put back."""
         before = self.sketch.value(name)
         try:
@@ -103,9 +103,9 @@ class SketchShape:
         finally:
             self.sketch.set(name, before)
 
-    def slopes(self, here: Placed) -> list[Slope | Rigid]:
+    def slopes(self, here: PlacedShape) -> list[Slope | RigidSlope]:
         """How the shape changes with each number: the shape a little further, or before where that cannot be."""
-        found: list[Slope | Rigid] = []
+        found: list[Slope | RigidSlope] = []
         for i in range(len(self.free)):
             step = 1e-6 * self.scale[i]
             step = min(step, 1e-3 * abs(here.numbers[i])) or step
@@ -116,12 +116,12 @@ class SketchShape:
             )
         pivot = here.contours[0].vertices[0]
         if self.slides:
-            found += [Rigid(axis, pivot) for axis in np.eye(2)]
+            found += [RigidSlope(axis, pivot) for axis in np.eye(2)]
         if self.turns:
-            found.append(Rigid(np.zeros(2), pivot, 1.0))
+            found.append(RigidSlope(np.zeros(2), pivot, 1.0))
         return found
 
-    def _slope(self, here: Placed, i: int, step: float) -> Slope | None:
+    def _slope(self, here: PlacedShape, i: int, step: float) -> Slope | None:
         numbers = here.numbers.copy()
         numbers[i] += step
         there = self.at(numbers)

@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.profiles.fit_shape import SketchShape
-from clearance.profiles.outline_file import Drawn
+from clearance.profiles.outline_file import DrawnOutline
 
 
-def starts_of(shape: SketchShape, outline: Drawn, mode: str, count: int) -> list[np.ndarray]:
+def starts_of(shape: SketchShape, outline: DrawnOutline, mode: str, count: int) -> list[np.ndarray]:
     """As drawn; scaled and shifted to the outline's box; then the same shaken, always alike."""
     first = shape.start
     found = [first]

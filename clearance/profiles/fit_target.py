@@ -11,19 +11,19 @@ import numpy as np
 
 from clearance.planar.hausdorff import hausdorff
 from clearance.planar.minimum import Minimum
-from clearance.profiles.fit_placed import Placed
+from clearance.profiles.fit_placed import PlacedShape
 from clearance.profiles.fit_rows import (
+    FitRows,
     Gaps,
-    Rows,
     gaps_of_outline,
     gaps_of_shape,
     joined_gaps,
     sides_of,
 )
 from clearance.profiles.fit_shape import SketchShape
-from clearance.profiles.gap import Closed, proven_gap
-from clearance.profiles.outline_file import Drawn
-from clearance.profiles.pieces import Pieces
+from clearance.profiles.gap import ClosedContours, proven_gap
+from clearance.profiles.outline_file import DrawnOutline
+from clearance.profiles.pieces import ContourPieces
 from clearance.profiles.region import holds
 
 MOST_GIVEN = 3000
@@ -34,7 +34,7 @@ Places = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True, eq=False)
-class Found:
+class FitCandidate:
     """A shape at the end of a search.
 
     Attributes:
@@ -43,10 +43,10 @@ class Found:
         rows, marginals: of the last linear program; samples, given, chosen: which rows they are.
     """
 
-    placed: Placed
+    placed: PlacedShape
     score: float
     clearance: float | None
-    rows: Rows
+    rows: FitRows
     marginals: np.ndarray
     samples: Places
     given: np.ndarray
@@ -61,46 +61,51 @@ class Target:
     """
 
     def __init__(
-        self, outline: Drawn, shape: SketchShape, drawn: Placed, mode: str, margin: float
+        self,
+        outline: DrawnOutline,
+        shape: SketchShape,
+        drawn: PlacedShape,
+        mode: str,
+        margin: float,
     ) -> None:
         self.outline, self.mode, self.margin = outline, mode, margin
-        self.closed = Closed.of_curve(outline.curve)
+        self.closed = ClosedContours.of_curve(outline.curve)
         self.pieces = self.closed.pieces
         self.sides = sides_of(self.pieces, self.closed.region)
         per_piece = int(np.clip(1500 // len(self.pieces.bulge), 2, 64))
         points = self.pieces.point(*self.pieces.spread(per_piece))
         self.given = points[:: max(1, len(points) // MOST_GIVEN)]
-        self.shape_sides = sides_of(drawn.pieces, Closed.of(drawn.contours).region)
+        self.shape_sides = sides_of(drawn.pieces, ClosedContours.of(drawn.contours).region)
         free_form = mode == "inside" and outline.profile is None
         self.room = free_form and bool(holds(self.closed.region, drawn.pieces.start[:1]).all())
 
-    def distances(self, here: Pieces, samples: Places, given: np.ndarray) -> Gaps:
+    def distances(self, here: ContourPieces, samples: Places, given: np.ndarray) -> Gaps:
         """Of the shape's places and of the outline's points, positive inside the other."""
         return joined_gaps(*self._pair(here, samples, given))
 
-    def gaps(self, here: Pieces, samples: Places, given: np.ndarray) -> Gaps:
+    def gaps(self, here: ContourPieces, samples: Places, given: np.ndarray) -> Gaps:
         """The same, positive where the shape is on its right side: to be at least the margin."""
         own, theirs = self._pair(here, samples, given)
         one = 1.0 if self.room else -1.0
         two = 1.0 if self.mode == "outside" else -1.0
         return joined_gaps(own.signed(one), theirs.signed(two))
 
-    def _pair(self, here: Pieces, samples: Places, given: np.ndarray) -> tuple[Gaps, Gaps]:
+    def _pair(self, here: ContourPieces, samples: Places, given: np.ndarray) -> tuple[Gaps, Gaps]:
         return (
             gaps_of_shape(self.pieces, self.sides, here, samples),
             gaps_of_outline(here, self.shape_sides, given),
         )
 
-    def score(self, here: Placed) -> float:
+    def score(self, here: PlacedShape) -> float:
         """[m^2] what outside and inside make least."""
         return here.area if self.mode == "outside" else -here.area
 
-    def clearance(self, here: Placed) -> tuple[float, Minimum]:
+    def clearance(self, here: PlacedShape) -> tuple[float, Minimum]:
         """Proven lower bound of the gap, -1 where the shape is on the wrong side, and the witnesses."""
-        shape = Closed.of(here.contours)
+        shape = ClosedContours.of(here.contours)
         return proven_gap(shape, self.closed, around=self.mode == "outside", room=self.room)
 
-    def better(self, one: Found, two: Found) -> bool:
+    def better(self, one: FitCandidate, two: FitCandidate) -> bool:
         """True if `one` beats `two` by more than rounding; equal areas are told apart by distance."""
         if abs(one.score - two.score) > 1e-9 * max(abs(two.score), 1e-300):
             return one.score < two.score

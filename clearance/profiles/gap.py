@@ -14,7 +14,7 @@ import numpy as np
 from clearance.planar.curve import Curve
 from clearance.planar.minimum import Minimum, minimum_distance
 from clearance.profiles.contour import Contour, joined
-from clearance.profiles.pieces import FINE, Pieces, contours_of
+from clearance.profiles.pieces import FINE, ContourPieces, contours_of
 from clearance.profiles.region import Region, holds, region_of
 
 CHORD = 1e-7
@@ -22,7 +22,7 @@ CHORD = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class Closed:
+class ClosedContours:
     """Closed contours in the forms that are asked of them.
 
     Attributes:
@@ -33,19 +33,19 @@ class Closed:
     curve: Curve
 
     @classmethod
-    def of(cls, contours: Sequence[Contour]) -> Closed:
+    def of(cls, contours: Sequence[Contour]) -> ClosedContours:
         """Contours of lines and arcs."""
         return cls(tuple(contours), joined(contours))
 
     @classmethod
-    def of_curve(cls, curve: Curve) -> Closed:
+    def of_curve(cls, curve: Curve) -> ClosedContours:
         """Any curve of closed contours."""
         return cls(contours_of(curve, FINE * curve.size), curve)
 
     @cached_property
-    def pieces(self) -> Pieces:
+    def pieces(self) -> ContourPieces:
         """For searches."""
-        return Pieces(self.contours)
+        return ContourPieces(self.contours)
 
     @cached_property
     def region(self) -> Region:
@@ -59,7 +59,7 @@ class Closed:
 
 
 def proven_gap(
-    sketch: Closed, outline: Closed, *, around: bool, room: bool = False
+    sketch: ClosedContours, outline: ClosedContours, *, around: bool, room: bool = False
 ) -> tuple[float, Minimum]:
     """Lower bound of the gap, -1 where one is on the wrong side of the other, and the witnesses.
 

@@ -28,7 +28,7 @@ FINE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class DrawnOutline:
     """An outline and what it came from.
 
     Attributes:
@@ -99,7 +99,7 @@ def _chord_counts(curve: Curve, rows: np.ndarray, piece: np.ndarray) -> np.ndarr
     return np.clip(count + 3 * free, 1, 64).astype(int)
 
 
-def read_outline(path: str | Path) -> Drawn:
+def read_outline(path: str | Path) -> DrawnOutline:
     """The outline in a profile (.yaml), a sketch (.yaml), a list of curves (.yaml) or a drawing (.dxf).
 
     Raises:
@@ -107,15 +107,15 @@ def read_outline(path: str | Path) -> Drawn:
     """
     path = Path(path)
     if path.suffix.lower() not in (".yaml", ".yml"):
-        return Drawn(path.name, read_curve(str(path)))
+        return DrawnOutline(path.name, read_curve(str(path)))
     document = yaml_of(path)
     if is_profile(document):
         with at(str(path)):
             found = profile_of(document)
-        return Drawn(path.name, found.curve, found)
+        return DrawnOutline(path.name, found.curve, found)
     if isinstance(document, dict) and "curves" not in document and "points" in document:
-        return Drawn(path.name, solved_sketch(path).curves())
-    return Drawn(path.name, read_curve(str(path)))
+        return DrawnOutline(path.name, solved_sketch(path).curves())
+    return DrawnOutline(path.name, read_curve(str(path)))
 
 
 def read_profile(path: str | Path) -> Profile:

@@ -12,15 +12,15 @@ import numpy as np
 
 from clearance.errors import BadInput, Unwritable
 from clearance.extras import importing
-from clearance.profiles.outline_file import Drawn, rings_of_curve
+from clearance.profiles.outline_file import DrawnOutline, rings_of_curve
 from clearance.profiles.region import Region, difference, rings_of
 
 COLORS = {"a": "#c99700", "b": "#1f5fbf", "gained": "#2ca25f", "lost": "#d62728", "line": "#111111"}
 
 
 def draw_outlines(
-    a: Drawn,
-    b: Drawn,
+    a: DrawnOutline,
+    b: DrawnOutline,
     ends: np.ndarray,
     title: str,
     path: str | Path,
@@ -50,8 +50,8 @@ def draw_outlines(
 
 
 def picture_bytes(
-    a: Drawn,
-    b: Drawn,
+    a: DrawnOutline,
+    b: DrawnOutline,
     ends: np.ndarray,
     title: str,
     suffix: str,
@@ -91,7 +91,7 @@ def picture_bytes(
     return out.getvalue()
 
 
-def _page(a: Drawn, b: Drawn) -> tuple[np.ndarray, np.ndarray]:
+def _page(a: DrawnOutline, b: DrawnOutline) -> tuple[np.ndarray, np.ndarray]:
     low = np.minimum(a.curve.box[0], b.curve.box[0])
     high = np.maximum(a.curve.box[1], b.curve.box[1])
     margin = 0.05 * float(np.hypot(*(high - low)))
@@ -118,7 +118,9 @@ def _zoom(whole, near, ends: np.ndarray, page: float) -> None:
         axes.tick_params(colors="#555555", labelsize="x-small")
 
 
-def _fill(axes, a: Drawn, b: Drawn, ends: np.ndarray, shade: tuple[str, str] | None) -> None:
+def _fill(
+    axes, a: DrawnOutline, b: DrawnOutline, ends: np.ndarray, shade: tuple[str, str] | None
+) -> None:
     if shade is not None:
         _shade(axes, difference(b.region, a.region), COLORS["gained"], shade[0])
         _shade(axes, difference(a.region, b.region), COLORS["lost"], shade[1])

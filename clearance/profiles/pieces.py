@@ -19,7 +19,7 @@ FINE = 1e-7
 """[-] How far arcs may stray from free-form curves, relative to their size."""
 
 
-class Pieces:
+class ContourPieces:
     """The pieces of closed contours.
 
     Attributes:

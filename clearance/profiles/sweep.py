@@ -13,15 +13,15 @@ import numpy as np
 
 from clearance.errors import BadDimension, NothingToMeasure
 from clearance.kernels.profile.swept_cover import Raster, row_sums
-from clearance.profiles.collected import Collected
+from clearance.profiles.collected import PolygonCollection
 from clearance.profiles.outline import outline_of
 from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import covered_region
 from clearance.profiles.silhouette import Silhouette
 from clearance.profiles.swept_bodies import (
-    Moving,
-    WithRecord,
+    MovingBody,
+    RecordHolder,
     chosen_links,
     motions_of,
     standing_obstacles,
@@ -51,7 +51,7 @@ Progress = Callable[[int, int], None]
 
 
 def swept_profile(
-    run: Case | Samples | WithRecord,
+    run: Case | Samples | RecordHolder,
     plane: str = "xy",
     *,
     links: Sequence[str] | None = None,
@@ -102,7 +102,7 @@ def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
     raster = _page(views)
     for view in views:
         view.cover(raster)
-    collected = Collected(covered_region(raster))
+    collected = PolygonCollection(covered_region(raster))
     sums = row_sums(raster.covered)
     for i, view in enumerate(views):
         for hulls in view.hulls(raster, sums, WIDTH, TWIST * tolerance):
@@ -136,7 +136,9 @@ def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
     )
 
 
-def _views(moving: Sequence[Moving], plane: Plane, section: float | None, tolerance: float) -> list:
+def _views(
+    moving: Sequence[MovingBody], plane: Plane, section: float | None, tolerance: float
+) -> list:
     if section is None:
         return [
             Silhouette(

@@ -22,7 +22,7 @@ from clearance.world.motion import Motion
 
 
 @dataclass(frozen=True, eq=False)
-class Moving:
+class MovingBody:
     """A body of one of the motions, or one that stands at a pose."""
 
     label: str
@@ -41,24 +41,26 @@ class Moving:
         return knots_of(self.motion, self.body, plane, limit, solid=solid)
 
 
-class WithRecord(Protocol):
+class RecordHolder(Protocol):
     """What has a record, as a run."""
 
     @property
     def record(self) -> Samples: ...
 
 
-def motions_of(run: Case | Samples | WithRecord) -> tuple[str, tuple[Motion, ...]]:
+def motions_of(run: Case | Samples | RecordHolder) -> tuple[str, tuple[Motion, ...]]:
     if isinstance(run, Case):
         return run.name, tuple(kinematic_motion(placed) for placed in run.robots)
     record: Samples = getattr(run, "record", run)
     return record.case.name, record.motions
 
 
-def chosen_links(motions: Sequence[Motion], links: Sequence[str] | None) -> list[Moving]:
+def chosen_links(motions: Sequence[Motion], links: Sequence[str] | None) -> list[MovingBody]:
     several = len(motions) > 1
     found = [
-        Moving(f"{motion.placed.robot.name}/{body.name}" if several else body.name, body, motion)
+        MovingBody(
+            f"{motion.placed.robot.name}/{body.name}" if several else body.name, body, motion
+        )
         for motion in motions
         for body in motion.placed.robot.bodies
     ]
@@ -73,7 +75,7 @@ def chosen_links(motions: Sequence[Motion], links: Sequence[str] | None) -> list
     return [one for one in found if one.label in set(links)]
 
 
-def standing_obstacles(run, names: Sequence[str]) -> list[Moving]:
+def standing_obstacles(run, names: Sequence[str]) -> list[MovingBody]:
     case: Case = run if isinstance(run, Case) else getattr(run, "record", run).case
     known = {obstacle.name: obstacle for obstacle in case.obstacles}
     for name in names:
@@ -81,4 +83,4 @@ def standing_obstacles(run, names: Sequence[str]) -> list[Moving]:
             raise UnknownObstacle(
                 f"unknown obstacle {name!r}", where="obstacles", valid=nearest_name(name, known)
             )
-    return [Moving(name, known[name].body, None, known[name].world_from_body) for name in names]
+    return [MovingBody(name, known[name].body, None, known[name].world_from_body) for name in names]

@@ -41,7 +41,7 @@ _STILL = np.eye(4)
 
 
 @dataclass(frozen=True)
-class Certificate:
+class SeparationCertificate:
     """At most four faces whose half-spaces have no common inner point: sum(weight n) = 0, sum(weight d) <= 0.
 
     Args:
@@ -71,7 +71,7 @@ class CommonPoint:
     relation: str
     point: np.ndarray | None
     depth: float
-    certificate: Certificate | None
+    certificate: SeparationCertificate | None
     n_faces: int
     passes: int
     warm: tuple = ()
@@ -193,7 +193,7 @@ def _judged(bodies, origin, basis, names: list[int], n_faces: int, passes: int) 
 
 def _certificate(
     n_bodies: int, basis: np.ndarray, names: np.ndarray, real: list[int]
-) -> Certificate:
+) -> SeparationCertificate:
     parts, faces = names >> 32, names & 0xFFFFFFFF
     normal = None
     if n_bodies == 2:
@@ -201,4 +201,4 @@ def _certificate(
         total = basis[SHARE, own] @ basis[own, :3]
         length = np.linalg.norm(total)
         normal = total / length if length > 0.0 else None
-    return Certificate(parts[real], faces[real], basis[SHARE, real].copy(), normal)
+    return SeparationCertificate(parts[real], faces[real], basis[SHARE, real].copy(), normal)

@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope.gjk import COMMON, VertexGraph, gjk
-from clearance.query.common_point import ROUNDING, Certificate, CommonPoint
+from clearance.query.common_point import ROUNDING, CommonPoint, SeparationCertificate
 
 
 def common_point_paper(a: Polytope, b: Polytope, warm: tuple = (0, 0)) -> CommonPoint:
@@ -29,7 +29,7 @@ def common_point_paper(a: Polytope, b: Polytope, warm: tuple = (0, 0)) -> Common
     after = (int(ia[0]), int(ib[0]))
     gap = float(np.linalg.norm(nearest))
     if status != COMMON and gap > limit:
-        return CommonPoint("apart", None, -gap, Certificate(
+        return CommonPoint("apart", None, -gap, SeparationCertificate(
             np.zeros(0, int), np.zeros(0, int), np.zeros(0), -nearest / gap), n, 1, after)  # fmt: skip
     point = shares[:k] @ a.vertices[ia[:k]]
     inside = _stepped_inside(a, b, point)

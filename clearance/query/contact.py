@@ -21,7 +21,7 @@ from clearance.geometry.polytope import Polytope
 from clearance.geometry.pose import inverse, validated_pose
 from clearance.query.distance import distance
 from clearance.query.intersection import Intersection, intersect
-from clearance.query.penetration import Corners, Penetration, depths_at_most, penetration
+from clearance.query.penetration import ConvexCorners, Penetration, depths_at_most, penetration
 from clearance.query.region_bounds import ball_depth, thickness, ways_through
 from clearance.query.retreat import Ray, shortened, shortened_through, ways_out
 from clearance.query.solid_near import SolidNear, solid_near
@@ -166,11 +166,11 @@ class BodyPair:
         Args:
             b_from_a: (4, 4) pose [m]. witness: (3,) a common point.
         """
-        return _Placed(self, b_from_a, witness).found()
+        return _PlacedPair(self, b_from_a, witness).found()
 
 
 @dataclass(frozen=True, eq=False)
-class _Placed:
+class _PlacedPair:
     """A pair at one relative pose, all in the frame of b."""
 
     pair: BodyPair
@@ -193,12 +193,12 @@ class _Placed:
         )
 
     @cached_property
-    def outer_a(self) -> list[Corners]:
-        return [Corners.placed(part, self.b_from_a) for part in self.pair.parts_a.outer]
+    def outer_a(self) -> list[ConvexCorners]:
+        return [ConvexCorners.placed(part, self.b_from_a) for part in self.pair.parts_a.outer]
 
     @cached_property
-    def outer_b(self) -> list[Corners]:
-        return [Corners(part.vertices, part.normals) for part in self.pair.parts_b.outer]
+    def outer_b(self) -> list[ConvexCorners]:
+        return [ConvexCorners(part.vertices, part.normals) for part in self.pair.parts_b.outer]
 
     @cached_property
     def size(self) -> float:
@@ -263,7 +263,7 @@ class _Placed:
         """[m] how thick what both share is along a unit direction after a translation (3,) of a; 0 if nothing."""
         pose = self.b_from_a.copy()
         pose[:3, 3] += shift
-        mesh = _Placed(self.pair, pose, self.witness)._mesh_shared
+        mesh = _PlacedPair(self.pair, pose, self.witness)._mesh_shared
         return 0.0 if mesh is None or mesh.is_empty else float(thickness(mesh, along[None, :])[0])
 
     def _depth_of_balls(self) -> float:
@@ -292,8 +292,8 @@ class _Placed:
 
         Pairs in turn by what 26 directions leave of their depth, until that is no more than the greatest found.
         """
-        inner_a = [Corners.placed(part, self.b_from_a) for part in self.pair.parts_a.inner]
-        inner_b = [Corners(part.vertices, part.normals) for part in self.pair.parts_b.inner]
+        inner_a = [ConvexCorners.placed(part, self.b_from_a) for part in self.pair.parts_a.inner]
+        inner_b = [ConvexCorners(part.vertices, part.normals) for part in self.pair.parts_b.inner]
         at_most = depths_at_most(inner_a, inner_b)
         found = 0.0
         for row in np.argsort(-at_most, axis=None, kind="stable"):
@@ -309,7 +309,7 @@ class _Placed:
         region = self._region[0]
         if region.is_empty:
             return None
-        corners = Corners(region.vertices, np.zeros((0, 3)))
+        corners = ConvexCorners(region.vertices, np.zeros((0, 3)))
         return penetration(corners, corners)
 
     def _thin_ways(self) -> list[np.ndarray]:
@@ -353,7 +353,8 @@ class _Placed:
     def _volume_of_inner(self) -> float:
         """[m^3] the greatest region that a convex body inside a shares with one inside b."""
         inner_a = [
-            Polytope(Corners.placed(p, self.b_from_a).vertices) for p in self.pair.parts_a.inner
+            Polytope(ConvexCorners.placed(p, self.b_from_a).vertices)
+            for p in self.pair.parts_a.inner
         ]
         shared = [intersect([p, q]).volume for p in inner_a for q in self.pair.parts_b.inner]
         return max(shared, default=0.0)
@@ -398,8 +399,8 @@ def _hull_of(parts: ConvexParts) -> Polytope:
     return Polytope(np.concatenate([part.vertices for part in parts.outer]))
 
 
-def _joined(parts: list[Corners]) -> Corners:
-    return Corners(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
+def _joined(parts: list[ConvexCorners]) -> ConvexCorners:
+    return ConvexCorners(*(np.concatenate(rows) for rows in zip(*parts, strict=True)))
 
 
 def _mesh_of(shared: Intersection) -> ClosedMesh:

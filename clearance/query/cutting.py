@@ -51,7 +51,7 @@ SPARSE = 0.5
 """[-] Part of the rows that may be free before those in use are moved together."""
 
 
-class Broken(Exception):
+class BrokenRim(Exception):
     """The rim of a cut was not one ring: rounding has broken the surface; another way must be taken."""
 
 
@@ -143,7 +143,7 @@ class Cutting:
         """
         plane = np.append(side * ACROSS_ALL, 0.0)[None, :]
         if cut_by_planes(self.arrays, plane, self.task.seam, 0.0) != CUT:
-            raise Broken
+            raise BrokenRim
 
     def by(self, *i_bodies: int) -> bool:
         """Cuts by bodies in turn, in one call of a kernel; False if nothing is left.
@@ -160,7 +160,7 @@ class Cutting:
             turns = turns[n_done:]
             self._grown()
         if status == BROKEN:
-            raise Broken
+            raise BrokenRim
         return status == CUT
 
     def patched_by(self, i_first: int, i_body: int) -> bool:

@@ -10,7 +10,7 @@ from clearance.geometry.faces import check_convex
 from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.kernels.mesh.convex import seem_convex
-from clearance.kernels.search.polygon_pair import Answers, nearest_polygons
+from clearance.kernels.search.polygon_pair import PolygonPairAnswers, nearest_polygons
 from clearance.query.one_pair import room_for
 from clearance.query.paper import NO_TOLERANCE, distance_paper, polygon_distance_paper
 from clearance.query.result import Nearest
@@ -94,10 +94,10 @@ def polygon_distances(ps: np.ndarray, qs: np.ndarray, *, method: str = "exact") 
     return _measured(ps, qs).distance
 
 
-def _measured(ps: np.ndarray, qs: np.ndarray) -> Answers:
+def _measured(ps: np.ndarray, qs: np.ndarray) -> PolygonPairAnswers:
     k = len(ps)
     flags = np.empty(k, dtype=np.bool_), np.empty(k, dtype=np.bool_)
-    answers = Answers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
+    answers = PolygonPairAnswers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
     call(nearest_polygons, ps, qs, answers)
     return answers
 

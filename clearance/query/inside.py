@@ -48,7 +48,7 @@ class Shell(NamedTuple):
     holes: np.ndarray
 
 
-class Loose(NamedTuple):
+class LooseFaces(NamedTuple):
     """The components of a body that would not close one by one.
 
     Attributes:
@@ -61,7 +61,7 @@ class Loose(NamedTuple):
     stride: float
 
 
-class Part(NamedTuple):
+class Component(NamedTuple):
     """A connected component of a body.
 
     Attributes:
@@ -76,10 +76,10 @@ class Part(NamedTuple):
 
 
 _shells: weakref.WeakKeyDictionary[Polyhedron, tuple[Shell, ...]] = weakref.WeakKeyDictionary()
-_parts: weakref.WeakKeyDictionary[Polyhedron, tuple[Part, ...]] = weakref.WeakKeyDictionary()
+_parts: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
 
-_loose: weakref.WeakKeyDictionary[Polyhedron, tuple[Loose, ...]] = weakref.WeakKeyDictionary()
-_pieces: weakref.WeakKeyDictionary[Polyhedron, tuple[Part, ...]] = weakref.WeakKeyDictionary()
+_loose: weakref.WeakKeyDictionary[Polyhedron, tuple[LooseFaces, ...]] = weakref.WeakKeyDictionary()
+_pieces: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
 
 
 class Doubt:
@@ -102,7 +102,7 @@ class Doubt:
         )
         for sides, outer, inner in ways:
             for shell, part in sides:
-                if isinstance(shell, Loose):
+                if isinstance(shell, LooseFaces):
                     stride = shell.stride if along_a_way else -1.0
                     wound_by_loose(
                         shell.triangles, shell.bounds, part.outermost, outer, inner, stride, found
@@ -118,7 +118,9 @@ def doubt_of(a: Polyhedron, b: Polyhedron) -> Doubt | None:
     return Doubt(*sides) if any(sides) else None
 
 
-def _sides(outer: Polyhedron, inner: Polyhedron) -> tuple[tuple[Shell | Loose, Part], ...]:
+def _sides(
+    outer: Polyhedron, inner: Polyhedron
+) -> tuple[tuple[Shell | LooseFaces, Component], ...]:
     shells, loose = _kept(_shells, outer, _shells_of), _kept(_loose, outer, _loose_of)
     parts = _kept(_parts, inner, _parts_of) if shells else ()
     pieces = _kept(_pieces, inner, _pieces_of) if loose else ()
@@ -131,14 +133,14 @@ def _sides(outer: Polyhedron, inner: Polyhedron) -> tuple[tuple[Shell | Loose, P
     )
 
 
-def _may_hold(shell: Shell | Loose, part: Part) -> bool:
+def _may_hold(shell: Shell | LooseFaces, part: Component) -> bool:
     """False if two corners of the part are farther apart than any two points within the shell's bounds."""
     breadth = np.linalg.norm(part.outermost[::2] - part.outermost[1::2], axis=1).max()
     return bool(breadth <= np.linalg.norm(shell.bounds[1] - shell.bounds[0]))
 
 
 def _look(
-    shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray, found: np.ndarray
+    shell: Shell, part: Component, outer: np.ndarray, inner: np.ndarray, found: np.ndarray
 ) -> None:
     """Sets `found` (n,) where the part is in doubt, at poses (n, 4, 4) of the shell's body and of its own."""
     asked = _near_a_hole if shell.few else _within_bounds
@@ -151,14 +153,16 @@ def _look(
     found[rows] = most > DOUBTFUL if shell.few else least > MOSTLY
 
 
-def _near_a_hole(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+def _near_a_hole(shell: Shell, part: Component, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
     """(n,) False where the caps are seen under at most `DOUBTFUL` from all of the part: the search has decided."""
     found = np.empty(len(outer), dtype=bool)
     near_holes(shell.holes, shell.bounds, part.low, part.high, outer, inner, found)
     return found
 
 
-def _within_bounds(shell: Shell, part: Part, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+def _within_bounds(
+    shell: Shell, part: Component, outer: np.ndarray, inner: np.ndarray
+) -> np.ndarray:
     """(n,) True where the outermost corners of the part are within the body's bounds."""
     points = (
         part.outermost @ np.swapaxes(inner[:, :3, :3], 1, 2)
@@ -176,10 +180,10 @@ def _shells_of(shape: Polyhedron) -> tuple[Shell, ...]:
     return tuple(found)
 
 
-def _loose_of(shape: Polyhedron) -> tuple[Loose, ...]:
+def _loose_of(shape: Polyhedron) -> tuple[LooseFaces, ...]:
     triangles = loose_triangles(shape)
     stride = STRIDE * float(np.linalg.norm(shape.bounds[1] - shape.bounds[0]))
-    return (Loose(triangles, shape.bounds, stride),) if len(triangles) > 3 else ()
+    return (LooseFaces(triangles, shape.bounds, stride),) if len(triangles) > 3 else ()
 
 
 def _shell(shape: Polyhedron, closing: Closing, few: bool) -> Shell:
@@ -209,7 +213,7 @@ def _ball_of(fan: np.ndarray) -> tuple[float, ...]:
     return (*centre, radius * (1.0 + 1e-12), area * (1.0 + 1e-12))
 
 
-def _parts_of(shape: Polyhedron) -> tuple[Part, ...]:
+def _parts_of(shape: Polyhedron) -> tuple[Component, ...]:
     of_corner = np.repeat(shape.face_component, np.diff(shape.face_starts))
     order = np.argsort(of_corner, kind="stable")
     ends = np.flatnonzero(np.diff(of_corner[order])) + 1
@@ -219,15 +223,15 @@ def _parts_of(shape: Polyhedron) -> tuple[Part, ...]:
     )
 
 
-def _pieces_of(shape: Polyhedron) -> tuple[Part, ...]:
+def _pieces_of(shape: Polyhedron) -> tuple[Component, ...]:
     if len(shape.component_closed) <= PIECES:
         return _kept(_parts, shape, _parts_of)
     return (_part(shape.vertices[np.unique(shape.face_vertices)]),)
 
 
-def _part(points: np.ndarray) -> Part:
+def _part(points: np.ndarray) -> Component:
     ends = np.stack([points.argmin(axis=0), points.argmax(axis=0)], axis=1).reshape(-1)
-    return Part(points, points[ends], points.min(axis=0), points.max(axis=0))
+    return Component(points, points[ends], points.min(axis=0), points.max(axis=0))
 
 
 def _kept(known: weakref.WeakKeyDictionary, shape: Polyhedron, make) -> tuple:

@@ -20,7 +20,7 @@ from clearance.errors import BadDimension
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
 from clearance.query.common_point import CommonPoint, checked_bodies, common_point
-from clearance.query.cutting import Broken, Cutting, Task, cut_down
+from clearance.query.cutting import BrokenRim, Cutting, Task, cut_down
 from clearance.query.duals import dual_region
 from clearance.query.region import Region
 from clearance.query.thin import is_thin, refined
@@ -150,7 +150,7 @@ def _region(
                 if again is not None:
                     return *again, "cut"
             return list(halves), total[:4], "cut"
-        except Broken:
+        except BrokenRim:
             if method == "cut":
                 raise AssertionError("the cut has broken the surface") from None
     region = dual_region(task)

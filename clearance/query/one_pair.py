@@ -73,7 +73,7 @@ def answer_rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.empty((n, 2)), np.empty((n, 2, 3)), np.empty((n, 5), dtype=np.int64)
 
 
-class _Asked:
+class _KeptPair:
     """A pair that was asked about; its room goes when one of the solids does."""
 
     def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch) -> None:
@@ -91,7 +91,7 @@ class _Thread(threading.local):
     """What a thread has asked about."""
 
     def __init__(self) -> None:
-        self.asked: dict[tuple[int, int], _Asked] = {}
+        self.asked: dict[tuple[int, int], _KeptPair] = {}
         self.scratch = new_scratch()
 
 
@@ -104,7 +104,7 @@ def room_for(a: Polyhedron, b: Polyhedron) -> OnePair:
     if asked is None or not asked.is_of(a, b):  # one that is gone may have had the same address
         if len(_thread.asked) == HELD:
             _thread.asked.clear()
-        asked = _thread.asked[id(a), id(b)] = _Asked(a, b, _thread.scratch)
+        asked = _thread.asked[id(a), id(b)] = _KeptPair(a, b, _thread.scratch)
     return asked.room
 
 

@@ -28,14 +28,14 @@ SEEDS = 96
 """Faces of each body whose normals begin the search."""
 
 
-class Corners(NamedTuple):
+class ConvexCorners(NamedTuple):
     """What the search needs of a convex body: vertices (n, 3) [m], outward normals (f, 3) of some faces."""
 
     vertices: np.ndarray
     normals: np.ndarray
 
     @classmethod
-    def placed(cls, part: Polytope, pose: np.ndarray) -> Corners:
+    def placed(cls, part: Polytope, pose: np.ndarray) -> ConvexCorners:
         """Those of a part after a rigid motion (4, 4) [m]."""
         turn = pose[:3, :3].T
         return cls(part.vertices @ turn + pose[:3, 3], part.normals @ turn)
@@ -58,7 +58,7 @@ class Penetration:
     rounds: int
 
 
-def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
+def penetration(a: Polytope | ConvexCorners, b: Polytope | ConvexCorners) -> Penetration:
     """The shortest translation of `a` that parts it from `b`.
 
     Raises:
@@ -72,13 +72,13 @@ def penetration(a: Polytope | Corners, b: Polytope | Corners) -> Penetration:
         (expanding polytope), here with many facets a round and the hulls by Qhull.
     """
     for given, where in ((a, "a"), (b, "b")):
-        if not isinstance(given, Polytope | Corners):
+        if not isinstance(given, Polytope | ConvexCorners):
             remedy = "a Polytope; cl.contact takes polyhedra"
             raise BadShape(f"a {type(given).__name__} is given", where=where, valid=remedy)
     return _Search(a, b).run()
 
 
-def depths_at_most(a: Sequence[Corners], b: Sequence[Corners]) -> np.ndarray:
+def depths_at_most(a: Sequence[ConvexCorners], b: Sequence[ConvexCorners]) -> np.ndarray:
     """(len(a), len(b)) [m] no less than the depth of each of `a` in each of `b`, by 26 directions; 0 if apart."""
     if not a or not b:
         return np.zeros((len(a), len(b)))
@@ -90,7 +90,7 @@ def depths_at_most(a: Sequence[Corners], b: Sequence[Corners]) -> np.ndarray:
 class _Search:
     """The polytope that grows inside the Minkowski difference, and the best plane over it."""
 
-    def __init__(self, a: Polytope | Corners, b: Polytope | Corners) -> None:
+    def __init__(self, a: Polytope | ConvexCorners, b: Polytope | ConvexCorners) -> None:
         origin = b.vertices.mean(axis=0)
         self.a, self.b = a.vertices - origin, b.vertices - origin
         self.slack = ROUNDING * 2.0 * float(np.abs(self.a).max() + np.abs(self.b).max())

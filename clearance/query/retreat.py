@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.geometry.envelope import TWENTY_SIX
-from clearance.query.penetration import Corners
+from clearance.query.penetration import ConvexCorners
 
 MOST_DIRECTIONS = 192
 MOST_NUMBERS = 2_000_000
@@ -41,7 +41,7 @@ class Ray(NamedTuple):
 
 
 def ways_out(
-    a: Sequence[Corners], b: Sequence[Corners], within: float, extra: np.ndarray
+    a: Sequence[ConvexCorners], b: Sequence[ConvexCorners], within: float, extra: np.ndarray
 ) -> list[Ray]:
     """Translations of the parts `a` that part all of them from all of `b`, shortest first.
 
@@ -90,7 +90,9 @@ def _gap(begins: np.ndarray, ends: np.ndarray) -> float:
         at = float(ends[here].max())
 
 
-def _directions(a: Sequence[Corners], b: Sequence[Corners], extra: np.ndarray) -> np.ndarray:
+def _directions(
+    a: Sequence[ConvexCorners], b: Sequence[ConvexCorners], extra: np.ndarray
+) -> np.ndarray:
     """(k, 3) unit, no two alike to a tenth: what is asked for, the 26, and the parts' normals in turn."""
     normals = np.concatenate([*(part.normals for part in b), *(-part.normals for part in a)])
     every = max(1, len(normals) // (4 * MOST_DIRECTIONS))

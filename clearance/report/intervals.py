@@ -81,7 +81,7 @@ class Event:
 def intervals(record: Record) -> dict[str, list[Interval]]:
     """For each of `LEVELS` its first `MOST_LISTED` intervals in order of time; none where only the least step is
     known."""
-    seen = _Seen.of(record)
+    seen = _LeastBetween.of(record)
     return {
         level: [seen.interval(int(a), int(b)) for a, b in runs[:MOST_LISTED]]
         for level, runs in _level_runs(record).items()
@@ -100,7 +100,7 @@ def events(record: Record) -> list[Event]:
         what += [_ENTERED[level]] * len(runs) + [_LEFT[level]] * len(left)
     step, stop = np.concatenate(steps), np.concatenate(stops)
     first = np.lexsort([np.concatenate(order), step])[:MOST_LISTED]
-    seen = _Seen.of(record)
+    seen = _LeastBetween.of(record)
     codes = np.concatenate(order)
     return [seen.event(int(step[i]), int(stop[i]), int(codes[i]), what[i]) for i in first]
 
@@ -118,7 +118,7 @@ def extent(record: Record, level: str) -> tuple[int, int]:
     """How many intervals of a level there are, and of how many steps, not counting those of which only the motion
     to the next is at that level."""
     runs = _level_runs(record)[level]
-    seen = _Seen.of(record)
+    seen = _LeastBetween.of(record)
     n_between = int((seen.between & (seen.own < LEVELS[level]) & _inside(runs, record)).sum())
     return len(runs), int((runs[:, 1] - runs[:, 0]).sum()) - n_between
 
@@ -152,7 +152,7 @@ def _runs(inside: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class _Seen:
+class _LeastBetween:
     """What was seen from each step to the next.
 
     Attributes:
@@ -166,12 +166,12 @@ class _Seen:
     between: np.ndarray
 
     @staticmethod
-    def of(record: Record) -> _Seen:
+    def of(record: Record) -> _LeastBetween:
         between, least, own = between_of(record.steps), record.clearances, codes_of(record.steps)
         if record.certificate is not None:
             own = np.where(between, status_codes(least, record.case.limits), own)
             least = np.where(between, record.certificate.upper_bound, least)
-        return _Seen(record, least, own, between)
+        return _LeastBetween(record, least, own, between)
 
     def moment(self, step: int) -> dict[str, Any]:
         """What is known of a step, or of the moment after it that gives it its status."""

@@ -19,7 +19,7 @@ from clearance.report.tables import (
 )
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, replay_of
-from clearance.simulate.resumable_rows import IN_MEMORY, Rows
+from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 
 OWN = (
     "steps.parquet",
@@ -33,7 +33,7 @@ OWN = (
 """All files that a report can have."""
 
 
-def write(record: Record, folder: str | Path, kept: Rows = IN_MEMORY) -> None:
+def write(record: Record, folder: str | Path, kept: MeasuredRows = IN_MEMORY) -> None:
     """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `replay.npz`, `report.html` and, last,
     `summary.json`.
 

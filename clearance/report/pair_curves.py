@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.simulate.record import Record
-from clearance.simulate.resumable_rows import IN_MEMORY, Rows
+from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 
 MOST_NUMBERS = 250_000
 """Numbers of all curves together: 1.3 MB on the page."""
@@ -29,7 +29,7 @@ class PairCurves:
     clearances: np.ndarray
 
 
-def pair_curves(record: Record, kept: Rows = IN_MEMORY) -> PairCurves | None:
+def pair_curves(record: Record, kept: MeasuredRows = IN_MEMORY) -> PairCurves | None:
     """The curves; None unless every pair was measured at every step."""
     every = record.every_pair
     if every is None:

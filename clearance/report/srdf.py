@@ -8,7 +8,7 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from clearance.report.wording import count, joint_value, mm
-from clearance.simulate.pair_audit import PairFinding, Status
+from clearance.simulate.pair_audit import PairFinding, PairStatus
 from clearance.simulate.srdf_audit import ExcusedPair, ProposedPair
 from clearance.world.collision_matrix import ADJACENT, NEVER
 from clearance.world.robot import Robot
@@ -34,7 +34,7 @@ def audit_headline(pairs: Sequence[ExcusedPair]) -> str:
     parts = [
         (sum(pair.refuted for pair in never), "can meet"),
         (sum(pair.unproven for pair in never), "undecided"),
-        (sum(pair.finding.status is Status.APART for pair in never), "proven apart"),
+        (sum(pair.finding.status is PairStatus.APART for pair in never), "proven apart"),
     ]
     told = ", ".join(f"{n} {what}" for n, what in parts if n)
     return f"of {count(len(never), 'pair')} excused as {NEVER}: {told}"
@@ -49,7 +49,7 @@ def audit_rows(robot: Robot, pairs: Sequence[ExcusedPair]) -> Iterator[tuple[str
 
 
 def _seriousness(pair: ExcusedPair) -> int:
-    order = [Status.MEETS, Status.UNDECIDED, Status.APART]
+    order = [PairStatus.MEETS, PairStatus.UNDECIDED, PairStatus.APART]
     return order.index(pair.finding.status) + len(order) * (pair.reason != NEVER)
 
 
@@ -57,10 +57,10 @@ def _told(found: PairFinding, kinds: Mapping[str, str]) -> str:
     where = ", ".join(
         f"{name} {joint_value(kinds[name], value)}" for name, value in found.positions.items()
     )
-    if found.status is Status.APART:
+    if found.status is PairStatus.APART:
         return f"proven apart: at least {mm(found.lower_bound)} mm; {mm(found.least)} mm occurs"
     at = f" at {where}" if where else ""
-    if found.status is Status.MEETS:
+    if found.status is PairStatus.MEETS:
         return f"can meet{at}"
     return f"undecided: {found.why}; {mm(found.least)} mm{at}"
 
@@ -91,6 +91,6 @@ def proposal_headline(pairs: Sequence[ProposedPair]) -> str:
     n_never = sum(each.reason == NEVER for each in pairs)
     n_adjacent = sum(each.reason == ADJACENT for each in pairs)
     left = [each.finding.status for each in pairs if each.reason is None and each.finding]
-    n_meet, n_open = left.count(Status.MEETS), left.count(Status.UNDECIDED)
+    n_meet, n_open = left.count(PairStatus.MEETS), left.count(PairStatus.UNDECIDED)
     told = f"{n_never} proven never to meet, {n_adjacent} adjacent (not looked at)"
     return f"{count(len(pairs), 'pair')}: {told}; to be measured: {n_meet} can meet, {n_open} undecided"

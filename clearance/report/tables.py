@@ -12,7 +12,7 @@ import pyarrow as pa
 from clearance.simulate.contact_columns import with_contact_columns
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record, StepContact
-from clearance.simulate.resumable_rows import IN_MEMORY, Rows
+from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 
 CONTACTS = 10_000
 """Overlaps that are written at a time."""
@@ -74,7 +74,7 @@ def _write_csv(batches: Iterable[pa.Table], path: Path, quoting: str) -> None:
             pyarrow.csv.write_csv(batch, file, body)
 
 
-def step_batches(record: Record, kept: Rows = IN_MEMORY) -> Iterator[pa.Table]:
+def step_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
     """The steps of a record, a block at a time; what a block took of memory is let go after it."""
     for block in blocks(record.steps.num_rows):
         rows = record.steps.slice(block.start, block.stop - block.start).combine_chunks()
@@ -82,7 +82,7 @@ def step_batches(record: Record, kept: Rows = IN_MEMORY) -> Iterator[pa.Table]:
         kept.let_go()
 
 
-def pair_batches(record: Record, kept: Rows = IN_MEMORY) -> Iterator[pa.Table]:
+def pair_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
     """Every pair at every step of a record in the same way."""
     for batch in record.every_pair.batches():
         yield batch

@@ -9,7 +9,7 @@ from clearance.run.answers import answered
 from clearance.run.question import Means, Question, limited
 from clearance.run.result import Run
 from clearance.simulate.measure import Progress
-from clearance.simulate.resumable_rows import Rows
+from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 
@@ -29,7 +29,7 @@ def check(
     contact: str = "events",
     jobs: int | None = None,
     progress: Progress | None = None,
-    kept: Rows | None = None,
+    kept: MeasuredRows | None = None,
     paper_tolerance: float | None = None,
 ) -> Run:
     """The least clearance of every step of a case.
@@ -73,7 +73,7 @@ def check(
         contact=contact,
         paper_tolerance=paper_tolerance,
     )
-    means = Means(jobs, progress, kept or Rows())
+    means = Means(jobs, progress, kept or MeasuredRows())
     return Run(answered(question, means), means.rows)
 
 

@@ -24,7 +24,7 @@ from clearance.simulate.record import (
     StepContact,
 )
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
-from clearance.world.case import Unmeasured
+from clearance.world.case import Omission
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, worst_first
 from clearance.world.pairs import Pair, measured_pairs
@@ -32,7 +32,7 @@ from clearance.world.reach import require_within_reach
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class MeasurementPlan:
     """What is measured for a question.
 
     Attributes:
@@ -43,7 +43,7 @@ class Plan:
     question: Question
     motions: tuple[Motion, ...]
     pairs: list[Pair]
-    unmeasured: list[Unmeasured]
+    unmeasured: list[Omission]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +77,11 @@ def answered(question: Question, means: Means) -> Record:
     return _record(plan, _answers(plan, means))
 
 
-def _plan(question: Question) -> Plan:
+def _plan(question: Question) -> MeasurementPlan:
     pairs, unmeasured = measured_pairs(question.case)
     motions = _motions(question)
     require_within_reach(question.case, motions)
-    return Plan(question, motions, pairs, unmeasured)
+    return MeasurementPlan(question, motions, pairs, unmeasured)
 
 
 def _motions(question: Question) -> tuple[Motion, ...]:
@@ -96,7 +96,7 @@ def _motions(question: Question) -> tuple[Motion, ...]:
     )
 
 
-def _answers(plan: Plan, means: Means) -> Answers:
+def _answers(plan: MeasurementPlan, means: Means) -> Answers:
     question = plan.question
     found = _measurement(plan, means)
     certificate = _certificate(plan, found, means) if question.certify else None
@@ -112,7 +112,7 @@ def _answers(plan: Plan, means: Means) -> Answers:
     )
 
 
-def _measurement(plan: Plan, means: Means) -> Measurement:
+def _measurement(plan: MeasurementPlan, means: Means) -> Measurement:
     question = plan.question
     what = question.case, plan.motions, plan.pairs
     if question.method == "exact":
@@ -125,7 +125,7 @@ def _measurement(plan: Plan, means: Means) -> Measurement:
     return measure_paper(*what, means.progress, question.paper_tolerance or NO_TOLERANCE)
 
 
-def _certificate(plan: Plan, found: Measurement, means: Means) -> Certificate:
+def _certificate(plan: MeasurementPlan, found: Measurement, means: Means) -> Certificate:
     from clearance.simulate.certify import certify_motion
 
     question = plan.question
@@ -136,7 +136,7 @@ def _certificate(plan: Plan, found: Measurement, means: Means) -> Certificate:
 
 
 def _samples(
-    plan: Plan, found: Measurement, certificate: Certificate | None, means: Means
+    plan: MeasurementPlan, found: Measurement, certificate: Certificate | None, means: Means
 ) -> Samples:
     case, motions, pairs = plan.question.case, plan.motions, plan.pairs
     simulated = plan.question.motion == "simulated"
@@ -145,7 +145,7 @@ def _samples(
     return Samples(case, motions, means.rows.table("steps", batches), unmeasured)
 
 
-def _contacts(plan: Plan, found: Measurement) -> Sequence[StepContact]:
+def _contacts(plan: MeasurementPlan, found: Measurement) -> Sequence[StepContact]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
     if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
         return ()
@@ -157,7 +157,7 @@ def _contacts(plan: Plan, found: Measurement) -> Sequence[StepContact]:
     )
 
 
-def _notices(plan: Plan, certificate: Certificate | None) -> tuple[Notice, ...]:
+def _notices(plan: MeasurementPlan, certificate: Certificate | None) -> tuple[Notice, ...]:
     """All that a reader of the verdict must know: of the case, and of how it was measured."""
     question = plan.question
     exact = question.method == "exact"
@@ -180,7 +180,7 @@ def _peer(samples: Samples, means: Means) -> CrossCheck:
     return cross_check(samples, means.progress)
 
 
-def _record(plan: Plan, answers: Answers) -> Record:
+def _record(plan: MeasurementPlan, answers: Answers) -> Record:
     question, samples, found = plan.question, answers.samples, answers.measurement
     case, motions = question.case, plan.motions
     return Record(

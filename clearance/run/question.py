@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput
 from clearance.simulate.measure import NEEDS, Progress
-from clearance.simulate.resumable_rows import IN_MEMORY, Rows
+from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.plausibility import notices_of
@@ -93,7 +93,7 @@ class Means:
 
     jobs: int | None = None
     progress: Progress | None = None
-    rows: Rows = IN_MEMORY
+    rows: MeasuredRows = IN_MEMORY
 
     def __post_init__(self) -> None:
         if self.jobs is not None and (not isinstance(self.jobs, int) or self.jobs < 1):

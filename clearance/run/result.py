@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
 from clearance.simulate.record import Certificate, CrossCheck, Record
-from clearance.simulate.resumable_rows import IN_MEMORY, Rows
+from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 from clearance.simulate.steps import status_of
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ class Run:
     """
 
     record: Record
-    rows: Rows = IN_MEMORY
+    rows: MeasuredRows = IN_MEMORY
 
     @property
     def steps(self) -> pa.Table:

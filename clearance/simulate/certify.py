@@ -14,18 +14,23 @@ from clearance.compile.kernel_table import call
 from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
 from clearance.kernels.mesh.surface import ANYTHING, Surface
-from clearance.kernels.motion.certify import Aim, Asked, Bounds, certify
-from clearance.kernels.motion.joint_motion_bound import Chain
+from clearance.kernels.motion.certify import (
+    CertificateGoal,
+    CertifiedPairs,
+    IntervalBounds,
+    certify,
+)
+from clearance.kernels.motion.joint_motion_bound import KinematicTree
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
 from clearance.simulate.moment import Moment, Moments
 from clearance.simulate.parts import blocks, in_order, parts, usable_cores
 from clearance.simulate.record import Certificate
-from clearance.simulate.resumable_rows import Rows
+from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
-from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link
+from clearance.world.kinematics import kinematic_tree_arrays, positions_by_link, velocities_by_link
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import Pair
@@ -49,7 +54,7 @@ def certify_motion(
     need: str = "steps",
     jobs: int | None = None,
     progress: Progress | None = None,
-    kept: Rows | None = None,
+    kept: MeasuredRows | None = None,
 ) -> Certificate:
     """Lower bounds that are within `gap` [m] of a distance that really occurs.
 
@@ -66,7 +71,7 @@ def certify_motion(
         raise BadDimension(f"a gap of {gap!r:.60} m", where="certify", valid="a length above 0")
     gap = float(gap)
     gap, notices = _no_finer_than_rounding(case, motions, gap)
-    kept, tally, bounds = kept or Rows(), _no_counts(), []
+    kept, tally, bounds = kept or MeasuredRows(), _no_counts(), []
     question = _Question.of(found, case.limits, need, gap)
     for i_robot in sorted(
         {pair.i_robot for pair in pairs}
@@ -107,7 +112,7 @@ def _no_finer_than_rounding(
     return finest, (Notice(Severity.WARNING, "certificate", text),)
 
 
-def _joined(bounds: Sequence[Bounds]) -> Bounds:
+def _joined(bounds: Sequence[IntervalBounds]) -> IntervalBounds:
     """The bounds of all robots together, in the arrays of the first."""
     first = bounds[0]
     for other in bounds[1:]:
@@ -118,7 +123,9 @@ def _joined(bounds: Sequence[Bounds]) -> Bounds:
     return first
 
 
-def _moment_of(moments: Moments, bounds: Bounds, found: Measurement) -> Callable[[int], Moment]:
+def _moment_of(
+    moments: Moments, bounds: IntervalBounds, found: Measurement
+) -> Callable[[int], Moment]:
     """Measures the pair of an interval where it was seen nearest; at the nearer end where that is a step."""
 
     def moment_of(step: int) -> Moment:
@@ -142,7 +149,7 @@ class _Question:
     """
 
     found: Measurement
-    aim: Aim
+    aim: CertificateGoal
     unknown: float
     far: float
 
@@ -153,7 +160,7 @@ class _Question:
         unknown = far = least
         if need == "limit":
             unknown, far = max(least, limits.warn), max(least, limits.warn + BEYOND * gap)
-        return _Question(found, Aim(gap, limits.fail, MOST_PARTS), unknown, far)
+        return _Question(found, CertificateGoal(gap, limits.fail, MOST_PARTS), unknown, far)
 
     def distances(self, steps: slice) -> np.ndarray:
         """(k,) [m]."""
@@ -167,9 +174,9 @@ def _or_far(clearance: np.ndarray, far: float) -> np.ndarray:
 class _Log:
     """The bounds of one robot, (n,) each, and how many parts of them are proven."""
 
-    def __init__(self, kept: Rows, name: str, n_steps: int, question: _Question) -> None:
+    def __init__(self, kept: MeasuredRows, name: str, n_steps: int, question: _Question) -> None:
         self._kept = kept
-        self.bounds = Bounds(
+        self.bounds = IntervalBounds(
             kept.array(f"{name}.lower", (n_steps,)),
             kept.array(f"{name}.upper", (n_steps,)),
             kept.array(f"{name}.share", (n_steps,)),
@@ -194,8 +201,8 @@ class _Work:
     """What all parts of one robot's certificate share; `chosen` are its pairs among all."""
 
     surface: Surface
-    chain: Chain
-    asked: Asked
+    tree: KinematicTree
+    asked: CertifiedPairs
     motion: Motion
     chosen: np.ndarray
     question: _Question
@@ -208,16 +215,16 @@ class _Work:
         laid = _lay_out(case, [pairs[i] for i in chosen])
         return _Work(*laid, motion, np.array(chosen), question)
 
-    def certify(self, bounds: Bounds) -> Callable[[slice], tuple[int, np.ndarray]]:
+    def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
             nearest = np.searchsorted(self.chosen, self.question.found.pair[span])
-            own = Bounds(*(column[span] for column in bounds))
+            own = IntervalBounds(*(column[span] for column in bounds))
             call(
-                certify, self.surface, self.chain, self.asked, _joint_path(self.motion, ends),
+                certify, self.surface, self.tree, self.asked, _joint_path(self.motion, ends),
                 np.maximum(nearest, 0) % len(self.chosen), 0, span.stop - span.start,
                 self.question.distances(ends), self.question.aim, own, counts,
             )  # fmt: skip
@@ -232,7 +239,7 @@ def _no_counts() -> np.ndarray:
     return np.zeros(len(COUNTERS), dtype=np.int64)
 
 
-def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, Chain, Asked]:
+def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, KinematicTree, CertifiedPairs]:
     """The surface with whole faces, the robot's chain, and the pairs; all of one robot."""
     layout = lay_out(case, pairs)
     placed = case.robots[pairs[0].i_robot]
@@ -240,8 +247,8 @@ def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, Chain, Asked]:
     links = [robot.link_names.index(robot.bodies[pair.i_body].name) for pair in pairs]
     return (
         _with_whole_faces(layout.surface),
-        Chain(_writable(placed.world_from_base), *chain_arrays(robot)),
-        Asked(layout.world.pairs, np.array(links, dtype=np.int64), layout.world.standing),
+        KinematicTree(_writable(placed.world_from_base), *kinematic_tree_arrays(robot)),
+        CertifiedPairs(layout.world.pairs, np.array(links, dtype=np.int64), layout.world.standing),
     )
 
 

@@ -20,7 +20,13 @@ from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
 from clearance.simulate.contact_budget import Budget
-from clearance.simulate.contact_events import MOST_RATED, Event, deepest_of, events_of, hull_depths
+from clearance.simulate.contact_events import (
+    MOST_RATED,
+    ContactEvent,
+    deepest_of,
+    events_of,
+    hull_depths,
+)
 from clearance.simulate.contact_rows import ContactRows, Progress
 from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.parts import blocks
@@ -58,13 +64,15 @@ def find_contacts(
         block.start + np.flatnonzero(clearance[block] <= 0.0) for block in blocks(len(clearance))
     ]
     steps = np.concatenate(touching)
-    finder = _Finder(case, tuple(motions), tuple(pairs), steps, np.array(nearest[steps]), work_out)
+    finder = _OverlapFinder(
+        case, tuple(motions), tuple(pairs), steps, np.array(nearest[steps]), work_out
+    )
     names = list(zip(*pair_names(case, pairs), strict=True))
     return ContactRows(names, motions[0].times, finder)
 
 
 @dataclass(eq=False)
-class _Finder:
+class _OverlapFinder:
     """Overlaps of one run; bodies are cut into parts once, and a pose between two bodies is asked once."""
 
     case: Case
@@ -118,7 +126,9 @@ class _Finder:
             self._known[key] = self._asked(i_pair, b_from_a)
         return self._known[key].placed(self._obstacle(i_pair).world_from_body)
 
-    def _deepest(self, event: Event, steps: np.ndarray, budget: Budget) -> tuple[int, Contact]:
+    def _deepest(
+        self, event: ContactEvent, steps: np.ndarray, budget: Budget
+    ) -> tuple[int, Contact]:
         """The row of an event that is worked out, and its overlap; bounds alone beyond the budget."""
         i_pair, n_rows = event.i_pair, len(event.rows)
         if not budget.take_event(n_rows):

@@ -23,14 +23,14 @@ MOST_NUMBERS = 2_000_000
 """Numbers in a table of poses, directions and corners: 16 MB."""
 
 
-class Event(NamedTuple):
+class ContactEvent(NamedTuple):
     """One pair in contact, without a break; `rows` (k,) are those of `ContactRows`, steps in order."""
 
     i_pair: int
     rows: np.ndarray
 
 
-def events_of(steps: np.ndarray, pairs: np.ndarray) -> Iterator[Event]:
+def events_of(steps: np.ndarray, pairs: np.ndarray) -> Iterator[ContactEvent]:
     """The events of all pairs, pair by pair.
 
     Args:
@@ -40,7 +40,7 @@ def events_of(steps: np.ndarray, pairs: np.ndarray) -> Iterator[Event]:
     apart = (np.diff(pairs[order]) != 0) | (np.diff(steps[order]) != 1)
     for rows in np.split(order, np.flatnonzero(apart) + 1):
         if len(rows):
-            yield Event(int(pairs[rows[0]]), rows)
+            yield ContactEvent(int(pairs[rows[0]]), rows)
 
 
 def deepest_of(

@@ -42,7 +42,7 @@ _ROW = np.dtype(
 )
 
 
-class Finder(Protocol):
+class ContactFinder(Protocol):
     """What finds overlaps."""
 
     def touching(self) -> tuple[np.ndarray, np.ndarray]:
@@ -72,7 +72,7 @@ class ContactRows(Sequence[StepContact]):
 
     names: Sequence[tuple[str, str]]
     times: np.ndarray
-    finder: Finder
+    finder: ContactFinder
     _slots: np.ndarray | None = None
     _n_known: int = 0
     _rows: np.ndarray = field(default_factory=lambda: np.empty(64, dtype=_ROW))
@@ -112,7 +112,7 @@ class ContactRows(Sequence[StepContact]):
     def worked_out(self) -> Sequence[StepContact]:
         """The rows that the run works out, steps first."""
         self.work_out()
-        return _Some(self, np.flatnonzero(self._slots >= 0))
+        return _SelectedRows(self, np.flatnonzero(self._slots >= 0))
 
     def numbers_between(self, start: int, stop: int) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """The steps of the rows from a step to before another, their depth and volume; NaN if not worked out."""
@@ -169,7 +169,7 @@ class ContactRows(Sequence[StepContact]):
 
 
 @dataclass(frozen=True, eq=False)
-class _Some(Sequence[StepContact]):
+class _SelectedRows(Sequence[StepContact]):
     """Some of the rows, made when they are looked at."""
 
     rows: ContactRows

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.import_closure import PACKAGE, digest_of, import_closure
 from clearance.world.case import Case
-from clearance.world.kinematics import chain_arrays
+from clearance.world.kinematics import kinematic_tree_arrays
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -43,7 +43,7 @@ def fingerprint(
             _add_shape(digest, body.shape)
         arrays = [
             motion.placed.world_from_base,
-            *chain_arrays(robot),
+            *kinematic_tree_arrays(robot),
             motion.times,
             motion.positions,
         ]

@@ -29,17 +29,17 @@ MOST_CORNERS = 1024
 """Of a hull of which all corners are looked at; of larger ones the corners of a box are."""
 
 
-class Boxes(NamedTuple):
+class PositionBoxes(NamedTuple):
     """(n, k) middles and half widths of boxes of positions [rad or m]."""
 
     middle: np.ndarray
     half: np.ndarray
 
-    def of(self, which: np.ndarray | slice) -> Boxes:
+    def of(self, which: np.ndarray | slice) -> PositionBoxes:
         """Some of them."""
-        return Boxes(self.middle[which], self.half[which])
+        return PositionBoxes(self.middle[which], self.half[which])
 
-    def halved(self, share: np.ndarray) -> Boxes:
+    def halved(self, share: np.ndarray) -> PositionBoxes:
         """(2n) the halves, cut across the joint of the greatest of `share` (n, k)."""
         rows, cut = np.arange(len(share)), np.argmax(share, axis=1)
         half = self.half.copy()
@@ -47,10 +47,10 @@ class Boxes(NamedTuple):
         step = np.zeros_like(half)
         step[rows, cut] = half[rows, cut]
         middles = np.stack([self.middle - step, self.middle + step], axis=1)
-        return Boxes(middles.reshape(-1, half.shape[1]), np.repeat(half, 2, axis=0))
+        return PositionBoxes(middles.reshape(-1, half.shape[1]), np.repeat(half, 2, axis=0))
 
 
-class Seen(NamedTuple):
+class BoxDistances(NamedTuple):
     """What a search found in the middle of n boxes, in the frame of the first link.
 
     Attributes:
@@ -62,9 +62,9 @@ class Seen(NamedTuple):
     points: np.ndarray
     frames: np.ndarray
 
-    def of(self, which: np.ndarray) -> Seen:
+    def of(self, which: np.ndarray) -> BoxDistances:
         """Some of them."""
-        return Seen(*(column[which] for column in self))
+        return BoxDistances(*(column[which] for column in self))
 
     @property
     def directions(self) -> np.ndarray:
@@ -72,7 +72,7 @@ class Seen(NamedTuple):
         return (self.points[:, 1] - self.points[:, 0]) / self.distances[:, None]
 
 
-class Motion(NamedTuple):
+class BoxMotion(NamedTuple):
     """How far the second link moves over boxes.
 
     Attributes:
@@ -113,7 +113,7 @@ class JointBox:
         corners = _hull_corners(shape_a), _hull_corners(shape_b)
         return cls(chain, *corners, _box_corners(shape_b.bounds), SLACK * size)
 
-    def motion(self, half: np.ndarray, frames: np.ndarray) -> Motion:
+    def motion(self, half: np.ndarray, frames: np.ndarray) -> BoxMotion:
         """How far the second link moves over boxes of half widths (n, k) about `frames`."""
         share, rest, moved = np.zeros(half.shape), np.zeros(len(half)), np.zeros(len(half))
         joints = self.chain.joints
@@ -132,9 +132,9 @@ class JointBox:
                 rest += way * turned
             share[:, joints[i].column] += way
             moved = moved + way
-        return Motion(share, rest)
+        return BoxMotion(share, rest)
 
-    def seen_apart(self, half: np.ndarray, seen: Seen) -> np.ndarray:
+    def seen_apart(self, half: np.ndarray, seen: BoxDistances) -> np.ndarray:
         """(n,) [m] how far apart both stay along their direction over boxes of half widths (n, k), less `rest`."""
         u = seen.directions
         corners = _moved(seen.frames[:, -1], self.corners_b)
@@ -152,7 +152,7 @@ class JointBox:
         kept -= np.einsum("knv,nk->nv", np.abs(velocities), half)
         return kept.min(axis=1) - (u @ self.corners_a.T).max(axis=1)
 
-    def slopes(self, seen: Seen) -> np.ndarray:
+    def slopes(self, seen: BoxDistances) -> np.ndarray:
         """(n, k) the derivatives of the distances by each free joint [m per rad or m]."""
         slopes = np.zeros((len(seen.distances), len(self.chain.masters)))
         for i, joint in enumerate(self.chain.joints):

@@ -19,7 +19,7 @@ from clearance.kernels.motion.sweep import NOT_LESS, FirstLook, Goal, sweep
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.simulate.layout import Layout, lay_out, positions_at
 from clearance.simulate.parts import blocks, in_order, parts, usable_cores
-from clearance.simulate.resumable_rows import Rows
+from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
@@ -79,7 +79,7 @@ class Measurement:
     pair: np.ndarray
     points: np.ndarray
     tally: dict[str, int]
-    find_minima: Callable[[int | None], Minima] | None
+    measure_pair_minima: Callable[[int | None], Minima] | None
     every: np.ndarray | None = None
     may_cut_pairs: bool = False
 
@@ -91,7 +91,7 @@ class _Sweep:
     layout: Layout
     motions: Sequence[Motion]
     jobs: int
-    kept: Rows
+    kept: MeasuredRows
     progress: Progress | None = None
     tally: np.ndarray = field(default_factory=lambda: np.zeros(len(SWEEP_COUNTERS), dtype=np.int64))
 
@@ -111,7 +111,7 @@ class _Sweep:
     @property
     def aside(self) -> _Sweep:
         """The same for a few steps, whose rows need no keeping."""
-        return replace(self, progress=None, kept=Rows())
+        return replace(self, progress=None, kept=MeasuredRows())
 
     def step_rows(
         self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False
@@ -232,7 +232,7 @@ def measure(
     *,
     jobs: int | None = None,
     progress: Progress | None = None,
-    kept: Rows | None = None,
+    kept: MeasuredRows | None = None,
 ) -> Measurement:
     """The exact clearances of `pairs` over `motions` (one for each robot, with the same steps).
 
@@ -241,7 +241,9 @@ def measure(
         jobs: threads; as many as the machine has to offer by default.
         kept: where the rows are kept; in memory by default.
     """
-    work = _Sweep(lay_out(case, pairs), motions, jobs or usable_cores(), kept or Rows(), progress)
+    work = _Sweep(
+        lay_out(case, pairs), motions, jobs or usable_cores(), kept or MeasuredRows(), progress
+    )
     if need == "pairs":
         return _every_pair(work)
     if need == "minimum":
@@ -256,7 +258,7 @@ def pairs_in_contact(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], steps: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
-    work = _Sweep(lay_out(case, pairs), motions, 1, Rows())
+    work = _Sweep(lay_out(case, pairs), motions, 1, MeasuredRows())
     goal = Goal(np.zeros(work.n_pairs), True, False)
     found = []
     for span in parts(len(steps), sparse=True):
@@ -333,7 +335,7 @@ def _first_steps(n_steps: int) -> np.ndarray:
 def _measurement(
     work: _Sweep,
     rows: KeptRows,
-    find_minima: Callable[[int | None], Minima] | None,
+    measure_pair_minima: Callable[[int | None], Minima] | None,
     every: np.ndarray | None = None,
 ) -> Measurement:
     for block in blocks(work.n_steps):
@@ -347,7 +349,7 @@ def _measurement(
         rows.pair,
         rows.points,
         dict(zip(SWEEP_COUNTERS, work.tally.tolist(), strict=True)),
-        find_minima,
+        measure_pair_minima,
         every,
     )
 

@@ -15,7 +15,7 @@ from enum import StrEnum
 import numpy as np
 
 from clearance.query.pair_query import Query
-from clearance.simulate.joint_box import Boxes, JointBox, Motion, Seen
+from clearance.simulate.joint_box import BoxDistances, BoxMotion, JointBox, PositionBoxes
 from clearance.world.kinematic_chain import KinematicChain, chain_between
 from clearance.world.robot import Joint, JointKind, Robot
 
@@ -44,7 +44,7 @@ MOST_STEPS = 40
 """Of one way downhill."""
 
 
-class Status(StrEnum):
+class PairStatus(StrEnum):
     """What is known of a pair."""
 
     APART = "apart"
@@ -66,7 +66,7 @@ class PairFinding:
 
     link_a: str
     link_b: str
-    status: Status
+    status: PairStatus
     lower_bound: float
     least: float
     positions: dict[str, float]
@@ -100,24 +100,24 @@ class _Search:
         self.n_boxes = 0
         self._in_doubt = False
 
-    def answer(self, most_boxes: int) -> tuple[Status, float, str]:
+    def answer(self, most_boxes: int) -> tuple[PairStatus, float, str]:
         """What is known of the pair, [m] a proven lower bound, and why it is undecided."""
         ranges = _ranges(self.chain)
         if not np.isfinite(ranges).all():
             self._look(np.zeros((1, len(ranges))))
-            return Status.UNDECIDED, 0.0, "a joint between them slides without limits"
-        whole = Boxes(ranges.mean(axis=1)[None], 0.5 * np.ptp(ranges, axis=1)[None])
+            return PairStatus.UNDECIDED, 0.0, "a joint between them slides without limits"
+        whole = PositionBoxes(ranges.mean(axis=1)[None], 0.5 * np.ptp(ranges, axis=1)[None])
         self._look_around(whole)
         lower_bound, why = self._proven(whole, most_boxes) if self.least > 0.0 else (0.0, "")
         if self.least <= 0.0:
-            return Status.MEETS, 0.0, ""
+            return PairStatus.MEETS, 0.0, ""
         if self._in_doubt:
             why = "a surface is open, so that inside and outside cannot be told"
         if why:
-            return Status.UNDECIDED, 0.0, why
-        return Status.APART, float(min(lower_bound, self.least)), ""
+            return PairStatus.UNDECIDED, 0.0, why
+        return PairStatus.APART, float(min(lower_bound, self.least)), ""
 
-    def _look(self, positions: np.ndarray) -> Seen:
+    def _look(self, positions: np.ndarray) -> BoxDistances:
         """Measures the pair at n positions (n, k)."""
         frames = self.chain.frames(positions)
         found = self._query.distances(None, frames[:, -1])
@@ -125,9 +125,9 @@ class _Search:
         i = int(np.argmin(found.distances))
         if found.distances[i] < self.least:
             self.least, self.nearest_at = float(found.distances[i]), positions[i].copy()
-        return Seen(found.distances, found.points, frames)
+        return BoxDistances(found.distances, found.points, frames)
 
-    def _look_around(self, whole: Boxes) -> None:
+    def _look_around(self, whole: PositionBoxes) -> None:
         """Looks at poses all over the box, and goes downhill from the nearest."""
         positions = _spread(whole, N_SAMPLES if self.chain.masters else 1)
         distances = self._look(positions).distances
@@ -135,7 +135,7 @@ class _Search:
             if self.least > 0.0:
                 self._go_downhill(positions[i], whole)
 
-    def _go_downhill(self, at: np.ndarray, whole: Boxes) -> None:
+    def _go_downhill(self, at: np.ndarray, whole: PositionBoxes) -> None:
         """Follows the slope of the distance from one pose, within the box, as long as it falls."""
         low, high = whole.middle[0] - whole.half[0], whole.middle[0] + whole.half[0]
         seen, step = self._look(at[None]), 1.0
@@ -154,7 +154,7 @@ class _Search:
             else:
                 step *= 0.25
 
-    def _proven(self, whole: Boxes, most_boxes: int) -> tuple[float, str]:
+    def _proven(self, whole: PositionBoxes, most_boxes: int) -> tuple[float, str]:
         """[m] a lower bound over the box, and why there is none; given up where the links are seen to meet."""
         waiting, lower_bound = [whole], math.inf
         while waiting and self.least > 0.0:
@@ -175,7 +175,7 @@ class _Search:
                 return 0.0, f"not settled by {self.n_boxes} boxes of joint positions"
         return lower_bound, ""
 
-    def _bounds(self, boxes: Boxes) -> tuple[np.ndarray, Motion]:
+    def _bounds(self, boxes: PositionBoxes) -> tuple[np.ndarray, BoxMotion]:
         """(n,) [m] lower bounds on the distance over each box, and how far the second link moves there."""
         self.n_boxes += len(boxes.middle)
         seen = self._look(boxes.middle)
@@ -201,7 +201,7 @@ def _range(joint: Joint) -> tuple[float, float]:
     return joint.lower, joint.upper
 
 
-def _spread(whole: Boxes, n: int) -> np.ndarray:
+def _spread(whole: PositionBoxes, n: int) -> np.ndarray:
     """(n, k) positions all over a box, the same each time; the first is its middle."""
     from scipy.stats import qmc
 

@@ -12,7 +12,7 @@ import pyarrow as pa
 
 from clearance.simulate.moment import Moment
 from clearance.simulate.parts import BLOCK
-from clearance.world.case import Case, Unmeasured
+from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice
 
@@ -236,7 +236,7 @@ class Samples:
     case: Case
     motions: tuple[Motion, ...]
     steps: pa.Table
-    unmeasured: tuple[Unmeasured, ...]
+    unmeasured: tuple[Omission, ...]
 
     @property
     def clearances(self) -> np.ndarray:

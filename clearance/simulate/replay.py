@@ -19,8 +19,8 @@ from clearance.errors import BadSyntax, MissingFile
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.record import Record
 from clearance.simulate.replay_contact import DrawnContact, drawn_contacts
-from clearance.simulate.replay_frames import Frames, kept_moments, least_of
-from clearance.simulate.resumable_rows import IN_MEMORY, Rows
+from clearance.simulate.replay_frames import ReplayFrames, kept_moments, least_of
+from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion
 
@@ -32,7 +32,7 @@ _FORMAT = 3
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrawnBody:
     """A body as it is drawn: `kind` is "link" or "obstacle", `i_shape` its place in the shapes."""
 
     name: str
@@ -67,7 +67,7 @@ class Replay:
     name: str
     limits: tuple[float, float]
     n_steps: int
-    bodies: tuple[Drawn, ...]
+    bodies: tuple[DrawnBody, ...]
     shapes: tuple[tuple[np.ndarray, np.ndarray], ...]
     poses: tuple[np.ndarray, ...]
     steps: np.ndarray
@@ -141,7 +141,7 @@ def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
         name=head["name"],
         limits=tuple(head["limits"]),
         n_steps=head["n_steps"],
-        bodies=tuple(Drawn(**body) for body in head["bodies"]),
+        bodies=tuple(DrawnBody(**body) for body in head["bodies"]),
         shapes=tuple((arrays[f"vertices_{i}"], arrays[f"triangles_{i}"]) for i in range(n_shapes)),
         poses=tuple(arrays[f"poses_{i}"] for i in range(n_bodies)),
         contacts=tuple(
@@ -158,14 +158,16 @@ def _from_arrays(head: dict, arrays: dict[str, np.ndarray]) -> Replay:
     )
 
 
-def replay_of(record: Record, max_frames: int = MAX_FRAMES, rows: Rows = IN_MEMORY) -> Replay:
+def replay_of(
+    record: Record, max_frames: int = MAX_FRAMES, rows: MeasuredRows = IN_MEMORY
+) -> Replay:
     """The replay of a record: every step, or where there are more than `max_frames` a choice that
     keeps the least clearance of every stretch, the worst step, the step of every pair's minimum,
     and the deepest contact; and moments between them where the motion is worse."""
     kept = kept_steps(record, max_frames)
     moments = kept_moments(record)
     contacts, regions = drawn_contacts(record, kept)
-    frames = Frames.of(record, kept, moments, rows)
+    frames = ReplayFrames.of(record, kept, moments, rows)
     bodies, shapes, poses = _drawn_bodies(record, frames.positions)
     index = {(body.kind, body.name): i for i, body in enumerate(bodies)}
     nearest = [
@@ -211,7 +213,7 @@ def kept_steps(record: Record, max_frames: int) -> np.ndarray:
 def _drawn_bodies(record: Record, positions: Sequence[np.ndarray]) -> tuple[tuple, tuple, tuple]:
     shapes: list[tuple[np.ndarray, np.ndarray]] = []
     seen: dict[bytes, int] = {}
-    bodies: list[Drawn] = []
+    bodies: list[DrawnBody] = []
     poses: list[np.ndarray] = []
     for motion, reached in zip(record.motions, positions, strict=True):
         placed = motion.placed
@@ -222,11 +224,11 @@ def _drawn_bodies(record: Record, positions: Sequence[np.ndarray]) -> tuple[tupl
                 link_label(record, motion, body.name),
                 body.name not in placed.exclude_links,
             )
-            bodies.append(Drawn(name, "link", measured, _shape_index(body.shape, shapes, seen)))
+            bodies.append(DrawnBody(name, "link", measured, _shape_index(body.shape, shapes, seen)))
             poses.append(_packed(world_from_link[:, i_link]))
     for obstacle in record.case.obstacles:
         i_shape = _shape_index(obstacle.body.shape, shapes, seen)
-        bodies.append(Drawn(obstacle.name, "obstacle", True, i_shape))
+        bodies.append(DrawnBody(obstacle.name, "obstacle", True, i_shape))
         poses.append(_packed(np.asarray(obstacle.world_from_body)[None]))
     return tuple(bodies), tuple(shapes), tuple(poses)
 

@@ -14,7 +14,7 @@ import pyarrow as pa
 from clearance.simulate.moment import Moment
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
-from clearance.simulate.resumable_rows import Rows
+from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.simulate.steps import STATUSES, between_of, status_codes
 from clearance.world.motion import Motion
 
@@ -36,7 +36,7 @@ def kept_moments(record: Record) -> list[Moment]:
 
 
 @dataclass(frozen=True, eq=False)
-class Frames:
+class ReplayFrames:
     """The kept steps and the moments between them, in order of time.
 
     Attributes:
@@ -49,7 +49,9 @@ class Frames:
     positions: list[np.ndarray]
 
     @staticmethod
-    def of(record: Record, kept: np.ndarray, moments: Sequence[Moment], rows: Rows) -> Frames:
+    def of(
+        record: Record, kept: np.ndarray, moments: Sequence[Moment], rows: MeasuredRows
+    ) -> ReplayFrames:
         table, limits = _rows_at(record, kept, rows), record.case.limits
         known = table["clearance"].is_valid().to_numpy()
         after = np.searchsorted(kept, [moment.step for moment in moments], side="right")
@@ -80,7 +82,7 @@ class Frames:
             np.insert(motion.positions[kept], after, _rows(moments, i, motion), axis=0)
             for i, motion in enumerate(record.motions)
         ]
-        return Frames(arrays, pairs, positions)
+        return ReplayFrames(arrays, pairs, positions)
 
 
 def _rows(moments: Sequence[Moment], i_robot: int, motion: Motion) -> np.ndarray:
@@ -89,7 +91,7 @@ def _rows(moments: Sequence[Moment], i_robot: int, motion: Motion) -> np.ndarray
     return np.array([moment.positions[i_robot] for moment in moments]).reshape(-1, n_joints)
 
 
-def _rows_at(record: Record, kept: np.ndarray, on_disk: Rows) -> pa.Table:
+def _rows_at(record: Record, kept: np.ndarray, on_disk: MeasuredRows) -> pa.Table:
     """The rows of some steps, block by block: taken at once, all rows would be put together first."""
     taken = []
     for block in blocks(record.steps.num_rows):

@@ -45,7 +45,7 @@ class PassLog:
 
 
 @dataclass(eq=False)
-class Rows:
+class MeasuredRows:
     """Rows in memory, which nobody else can see."""
 
     def array(self, name: str, shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
@@ -74,12 +74,12 @@ class Rows:
         """Tells what decides every row; rows of another fingerprint are thrown away."""
 
 
-IN_MEMORY = Rows()
+IN_MEMORY = MeasuredRows()
 """Rows that nothing else is told of."""
 
 
 @dataclass(eq=False)
-class ResumableRows(Rows):
+class ResumableRows(MeasuredRows):
     """Rows in a folder; made by `open_resumable_rows`.
 
     Attributes:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from clearance.simulate.pair_audit import PairFinding, Status, audit_pair
+from clearance.simulate.pair_audit import PairFinding, PairStatus, audit_pair
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.robot import Robot
 from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
@@ -27,12 +27,12 @@ class ExcusedPair:
     @property
     def refuted(self) -> bool:
         """It is said never to meet, and a pose is known in which it does."""
-        return self.reason == NEVER and self.finding.status is Status.MEETS
+        return self.reason == NEVER and self.finding.status is PairStatus.MEETS
 
     @property
     def unproven(self) -> bool:
         """It is said never to meet, and neither that nor the contrary is known."""
-        return self.reason == NEVER and self.finding.status is Status.UNDECIDED
+        return self.reason == NEVER and self.finding.status is PairStatus.UNDECIDED
 
 
 def audit(
@@ -80,4 +80,4 @@ def _proposed(robot: Robot, pair: SelfPair) -> ProposedPair:
     if pair.excused == ADJACENT:
         return ProposedPair(pair, ADJACENT, None)
     finding = audit_pair(robot, pair.link_a, pair.link_b)
-    return ProposedPair(pair, NEVER if finding.status is Status.APART else None, finding)
+    return ProposedPair(pair, NEVER if finding.status is PairStatus.APART else None, finding)

@@ -14,7 +14,7 @@ from clearance.simulate.measure import Measurement
 from clearance.simulate.names import pair_names
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Certificate, EveryPair, PairMinimum
-from clearance.world.case import Case, Limits, Unmeasured
+from clearance.world.case import Case, Limits, Omission
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -152,7 +152,7 @@ class PairMinima(Sequence[PairMinimum]):
     ) -> None:
         self._names = pair_names(case, pairs)
         self._times = motions[0].times
-        self._find = found.find_minima
+        self._find = found.measure_pair_minima
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -196,14 +196,14 @@ def every_pair(case: Case, pairs: Sequence[Pair], found: Measurement) -> EveryPa
     return None if found.every is None else EveryPair(*pair_names(case, pairs), found.every)
 
 
-def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Unmeasured]:
+def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Omission]:
     """The pairs of which the paper's method says nothing at any step; none for the exact method."""
     if not found.may_cut_pairs:
         return []
     links, obstacles = pair_names(case, pairs)
-    cut = np.flatnonzero(np.isinf(found.find_minima(None).clearance))
+    cut = np.flatnonzero(np.isinf(found.measure_pair_minima(None).clearance))
     reason = "the paper's rules cut every polygon pair at every step"
-    return [Unmeasured(links[i], obstacles[i], reason) for i in cut]
+    return [Omission(links[i], obstacles[i], reason) for i in cut]
 
 
 def _names(names: Sequence[str], codes: np.ndarray) -> pa.Array:

@@ -20,7 +20,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.motion.kinematics import SLIDING, TURNING
 from clearance.world.cubic import cubics_of, extremes_between
-from clearance.world.kinematics import chain_arrays, positions_by_link, velocities_by_link
+from clearance.world.kinematics import kinematic_tree_arrays, positions_by_link, velocities_by_link
 from clearance.world.motion import Motion
 
 ROUNDING = 1e-9
@@ -171,7 +171,7 @@ class _Bend:
     @classmethod
     def of(cls, motion: Motion, i_link: int, shape: Polyhedron) -> _Bend:
         robot = motion.placed.robot
-        parents, kinds, fixed_parts, _ = chain_arrays(robot)
+        parents, kinds, fixed_parts, _ = kinematic_tree_arrays(robot)
         slides = _farthest(motion)
         reach = float(np.linalg.norm(shape.vertices[shape.face_vertices], axis=1).max())
         rows: list[tuple[int, bool, float]] = []

@@ -40,7 +40,7 @@ class Place(NamedTuple):
     total: float
 
 
-class Part:
+class ProblemPart:
     """The columns and equations of one part of a problem of a size near 1."""
 
     def __init__(self, problem: Problem, part: int) -> None:
@@ -76,7 +76,7 @@ class Part:
 
 
 def descend(
-    part: Part,
+    part: ProblemPart,
     x: np.ndarray,
     damping: float = FIRST,
     longest: int = LONGEST,
@@ -94,7 +94,9 @@ def descend(
     return place
 
 
-def _step(part: Part, place: Place, damping: float, corrections: int) -> tuple[Place, float, bool]:
+def _step(
+    part: ProblemPart, place: Place, damping: float, corrections: int
+) -> tuple[Place, float, bool]:
     """(a place that is lower, damping for the next step, whether this was the last one)."""
     from scipy.sparse import eye_array
 
@@ -141,7 +143,9 @@ def _factored(matrix):
     return factor if straight and (factor.U.diagonal() > 0.0).all() else None
 
 
-def _corrected(part: Part, place: Place, step: np.ndarray, factor, corrections: int) -> Place:
+def _corrected(
+    part: ProblemPart, place: Place, step: np.ndarray, factor, corrections: int
+) -> Place:
     """The place after a step, corrected for what the equations' curvature adds to it while that helps."""
     goal, length = place.error + place.matrix @ step, float(np.linalg.norm(step))
     best = part.moved(place.x, step)

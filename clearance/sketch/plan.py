@@ -91,7 +91,7 @@ class _Names:
 def readable(sketch, problem, fates: np.ndarray) -> list[Step]:
     """The steps of a problem's plan."""
     names = _Names(sketch, problem)
-    reading = _Closed(names, problem)
+    reading = _ClosedStepReading(names, problem)
     out = _preprocessing(names, problem)
     for k, b in enumerate(problem.plan.block):
         outcome = OUTCOMES[fates[k]]
@@ -102,7 +102,7 @@ def readable(sketch, problem, fates: np.ndarray) -> list[Step]:
     return out
 
 
-class _Closed:
+class _ClosedStepReading:
     """Closed steps in order: which begin a cluster, and what they assume beyond its placement."""
 
     def __init__(self, names: _Names, problem) -> None:

@@ -9,7 +9,7 @@ from clearance.kernels.sketch.solve.execute import (
     DONE,
     FAILED,
     TOO_LARGE,
-    Limits,
+    StepTolerances,
     place_closed,
     solve_numeric,
 )
@@ -23,10 +23,10 @@ FLOOR = 2e-16
 """[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
 
 
-def limits_of(problem: Problem, attempts: int = RESTARTS) -> Limits:
+def limits_of(problem: Problem, attempts: int = RESTARTS) -> StepTolerances:
     """The limits of a run at the problem's size."""
     size = problem.size
-    return Limits(SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK, attempts)
+    return StepTolerances(SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK, attempts)
 
 
 def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
@@ -35,7 +35,9 @@ def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
     return worst(s.code, s.var, s.coef, s.value, x, problem.length_scale)
 
 
-def execute(problem: Problem, x, sketch, turned, active, limits: Limits, plan=None) -> np.ndarray:
+def execute(
+    problem: Problem, x, sketch, turned, active, limits: StepTolerances, plan=None
+) -> np.ndarray:
     """Runs the steps of a plan in place on x (n,); the fate (s,) of each.
 
     Numeric steps are compiled apart: most sketches need none. For `turned` and `active` see

@@ -82,7 +82,7 @@ class Source:
 
 
 @dataclass(frozen=True)
-class Unmeasured:
+class Omission:
     """A link or a pair that is left out, and why (`obstacle` is "*" for a whole link)."""
 
     link: str

@@ -43,7 +43,7 @@ def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
     poses = np.empty((len(positions), len(robot.link_names), 4, 4))
     forward(
         np.ascontiguousarray(placed.world_from_base, dtype=np.float64),
-        *chain_arrays(robot),
+        *kinematic_tree_arrays(robot),
         positions_by_link(robot, positions),
         poses,
     )
@@ -51,7 +51,7 @@ def link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
 
 
 @lru_cache(maxsize=8)  # asked for again for every part of a motion
-def chain_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def kinematic_tree_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Parents, kinds, parent_from_joint and axes of all links, as `motion.kinematics.forward` takes them."""
     n_links = len(robot.link_names)
     index = {name: i for i, name in enumerate(robot.link_names)}
@@ -82,7 +82,7 @@ def joined_links(placed: Sequence[PlacedRobot]) -> Links:
 @lru_cache(maxsize=8)
 def _links_of(robot: Robot) -> Links:
     """The links of one robot, standing at the origin."""
-    parents, kinds, fixed_parts, axes = chain_arrays(robot)
+    parents, kinds, fixed_parts, axes = kinematic_tree_arrays(robot)
     parents = parents.copy()
     parents[0] = NO_PARENT
     columns = np.full(len(parents), NO_COLUMN)

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 
 from clearance.errors import NothingToMeasure
 from clearance.world.body import Body
-from clearance.world.case import Case, PlacedRobot, Unmeasured
+from clearance.world.case import Case, Omission, PlacedRobot
 
 
 @dataclass(frozen=True)
@@ -19,14 +19,14 @@ class Pair:
     i_obstacle: int
 
 
-def measured_pairs(case: Case) -> tuple[list[Pair], list[Unmeasured]]:
+def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:
     """The pairs to measure, robots first, then links, then obstacles in their order; and what is left out.
 
     Raises:
         NothingToMeasure: no pair is left.
     """
     pairs: list[Pair] = []
-    unmeasured: list[Unmeasured] = []
+    unmeasured: list[Omission] = []
     for i_robot, placed in enumerate(case.robots):
         unmeasured += _links_left_out(placed)
         excluded = frozenset(placed.exclude_links)
@@ -39,7 +39,7 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Unmeasured]]:
                     pairs.append(Pair(i_robot, i_body, i_obstacle))
                 else:
                     reason = f"allowed by {list(rule)}"
-                    unmeasured.append(Unmeasured(body.name, obstacle.name, reason))
+                    unmeasured.append(Omission(body.name, obstacle.name, reason))
     if not pairs:
         raise NothingToMeasure(
             "no link-obstacle pair is left to measure",
@@ -48,12 +48,12 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Unmeasured]]:
     return pairs, unmeasured
 
 
-def _links_left_out(placed: PlacedRobot) -> list[Unmeasured]:
+def _links_left_out(placed: PlacedRobot) -> list[Omission]:
     with_shape = {body.name for body in placed.robot.bodies}
     excluded = frozenset(placed.exclude_links)
-    left_out = [Unmeasured(name, "*", "excluded in the case file") for name in placed.exclude_links]
+    left_out = [Omission(name, "*", "excluded in the case file") for name in placed.exclude_links]
     left_out += [
-        Unmeasured(name, "*", "no geometry")
+        Omission(name, "*", "no geometry")
         for name in placed.robot.link_names
         if name not in with_shape and name not in excluded
     ]

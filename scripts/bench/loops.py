@@ -65,7 +65,7 @@ class OurPairs(OurSteps):
         """All steps."""
         scene = self._scene
         found = measure(scene.case, scene.motions, scene.pairs, jobs=1)
-        minima = found.find_minima(None)
+        minima = found.measure_pair_minima(None)
         self.counters = {**found.tally, "pairs": len(minima.clearance)}
         return found.clearance[steps]
 

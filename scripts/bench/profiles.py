@@ -25,7 +25,7 @@ from clearance.profiles.chords import knots_of
 from clearance.profiles.compare import compare
 from clearance.profiles.contour import Contour
 from clearance.profiles.fit_shape import SketchShape
-from clearance.profiles.outline_file import Drawn
+from clearance.profiles.outline_file import DrawnOutline
 from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Profile
 from clearance.profiles.sweep import SHARE, TOLERANCE
@@ -139,9 +139,9 @@ def main() -> None:
     other = replace(
         profile, contours=tuple(Contour(1.001 * c.vertices, c.bulges) for c in profile.contours)
     )
-    pair = Drawn("a", profile.curve, profile), Drawn("b", other.curve, other)
+    pair = DrawnOutline("a", profile.curve, profile), DrawnOutline("b", other.curve, other)
     took, _ = least(
-        lambda: compare(*(Drawn(d.name, d.curve, d.profile) for d in pair), limit=1e-4), 5
+        lambda: compare(*(DrawnOutline(d.name, d.curve, d.profile) for d in pair), limit=1e-4), 5
     )
     tell("compare two sweeps", 1000.0 * took, "ms")
     with open(HERE / "results" / "profiles.csv", "w", newline="", encoding="utf-8") as file:

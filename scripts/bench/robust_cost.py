@@ -21,7 +21,7 @@ from clearance.kernels.features.bounds import SLACK
 from clearance.kernels.features.face_pair import nearest_of_faces
 from clearance.kernels.search.descent import nothing_yet
 from clearance.kernels.search.polygon_pair import (
-    Answers,
+    PolygonPairAnswers,
     _comes_first,
     _empty_surface,
     _fill,
@@ -64,7 +64,7 @@ def timed(ps: np.ndarray, qs: np.ndarray, calls: int) -> dict:
     """Nanoseconds a pair of both, calls in turn."""
     k = len(ps)
     flags = np.empty(k, dtype=np.bool_), np.empty(k, dtype=np.bool_)
-    answers = Answers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
+    answers = PolygonPairAnswers(np.empty(k), np.empty(k), np.empty((k, 2, 3)), *flags)
     spent: dict[str, list[float]] = {"exact": [], "plain": []}
     for _ in range(calls):
         for name, call in (

@@ -8,7 +8,7 @@ import pyarrow as pa
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.record import Record
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, PlacedRobot, Unmeasured
+from clearance.world.case import Case, Omission, PlacedRobot
 from clearance.world.motion import Motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
@@ -27,7 +27,7 @@ def rail_record(
     obstacles: dict[str, tuple[Polyhedron, tuple[float, float, float]]],
     positions: list[float],
     rows: list[tuple[float, str, tuple[float, float, float], tuple[float, float, float]]],
-    unmeasured: tuple[Unmeasured, ...] = (),
+    unmeasured: tuple[Omission, ...] = (),
 ) -> Record:
     """A record of `link` sliding along x; a row is (clearance, obstacle, link point, obstacle
     point).

@@ -9,7 +9,7 @@ import pytest
 from clearance.crosscheck import cross_check
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.tolerance import CROSS_CHECK
-from clearance.world.case import Unmeasured
+from clearance.world.case import Omission
 from tests.crosscheck.sliding import box, rail_record
 
 NEAR_AND_FAR = {"near": (box(0.2, 0.2, 0.2), (1, 0, 0)), "far": (box(0.2, 0.2, 0.2), (-3, 0, 0))}
@@ -75,7 +75,7 @@ def test_a_witness_off_its_body_is_listed_though_the_distance_is_right():
 
 def test_unmeasured_pairs_take_no_part():
     rows = [(3.0 - 0.2, "far", (-0.1, 0, 0), (-2.9, 0, 0))]
-    left_out = (Unmeasured("slider", "near", "allowed"),)
+    left_out = (Omission("slider", "near", "allowed"),)
     assert cross_check(rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0], rows, left_out)).agrees
     record = rail_record(box(0.2, 0.2, 0.2), NEAR_AND_FAR, [0.0], rows)
     assert cross_check(record).disagreements[0].peer_obstacle == "near"

@@ -10,7 +10,7 @@ import pytest
 from clearance import Polyhedron, check
 from clearance.crosscheck import compare, cross_check, peer_run
 from clearance.crosscheck.exact import placed, triangles_sq
-from clearance.crosscheck.fcl_door import PeerBody
+from clearance.crosscheck.fcl_adapter import PeerBody
 from clearance.crosscheck.triangles import triangle_soup
 from tests import oracle
 from tests.made_cases import at, ball, dented, flying

@@ -9,7 +9,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from clearance.errors import ClearanceError
-from clearance.kernels.hausdorff.state import Aim
+from clearance.kernels.hausdorff.state import SearchGoal
 from clearance.planar.curve import Curve
 from clearance.planar.directed import placed
 from clearance.planar.hausdorff import _solve, hausdorff, within
@@ -307,7 +307,7 @@ def test_rigid_motion_and_scaling(one, two, angle, mirrored, scale):
 
 
 def aim_of(gap, enough=0.0, limit=math.inf):
-    return Aim(gap, gap, math.inf, enough, limit, 1e5)
+    return SearchGoal(gap, gap, math.inf, enough, limit, 1e5)
 
 
 def test_within_stops_at_the_first_point_beyond():

@@ -12,8 +12,8 @@ from clearance.cli.commands import clearance as command
 from clearance.errors import BadInput, BadShape, BadSyntax, UnknownLink
 from clearance.load.case_file import load_case
 from clearance.profiles.compare import as_data, compare
-from clearance.profiles.gap import Closed, proven_gap
-from clearance.profiles.outline_file import Drawn, read_outline, read_profile
+from clearance.profiles.gap import ClosedContours, proven_gap
+from clearance.profiles.outline_file import DrawnOutline, read_outline, read_profile
 from clearance.profiles.profile_file import write_profile
 from tests.profiles.moving import rows, slab, turning
 
@@ -83,7 +83,9 @@ def test_area_and_length_of_arcs_are_those_of_fine_chords(profile):
 def test_compare_agrees_with_the_distance_and_names_the_maker():
     one = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 0.5, 1.0]))
     two = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.6, 0.1, 0.1]), [0, 0.5, 1.2]))
-    found = compare(Drawn("one", one.curve, one), Drawn("two", two.curve, two), limit=0.01)
+    found = compare(
+        DrawnOutline("one", one.curve, one), DrawnOutline("two", two.curve, two), limit=0.01
+    )
     whole = cl.hausdorff(one.curve, two.curve)
     assert found.found.distance == whole.distance
     assert found.lost <= 1e-4 < found.gained
@@ -93,12 +95,14 @@ def test_compare_agrees_with_the_distance_and_names_the_maker():
     )
     assert found.beyond and max(b.distance for b in found.beyond) <= whole.distance + 1e-9
     json.dumps(as_data(found))
-    same = compare(Drawn("one", one.curve, one), Drawn("one", one.curve, one), limit=1e-9)
+    same = compare(
+        DrawnOutline("one", one.curve, one), DrawnOutline("one", one.curve, one), limit=1e-9
+    )
     assert same.found.distance <= 1e-15 and same.gained == 0.0 and not same.beyond
 
 
 def test_open_outlines_can_be_compared_but_have_no_area():
-    open_line = Drawn("line", cl.Curve.line([0, 0], [1, 0]))
+    open_line = DrawnOutline("line", cl.Curve.line([0, 0], [1, 0]))
     assert compare(open_line, open_line).gained is None
     with pytest.raises(BadShape, match="is open"):
         _ = open_line.region
@@ -190,7 +194,9 @@ def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
             case, space.plane, links=space.links or None, section=space.section
         )
         gap, _ = proven_gap(
-            Closed.of_curve(space.sketch.curves()), Closed.of(swept.contours), around=True
+            ClosedContours.of_curve(space.sketch.curves()),
+            ClosedContours.of(swept.contours),
+            around=True,
         )
         assert gap > 0.0 and (gap >= space.limit) == kept
 

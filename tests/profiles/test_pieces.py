@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from clearance.profiles.contour import Contour
 from clearance.profiles.fit_rows import gaps_of_shape, sides_of
-from clearance.profiles.gap import Closed
-from clearance.profiles.pieces import Pieces
+from clearance.profiles.gap import ClosedContours
+from clearance.profiles.pieces import ContourPieces
 from tests.examples import examples
 from tests.oracle.outlines import inside
 
@@ -27,7 +27,7 @@ def ring(seed, n):
 @examples(50)
 @given(st.integers(0, 10**6), st.integers(3, 70))
 def test_no_point_of_many_on_the_pieces_is_nearer_than_the_foot(seed, n):
-    pieces = Pieces([ring(seed, n), ring(seed + 1, 5)])
+    pieces = ContourPieces([ring(seed, n), ring(seed + 1, 5)])
     points = np.random.default_rng(seed).uniform(-2.0, 2.0, (20, 2))
     piece, share, foot = pieces.feet(points)
     assert np.allclose(pieces.point(piece, share), foot, atol=1e-12)
@@ -42,10 +42,10 @@ def test_no_point_of_many_on_the_pieces_is_nearer_than_the_foot(seed, n):
 def test_beyond_a_sharp_corner_a_point_is_outside_whichever_side_is_nearest(bulge):
     """Behind a needle's tip the point lies before one of its sides and behind the other's line."""
     needle = Contour(np.array([[0.0, 0.0], [3.0, -0.2], [3.0, 0.2]]), np.array([bulge, 0.0, bulge]))
-    closed = Closed.of([needle])
+    closed = ClosedContours.of([needle])
     sides = sides_of(closed.pieces, closed.region)
     points = np.array([[-0.1, 0.02], [-0.1, -0.02], [-1e-3, 1e-3], [1.0, 0.0], [3.1, 0.3]])
-    other = Pieces([Contour(points, np.zeros(len(points)))])
+    other = ContourPieces([Contour(points, np.zeros(len(points)))])
     samples = np.arange(len(points)), np.zeros(len(points))
     told = gaps_of_shape(closed.pieces, sides, other, samples).distance > 0.0
     rows = [np.column_stack([needle.vertices, needle.bulges]).tolist()]

@@ -92,7 +92,7 @@ def meetings(n):
     from clearance.compile.kernel_table import lend
     from clearance.geometry.tree import surface_of
     from clearance.kernels.arithmetic.double_double import frames_of
-    from clearance.kernels.arithmetic.predicates import room_for_exact
+    from clearance.kernels.arithmetic.predicates import new_exact_scratch
     from clearance.kernels.arithmetic.vec3 import rigid
     from clearance.kernels.features.meeting import meeting
 
@@ -100,7 +100,7 @@ def meetings(n):
     def meet(one, i, two, j, frames, exact):
         return meeting(lend(one), i, lend(two), j, frames, exact)
 
-    exact, found = room_for_exact(), []
+    exact, found = new_exact_scratch(), []
     for a, b, pose in body_pairs(n):
         frames = reached(frames_of)(reached(rigid)(np.eye(4)), reached(rigid)(pose))
         one, two = surface_of(a), surface_of(b)

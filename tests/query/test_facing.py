@@ -16,7 +16,7 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
-from clearance.kernels.features.bounds import rounding_slack, sight_along
+from clearance.kernels.features.bounds import direction_between, rounding_slack
 from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
 from clearance.kernels.search.node_pairs import (
     bounds_of_group,
@@ -49,7 +49,7 @@ def all_turned_away(a, b, pose_a, pose_b, of_a, of_b):
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
     from_a, from_b = views_along(
-        sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
+        direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
     )
     for i in range(len(a.children)):
         for j in range(len(b.children)):
@@ -199,7 +199,7 @@ def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
     from_a, from_b = views_along(
-        sight_along(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
+        direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
     )
     motion = np.cos(turn), np.sin(turn), way
     for i in range(len(a.children)):

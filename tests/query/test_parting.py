@@ -16,9 +16,14 @@ from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import rounding_slack
 from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.search.descent import margin_of
-from clearance.kernels.search.front import forget, is_worth_parting, no_fronts, note_parting
+from clearance.kernels.search.front import (
+    forget,
+    is_worth_separating,
+    no_fronts,
+    note_separating_planes,
+)
 from clearance.kernels.search.scratch import new_scratch
-from clearance.kernels.search.separating_planes import parting_of
+from clearance.kernels.search.separating_planes import separating_planes_of
 from clearance.kernels.search.support import high_corner, top_of
 from tests import oracle
 from tests.made_cases import SOLIDS, at, ball, faces_of, torus
@@ -56,7 +61,7 @@ def partings(a, b, poses, points, limits, out, waiting, table):
         p = Vec3(points[i, 0, 0], points[i, 0, 1], points[i, 0, 2])
         q = Vec3(points[i, 1, 0], points[i, 1, 1], points[i, 1, 2])
         begin = Hit(np.inf, 2**62, 2**62, p, q)
-        found = parting_of(
+        found = separating_planes_of(
             table,
             lent_a,
             root_a,
@@ -189,11 +194,11 @@ def sought(founds, asked):
     fronts = no_fronts(1, 0)
     fronts.spans[0, 1] = 1000
     for i in range(len(founds)):
-        asked[i] = is_worth_parting(fronts, 0)
+        asked[i] = is_worth_separating(fronts, 0)
         if asked[i]:
-            note_parting(fronts, 0, founds[i], 1)
+            note_separating_planes(fronts, 0, founds[i], 1)
     forget(fronts, 0)
-    asked[-1] = is_worth_parting(fronts, 0)
+    asked[-1] = is_worth_separating(fronts, 0)
 
 
 def test_what_was_not_found_is_sought_less_and_less_often() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.query.penetration import Corners, depths_at_most, penetration
+from clearance.query.penetration import ConvexCorners, depths_at_most, penetration
 from tests.oracle.depths import squared_depth
 
 
@@ -98,12 +98,12 @@ def test_needles_and_sheets_have_their_depth():
 def test_bounds_by_26_directions_are_never_below_the_depth():
     random = np.random.default_rng(9)
     hulls = [cl.Polytope(random.normal(size=(12, 3)) + random.normal(size=3)) for _ in range(10)]
-    bodies = [Corners(hull.vertices, hull.normals) for hull in hulls]
+    bodies = [ConvexCorners(hull.vertices, hull.normals) for hull in hulls]
     bounds = depths_at_most(bodies[:5], bodies[5:])
     depths = np.array([[penetration(a, b).depth for b in bodies[5:]] for a in bodies[:5]])
     assert (bounds >= depths * (1.0 - 1e-12)).all()
     assert (depths > 0.1).sum() > 5 and (bounds == 0.0).any()
     cubes = [cl.Polytope(cl.box((1.0, 1.0, 1.0)).vertices + [x, 0.0, 0.0]) for x in (0.0, 0.75)]
-    placed = [Corners(cube.vertices, cube.normals) for cube in cubes]
+    placed = [ConvexCorners(cube.vertices, cube.normals) for cube in cubes]
     assert depths_at_most(placed, placed).tolist() == [[1.0, 0.25], [0.25, 1.0]]
     assert depths_at_most([], bodies).shape == (0, 10)

@@ -10,7 +10,7 @@ from clearance.geometry.shapes import cylinder
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
-from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
+from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
 from clearance.kernels.search.front import POOL, no_fronts
 from clearance.kernels.search.scratch import new_scratch
 from tests.made_cases import SOLIDS, at
@@ -32,7 +32,7 @@ def searches(a, b, poses, limits, wanted, seeds, moved, out, table):
         way += moved[i]
         if seeds[i, 0] != -2:
             face_a, face_b = seeds[i, 0], seeds[i, 1]
-        asked = Asked(limits[i], wanted[i], face_a, face_b, True, TO_THE_END, False)
+        asked = PairQuestion(limits[i], wanted[i], face_a, face_b, True, TO_THE_END, False)
         frames = frames_of(rigid(np.eye(4)), rigid(poses[i]))
         found = measure_pair(lent_a, 0, lent_b, 0, frames, asked, fronts, 0, way, scratch, table)
         out[i, 0] = np.sqrt(found.hit.gap_sq) if found.hit.face_a != 2**62 else np.inf

@@ -13,7 +13,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.simulate.steps import STATUSES
 from clearance.world.body import Body, Obstacle
-from clearance.world.case import Case, Limits, PlacedRobot, Source, Unmeasured
+from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source
 from clearance.world.motion import Motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
@@ -118,7 +118,7 @@ def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
         case,
         motions,
         table(rows, limits),
-        (Unmeasured("base", "*", "excluded: bolted"),),
+        (Omission("base", "*", "excluded: bolted"),),
         minima,
         {"pairs": 9 * n_steps, "polygon_tests": 36 * n_steps},
     )

@@ -11,13 +11,13 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_motion_bound import (
-    Chain,
-    drift_of,
-    drift_of_box,
-    drift_of_box_along,
+    KinematicTree,
+    motion_bound_of,
+    motion_bound_of_box,
+    motion_bound_of_box_along,
 )
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematics import chain_arrays, link_poses, positions_by_link
+from clearance.world.kinematics import kinematic_tree_arrays, link_poses, positions_by_link
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
@@ -29,11 +29,11 @@ SHAPE = box((0.3, 0.1, 0.2))
 @kernel
 def drifts(surface, chain, link, poses, swing, bend, direction):
     pose = rigid(poses[link])
-    drift = drift_of(surface, surface.roots[0], chain, link, poses, swing, bend, pose)
-    along = drift_of_box_along(
+    drift = motion_bound_of(surface, surface.roots[0], chain, link, poses, swing, bend, pose)
+    along = motion_bound_of_box_along(
         box_of(surface, 0), Vec3(direction[0], direction[1], direction[2]), drift
     )
-    return drift_of_box(box_of(surface, 0), drift), along
+    return motion_bound_of_box(box_of(surface, 0), drift), along
 
 
 @examples(60)
@@ -54,7 +54,7 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
     aside = bend * rng.choice([-1.0, 0.3, 1.0], (len(shares), n_moving))
     aside[0] = 0.0
     poses = link_poses(placed, middle + shares[:, None] * half + aside)
-    chain = Chain(np.eye(4), *chain_arrays(robot))
+    chain = KinematicTree(np.eye(4), *kinematic_tree_arrays(robot))
     swing = positions_by_link(robot, half[None])[0]
     direction = rng.normal(size=3)
     direction /= np.linalg.norm(direction)  # in the frame of the link
@@ -73,7 +73,7 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
 
 def test_the_bound_of_a_slide_is_exact():
     robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = Chain(np.eye(4), *chain_arrays(robot))
+    chain = KinematicTree(np.eye(4), *kinematic_tree_arrays(robot))
     poses = np.tile(np.eye(4), (2, 1, 1))
     bound, along = drifts(
         surface_of(SHAPE),
@@ -90,7 +90,7 @@ def test_the_bound_of_a_slide_is_exact():
 
 def test_a_bend_is_added_to_the_slide_in_every_direction():
     robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = Chain(np.eye(4), *chain_arrays(robot))
+    chain = KinematicTree(np.eye(4), *kinematic_tree_arrays(robot))
     poses, bend = np.tile(np.eye(4), (2, 1, 1)), np.array([0.0, 0.125])
     sideways = np.array([0.0, 1.0, 0.0])
     bound, along = drifts(surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), bend, sideways)

@@ -19,18 +19,18 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.lanes import ALL, WIDTH, lane
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import (
+    direction_between,
     displacement,
     lower_bound_boxes,
-    lower_bound_boxes_in_sight,
+    lower_bound_boxes_along_direction,
     lower_bound_faces_across,
-    lower_bound_faces_in_sight,
+    lower_bound_faces_along_direction,
     rounding_slack,
-    sight_along,
 )
 from clearance.kernels.mesh.surface import box_of, group_of
-from clearance.kernels.motion.body_boxes import room_for_boxes
+from clearance.kernels.motion.body_boxes import new_body_boxes
 from clearance.kernels.motion.kinematics import Links
-from clearance.kernels.motion.placed import put_all, room_for_bodies
+from clearance.kernels.motion.placed import new_placed_bodies, put_all
 from clearance.kernels.motion.sweep import World, box_bound
 from clearance.kernels.search.node_pairs import bounds_of_group, views_along
 from clearance.simulate.kinematic import kinematic_motion
@@ -53,19 +53,19 @@ def bounds_of_nodes(a, b, pose_a, pose_b, direction, boxes, in_sight, alike, fac
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
     p = Vec3(0.0, 0.0, 0.0)
-    sight = sight_along(p, Vec3(direction[0], direction[1], direction[2]), frames.m)
+    sight = direction_between(p, Vec3(direction[0], direction[1], direction[2]), frames.m)
     for i in range(len(a.children)):
         for j in range(len(b.children)):
             p, q = box_of(a, i), box_of(b, j)
             boxes[i, j] = lower_bound_boxes(p, q, frames.m, slack)
-            in_sight[i, j] = lower_bound_boxes_in_sight(p, q, sight) - slack
+            in_sight[i, j] = lower_bound_boxes_along_direction(p, q, sight) - slack
             alike[i, j] = boxes[i, j]
             alike[i, j] -= lane(
                 lower_bound_boxes(group_of(a, i // WIDTH), q, frames.m, slack), i % WIDTH
             )
     for i in range(len(a.normals)):
         for j in range(len(b.normals)):
-            faces[i, j] = lower_bound_faces_in_sight(a, i, b, j, sight) - slack
+            faces[i, j] = lower_bound_faces_along_direction(a, i, b, j, sight) - slack
             faces[i, j] = max(faces[i, j], lower_bound_faces_across(a, i, b, j, frames.m) - slack)
 
 
@@ -74,7 +74,7 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
     """Fills what the search takes as the bound of each node pair, with the group of the one and the other side."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    sight = sight_along(
+    sight = direction_between(
         Vec3(0.0, 0.0, 0.0), Vec3(direction[0], direction[1], direction[2]), frames.m
     )
     from_a, from_b = views_along(sight, frames.m)
@@ -88,9 +88,9 @@ def bounds_of_groups(a, b, pose_a, pose_b, direction, cut, groups_of_a, groups_o
 @kernel
 def body_bound_of(surface, world, enough):
     """What a sweep knows of a pair by the boxes of its bodies."""
-    placed = room_for_bodies(0, 2)
+    placed = new_placed_bodies(0, 2)
     put_all(world, np.empty(0), placed)
-    return box_bound(surface, world, 0, placed, room_for_boxes(2), enough)
+    return box_bound(surface, world, 0, placed, new_body_boxes(2), enough)
 
 
 @kernel

@@ -12,8 +12,8 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import box
 from clearance.query.distance import distance
 from clearance.query.pair_query import Query
-from clearance.simulate.joint_box import JointBox, Seen
-from clearance.simulate.pair_audit import GAP, Status, audit_pair
+from clearance.simulate.joint_box import BoxDistances, JointBox
+from clearance.simulate.pair_audit import GAP, PairStatus, audit_pair
 from clearance.world.body import Body
 from clearance.world.kinematic_chain import chain_between
 from clearance.world.robot import Joint, JointKind, Mimic, Robot
@@ -53,7 +53,7 @@ def test_an_arm_that_is_too_short_is_proven_apart(reach):
     robot = robot_of([Body("a", POST), Body("b", arm(reach))], turning("a", "b", np.eye(4)))
     found = audit_pair(robot, "a", "b")
     least = 0.9 - math.hypot(reach, 0.05) if math.atan2(0.05, reach) < 0.1 else 0.9 - reach
-    assert found.status is Status.APART
+    assert found.status is PairStatus.APART
     assert 0.25 * found.least <= found.lower_bound + 1e-9 and found.lower_bound <= least + 1e-9
     assert found.least >= 0.9 - math.hypot(reach, 0.05) - 1e-12
 
@@ -61,16 +61,16 @@ def test_an_arm_that_is_too_short_is_proven_apart(reach):
 def test_an_arm_that_is_long_enough_is_seen_to_meet():
     robot = robot_of([Body("a", POST), Body("b", arm(0.91))], turning("a", "b", np.eye(4)))
     found = audit_pair(robot, "a", "b")
-    assert found.status is Status.MEETS and found.least == found.lower_bound == 0.0
+    assert found.status is PairStatus.MEETS and found.least == found.lower_bound == 0.0
     assert abs(found.positions["ab"]) < 0.2
 
 
 def test_limits_keep_apart_what_would_meet():
     body = [Body("a", POST), Body("b", arm(0.95))]
     robot = robot_of(body, turning("a", "b", np.eye(4), lower=0.5, upper=3.0))
-    assert audit_pair(robot, "a", "b").status is Status.APART
+    assert audit_pair(robot, "a", "b").status is PairStatus.APART
     robot = robot_of(body, turning("a", "b", np.eye(4), lower=0.5, upper=2 * math.pi))
-    assert audit_pair(robot, "a", "b").status is Status.MEETS
+    assert audit_pair(robot, "a", "b").status is PairStatus.MEETS
 
 
 def test_a_narrow_meeting_between_the_samples_is_found():
@@ -80,7 +80,7 @@ def test_a_narrow_meeting_between_the_samples_is_found():
         [Body("a", pin), Body("b", pin)],
         turning("a", "b", np.eye(4), lower=-3.0, upper=2.9),
     )
-    assert audit_pair(robot, "a", "b").status is Status.MEETS
+    assert audit_pair(robot, "a", "b").status is PairStatus.MEETS
 
 
 def disc(radius, height, n=64):
@@ -98,7 +98,7 @@ def test_faces_that_slide_past_each_other_at_a_constant_gap_are_proven(gap):
         turning("a", "b", shift(z=0.05 + gap)),
     )
     found = audit_pair(robot, "a", "b")
-    assert found.status is Status.APART and found.least == pytest.approx(gap, abs=1e-12)
+    assert found.status is PairStatus.APART and found.least == pytest.approx(gap, abs=1e-12)
     assert 0.25 * gap <= found.lower_bound <= gap
     n_by_length = 2 * math.pi * 0.2 / gap  # boxes, if sliding counted as coming nearer
     assert found.n_boxes < 0.5 * n_by_length
@@ -110,7 +110,7 @@ def test_a_gap_below_the_resolution_is_undecided_and_told():
         turning("a", "b", shift(z=0.05 + 0.4 * GAP)),
     )
     found = audit_pair(robot, "a", "b")
-    assert found.status is Status.UNDECIDED and found.lower_bound == 0.0
+    assert found.status is PairStatus.UNDECIDED and found.lower_bound == 0.0
     assert found.why == "they come within 0.1 mm of each other"
     assert 0.0 < found.least < GAP
 
@@ -121,7 +121,7 @@ def test_the_budget_is_told():
         turning("a", "b", np.eye(4)), turning("b", "c", shift(0.45)),
     )  # fmt: skip
     found = audit_pair(robot, "a", "c", most_boxes=10)
-    assert found.status is Status.UNDECIDED and found.why.startswith("not settled by ")
+    assert found.status is PairStatus.UNDECIDED and found.why.startswith("not settled by ")
     assert found.least > 0.0
 
 
@@ -130,11 +130,11 @@ def test_links_that_nothing_moves_are_looked_at_once():
         [Body("a", POST), Body("b", arm(0.5))], turning("a", "b", np.eye(4), kind=JointKind.FIXED)
     )
     found = audit_pair(apart, "a", "b")
-    assert (found.status, found.n_boxes, found.positions) == (Status.APART, 1, {})
+    assert (found.status, found.n_boxes, found.positions) == (PairStatus.APART, 1, {})
     assert found.lower_bound == pytest.approx(0.4, abs=1e-6) and found.lower_bound <= 0.4
     assert (
         audit_pair(replace(apart, bodies=(Body("a", POST), Body("b", POST))), "a", "b").status
-        is Status.MEETS
+        is PairStatus.MEETS
     )
 
 
@@ -144,7 +144,7 @@ def test_a_joint_that_slides_without_limits_is_said():
         turning("a", "b", np.eye(4), -np.inf, np.inf, kind=JointKind.PRISMATIC),
     )
     found = audit_pair(robot, "a", "b")
-    assert found.status is Status.UNDECIDED and "slides without limits" in found.why
+    assert found.status is PairStatus.UNDECIDED and "slides without limits" in found.why
 
 
 def test_a_joint_that_turns_without_limits_is_looked_at_all_round():
@@ -153,7 +153,7 @@ def test_a_joint_that_turns_without_limits_is_looked_at_all_round():
         [Body("a", far_round), Body("b", arm(0.95))],
         turning("a", "b", np.eye(4), -np.inf, np.inf, kind=JointKind.CONTINUOUS),
     )
-    assert audit_pair(robot, "a", "b").status is Status.MEETS
+    assert audit_pair(robot, "a", "b").status is PairStatus.MEETS
 
 
 def test_joints_that_follow_move_with_their_master():
@@ -167,7 +167,7 @@ def test_joints_that_follow_move_with_their_master():
     )
     shapes = [Body("b", finger), Body("c", finger)]
     found = audit_pair(robot_of(shapes, left, replace(right, mimic=Mimic("ab"))), "b", "c")
-    assert found.status is Status.APART and found.lower_bound == pytest.approx(0.02, abs=0.016)
+    assert found.status is PairStatus.APART and found.lower_bound == pytest.approx(0.02, abs=0.016)
     closing = replace(right, mimic=Mimic("ab", -1.0, 0.0))
     assert set(audit_pair(robot_of(shapes, left, closing), "b", "c").positions) == {"ab"}
 
@@ -180,7 +180,7 @@ def test_an_open_surface_is_never_proven_apart():
         turning("a", "b", np.eye(4)),
     )
     found = audit_pair(robot, "a", "b")
-    assert found.status is Status.UNDECIDED and "a surface is open" in found.why
+    assert found.status is PairStatus.UNDECIDED and "a surface is open" in found.why
 
 
 def random_pair(rng, n_joints):
@@ -215,7 +215,7 @@ def test_findings_hold_against_samples_and_the_oracle(seed, n_joints):
     shapes = {body.name: body.shape for body in robot.bodies}
     poses = chain.frames(within_limits(rng, chain, 1000))[:, -1]
     sampled = Query(shapes[a], shapes[b]).distances(None, poses).distances.min()
-    if found.status is Status.APART:
+    if found.status is PairStatus.APART:
         assert found.lower_bound <= sampled and 0.0 < found.lower_bound <= found.least
     at = np.array([[found.positions[joint.name] for joint in chain.masters]])
     pose = chain.frames(at)[0, -1]
@@ -228,7 +228,7 @@ def test_findings_hold_against_samples_and_the_oracle(seed, n_joints):
         pose,
     )
     assert oracle.error(found.least, exact) < 1e-12
-    if found.status is Status.MEETS:
+    if found.status is PairStatus.MEETS:
         assert exact == 0
         for joint in chain.masters:
             assert joint.lower - 1e-12 <= found.positions[joint.name] <= joint.upper + 1e-12
@@ -250,7 +250,7 @@ def test_both_bounds_of_a_box_hold_at_every_position_in_it(seed, n_joints, size)
     points = np.stack([seen.point_a, seen.point_b])[None]
     bounds = JointBox.of(chain, shapes[a], shapes[b])
     motion = bounds.motion(half, frames)
-    apart = bounds.seen_apart(half, Seen(np.array([seen.distance]), points, frames))
+    apart = bounds.seen_apart(half, BoxDistances(np.array([seen.distance]), points, frames))
     proven = max(seen.distance - motion.way[0], apart[0] - motion.rest[0]) - bounds.slack
     corners = rng.choice([-1.0, 1.0], (200, middle.shape[1]))
     inside = rng.uniform(-1.0, 1.0, (200, middle.shape[1]))

@@ -6,7 +6,7 @@ import pytest
 from clearance.compile.jit import kernel
 from clearance.kernels.motion.pair_order import (
     fill_order,
-    room_for_order,
+    new_pair_order,
     sort_all,
     sort_first,
     sort_one,
@@ -42,7 +42,7 @@ def test_each_list_is_in_order_and_holds_its_pairs(seed):
     bounds = random.choice(
         [random.normal(size=n_pairs), random.integers(0, 4, n_pairs).astype(float)]
     )
-    order = room_for_order(n_bodies, n_pairs)
+    order = new_pair_order(n_bodies, n_pairs)
     ordered(body_pairs, bounds, order)
     for _ in range(50):
         held = lists_of(order, n_bodies)

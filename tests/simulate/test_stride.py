@@ -12,7 +12,10 @@ import clearance as cl
 from clearance.compile.jit import kernel
 from clearance.geometry.shapes import box
 from clearance.geometry.tree import surface_of
-from clearance.kernels.motion.interval_motion_bound import fill_reach, stride_of
+from clearance.kernels.motion.interval_motion_bound import (
+    fill_motion_radii,
+    interval_motion_bound_of,
+)
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import joined_links, link_poses
 from clearance.world.robot import Joint, JointKind, Robot
@@ -32,10 +35,10 @@ def ways(surface, frames, links, positions):
     """(k,) [m] the bound on the motion of the body from the first step to each."""
     reach = np.empty((len(frames), positions.shape[1]))
     noise = np.empty(len(frames))
-    fill_reach(surface, frames, links, positions, reach, noise)
+    fill_motion_radii(surface, frames, links, positions, reach, noise)
     bounds = np.empty(len(positions))
     for step in range(len(positions)):
-        bounds[step] = stride_of(positions, 0, step, reach[0], noise[0])
+        bounds[step] = interval_motion_bound_of(positions, 0, step, reach[0], noise[0])
     return bounds
 
 

@@ -4,7 +4,7 @@ steps find no place, least squares from the drawing does."""
 import numpy as np
 import pytest
 
-from clearance.sketch.descent import Part, descend
+from clearance.sketch.descent import ProblemPart, descend
 from clearance.sketch.execution import at_unit
 from clearance.sketch.folds import folds
 from scripts.bench.sketches.lattices import slivered
@@ -39,7 +39,7 @@ def minimum():
     """A patch whose descent ends in a minimum that is no root: one sliver lies the wrong way."""
     s, _, _ = slivered(300, 0.05, 16)
     problem, x = at_unit(s._engine().current(), np.array(s._lists.numbers))
-    work = Part(problem, 0)
+    work = ProblemPart(problem, 0)
     return work, descend(work, x)
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.expansion import two_product, two_sum
-from clearance.kernels.arithmetic.vec3 import Rigid, Vec3, relative
+from clearance.kernels.arithmetic.vec3 import RigidMotion, Vec3, relative
 
 NOISE = 2.0**-96
 """Rounding of the points and products here, relative to the magnitudes of the coordinates: 50 operations
@@ -45,9 +45,9 @@ class Frames(NamedTuple):
         still_a, still_b: True for the identity rotation.
     """
 
-    a: Rigid
-    b: Rigid
-    m: Rigid
+    a: RigidMotion
+    b: RigidMotion
+    m: RigidMotion
     shift: Wide3
     defect: float
     still_a: bool
@@ -60,7 +60,7 @@ FAR = Wide(math.inf, 0.0)
 
 
 def _frames_at_rest():
-    still = Rigid(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
+    still = RigidMotion(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, Vec3(0.0, 0.0, 0.0))
     return Frames(still, still, still, ZERO3, 0.0, True, True)
 
 
@@ -265,7 +265,7 @@ def defect_of(m):
 
 @inline
 def frames_of(world_from_a, world_from_b):
-    """The frames of two bodies at given poses (`Rigid`)."""
+    """The frames of two bodies at given poses (`RigidMotion`)."""
     a, b = world_from_a, world_from_b
     shift = difference(b.t, a.t)
     return Frames(

@@ -23,7 +23,7 @@ FILTER = 32.0 * 2.0**-53
 roundings, with room."""
 
 
-class Exact(NamedTuple):
+class ExactScratch(NamedTuple):
     """Room for exact arithmetic.
 
     Attributes:
@@ -42,7 +42,7 @@ class Exact(NamedTuple):
     shift: np.ndarray
 
 
-class Posed(NamedTuple):
+class PosedVertex(NamedTuple):
     """A vertex of one of two bodies, which is 0 for a and 1 for b: the number of shifts to add."""
 
     v: Vec3
@@ -50,9 +50,9 @@ class Posed(NamedTuple):
 
 
 @shared
-def room_for_exact():
+def new_exact_scratch():
     """Room for one exact decision at a time."""
-    return Exact(
+    return ExactScratch(
         np.empty((9, ROOM)),
         np.zeros(9, dtype=np.int64),
         np.empty(ROOM),
@@ -141,7 +141,7 @@ def approximate_difference(p, q, exact):
     """(p - q rounded, error of each coordinate)."""
     if p.body == q.body:
         d = sub(p.v, q.v)
-        return _turned(exact, Posed(d, p.body)), FILTER * size(d)
+        return _turned(exact, PosedVertex(d, p.body)), FILTER * size(d)
     f = p.body - q.body
     t = row(exact.shift, 0)
     d = sub(_turned(exact, p), _turned(exact, q))

@@ -21,7 +21,7 @@ class Vec3(NamedTuple):
     z: float
 
 
-class Rigid(NamedTuple):
+class RigidMotion(NamedTuple):
     """A rigid motion x -> R x + t, row by row."""
 
     xx: float
@@ -135,13 +135,13 @@ def move_back(m, v):
 def inverse(m):
     """The motion x -> R^T (x - t)."""
     t = turn_back(m, m.t)
-    return Rigid(m.xx, m.yx, m.zx, m.xy, m.yy, m.zy, m.xz, m.yz, m.zz, Vec3(-t.x, -t.y, -t.z))
+    return RigidMotion(m.xx, m.yx, m.zx, m.xy, m.yy, m.zy, m.xz, m.yz, m.zz, Vec3(-t.x, -t.y, -t.z))
 
 
 @inline(force=True)
 def rigid(matrix):
     """The motion that a (4, 4) or (3, 4) matrix describes."""
-    return Rigid(
+    return RigidMotion(
         matrix[0, 0], matrix[0, 1], matrix[0, 2],
         matrix[1, 0], matrix[1, 1], matrix[1, 2],
         matrix[2, 0], matrix[2, 1], matrix[2, 2],
@@ -154,7 +154,7 @@ def relative(world_from_a, world_from_b):
     """The motion `a_from_b`; the origins are differenced before anything is multiplied."""
     a = world_from_a
     b = world_from_b
-    return Rigid(
+    return RigidMotion(
         a.xx * b.xx + a.yx * b.yx + a.zx * b.zx,
         a.xx * b.xy + a.yx * b.yy + a.zx * b.zy,
         a.xx * b.xz + a.yx * b.yz + a.zx * b.zz,

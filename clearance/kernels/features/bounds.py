@@ -9,7 +9,7 @@ from typing import NamedTuple
 from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import larger, square_root, where_positive
 from clearance.kernels.arithmetic.vec3 import (
-    Rigid,
+    RigidMotion,
     Vec3,
     along,
     cross,
@@ -47,7 +47,7 @@ def _axis_gap(centre, half_a, half_b, slack):
 def between_boxes(p, u, v, w, d):
     """The motion between two boxes: from the axes u, v, w of one to those of p; d is from centre to centre."""
     x, y, z = p.x, p.y, p.z
-    return Rigid(
+    return RigidMotion(
         dot(x, u), dot(x, v), dot(x, w),
         dot(y, u), dot(y, v), dot(y, w),
         dot(z, u), dot(z, v), dot(z, w),
@@ -94,7 +94,7 @@ def lower_bound_between(h, k, n, slack):
     return where_positive(outside, larger(outside, between_centres), between_centres)
 
 
-class Sight(NamedTuple):
+class SeparatingDirection(NamedTuple):
     """A direction in which two bodies are seen apart: along `u` in the frame of a, `v` in that of b, from a to b.
 
     Any unit vector gives a valid bound; that of the best witness points gives a tight one.
@@ -106,27 +106,27 @@ class Sight(NamedTuple):
 
 
 @inline(force=True)
-def sight_along(p, q, m):
-    """The sight from `p` to `q` (frame of a); one of zero length bounds nothing."""
+def direction_between(p, q, m):
+    """The direction from `p` to `q` (frame of a); one of zero length bounds nothing."""
     d = sub(q, p)
     length = math.sqrt(dot(d, d))
     if length > 0.0:
         d = Vec3(d.x / length, d.y / length, d.z / length)
-    return Sight(d, turn_back(m, d), dot(d, m.t))
+    return SeparatingDirection(d, turn_back(m, d), dot(d, m.t))
 
 
 @inline(force=True)
-def _back(sight):
+def _back(direction):
     """The other way along the same line."""
-    u, v = sight.u, sight.v
-    return Sight(Vec3(-u.x, -u.y, -u.z), Vec3(-v.x, -v.y, -v.z), -sight.offset)
+    u, v = direction.u, direction.v
+    return SeparatingDirection(Vec3(-u.x, -u.y, -u.z), Vec3(-v.x, -v.y, -v.z), -direction.offset)
 
 
 @inline(force=True)
-def opposite(sight):
-    """The same sight with a and b exchanged."""
-    u, v = sight.u, sight.v
-    return Sight(Vec3(-v.x, -v.y, -v.z), Vec3(-u.x, -u.y, -u.z), sight.offset)
+def opposite(direction):
+    """The same direction with a and b exchanged."""
+    u, v = direction.u, direction.v
+    return SeparatingDirection(Vec3(-v.x, -v.y, -v.z), Vec3(-u.x, -u.y, -u.z), direction.offset)
 
 
 @inline(force=True)
@@ -141,23 +141,23 @@ def box_reach(box, direction):
 
 
 @inline(force=True)
-def lower_bound_boxes_in_sight(p, q, sight):
+def lower_bound_boxes_along_direction(p, q, direction):
     """[m] a lower bound on the distance of two boxes, without their rounding slack; may be negative."""
-    far_of_a = dot(sight.u, p.centre) + box_reach(p, sight.u)
-    near_of_b = dot(sight.v, q.centre) - box_reach(q, sight.v)
-    return near_of_b + sight.offset - far_of_a
+    far_of_a = dot(direction.u, p.centre) + box_reach(p, direction.u)
+    near_of_b = dot(direction.v, q.centre) - box_reach(q, direction.v)
+    return near_of_b + direction.offset - far_of_a
 
 
 @inline(force=True)
-def lower_bound_faces_in_sight(a, face_a, b, face_b, sight):
+def lower_bound_faces_along_direction(a, face_a, b, face_b, direction):
     """[m] a lower bound on the distance of two faces, without rounding slack; may be negative."""
     far_of_a = -math.inf
     for c in range(a.face_starts[face_a], a.face_starts[face_a + 1]):
-        far_of_a = max(far_of_a, dot(sight.u, row(a.vertices, a.face_vertices[c])))
+        far_of_a = max(far_of_a, dot(direction.u, row(a.vertices, a.face_vertices[c])))
     near_of_b = math.inf
     for c in range(b.face_starts[face_b], b.face_starts[face_b + 1]):
-        near_of_b = min(near_of_b, dot(sight.v, row(b.vertices, b.face_vertices[c])))
-    return near_of_b + sight.offset - far_of_a
+        near_of_b = min(near_of_b, dot(direction.v, row(b.vertices, b.face_vertices[c])))
+    return near_of_b + direction.offset - far_of_a
 
 
 @inline(force=True)
@@ -194,8 +194,8 @@ def _beside(surface, face, other, face_other, m):
 
 
 @inline(force=True)
-def sight_beside(a, face_a, b, face_b, from_a, from_b):
-    """A sight in which two faces are probably apart: up from the plane of one and away from its nearest edge.
+def direction_beside(a, face_a, b, face_b, from_a, from_b):
+    """A direction in which two faces are probably apart: up from the plane of one and away from its nearest edge.
 
     Args:
         from_a, from_b: `a_from_b` and the inverse.
@@ -204,14 +204,14 @@ def sight_beside(a, face_a, b, face_b, from_a, from_b):
     of_b, e = _beside(b, face_b, a, face_a, from_b)
     if of_b > of_a:
         d = turn(from_a, Vec3(-e.x, -e.y, -e.z))
-    return sight_along(Vec3(0.0, 0.0, 0.0), d, from_a)
+    return direction_between(Vec3(0.0, 0.0, 0.0), d, from_a)
 
 
 @inline(force=True)
 def lower_bound_faces_beside(a, face_a, b, face_b, m):
-    """[m] a lower bound on the distance of two faces but for rounding, `sight_beside`."""
-    return lower_bound_faces_in_sight(
-        a, face_a, b, face_b, sight_beside(a, face_a, b, face_b, m, inverse(m))
+    """[m] a lower bound on the distance of two faces but for rounding, `direction_beside`."""
+    return lower_bound_faces_along_direction(
+        a, face_a, b, face_b, direction_beside(a, face_a, b, face_b, m, inverse(m))
     )
 
 
@@ -230,9 +230,11 @@ def lower_bound_faces_across(a, face_a, b, face_b, m):
         q = row(b.vertices, b.face_vertices[last_b - 1])
         for k in range(first_b, last_b):
             behind, q = q, row(b.vertices, b.face_vertices[k])
-            sight = sight_along(Vec3(0.0, 0.0, 0.0), cross(u, turn(m, sub(q, behind))), m)
-            most = max(most, lower_bound_faces_in_sight(a, face_a, b, face_b, sight))
-            most = max(most, lower_bound_faces_in_sight(a, face_a, b, face_b, _back(sight)))
+            direction = direction_between(Vec3(0.0, 0.0, 0.0), cross(u, turn(m, sub(q, behind))), m)
+            most = max(most, lower_bound_faces_along_direction(a, face_a, b, face_b, direction))
+            most = max(
+                most, lower_bound_faces_along_direction(a, face_a, b, face_b, _back(direction))
+            )
     return most
 
 
@@ -261,7 +263,7 @@ def displacement(surface, root, before, after):
     """
     box = box_of(surface, root)
     a, b = rigid(after), rigid(before)
-    way = Rigid(
+    way = RigidMotion(
         a.xx - b.xx, a.xy - b.xy, a.xz - b.xz,
         a.yx - b.yx, a.yy - b.yy, a.yz - b.yz,
         a.zx - b.zx, a.zy - b.zy, a.zz - b.zz,

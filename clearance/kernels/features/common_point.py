@@ -27,7 +27,7 @@ from clearance.kernels.features.wide_features import point_and_triangle, two_seg
 from clearance.kernels.mesh.surface import surface_like
 
 
-class Common(NamedTuple):
+class CommonPointPair(NamedTuple):
     """A point of each of two faces, in the orientation of the world, from the origin of a."""
 
     p: Wide3
@@ -51,7 +51,7 @@ def _of_edge_and_triangle(p, q, x, y, z):
         if less(found.gap_sq, best.gap_sq):
             best = found
         x, y, z = y, z, x
-    return Common(best.p, best.q)
+    return CommonPointPair(best.p, best.q)
 
 
 @apart(COMMON_POINT, lambda: (surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, NO_MEETING))
@@ -70,10 +70,10 @@ def common_point(a, face_a, b, face_b, frames, found):
     y = point_of_a(frames, row(a.exact, a.face_vertices[found.k]))
     z = point_of_a(frames, row(a.exact, a.face_vertices[found.k + 1]))
     common = _of_edge_and_triangle(p, q, x, y, z)
-    return Common(common.q, common.p)
+    return CommonPointPair(common.q, common.p)
 
 
-_NOWHERE = Common(ZERO3, ZERO3)
+_NOWHERE = CommonPointPair(ZERO3, ZERO3)
 
 
 @inline(one_caller=True)

@@ -1,7 +1,7 @@
 """All feature pairs of two faces that could be the nearest, in wide numbers: where the first guess is not proven.
 
 Doubles leave out what is farther than a limit or has its feet clearly outside; the rest is measured. Not for:
-the usual case, in which one feature pair and its floor suffice (`refine`).
+the usual case, in which one feature pair and its lower bound suffice (`refine`).
 """
 
 import math
@@ -20,7 +20,7 @@ from clearance.kernels.features.segments import (
 from clearance.kernels.features.wide_features import Simplex, sized_of
 
 
-class Ask(NamedTuple):
+class FeatureCutoff(NamedTuple):
     """What features have to be measured.
 
     Attributes:
@@ -31,7 +31,7 @@ class Ask(NamedTuple):
     margin: float
 
 
-class Chosen(NamedTuple):
+class NearestFeatures(NamedTuple):
     """The nearest feature pair so far, its squared distance [m^2], and what all measured ones are beyond [m]."""
 
     gap_sq: Wide
@@ -48,8 +48,8 @@ def _take(frames, one, two, feature, best, table):
         return best
     sure = lesser(best.sure, minus(sized.length, sized.off))
     if less(found_sq, best.gap_sq):
-        return Chosen(found_sq, feature, sure)
-    return Chosen(best.gap_sq, best.feature, sure)
+        return NearestFeatures(found_sq, feature, sure)
+    return NearestFeatures(best.gap_sq, best.feature, sure)
 
 
 @inline
@@ -141,7 +141,7 @@ def _between_segments(a, face_a, b, face_b, frames, ask, best, table):
 @kernel
 def nearest_of_every(a, face_a, b, face_b, frames, ask, table):
     """The nearest feature pair of two faces among those within the limit; infinitely far if there is none."""
-    best = Chosen(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))
+    best = NearestFeatures(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))
     one, face_one, two, face_two = a, face_a, b, face_b
     for side in range(2):
         is_a = side == 0

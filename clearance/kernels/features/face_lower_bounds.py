@@ -36,20 +36,20 @@ TILT = 2.0**-20
 """How far a direction is turned away from the triangle under a corner, to see the others of a bent fan."""
 
 SURE = 2.0**-60
-"""Share of a distance that its floor may be below it for the points to count as proven the nearest."""
+"""Share of a distance that its lower bound may be below it for the points to count as proven the nearest."""
 
 UNSURE = 2.0**-48
-"""Share of the rounding in doubles that its floor may be below it: twice that of wide numbers."""
+"""Share of the rounding in doubles that its lower bound may be below it: twice that of wide numbers."""
 
 
-class Part(NamedTuple):
+class CornerRange(NamedTuple):
     """The first corner of a face and the corners from `low` to before `high`, indices into `face_vertices`."""
 
     low: int
     high: int
 
 
-class Corners(NamedTuple):
+class FaceCorners(NamedTuple):
     """Corners of a face: what a bound needs of a `Surface`.
 
     Attributes:
@@ -67,14 +67,14 @@ class Corners(NamedTuple):
 @inline
 def whole(surface, face):
     """All corners."""
-    return Part(surface.face_starts[face] + 1, surface.face_starts[face + 1])
+    return CornerRange(surface.face_starts[face] + 1, surface.face_starts[face + 1])
 
 
 @inline(one_caller=True)
 def corners_of(surface, face, part):
     """Part of a face."""
     start = surface.face_starts[face]
-    return Corners(surface.exact, surface.face_vertices, start, part.low, part.high)
+    return FaceCorners(surface.exact, surface.face_vertices, start, part.low, part.high)
 
 
 @inline(one_caller=True)
@@ -108,7 +108,7 @@ def _greatest_share(corners, frames, is_a, pair):
 
 
 @inline(one_caller=True)
-def floor_along(frames, a, b, pair):
+def lower_bound_along(frames, a, b, pair):
     """[m] a lower bound on the distance of the hulls of corners of a and b: their gap along a pair's direction."""
     if not pair.w_sq.hi > 0.0:
         return wide(0.0)
@@ -123,7 +123,7 @@ def floor_along(frames, a, b, pair):
 
 
 @inline
-def _plain_floor(a, face_a, part_a, b, face_b, part_b, m, w):
+def _plain_lower_bound(a, face_a, part_a, b, face_b, part_b, m, w):
     """[m] the same in doubles, along a direction in the frame of a."""
     far_of_a = dot(w, row(a.vertices, a.face_vertices[a.face_starts[face_a]]))
     for c in range(part_a.low, part_a.high):
@@ -160,25 +160,25 @@ def _others_are_farther(a, face_a, b, face_b, frames, k, on_a, pair, least):
     for after in range(2):
         corner, third = (k + 1, k) if after == 1 else (k, k + 1)
         if on_a:
-            part = Part(k + 1, all_a.high) if after == 1 else Part(all_a.low, k + 1)
+            part = CornerRange(k + 1, all_a.high) if after == 1 else CornerRange(all_a.low, k + 1)
             if part.high - part.low < 2:
                 continue
             away = _beyond(a, face_a, corner, third, Vec3(-w.x, -w.y, -w.z))
             away = Vec3(-away.x, -away.y, -away.z)
-            floor = _plain_floor(a, face_a, part, b, face_b, all_b, frames.m, away)
+            lower_bound = _plain_lower_bound(a, face_a, part, b, face_b, all_b, frames.m, away)
         else:
-            part = Part(k + 1, all_b.high) if after == 1 else Part(all_b.low, k + 1)
+            part = CornerRange(k + 1, all_b.high) if after == 1 else CornerRange(all_b.low, k + 1)
             if part.high - part.low < 2:
                 continue
             away = turn(frames.m, _beyond(b, face_b, corner, third, turn_back(frames.m, w)))
-            floor = _plain_floor(a, face_a, all_a, b, face_b, part, frames.m, away)
-        if not floor > least:
+            lower_bound = _plain_lower_bound(a, face_a, all_a, b, face_b, part, frames.m, away)
+        if not lower_bound > least:
             return False
     return True
 
 
 @inline(one_caller=True)
-def floor_of(a, face_a, b, face_b, frames, feature, pair, margin):
+def lower_bound_of(a, face_a, b, face_b, frames, feature, pair, margin):
     """[m] a lower bound on the distance of two faces, tight where `pair` is the nearest."""
     part_a, part_b = whole(a, face_a), whole(b, face_b)
     bent_a = feature.n_a == 3 and a.bent[face_a]
@@ -187,7 +187,9 @@ def floor_of(a, face_a, b, face_b, frames, feature, pair, margin):
         k = feature.i if bent_a else feature.j
         if _others_are_farther(a, face_a, b, face_b, frames, k, bent_a, pair, least):
             if bent_a:
-                part_a = Part(k, k + 2)
+                part_a = CornerRange(k, k + 2)
             else:
-                part_b = Part(k, k + 2)
-    return floor_along(frames, corners_of(a, face_a, part_a), corners_of(b, face_b, part_b), pair)
+                part_b = CornerRange(k, k + 2)
+    return lower_bound_along(
+        frames, corners_of(a, face_a, part_a), corners_of(b, face_b, part_b), pair
+    )

@@ -23,7 +23,7 @@ off by 16 u / angle, and a foot next to a corner by that over the angle."""
 LEANING = 2.0**-6
 """Difference of two unit vectors, within which a face pair is known to be nearest at features of others."""
 
-OWN_SIGHT = 0.5 * LEANING * LEANING
+OWN_DIRECTION = 0.5 * LEANING * LEANING
 """Share of the least distance that the bound of a face pair may be short of it for that."""
 
 CLEARLY = 1.0 + 2.0**-26
@@ -57,7 +57,7 @@ CORNERS, CORNER_FACE, FACE_CORNER, CORNER_EDGE, EDGE_CORNER, EDGES, UNSEEN = ran
 """Kinds of feature pairs, that of a first; none that was seen."""
 
 
-class Seen(NamedTuple):
+class FeatureCandidate(NamedTuple):
     """The nearest features seen of a face pair that could be the minimum.
 
     Attributes:
@@ -71,14 +71,14 @@ class Seen(NamedTuple):
     j: int
 
 
-NOTHING_SEEN = Seen(math.inf, UNSEEN, 0, 0)
+NOTHING_SEEN = FeatureCandidate(math.inf, UNSEEN, 0, 0)
 
 
-class Near(NamedTuple):
+class FacePairState(NamedTuple):
     """The best pair so far, and what was seen of the face pair at hand."""
 
     best: Hit
-    seen: Seen
+    seen: FeatureCandidate
 
 
 @inline(force=True)
@@ -100,8 +100,8 @@ def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
     if upper_sq < best.gap_sq:
         best = Hit(upper_sq, face_a, face_b, p, q)
     if found_sq < near.seen.near_sq:
-        return Near(best, Seen(found_sq, kind, i, j))
-    return Near(best, near.seen)
+        return FacePairState(best, FeatureCandidate(found_sq, kind, i, j))
+    return FacePairState(best, near.seen)
 
 
 @inline(force=True)
@@ -252,7 +252,7 @@ def nearest_of_faces(a, face_a, b, face_b, m, margin, best):
     """
     limit = limit_of(a, face_a, b, face_b, math.sqrt(best.gap_sq), margin)
     limit_sq = limit * limit
-    near = Near(best, NOTHING_SEEN)
+    near = FacePairState(best, NOTHING_SEEN)
     near = vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near)
     near = vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near)
     near = face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near)
@@ -290,19 +290,19 @@ def _may_own_farthest(surface, face, u, depth):
 
 
 @inline(force=True)
-def may_own_nearest(a, face_a, b, face_b, sight, in_sight, best_gap, margin):
+def may_own_nearest(a, face_a, b, face_b, direction, along_direction, best_gap, margin):
     """False if two faces, should they be the nearest of all, are nearest at features that are other faces' own.
 
     Args:
-        in_sight: [m] the bound of the faces along the sight. Where it is within `OWN_SIGHT` of the least distance,
-            the direction of their nearest points is within `LEANING` of the sight.
+        along_direction: [m] the bound of the faces along the direction. Where it is within `OWN_DIRECTION` of the least distance,
+            the direction of their nearest points is within `LEANING` of the direction.
     """
     limit = limit_of(a, face_a, b, face_b, best_gap, margin)
-    if in_sight < (1.0 - OWN_SIGHT) * limit or limit > CLEARLY * best_gap:
+    if along_direction < (1.0 - OWN_DIRECTION) * limit or limit > CLEARLY * best_gap:
         return True
-    v = sight.v
-    return _may_own_farthest(a, face_a, sight.u, limit - in_sight) and _may_own_farthest(
-        b, face_b, Vec3(-v.x, -v.y, -v.z), limit - in_sight
+    v = direction.v
+    return _may_own_farthest(a, face_a, direction.u, limit - along_direction) and _may_own_farthest(
+        b, face_b, Vec3(-v.x, -v.y, -v.z), limit - along_direction
     )
 
 

@@ -5,9 +5,9 @@ apart. Each pair of triangles is convex and has one that does: that between its 
 """
 
 from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import FANS, Lent, apart, at_address, borrow
+from clearance.compile.kernel_table import FANS, LentArgument, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, less, lesser
-from clearance.kernels.features.face_lower_bounds import Part, corners_of, floor_along
+from clearance.kernels.features.face_lower_bounds import CornerRange, corners_of, lower_bound_along
 from clearance.kernels.features.feature import simplex
 from clearance.kernels.features.wide_features import NOTHING_SIZED, Simplex, wide_feature
 from clearance.kernels.mesh.surface import surface_like
@@ -52,9 +52,9 @@ def _nearest_of_triangles(frames, one, two):
 def _like():
     far = NOTHING_SIZED.length
     return (
-        Lent(surface_like()),
+        LentArgument(surface_like()),
         0,
-        Lent(surface_like()),
+        LentArgument(surface_like()),
         0,
         FRAMES_AT_REST,
         NOTHING_SIZED.pair,
@@ -64,36 +64,36 @@ def _like():
 
 
 @apart(FANS, _like)
-def floor_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
-    """[m] `floor`, or a greater lower bound on the distance of two faces.
+def lower_bound_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, lower_bound):
+    """[m] `lower_bound`, or a greater lower bound on the distance of two faces.
 
     Args:
-        least: (`Wide`) the floor that is enough: triangles that have it along `pair` are not looked at.
+        least: (`Wide`) the lower bound that is enough: triangles that have it along `pair` are not looked at.
     """
     a, b = borrow(lent_a), borrow(lent_b)
     start_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
     start_b, end_b = b.face_starts[face_b], b.face_starts[face_b + 1]
     if (end_a - start_a - 2) * (end_b - start_b - 2) > MOST:
-        return floor
-    least_floor = least
+        return lower_bound
+    least_lower_bound = least
     for i in range(start_a + 1, end_a - 1):
         for j in range(start_b + 1, end_b - 1):
-            part_a = corners_of(a, face_a, Part(i, i + 2))
-            part_b = corners_of(b, face_b, Part(j, j + 2))
+            part_a = corners_of(a, face_a, CornerRange(i, i + 2))
+            part_b = corners_of(b, face_b, CornerRange(j, j + 2))
             direction = pair
             for attempt in range(2):
-                own = floor_along(frames, part_a, part_b, direction)
+                own = lower_bound_along(frames, part_a, part_b, direction)
                 if not less(own, least) or attempt == 1:
                     break
                 one, two = simplex(a, face_a, 3, i), simplex(b, face_b, 3, j)
                 direction = _nearest_of_triangles(frames, one, two)
-            least_floor = lesser(own, least_floor)
-    return floor if less(least_floor, floor) else least_floor
+            least_lower_bound = lesser(own, least_lower_bound)
+    return lower_bound if less(least_lower_bound, lower_bound) else least_lower_bound
 
 
 @inline
-def fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, least, floor):
+def fans_lower_bound_of(table, lent_a, face_a, lent_b, face_b, frames, pair, least, lower_bound):
     """The same by address."""
     return at_address(
-        table, FANS, floor, (lent_a, face_a, lent_b, face_b, frames, pair, least, floor)
+        table, FANS, lower_bound, (lent_a, face_a, lent_b, face_b, frames, pair, least, lower_bound)
     )

@@ -7,11 +7,11 @@ definite surface. Not for: where they meet (`common_point`).
 from typing import NamedTuple
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import MEETING, Lent, apart, at_address, borrow
+from clearance.compile.kernel_table import MEETING, LentArgument, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, size
 from clearance.kernels.arithmetic.predicates import (
-    Posed,
-    room_for_exact,
+    PosedVertex,
+    new_exact_scratch,
     segment_meets_triangle,
     set_poses,
 )
@@ -23,7 +23,7 @@ from clearance.kernels.mesh.surface import surface_like
 
 @inline
 def _posed(surface, corner, body):
-    return Posed(row(surface.exact, surface.face_vertices[corner]), body)
+    return PosedVertex(row(surface.exact, surface.face_vertices[corner]), body)
 
 
 class Meeting(NamedTuple):
@@ -135,7 +135,14 @@ def _edges_clearly_miss(one, face_one, two, face_two, edge_of_a, frames):
 
 
 def _like():
-    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, room_for_exact()
+    return (
+        LentArgument(surface_like()),
+        0,
+        LentArgument(surface_like()),
+        0,
+        FRAMES_AT_REST,
+        new_exact_scratch(),
+    )
 
 
 @apart(MEETING, _like)

@@ -15,7 +15,7 @@ from clearance.compile.jit import inline, shared
 from clearance.compile.kernel_table import (
     REFINE,
     REFINE_EVERY,
-    Lent,
+    LentArgument,
     apart,
     at_address,
     borrow,
@@ -34,11 +34,11 @@ from clearance.kernels.arithmetic.double_double import (
     root,
     wide,
 )
-from clearance.kernels.features.bounds import lower_bound_faces_in_sight
-from clearance.kernels.features.every_feature import Ask, nearest_of_every
-from clearance.kernels.features.face_lower_bounds import SURE, UNSURE, floor_of
-from clearance.kernels.features.face_pair import NOTHING_SEEN, UNSEEN, Seen, limit_of
-from clearance.kernels.features.fan_lower_bounds import fans_floor_of
+from clearance.kernels.features.bounds import lower_bound_faces_along_direction
+from clearance.kernels.features.every_feature import FeatureCutoff, nearest_of_every
+from clearance.kernels.features.face_lower_bounds import SURE, UNSURE, lower_bound_of
+from clearance.kernels.features.face_pair import NOTHING_SEEN, UNSEEN, FeatureCandidate, limit_of
+from clearance.kernels.features.fan_lower_bounds import fans_lower_bound_of
 from clearance.kernels.features.feature import nearest_feature, simplex, simplex_here
 from clearance.kernels.features.rounding_guard import may_hide
 from clearance.kernels.features.wide_features import sized_of, too_far, wide_feature_here
@@ -48,12 +48,12 @@ N_WAITING = 64
 """Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
 
 
-class Refined(NamedTuple):
+class RefinedDistance(NamedTuple):
     """The best pair of points so far, in the orientation of the world, from the origin of a.
 
     Attributes:
         length: [m] their distance, the root of `gap_sq`.
-        floor: [m] a lower bound on the distance of its two faces.
+        lower_bound: [m] a lower bound on the distance of its two faces.
         sure: [m] a lower bound on the distances of all feature pairs that were measured, whichever won.
     """
 
@@ -63,11 +63,11 @@ class Refined(NamedTuple):
     face_b: int
     p: Wide3
     q: Wide3
-    floor: Wide
+    lower_bound: Wide
     sure: Wide
 
 
-NOTHING_REFINED = Refined(FAR, FAR, 2**62, 2**62, ZERO3, ZERO3, FAR, FAR)
+NOTHING_REFINED = RefinedDistance(FAR, FAR, 2**62, 2**62, ZERO3, ZERO3, FAR, FAR)
 """What any pair of points beats."""
 
 
@@ -83,26 +83,31 @@ def _wins(found_sq, face_a, face_b, best):
 
 @inline
 def _enough(length, margin):
-    """[m] the floor that proves a distance."""
+    """[m] the lower bound that proves a distance."""
     return minus(length, wide(SURE * length.hi + UNSURE * margin))
 
 
 @inline
-def _better(best, pair, length, face_a, face_b, floor, sure):
-    """`best` after a face pair. The floor of one that does not win may be low: it is nearest at others' own."""
+def _better(best, pair, length, face_a, face_b, lower_bound, sure):
+    """`best` after a face pair. The lower bound of one that does not win may be low: it is nearest at others' own."""
     sure = lesser(best.sure, sure)
     if _wins(pair.gap_sq, face_a, face_b, best):
-        return Refined(pair.gap_sq, length, face_a, face_b, pair.p, pair.q, floor, sure)
-    return Refined(
-        best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, best.floor, sure
+        return RefinedDistance(
+            pair.gap_sq, length, face_a, face_b, pair.p, pair.q, lower_bound, sure
+        )
+    return RefinedDistance(
+        best.gap_sq, best.length, best.face_a, best.face_b, best.p, best.q, best.lower_bound, sure
     )
 
 
 def _two_faces_like():
-    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST
+    return LentArgument(surface_like()), 0, LentArgument(surface_like()), 0, FRAMES_AT_REST
 
 
-@apart(REFINE_EVERY, lambda: (*_two_faces_like(), Ask(0.0, 0.0), NOTHING_REFINED, table_like()))
+@apart(
+    REFINE_EVERY,
+    lambda: (*_two_faces_like(), FeatureCutoff(0.0, 0.0), NOTHING_REFINED, table_like()),
+)
 def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best, table):
     """`best`, or better: all features of two faces within the limit."""
     a, b = borrow(lent_a), borrow(lent_b)
@@ -114,16 +119,24 @@ def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best, table):
     two = simplex(b, face_b, feature.n_b, feature.j)
     sized = sized_of(table, frames, one, two)
     pair, length = sized.pair, sized.length
-    floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
+    lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
     enough = _enough(length, ask.margin)
-    if less(floor, enough) and (a.bent[face_a] or b.bent[face_b]):
-        floor = fans_floor_of(table, lent_a, face_a, lent_b, face_b, frames, pair, enough, floor)
-    return _better(best, pair, length, face_a, face_b, minus(floor, sized.off), chosen.sure)
+    if less(lower_bound, enough) and (a.bent[face_a] or b.bent[face_b]):
+        lower_bound = fans_lower_bound_of(
+            table, lent_a, face_a, lent_b, face_b, frames, pair, enough, lower_bound
+        )
+    return _better(best, pair, length, face_a, face_b, minus(lower_bound, sized.off), chosen.sure)
 
 
 @apart(
     REFINE,
-    lambda: (*_two_faces_like(), NOTHING_SEEN, Ask(0.0, 0.0), NOTHING_REFINED, table_like()),
+    lambda: (
+        *_two_faces_like(),
+        NOTHING_SEEN,
+        FeatureCutoff(0.0, 0.0),
+        NOTHING_REFINED,
+        table_like(),
+    ),
 )
 def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
     """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
@@ -134,12 +147,12 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
         two = simplex_here(b, face_b, feature.n_b, feature.j)
         pair = wide_feature_here(frames, one, two)
         if pair.gap_sq.hi < math.inf:
-            floor = floor_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
+            lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
             length = root(pair.gap_sq)
-            if not less(floor, _enough(length, ask.margin)):
+            if not less(lower_bound, _enough(length, ask.margin)):
                 off = too_far(frames, one, two, pair, length)
                 return _better(
-                    best, pair, length, face_a, face_b, minus(floor, off), minus(length, off)
+                    best, pair, length, face_a, face_b, minus(lower_bound, off), minus(length, off)
                 )
     return at_address(
         table,
@@ -160,8 +173,8 @@ def refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best):
     )
 
 
-class Waiting(NamedTuple):
-    """Face pairs that wait to be refined, as a `Seen` each.
+class RefineQueue(NamedTuple):
+    """Face pairs that wait to be refined, as a `FeatureCandidate` each.
 
     Attributes:
         faces: (n, 2) int64. near_sq: (n,) [m^2]. features: (n, 3) int64 kind, i, j.
@@ -175,9 +188,9 @@ class Waiting(NamedTuple):
 
 
 @shared
-def room_for_waiting():
+def new_refine_queue():
     """Room for `N_WAITING` face pairs."""
-    return Waiting(
+    return RefineQueue(
         np.empty((N_WAITING, 2), dtype=np.int64),
         np.empty(N_WAITING),
         np.empty((N_WAITING, 3), dtype=np.int64),
@@ -196,12 +209,23 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
 
 @inline(force=True)
 def settle(
-    lent_a, lent_b, frames, best_gap, margin, waiting, n_waiting, sight, slack, least, best, table
+    lent_a,
+    lent_b,
+    frames,
+    best_gap,
+    margin,
+    waiting,
+    n_waiting,
+    direction,
+    slack,
+    least,
+    best,
+    table,
 ):
     """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
 
     Args:
-        sight: the best one so far. slack: [m] its rounding.
+        direction: the best one so far. slack: [m] its rounding.
         least: [m] no two faces are nearer but for what rounding hides.
     """
     a, b = borrow(lent_a), borrow(lent_b)
@@ -212,15 +236,17 @@ def settle(
         if waiting.least_sq[i] > limit * limit:
             continue
         if near_sq > limit * limit:
-            in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-            if in_sight > limit or not may_hide(
+            along_direction = (
+                lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
+            )
+            if along_direction > limit or not may_hide(
                 a, face_a, b, face_b, frames.m, margin, limit, least
             ):
                 continue
         features = waiting.features
-        seen = Seen(near_sq, features[i, 0], features[i, 1], features[i, 2])
+        seen = FeatureCandidate(near_sq, features[i, 0], features[i, 1], features[i, 2])
         best = refined_of(
-            table, lent_a, face_a, lent_b, face_b, frames, seen, Ask(limit, margin), best
+            table, lent_a, face_a, lent_b, face_b, frames, seen, FeatureCutoff(limit, margin), best
         )
     return best
 
@@ -244,6 +270,6 @@ def shed(a, b, best_gap, margin, waiting, n_waiting):
 @inline
 def error_of(refined, distance):
     """[m] a bound on |distance - true distance|, `distance` being the refined one rounded."""
-    short = minus(refined.length, lesser(refined.sure, refined.floor))
+    short = minus(refined.length, lesser(refined.sure, refined.lower_bound))
     below = abs(distance - refined.length.hi) + abs(refined.length.lo)
     return (below + max(0.0, short.hi)) * (1.0 + 2.0**-50) + NOISE * distance

@@ -78,11 +78,11 @@ def may_hide(a, face_a, b, face_b, m, margin, limit, least):
 
 
 @inline(force=True)
-def sure_gap(a, face_a, b, face_b, m, margin, in_sight):
-    """[m] a lower bound on the distance of two faces: that in sight, or a greater one if it leaves them untold."""
-    if told_apart(a, face_a, b, face_b, in_sight, margin):
-        return in_sight
-    gap = max(in_sight, lower_bound_faces_beside(a, face_a, b, face_b, m) - margin)
+def sure_gap(a, face_a, b, face_b, m, margin, along_direction):
+    """[m] a lower bound on the distance of two faces: that in direction, or a greater one if it leaves them untold."""
+    if told_apart(a, face_a, b, face_b, along_direction, margin):
+        return along_direction
+    gap = max(along_direction, lower_bound_faces_beside(a, face_a, b, face_b, m) - margin)
     if gap > 0.0:
         return gap
     return max(gap, lower_bound_faces_across(a, face_a, b, face_b, m) - margin)

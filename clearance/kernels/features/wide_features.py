@@ -43,7 +43,7 @@ LONG = 2.0**-20
 
 
 SLENDER = 2.0**6
-"""The reciprocal sine of an angle up to which the noise in every floor covers the rounding of its normal."""
+"""The reciprocal sine of an angle up to which the noise in every lower bound covers the rounding of its normal."""
 
 
 class Simplex(NamedTuple):
@@ -55,7 +55,7 @@ class Simplex(NamedTuple):
     w: Vec3
 
 
-class Pair(NamedTuple):
+class PointPair(NamedTuple):
     """A point of each of two features, in the orientation of the world, from the origin of a.
 
     Attributes:
@@ -100,7 +100,7 @@ def _point_and_segment(x, start, end):
     if 0.0 < share.hi < 1.0 and gap_sq.hi < LONG * d_sq.hi:
         w = _across(w, d, d_sq)
         w_sq = dot3(w, w)
-    return Pair(gap_sq, x, along3(start, share, d), w, w_sq, x)
+    return PointPair(gap_sq, x, along3(start, share, d), w, w_sq, x)
 
 
 @inline
@@ -116,11 +116,11 @@ def point_and_triangle(x, a, b, c):
     beta, minus_gamma = dot3(v, t), dot3(u, t)
     alpha = plus(minus(n_sq, beta), minus_gamma)
     if not (n_sq.hi > 0.0 and beta.hi >= 0.0 and minus_gamma.hi <= 0.0 and alpha.hi >= 0.0):
-        return Pair(wide(math.inf), x, x, n, n_sq, x)
+        return PointPair(wide(math.inf), x, x, n, n_sq, x)
     h = dot3(r, n)
     share = over(h, n_sq)
     foot = minus3(x, scaled3(share, n))
-    return Pair(times(h, share), x, foot, negative3(n) if h.hi > 0.0 else n, n_sq, x)
+    return PointPair(times(h, share), x, foot, negative3(n) if h.hi > 0.0 else n, n_sq, x)
 
 
 @inline
@@ -145,7 +145,7 @@ def two_segments(p0, p1, q0, q1):
         else:
             on_p, on_q, share = over(at_p, n_sq), over(at_q, n_sq), over(h, n_sq)
         p, q = along3(p0, on_p, u), along3(q0, on_q, v)
-        return Pair(times(h, share), p, q, negative3(n) if h.hi < 0.0 else n, n_sq, p0)
+        return PointPair(times(h, share), p, q, negative3(n) if h.hi < 0.0 else n, n_sq, p0)
     uv, u_sq, v_sq = dot3(u, v), dot3(u, u), dot3(v, v)
     on_p = _share(at_p, n_sq)
     on_q = _share(minus(times(on_p, uv), dot3(r, v)), v_sq)
@@ -158,7 +158,7 @@ def two_segments(p0, p1, q0, q1):
         w = _across(w, v, v_sq)
     if 0.0 < on_p.hi < 1.0:
         w = _across(w, u, u_sq)
-    return Pair(gap_sq, along3(p0, on_p, u), along3(q0, on_q, v), w, dot3(w, w), p0)
+    return PointPair(gap_sq, along3(p0, on_p, u), along3(q0, on_q, v), w, dot3(w, w), p0)
 
 
 def _wide_feature(frames, one, two):
@@ -168,7 +168,7 @@ def _wide_feature(frames, one, two):
     if one.n == 1 and two.n == 1:
         w = minus3(y, x)
         w_sq = dot3(w, w)
-        return Pair(w_sq, x, y, w, w_sq, x)
+        return PointPair(w_sq, x, y, w, w_sq, x)
     if one.n == 2 and two.n == 2:
         return two_segments(x, point_of_a(frames, one.v), y, point_of_b(frames, two.v))
     swapped = one.n > 1
@@ -179,7 +179,7 @@ def _wide_feature(frames, one, two):
         n, v, w = two.n, point_of_b(frames, two.v), point_of_b(frames, two.w)
     found = _point_and_segment(x, y, v) if n == 2 else point_and_triangle(x, y, v, w)
     if swapped:
-        return Pair(found.gap_sq, found.q, found.p, negative3(found.w), found.w_sq, x)
+        return PointPair(found.gap_sq, found.q, found.p, negative3(found.w), found.w_sq, x)
     return found
 
 
@@ -217,15 +217,17 @@ def too_far(frames, one, two, pair, length):
     return wide(_unevenness(frames, one, True, pair) + _unevenness(frames, two, False, pair))
 
 
-class Sized(NamedTuple):
+class PointDistance(NamedTuple):
     """A pair of points of two features, their distance [m], and how much of it may be too much (`too_far`) [m]."""
 
-    pair: Pair
+    pair: PointPair
     length: Wide
     off: Wide
 
 
-NOTHING_SIZED = Sized(Pair(FAR, ZERO3, ZERO3, ZERO3, Wide(0.0, 0.0), ZERO3), FAR, Wide(0.0, 0.0))
+NOTHING_SIZED = PointDistance(
+    PointPair(FAR, ZERO3, ZERO3, ZERO3, Wide(0.0, 0.0), ZERO3), FAR, Wide(0.0, 0.0)
+)
 
 
 def _features_like():
@@ -238,9 +240,9 @@ def size_features(frames, one, two):
     """A feature pair in wide numbers; infinitely far where a corner's foot is not in the triangle."""
     pair = wide_feature(frames, one, two)
     if pair.gap_sq.hi == math.inf:
-        return Sized(pair, pair.gap_sq, wide(0.0))
+        return PointDistance(pair, pair.gap_sq, wide(0.0))
     length = root(pair.gap_sq)
-    return Sized(pair, length, too_far(frames, one, two, pair, length))
+    return PointDistance(pair, length, too_far(frames, one, two, pair, length))
 
 
 @inline

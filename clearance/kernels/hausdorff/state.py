@@ -40,7 +40,7 @@ SEARCH_STATE = np.dtype(
 )
 
 
-class Aim(NamedTuple):
+class SearchGoal(NamedTuple):
     """What a search is after.
 
     Attributes:

@@ -49,7 +49,7 @@ class Systems(NamedTuple):
     ends_b: np.ndarray
 
 
-class Boxes(NamedTuple):
+class BoxScratch(NamedTuple):
     """Scratch: (4, 4) the boxes of A's part, (4,) one of a gap, (5, 4) for `same_foot`."""
 
     a: np.ndarray
@@ -213,7 +213,7 @@ def solve_directed(one, a_parts, two, b_parts, shift_x, shift_y, budget, states)
     pair = CurvePair(Curves(one.pieces, two.pieces, shift_x, shift_y), two.leaves)
     da, db = _three_derivatives(one.pieces), _three_derivatives(two.pieces)
     systems, table = Systems(pair, db, two.is_end), new_table()
-    boxes = Boxes(np.empty((4, 4)), np.empty(4), np.empty((5, 4)))
+    boxes = BoxScratch(np.empty((4, 4)), np.empty(4), np.empty((5, 4)))
     share = budget / max(1, a_parts.shape[0])
     for k in range(a_parts.shape[0]):
         _consider_ends(pair, one.is_end, a_parts[k], state, work)

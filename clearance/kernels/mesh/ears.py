@@ -22,7 +22,7 @@ _CLEAR = 1e-14
 """[-] A difference of two products beyond this share of their sum has the sign that it shows."""
 
 
-class Ring(NamedTuple):
+class CornerRing(NamedTuple):
     """The corners that are left, and which of them the next round looks at.
 
     Attributes:
@@ -197,7 +197,7 @@ def _ring_of(points, terms):
     for i in range(n):
         turns[i] = _turn(points, behind[i], i, ahead[i], terms)
     counts = np.zeros(3, dtype=np.int64)
-    return Ring(ahead, behind, turns, np.full(n, -1), np.empty(n, dtype=np.int64), counts)
+    return CornerRing(ahead, behind, turns, np.full(n, -1), np.empty(n, dtype=np.int64), counts)
 
 
 @kernel

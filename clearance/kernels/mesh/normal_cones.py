@@ -58,7 +58,7 @@ NOTHING = 1e-300
 """The least number that is more than none."""
 
 
-class Facing(NamedTuple):
+class NormalCones(NamedTuple):
     """The cones of a group p, in lanes, and of a node q of the other body, in the frame of p.
 
     Attributes:
@@ -76,7 +76,7 @@ class Facing(NamedTuple):
 
 
 @inline(force=True)
-def facing_of(cones_p, group, cones_q, other, m, slack):
+def normal_cones_of(cones_p, group, cones_q, other, m, slack):
     """How a group and a node of the other body face each other.
 
     Args:
@@ -94,7 +94,7 @@ def facing_of(cones_p, group, cones_q, other, m, slack):
     v = turn(m, v)
     cos_v, sin_v = number_at(cones_q, across + 3, k), number_at(cones_q, across + 4, k)
     reach = lanes_at(cones_p, first + 5) + (number_at(cones_q, across + 5, k) + slack)
-    return Facing(u, cos_u, sin_u, v, cos_v, sin_v, reach)
+    return NormalCones(u, cos_u, sin_u, v, cos_v, sin_v, reach)
 
 
 @inline(force=True)
@@ -106,7 +106,7 @@ def while_moving(facing, cos_turn, sin_turn, way):
         way: [m] how far any point moves at most.
     """
     u, cos_u, sin_u, v, cos_v, sin_v, reach = facing
-    return Facing(
+    return NormalCones(
         u, cos_u * cos_turn - sin_u * sin_turn, sin_u * cos_turn + cos_u * sin_turn,
         v, cos_v * cos_turn - sin_v * sin_turn, sin_v * cos_turn + cos_v * sin_turn,
         reach + way,

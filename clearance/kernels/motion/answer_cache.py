@@ -15,18 +15,18 @@ from clearance.kernels.features.face_pair import Hit, write_points
 NEVER = -1
 
 
-class Answers(NamedTuple):
+class AnswerCache(NamedTuple):
     """The last answers.
 
     Attributes:
         asked: (p,) how often both bodies had moved when the pair was measured, or `NEVER` if nothing was found.
-        gaps_sq, floors: (p,) [m^2] the squared distance, [m] the proven bound.
+        gaps_sq, lower_bounds: (p,) [m^2] the squared distance, [m] the proven bound.
         faces: (p, 2). points: (p, 2, 3) in the world [m].
     """
 
     asked: np.ndarray
     gaps_sq: np.ndarray
-    floors: np.ndarray
+    lower_bounds: np.ndarray
     faces: np.ndarray
     points: np.ndarray
 
@@ -34,7 +34,7 @@ class Answers(NamedTuple):
 @shared
 def no_answers(n_pairs):
     """Nothing is known yet."""
-    return Answers(
+    return AnswerCache(
         np.full(n_pairs, NEVER), np.empty(n_pairs), np.empty(n_pairs),
         np.empty((n_pairs, 2), dtype=np.int64), np.empty((n_pairs, 2, 3)),
     )  # fmt: skip
@@ -65,16 +65,16 @@ def answer_of(answers, pair):
     """(the hit, the proven bound [m]) of a pair."""
     face_a, face_b = answers.faces[pair]
     p, q = row(answers.points[pair], 0), row(answers.points[pair], 1)
-    return Hit(answers.gaps_sq[pair], face_a, face_b, p, q), answers.floors[pair]
+    return Hit(answers.gaps_sq[pair], face_a, face_b, p, q), answers.lower_bounds[pair]
 
 
 @inline
-def note_answer(answers, pair, moves, hit, floor):
+def note_answer(answers, pair, moves, hit, lower_bound):
     """Keeps what a pair was found to be; `hit.face_a` is 2**62 if nothing was found. `moves` as above."""
     answers.asked[pair] = NEVER
     if hit.face_a == 2**62:
         return
     answers.asked[pair] = moves
-    answers.gaps_sq[pair], answers.floors[pair] = hit.gap_sq, floor
+    answers.gaps_sq[pair], answers.lower_bounds[pair] = hit.gap_sq, lower_bound
     answers.faces[pair, 0], answers.faces[pair, 1] = hit.face_a, hit.face_b
     write_points(hit, answers.points[pair])

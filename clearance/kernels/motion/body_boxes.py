@@ -38,7 +38,7 @@ class BodyBoxes(NamedTuple):
 
 
 @shared
-def room_for_boxes(n_bodies):
+def new_body_boxes(n_bodies):
     """Boxes of which none is placed yet."""
     return BodyBoxes(
         np.empty((n_bodies, 3, 3)), np.empty((n_bodies, 3)), np.empty((n_bodies, 3)), np.empty(n_bodies),

@@ -19,7 +19,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import (
     CERTIFY,
-    Lent,
+    LentArgument,
     apart,
     at_address,
     borrow,
@@ -30,7 +30,12 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.mesh.surface import box_of, surface_like
 from clearance.kernels.motion.certify_pair import allowed_gap, hold
-from clearance.kernels.motion.joint_motion_bound import Chain, Drift, drift_of, drift_of_box
+from clearance.kernels.motion.joint_motion_bound import (
+    KinematicTree,
+    MotionBound,
+    motion_bound_of,
+    motion_bound_of_box,
+)
 from clearance.kernels.motion.joint_path import JointPath, part_of
 from clearance.kernels.motion.kinematics import forward
 from clearance.kernels.motion.placed import GROWTH
@@ -47,7 +52,7 @@ ROUNDED_DOWN = 1.0 - 2.0**-50
 """Covers the rounding of the steps' clearances, which are right to the last place."""
 
 
-class Asked(NamedTuple):
+class CertifiedPairs(NamedTuple):
     """Which pairs are certified: their bodies in the surface, the links of the first, poses of the second.
 
     Attributes:
@@ -61,7 +66,7 @@ class Asked(NamedTuple):
     standing: np.ndarray
 
 
-class Aim(NamedTuple):
+class CertificateGoal(NamedTuple):
     """What is to be proven.
 
     Attributes:
@@ -75,7 +80,7 @@ class Aim(NamedTuple):
     most_parts: int
 
 
-class Bounds(NamedTuple):
+class IntervalBounds(NamedTuple):
     """What is found of each interval.
 
     Attributes:
@@ -90,15 +95,15 @@ class Bounds(NamedTuple):
     pair: np.ndarray
 
 
-class Over(NamedTuple):
+class PairInterval(NamedTuple):
     """What is known of a pair over an interval: bound and least distance [m], and where that was seen, or -1."""
 
-    floor: float
+    lower_bound: float
     least: float
     share: float
 
 
-class Middle(NamedTuple):
+class IntervalMiddle(NamedTuple):
     """The state in the middle of an interval or of a part of it."""
 
     positions: np.ndarray  # (1, n_links)
@@ -107,32 +112,32 @@ class Middle(NamedTuple):
     poses: np.ndarray  # (1, n_links, 4, 4)
 
 
-class Known(NamedTuple):
+class CertifyState(NamedTuple):
     """What is carried from interval to interval, and room.
 
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
         links: (bodies,) the link of each body that moves, else -1.
-        drifts: (bodies, 8) numbers of the `Drift` of each in the interval.
-        travel: (bodies,) [m] how far each can have moved in all.
-        floors: (p,) [m] a bound on each pair's distance over an interval, plus the travel at its end.
-        seeds: (p, 2) the faces that were nearest, or -1.
+        motion_bounds: (bodies, 8) numbers of the `MotionBound` of each in the interval.
+        displacements: (bodies,) [m] how far each can have moved in all.
+        lower_bounds: (p,) [m] a bound on each pair's distance over an interval, plus the displacement at its end.
+        witness_faces: (p, 2) the faces that were nearest, or -1.
         waiting: (DEPTH, 2) parts of an interval.
     """
 
-    whole: Middle
-    part: Middle
+    whole: IntervalMiddle
+    part: IntervalMiddle
     links: np.ndarray
-    drifts: np.ndarray
-    travel: np.ndarray
-    floors: np.ndarray
-    seeds: np.ndarray
+    motion_bounds: np.ndarray
+    displacements: np.ndarray
+    lower_bounds: np.ndarray
+    witness_faces: np.ndarray
     waiting: np.ndarray
     scratch: Scratch
 
 
 @inline
-def _go_to(chain, path, step, low, high, middle):
+def _go_to(tree, path, step, low, high, middle):
     """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
     for link in range(path.positions.shape[1]):
         part = part_of(path, step, link, low, high)
@@ -140,67 +145,77 @@ def _go_to(chain, path, step, low, high, middle):
         middle.swing[link] = part.swing
         middle.bend[link] = part.bend
     forward(
-        chain.world_from_base, chain.parents, chain.kinds, chain.parent_from_joint, chain.axes,
+        tree.world_from_base, tree.parents, tree.kinds, tree.parent_from_joint, tree.axes,
         middle.positions, middle.poses,
     )  # fmt: skip
 
 
 @inline
 def _new_middle(n_links):
-    return Middle(
+    return IntervalMiddle(
         np.empty((1, n_links)), np.empty(n_links), np.empty(n_links), np.empty((1, n_links, 4, 4))
     )
 
 
 @inline
-def _drift_in(surface, chain, body, link, middle):
+def _motion_bound_in(surface, tree, body, link, middle):
     """The drift of a body about `middle`."""
     pose = rigid(middle.poses[0, link])
     root = surface.roots[body]
-    return drift_of(surface, root, chain, link, middle.poses[0], middle.swing, middle.bend, pose)
+    return motion_bound_of(
+        surface, root, tree, link, middle.poses[0], middle.swing, middle.bend, pose
+    )
 
 
 @inline
-def _drift_at(drifts, body):
-    d = drifts[body]
-    return Drift(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
+def _motion_bound_at(motion_bounds, body):
+    d = motion_bounds[body]
+    return MotionBound(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
 
 
 @inline
-def _go_on(surface, chain, path, step, known):
-    """Goes to the interval after `step`: its middle, how each body drifts about it, and the travel at its end."""
-    _go_to(chain, path, step, 0.0, 1.0, known.whole)
-    for body in range(len(known.links)):
-        link = known.links[body]
+def _go_on(surface, tree, path, step, state):
+    """Goes to the interval after `step`: its middle, how each body drifts about it, and the displacement at its end."""
+    _go_to(tree, path, step, 0.0, 1.0, state.whole)
+    for body in range(len(state.links)):
+        link = state.links[body]
         if link < 0:
             continue
-        drift = _drift_in(surface, chain, body, link, known.whole)
-        numbers = known.drifts[body]
-        numbers[0], numbers[1], numbers[2] = drift.velocity.x, drift.velocity.y, drift.velocity.z
-        numbers[3], numbers[4], numbers[5] = drift.spin.x, drift.spin.y, drift.spin.z
-        numbers[6], numbers[7] = drift.rest, drift.turn
-        known.travel[body] += (
-            2.0 * GROWTH * drift_of_box(box_of(surface, surface.roots[body]), drift)
+        motion_bound = _motion_bound_in(surface, tree, body, link, state.whole)
+        numbers = state.motion_bounds[body]
+        numbers[0], numbers[1], numbers[2] = (
+            motion_bound.velocity.x,
+            motion_bound.velocity.y,
+            motion_bound.velocity.z,
+        )
+        numbers[3], numbers[4], numbers[5] = (
+            motion_bound.spin.x,
+            motion_bound.spin.y,
+            motion_bound.spin.z,
+        )
+        numbers[6], numbers[7] = motion_bound.rest, motion_bound.turn
+        state.displacements[body] += (
+            2.0 * GROWTH * motion_bound_of_box(box_of(surface, surface.roots[body]), motion_bound)
         )
 
 
 @inline
-def _hold_pair(surface, asked, pair, middle, drift, least, gap, aim, known, tally, table):
+def _hold_pair(surface, asked, pair, middle, motion_bound, least, gap, aim, state, tally, table):
     """`hold` of a pair at the state in `middle`."""
     body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
     frames = frames_of(rigid(middle.poses[0, asked.links[pair]]), rigid(asked.standing[body_b]))
     tally[1] += 1
-    seeds = known.seeds
+    witness_faces = state.witness_faces
     held = hold(
-        surface, body_a, surface, body_b, frames, drift, least, gap, aim.fail,
-        seeds[pair, 0], seeds[pair, 1], known.scratch, tally, table,
+        surface, body_a, surface, body_b, frames, motion_bound, least, gap, aim.fail,
+        witness_faces[pair, 0], witness_faces[pair, 1], state.scratch, tally, table,
     )  # fmt: skip
-    seeds[pair, 0], seeds[pair, 1] = held.face_a, held.face_b
+    witness_faces[pair, 0], witness_faces[pair, 1] = held.face_a, held.face_b
     return held
 
 
 @kernel
-def certify(surface, chain, asked, path, order, first, last, clearance, aim, bounds, tally, table):
+def certify(surface, tree, asked, path, order, first, last, clearance, aim, bounds, tally, table):
     """Fills `bounds` for the motion between the steps `first` to `last`.
 
     Args:
@@ -211,20 +226,20 @@ def certify(surface, chain, asked, path, order, first, last, clearance, aim, bou
             enough to know whether the motion stays that far, less the gap.
     """
     n_links, n_pairs, n_bodies = path.positions.shape[1], len(asked.bodies), len(surface.roots)
-    known = Known(
+    state = CertifyState(
         _new_middle(n_links), _new_middle(n_links), np.full(n_bodies, -1), np.empty((n_bodies, 8)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
     for pair in range(n_pairs):
-        known.links[asked.bodies[pair, 0]] = asked.links[pair]
+        state.links[asked.bodies[pair, 0]] = asked.links[pair]
     at_address(
         table,
         CERTIFY,
         0,
         (
             lend(surface),
-            chain,
+            tree,
             asked,
             path,
             order,
@@ -234,7 +249,7 @@ def certify(surface, chain, asked, path, order, first, last, clearance, aim, bou
             aim,
             bounds,
             tally,
-            known,
+            state,
             table,
         ),
     )
@@ -243,49 +258,49 @@ def certify(surface, chain, asked, path, order, first, last, clearance, aim, bou
 def _like():
     numbers, places, rows = np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 0))
     pairs, poses = np.empty((0, 2), dtype=np.int64), np.empty((0, 0, 0))
-    chain = Chain(rows, places, places, poses, rows)
-    middle = Middle(rows, numbers, numbers, np.empty((0, 0, 0, 0)))
-    known = Known(middle, middle, places, rows, numbers, numbers, pairs, rows, new_scratch())
-    asked, path = Asked(pairs, places, poses), JointPath(numbers, rows, rows)
-    aim, bounds = Aim(0.0, 0.0, 0), Bounds(numbers, numbers, numbers, places)
+    tree = KinematicTree(rows, places, places, poses, rows)
+    middle = IntervalMiddle(rows, numbers, numbers, np.empty((0, 0, 0, 0)))
+    state = CertifyState(middle, middle, places, rows, numbers, numbers, pairs, rows, new_scratch())
+    asked, path = CertifiedPairs(pairs, places, poses), JointPath(numbers, rows, rows)
+    aim, bounds = CertificateGoal(0.0, 0.0, 0), IntervalBounds(numbers, numbers, numbers, places)
     return (
-        Lent(surface_like()), chain, asked, path, places, 0, 0, numbers, aim, bounds, places, known, table_like()
+        LentArgument(surface_like()), tree, asked, path, places, 0, 0, numbers, aim, bounds, places, state, table_like()
     )  # fmt: skip
 
 
 @apart(CERTIFY, _like)
 def _certify(
-    lent, chain, asked, path, order, first, last, clearance, aim, bounds, tally, known, table
+    lent, tree, asked, path, order, first, last, clearance, aim, bounds, tally, state, table
 ):
     """`certify`, with room for what is known."""
     surface = borrow(lent)
     n_pairs = len(asked.bodies)
-    travel, floors = known.travel, known.floors
+    displacements, lower_bounds = state.displacements, state.lower_bounds
     for i in range(len(tally)):
         tally[i] = 0
     for step in range(first, last):
         least = min(clearance[step], clearance[step + 1])
-        floor = least  # 0 for a contact: then nothing is left to prove
+        lower_bound = least  # 0 for a contact: then nothing is left to prove
         share, seen = -1.0, np.int64(-1)
-        _go_on(surface, chain, path, step, known)
+        _go_on(surface, tree, path, step, state)
         for turn in range(-1, n_pairs):
             pair = order[step] if turn < 0 else turn
             if turn == order[step] or least <= 0.0:
                 continue
-            moved = travel[asked.bodies[pair, 0]]
-            carried = floors[pair] - moved
+            moved = displacements[asked.bodies[pair, 0]]
+            carried = lower_bounds[pair] - moved
             if carried >= least - allowed_gap(least, aim.gap, aim.fail):
-                floor = min(floor, carried)
+                lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
             over = _hold_interval(
-                surface, chain, asked, path, step, pair, least, aim, known, tally, table
+                surface, tree, asked, path, step, pair, least, aim, state, tally, table
             )
-            floors[pair] = (over.floor + moved) * KEPT_DOWN
+            lower_bounds[pair] = (over.lower_bound + moved) * KEPT_DOWN
             if over.share >= 0.0:
                 least, share, seen = over.least, over.share, pair
-            floor = min(floor, over.floor)
-        bounds.lower[step] = max(0.0, min(floor, least) * ROUNDED_DOWN)
+            lower_bound = min(lower_bound, over.lower_bound)
+        bounds.lower[step] = max(0.0, min(lower_bound, least) * ROUNDED_DOWN)
         bounds.upper[step] = least
         bounds.share[step] = share
         bounds.pair[step] = seen
@@ -293,20 +308,20 @@ def _certify(
 
 
 @inline
-def _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, tally, table):
+def _hold_interval(surface, tree, asked, path, step, pair, least, aim, state, tally, table):
     """`hold` of a pair over the whole interval after `step`, halved until that is done."""
     body = asked.bodies[pair, 0]
-    drift = _drift_at(known.drifts, body)
+    motion_bound = _motion_bound_at(state.motion_bounds, body)
     gap = aim.gap
     held = _hold_pair(
-        surface, asked, pair, known.whole, drift, least, gap, aim, known, tally, table
+        surface, asked, pair, state.whole, motion_bound, least, gap, aim, state, tally, table
     )
     share = 0.5 if held.least < least else -1.0
     if held.completed or held.least <= 0.0:
-        return Over(held.floor, held.least, share)
+        return PairInterval(held.lower_bound, held.least, share)
     least = held.least
-    floor = math.inf
-    waiting = known.waiting
+    lower_bound = math.inf
+    waiting = state.waiting
     waiting[0, 0], waiting[0, 1] = 0.5, 1.0
     waiting[1, 0], waiting[1, 1] = 0.0, 0.5
     n_waiting = 2
@@ -317,22 +332,22 @@ def _hold_interval(surface, chain, asked, path, step, pair, least, aim, known, t
         low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
         if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
             gap *= WIDER
-        _go_to(chain, path, step, low, high, known.part)
-        drift = _drift_in(surface, chain, body, asked.links[pair], known.part)
+        _go_to(tree, path, step, low, high, state.part)
+        motion_bound = _motion_bound_in(surface, tree, body, asked.links[pair], state.part)
         held = _hold_pair(
-            surface, asked, pair, known.part, drift, least, gap, aim, known, tally, table
+            surface, asked, pair, state.part, motion_bound, least, gap, aim, state, tally, table
         )
         if held.least < least:
             least, share = held.least, 0.5 * (low + high)
         if least <= 0.0:
-            return Over(0.0, least, share)
+            return PairInterval(0.0, least, share)
         if held.completed:
-            floor = min(floor, held.floor)
+            lower_bound = min(lower_bound, held.lower_bound)
         elif n_waiting + 2 > DEPTH:
-            floor = 0.0
+            lower_bound = 0.0
         else:
             at = 0.5 * (low + high)
             waiting[n_waiting, 0], waiting[n_waiting, 1] = at, high
             waiting[n_waiting + 1, 0], waiting[n_waiting + 1, 1] = low, at
             n_waiting += 2
-    return Over(floor, least, share)
+    return PairInterval(lower_bound, least, share)

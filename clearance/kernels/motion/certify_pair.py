@@ -13,20 +13,20 @@ from clearance.compile.kernel_table import lend
 from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
 from clearance.kernels.arithmetic.vec3 import inverse
 from clearance.kernels.features.bounds import (
+    direction_beside,
+    direction_between,
     lower_bound_boxes,
-    lower_bound_boxes_in_sight,
-    lower_bound_faces_in_sight,
+    lower_bound_boxes_along_direction,
+    lower_bound_faces_along_direction,
     rounding_slack,
-    sight_along,
-    sight_beside,
 )
 from clearance.kernels.features.face_pair import may_meet, nearest_of_faces
 from clearance.kernels.features.meeting import meeting_of
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.joint_motion_bound import (
-    drift_of_box,
-    drift_of_box_along,
-    drift_of_face_along,
+    motion_bound_of_box,
+    motion_bound_of_box_along,
+    motion_bound_of_face_along,
 )
 from clearance.kernels.search.descent import margin_of, nothing_yet
 from clearance.kernels.search.node_pairs import (
@@ -51,17 +51,17 @@ MOST_TURNED = 0.25
 """[rad] Where a body turns farther in half an interval, its normals say little: cones stay below a right angle."""
 
 
-class Held(NamedTuple):
+class PairProof(NamedTuple):
     """What is known of a pair over an interval.
 
     Attributes:
-        floor: [m] proven lower bound over the interval, if the search was completed.
+        lower_bound: [m] proven lower bound over the interval, if the search was completed.
         least: [m] the least distance that was asked about, or one that was found in the middle.
         completed: False if the search was given up, because the target cannot be proven.
         face_a, face_b: the faces of those points, or -1.
     """
 
-    floor: float
+    lower_bound: float
     least: float
     completed: bool
     face_a: int
@@ -69,23 +69,29 @@ class Held(NamedTuple):
 
 
 @inline
-def _node_floors(p, q, m, sight, slack, drift, target):
+def _node_lower_bounds(p, q, m, direction, slack, motion_bound, target):
     """[m] lower bounds on the distances of boxes in lanes over the interval."""
-    in_sight = (
-        lower_bound_boxes_in_sight(p, q, sight) - slack - drift_of_box_along(p, sight.u, drift)
+    along_direction = (
+        lower_bound_boxes_along_direction(p, q, direction)
+        - slack
+        - motion_bound_of_box_along(p, direction.u, motion_bound)
     )
-    if marks_within(in_sight, target) == 0:
-        return in_sight
+    if marks_within(along_direction, target) == 0:
+        return along_direction
     apart = lower_bound_boxes(p, q, m, slack) - slack
-    return larger(in_sight, apart - drift_of_box(p, drift))
+    return larger(along_direction, apart - motion_bound_of_box(p, motion_bound))
 
 
 @inline
-def _floors_of_group(a, b, group, other, is_b, m, sight, slack, drift, target):
+def _lower_bounds_of_group(a, b, group, other, is_b, m, direction, slack, motion_bound, target):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body over the interval."""
     if is_b:
-        return _node_floors(box_of(a, other), group_of(b, group), m, sight, slack, drift, target)
-    return _node_floors(group_of(a, group), box_of(b, other), m, sight, slack, drift, target)
+        return _node_lower_bounds(
+            box_of(a, other), group_of(b, group), m, direction, slack, motion_bound, target
+        )
+    return _node_lower_bounds(
+        group_of(a, group), box_of(b, other), m, direction, slack, motion_bound, target
+    )
 
 
 @inline
@@ -98,7 +104,20 @@ def allowed_gap(least, gap, fail):
 
 @inline
 def hold(
-    a, body_a, b, body_b, frames, drift, least, gap, fail, seed_a, seed_b, scratch, tally, table
+    a,
+    body_a,
+    b,
+    body_b,
+    frames,
+    motion_bound,
+    least,
+    gap,
+    fail,
+    witness_face_a,
+    witness_face_b,
+    scratch,
+    tally,
+    table,
 ):
     """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
 
@@ -111,19 +130,19 @@ def hold(
     root_a, root_b = a.roots[body_a], b.roots[body_b]
     slack = CHAIN_SLACK * rounding_slack(a, root_a, b, root_b, frames)
     margin = margin_of(slack)
-    moved = drift_of_box(box_of(a, root_a), drift)
-    cos_turn, sin_turn = math.cos(drift.turn), math.sin(drift.turn)
-    near_a, near_b = seed_a, seed_b
+    moved = motion_bound_of_box(box_of(a, root_a), motion_bound)
+    cos_turn, sin_turn = math.cos(motion_bound.turn), math.sin(motion_bound.turn)
+    near_a, near_b = witness_face_a, witness_face_b
     best = nothing_yet(math.inf)
-    if seed_a >= 0:
-        best = nearest_of_faces(a, seed_a, b, seed_b, m, margin, best).best
+    if witness_face_a >= 0:
+        best = nearest_of_faces(a, witness_face_a, b, witness_face_b, m, margin, best).best
         least = min(least, math.sqrt(best.gap_sq) + margin)
     nearest = math.sqrt(best.gap_sq)
     allowed = allowed_gap(least, gap, fail)
     target = least - allowed
-    sight = sight_along(best.p, best.q, m)
-    from_a, from_b = views_along(sight, m)
-    floor = math.inf
+    direction = direction_between(best.p, best.q, m)
+    from_a, from_b = views_along(direction, m)
+    lower_bound = math.inf
     scratch.nodes[0, 0], scratch.nodes[0, 1] = root_a, root_b
     scratch.bounds[0] = -math.inf
     n_waiting = 1
@@ -132,42 +151,48 @@ def hold(
         node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
         bound = scratch.bounds[n_waiting]
         if bound >= target:
-            floor = min(floor, bound)
+            lower_bound = min(lower_bound, bound)
             continue
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-            bound = max(bound, _face_floor(a, face_a, b, face_b, sight, slack, drift))
+            bound = max(
+                bound, _face_lower_bound(a, face_a, b, face_b, direction, slack, motion_bound)
+            )
             if bound < target:
-                beside = sight_beside(a, face_a, b, face_b, m, m_back)
-                apart = _face_floor(a, face_a, b, face_b, beside, slack, drift)
+                beside = direction_beside(a, face_a, b, face_b, m, m_back)
+                apart = _face_lower_bound(a, face_a, b, face_b, beside, slack, motion_bound)
                 bound = (
                     max(bound, apart) if apart > 0.0 else bound
                 )  # what may touch is told by exact signs below
             if bound < target:
                 tally[3] += 1
                 near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
-                own = sight_along(near.p, near.q, m)
-                apart = lower_bound_faces_in_sight(a, face_a, b, face_b, own) - slack
+                own = direction_between(near.p, near.q, m)
+                apart = lower_bound_faces_along_direction(a, face_a, b, face_b, own) - slack
                 if apart <= 0.0 and _meet(a, face_a, b, face_b, frames, margin, scratch, table):
-                    return Held(0.0, 0.0, True, face_a, face_b)
-                bound = max(bound, apart - drift_of_face_along(a, face_a, own.u, drift))
+                    return PairProof(0.0, 0.0, True, face_a, face_b)
+                bound = max(
+                    bound, apart - motion_bound_of_face_along(a, face_a, own.u, motion_bound)
+                )
                 seen = math.sqrt(near.gap_sq)
                 if seen < nearest:
-                    nearest, near_a, near_b, sight = seen, face_a, face_b, own
-                    from_a, from_b = views_along(sight, m)
+                    nearest, near_a, near_b, direction = seen, face_a, face_b, own
+                    from_a, from_b = views_along(direction, m)
                 if seen + margin < least:
                     least = seen + margin
                     allowed = allowed_gap(least, gap, fail)
                     target = least - allowed
-            floor = min(floor, bound)
+            lower_bound = min(lower_bound, bound)
             if bound < target and moved >= STILL * allowed:
-                return Held(0.0, least, False, near_a, near_b)
+                return PairProof(0.0, least, False, near_a, near_b)
             continue
         is_b, group, count, other = opened(a, node_a, b, node_b)
-        floors = _floors_of_group(a, b, group, other, is_b, m, sight, slack, drift, target)
+        lower_bounds = _lower_bounds_of_group(
+            a, b, group, other, is_b, m, direction, slack, motion_bound, target
+        )
         tally[2] += count
         away = 0
-        if drift.turn < MOST_TURNED and marks_within(floors, target):
+        if motion_bound.turn < MOST_TURNED and marks_within(lower_bounds, target):
             away = turned_away_while(
                 a, b, from_a, from_b, group, other, is_b, slack, cos_turn, sin_turn, moved
             )
@@ -176,13 +201,13 @@ def hold(
         for k in range(count):
             if away >> k & 1:
                 continue
-            bound = lane(floors, k)
+            bound = lane(lower_bounds, k)
             if bound >= target:
-                floor = min(floor, bound)
+                lower_bound = min(lower_bound, bound)
                 continue
             node_a, node_b = pair_in_group(is_b, group, k, other)
             n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
-    return Held(floor, least, True, near_a, near_b)
+    return PairProof(lower_bound, least, True, near_a, near_b)
 
 
 @inline
@@ -194,7 +219,7 @@ def _meet(a, face_a, b, face_b, frames, margin, scratch, table):
 
 
 @inline
-def _face_floor(a, face_a, b, face_b, sight, slack, drift):
+def _face_lower_bound(a, face_a, b, face_b, direction, slack, motion_bound):
     """[m] a lower bound on the distance of two faces over the interval, seen along one direction."""
-    apart = lower_bound_faces_in_sight(a, face_a, b, face_b, sight) - slack
-    return apart - drift_of_face_along(a, face_a, sight.u, drift)
+    apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
+    return apart - motion_bound_of_face_along(a, face_a, direction.u, motion_bound)

@@ -29,9 +29,9 @@ from clearance.kernels.search.body_pair import TO_THE_END
 LOOK, WINNER = 0, 1
 
 AFRESH = 2**21
-"""Looks after which nothing is carried on: sums of travel are bounded for twice as many (`placed.GROWTH`)."""
+"""Looks after which nothing is carried on: sums of displacement are bounded for twice as many (`placed.GROWTH`)."""
 
-_FIELDS = ("surface", "world", "goal", "pair_rows", "known", "at")
+_FIELDS = ("surface", "world", "goal", "pair_rows", "state", "at")
 
 
 class HeldScene(NamedTuple):
@@ -40,7 +40,7 @@ class HeldScene(NamedTuple):
     Attributes:
         surface, world: all bodies, and what moves them.
         goal, pair_rows: of `sweep`: the nearest pair of all, at any distance; no rows for pairs.
-        known: what is carried from look to look.
+        state: what is carried from look to look.
         at: (2,) looks that came to their end since all was begun afresh, and the pair that was nearest.
     """
 
@@ -48,7 +48,7 @@ class HeldScene(NamedTuple):
     world: object
     goal: object
     pair_rows: object
-    known: object
+    state: object
     at: np.ndarray
 
 
@@ -67,8 +67,8 @@ if not numba.config.DISABLE_JIT:
 def hold_scene(surface, world, pair_rows, n_columns):
     """A scene of which nothing is known yet; `n_columns` of joint positions."""
     goal = Goal(np.full(len(world.pairs), np.inf), False, False)
-    known = nothing_known(world, n_columns, goal.within.copy())
-    return HeldScene(surface, world, goal, pair_rows, known, np.zeros(2, dtype=np.int64))
+    state = nothing_known(world, n_columns, goal.within.copy())
+    return HeldScene(surface, world, goal, pair_rows, state, np.zeros(2, dtype=np.int64))
 
 
 @kernel
@@ -82,34 +82,36 @@ def nearest_at_positions(held, positions, rows, tally, table):
         tally[i] = 0
     for row in range(len(positions)):
         if held.at[LOOK] == 0 or held.at[LOOK] >= AFRESH:
-            held.known = nothing_known(held.world, n_columns, held.goal.within.copy())
+            held.state = nothing_known(held.world, n_columns, held.goal.within.copy())
             held.at[LOOK] = 0
         _look(
-            held.surface, held.world, held.goal, held.pair_rows, held.known, held.at, positions[row], row, rows,
+            held.surface, held.world, held.goal, held.pair_rows, held.state, held.at, positions[row], row, rows,
             tally, table,
         )  # fmt: skip
 
 
 @kernel(reference_counts=False)
-def _look(surface, world, goal, pair_rows, known, at, positions, row, rows, tally, table):
+def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tally, table):
     """Writes the nearest pair with the joints at `positions` (columns,), as `sweep` does for a step."""
     look = at[LOOK]
     at[LOOK] = 0
-    bodies = known.due.bodies[: all_due(world.frames, known.due)]
+    bodies = state.due.bodies[: all_due(world.frames, state.due)]
     if look == 0:
-        put_all(world, positions, known.placed)
+        put_all(world, positions, state.placed)
         for pair in range(len(world.pairs)):
-            known.floors[pair] = box_bound(surface, world, pair, known.placed, known.boxes, np.inf)
-        at[WINNER] = np.argmin(known.floors)
-        fill_order(world.pairs, known.order)
-        sort_all(known.floors, known.order)
+            state.lower_bounds[pair] = box_bound(
+                surface, world, pair, state.placed, state.boxes, np.inf
+            )
+        at[WINNER] = np.argmin(state.lower_bounds)
+        fill_order(world.pairs, state.order)
+        sort_all(state.lower_bounds, state.order)
     else:
-        bring(surface, world, bodies, positions, look, known.placed)
+        bring(surface, world, bodies, positions, look, state.placed)
     first = at[WINNER]
-    if carried(world, first, known) <= 0.0:
-        first = nearest_by_boxes(surface, world, bodies, known, first)
+    if carried(world, first, state) <= 0.0:
+        first = nearest_by_boxes(surface, world, bodies, state, first)
     best, best_pair, lowest = nearest_of(
-        surface, world, bodies, first, row, row, np.inf, goal, TO_THE_END, lend(surface), known, pair_rows, tally,
+        surface, world, bodies, first, row, row, np.inf, goal, TO_THE_END, lend(surface), state, pair_rows, tally,
         table,
     )  # fmt: skip
     at[WINNER] = best_pair

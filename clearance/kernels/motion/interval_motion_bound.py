@@ -6,7 +6,7 @@ w no farther than w; a change of several joints is made one after another. So be
     |x' - x| <= sum over the joints k above the link of |q_k' - q_k| reach_k,
 
 with reach_k the farthest that a point of the body gets from joint k in any pose. No pose needs to be made for it.
-Not for: the motion between the steps (`drift`).
+Not for: the motion between the steps (`motion_bound`).
 """
 
 import math
@@ -64,8 +64,8 @@ def _farthest_slide(links, link, positions):
 
 
 @inline
-def _reach_of_body(box, links, link, positions, reach):
-    """Fills `reach` (columns,) of one body, and returns what rounding can move it [m]."""
+def _motion_radii_of_body(box, links, link, positions, motion_radii):
+    """Fills `motion_radii` (columns,) of one body, and returns what rounding can move it [m]."""
     radius = _radius(box)
     beyond = 0.0  # [m] from the origin of the link that is looked at to the body's own
     own = True  # nothing moves between that link and the body
@@ -79,47 +79,51 @@ def _reach_of_body(box, links, link, positions, reach):
             arm = 1.0
             if links.kinds[link] == TURNING:
                 arm = _radius_about(box, row(links.axes, link)) if own else radius + beyond
-            reach[column] += abs(links.factors[link]) * arm
+            motion_radii[column] += abs(links.factors[link]) * arm
             noise += abs(links.offsets[link]) * arm * ANGLE_ROUNDING
         beyond += _length(links.parent_from_joint[link])
         stretch *= 1.0 + defect_of(rigid(links.parent_from_joint[link]))
         own = False
         link = links.parents[link]
     stretch *= 1.0 + defect_of(rigid(links.parent_from_joint[link]))
-    for column in range(len(reach)):
-        reach[column] *= stretch
+    for column in range(len(motion_radii)):
+        motion_radii[column] *= stretch
     return stretch * (
         noise + POSE_ROUNDING * (radius + beyond + _length(links.parent_from_joint[link]))
     )
 
 
 @inline
-def fill_reach(surface, frames, links, positions, reach, noise):
+def fill_motion_radii(surface, frames, links, positions, motion_radii, noise):
     """Fills, for each body, how far the unit of each column of `positions` can move it, and what rounding can.
 
     Args:
         frames: (bodies,) the link that carries each, or -1.
         positions: (k, columns) of all steps that are spoken of [rad or m].
-        reach: (bodies, columns) [m per rad or m]. noise: (bodies,) [m].
+        motion_radii: (bodies, columns) [m per rad or m]. noise: (bodies,) [m].
     """
     for body in range(len(frames)):
         noise[body] = 0.0
-        for column in range(reach.shape[1]):
-            reach[body, column] = 0.0
+        for column in range(motion_radii.shape[1]):
+            motion_radii[body, column] = 0.0
         if frames[body] >= 0:
             box = box_of(surface, surface.roots[body])
-            noise[body] = _reach_of_body(box, links, frames[body], positions, reach[body])
+            noise[body] = _motion_radii_of_body(
+                box, links, frames[body], positions, motion_radii[body]
+            )
 
 
 @inline(force=True)
-def stride_of(positions, last, step, reach, noise):
+def interval_motion_bound_of(positions, last, step, motion_radii, noise):
     """[m] no less than what a body moves from one step to another.
 
     Args:
-        positions: as in `fill_reach`; last, step: rows of it. reach: (columns,), noise: of the body.
+        positions: as in `fill_motion_radii`; last, step: rows of it. reach: (columns,), noise: of the body.
     """
     way = noise
-    for column in range(len(reach)):
+    for column in range(len(motion_radii)):
         before, after = positions[last, column], positions[step, column]
-        way += reach[column] * (abs(after - before) + ANGLE_ROUNDING * (abs(after) + abs(before)))
+        way += motion_radii[column] * (
+            abs(after - before) + ANGLE_ROUNDING * (abs(after) + abs(before))
+        )
     return way

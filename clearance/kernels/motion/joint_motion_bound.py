@@ -20,7 +20,7 @@ from clearance.kernels.mesh.surface import box_of, corner_of
 from clearance.kernels.motion.kinematics import SLIDING, TURNING
 
 
-class Chain(NamedTuple):
+class KinematicTree(NamedTuple):
     """A robot's tree of links as `kinematics.forward` takes it."""
 
     world_from_base: np.ndarray
@@ -30,7 +30,7 @@ class Chain(NamedTuple):
     axes: np.ndarray
 
 
-class Drift(NamedTuple):
+class MotionBound(NamedTuple):
     """The motion of a body over half an interval, to either side, in the body's frame in the middle.
 
     Attributes:
@@ -63,9 +63,9 @@ def _farthest_from_axis(surface, root, pose, origin, axis):
 
 
 @inline
-def _world_axis(chain, poses, link):
+def _world_axis(tree, poses, link):
     pose = poses[link]
-    x, y, z = chain.axes[link, 0], chain.axes[link, 1], chain.axes[link, 2]
+    x, y, z = tree.axes[link, 0], tree.axes[link, 1], tree.axes[link, 2]
     return Vec3(
         pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z,
         pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z,
@@ -74,7 +74,7 @@ def _world_axis(chain, poses, link):
 
 
 @inline
-def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
+def motion_bound_of(surface, root, tree, link, poses, swing, bend, world_from_body):
     """The drift of a body that is fixed to `link`.
 
     Args:
@@ -86,9 +86,9 @@ def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
     shallower = 0.0  # sum of the motions of the turning joints between here and the base
     i = link
     while i != 0:
-        if chain.kinds[i] == TURNING:
+        if tree.kinds[i] == TURNING:
             shallower += abs(swing[i]) + bend[i]
-        i = chain.parents[i]
+        i = tree.parents[i]
     turn = shallower
     spin, velocity = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
     rest = 0.0
@@ -96,22 +96,22 @@ def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
     i = link
     while i != 0:
         size = abs(swing[i]) + bend[i]
-        if size > 0.0 and chain.kinds[i] == TURNING:
+        if size > 0.0 and tree.kinds[i] == TURNING:
             shallower = max(0.0, shallower - size)
-            axis = _world_axis(chain, poses, i)
+            axis = _world_axis(tree, poses, i)
             origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
             arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
             rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * arm
             moved += size * arm
             spin = along(spin, swing[i], axis)
             velocity = along(velocity, swing[i], cross(origin, axis))
-        elif size > 0.0 and chain.kinds[i] == SLIDING:
+        elif size > 0.0 and tree.kinds[i] == SLIDING:
             rest += size * shallower + bend[i]
             moved += size
-            velocity = along(velocity, swing[i], _world_axis(chain, poses, i))
-        i = chain.parents[i]
+            velocity = along(velocity, swing[i], _world_axis(tree, poses, i))
+        i = tree.parents[i]
     at_origin = add(velocity, cross(spin, world_from_body.t))
-    return Drift(
+    return MotionBound(
         turn_back(world_from_body, at_origin),
         turn_back(world_from_body, spin),
         rest * (1.0 + 1e-12),
@@ -120,32 +120,32 @@ def drift_of(surface, root, chain, link, poses, swing, bend, world_from_body):
 
 
 @inline
-def velocity_at(drift, x):
+def velocity_at(motion_bound, x):
     """How a point of the body moves in the first order over half the interval [m]."""
-    return add(drift.velocity, cross(drift.spin, x))
+    return add(motion_bound.velocity, cross(motion_bound.spin, x))
 
 
 @inline
-def drift_of_box(box, drift):
+def motion_bound_of_box(box, motion_bound):
     """[m] an upper bound on how far any point of a box moves from the middle."""
-    v = velocity_at(drift, box.centre)
+    v = velocity_at(motion_bound, box.centre)
     radius = square_root(dot(box.half, box.half)) * (1.0 + LEAN)
-    turning = math.sqrt(dot(drift.spin, drift.spin)) * radius
-    return square_root(dot(v, v)) + turning + drift.rest
+    turning = math.sqrt(dot(motion_bound.spin, motion_bound.spin)) * radius
+    return square_root(dot(v, v)) + turning + motion_bound.rest
 
 
 @inline
-def drift_of_box_along(box, direction, drift):
+def motion_bound_of_box_along(box, direction, motion_bound):
     """[m] an upper bound on how far any point of a box moves along a unit direction, either way."""
-    first = abs(dot(direction, velocity_at(drift, box.centre)))
-    return first + box_reach(box, cross(direction, drift.spin)) + drift.rest
+    first = abs(dot(direction, velocity_at(motion_bound, box.centre)))
+    return first + box_reach(box, cross(direction, motion_bound.spin)) + motion_bound.rest
 
 
 @inline
-def drift_of_face_along(surface, face, direction, drift):
+def motion_bound_of_face_along(surface, face, direction, motion_bound):
     """[m] an upper bound on how far any point of a face moves along a unit direction, either way."""
     first = 0.0
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
         x = row(surface.vertices, surface.face_vertices[c])
-        first = max(first, abs(dot(direction, velocity_at(drift, x))))
-    return first + drift.rest
+        first = max(first, abs(dot(direction, velocity_at(motion_bound, x))))
+    return first + motion_bound.rest

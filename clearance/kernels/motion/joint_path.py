@@ -6,7 +6,7 @@ velocities over the mean velocity:
 
     q(s) = q0 + s D + s (1 - s) ((1 - s) e0 - s e1),  D = q1 - q0,  e0 = T v0 - D,  e1 = T v1 - D.
 
-Not for: what that does to the points of a link (`drift`).
+Not for: what that does to the points of a link (`motion_bound`).
 """
 
 from typing import NamedTuple
@@ -36,7 +36,7 @@ class JointPath(NamedTuple):
     velocities: np.ndarray
 
 
-class Part(NamedTuple):
+class JointInterval(NamedTuple):
     """A joint over a part of an interval: from `middle` it moves by t swing + r, |t| <= 1, |r| <= bend."""
 
     middle: float
@@ -49,7 +49,7 @@ def linear_part(before, after, low, high):
     """The part `low` to `high` (0 to 1) of a linear motion; its bend is 0."""
     step = after - before
     swing = 0.5 * (high - low) * step * OUTWARD
-    return Part(before + 0.5 * (low + high) * step, swing, 0.0)
+    return JointInterval(before + 0.5 * (low + high) * step, swing, 0.0)
 
 
 @inline
@@ -69,7 +69,7 @@ def cubic_part(before, after, slope_before, slope_after, low, high):
     curve = abs((3.0 * at - 2.0) * e0 + (3.0 * at - 1.0) * e1)
     bend = half * half * (curve + abs(e0 + e1) * half) * OUTWARD
     bend += PATH_ROUNDING * (abs(slope_before) + abs(slope_after) + abs(step))
-    return Part(middle, half * slope * OUTWARD, bend)
+    return JointInterval(middle, half * slope * OUTWARD, bend)
 
 
 @inline(force=True)

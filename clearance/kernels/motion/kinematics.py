@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.arithmetic.vec3 import Rigid, Vec3, move, rigid
+from clearance.kernels.arithmetic.vec3 import RigidMotion, Vec3, move, rigid
 
 FIXED, TURNING, SLIDING = 0, 1, 2
 
@@ -36,7 +36,7 @@ class Links(NamedTuple):
 @inline(force=True)
 def _then(a, b):
     """The motion `b` and then `a`."""
-    return Rigid(
+    return RigidMotion(
         a.xx * b.xx + a.xy * b.yx + a.xz * b.zx,
         a.xx * b.xy + a.xy * b.yy + a.xz * b.zy,
         a.xx * b.xz + a.xy * b.yz + a.xz * b.zz,
@@ -56,7 +56,7 @@ def _turned(m, axis, position):
     s = math.sin(position)
     v = 2.0 * math.sin(0.5 * position) ** 2  # 1 - cos without cancellation
     x, y, z = axis[0], axis[1], axis[2]
-    turn = Rigid(
+    turn = RigidMotion(
         1.0 - v * (y * y + z * z), v * x * y - s * z, v * x * z + s * y,
         v * x * y + s * z, 1.0 - v * (x * x + z * z), v * y * z - s * x,
         v * x * z - s * y, v * y * z + s * x, 1.0 - v * (x * x + y * y),
@@ -69,7 +69,7 @@ def _turned(m, axis, position):
 def _slid(m, axis, position):
     """The motion `m` after a slide along an axis."""
     way = Vec3(axis[0] * position, axis[1] * position, axis[2] * position)
-    return Rigid(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
+    return RigidMotion(m.xx, m.xy, m.xz, m.yx, m.yy, m.yz, m.zx, m.zy, m.zz, move(m, way))
 
 
 @inline(force=True)

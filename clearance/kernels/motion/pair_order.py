@@ -24,7 +24,7 @@ class PairOrder(NamedTuple):
 
 
 @shared
-def room_for_order(n_bodies, n_pairs):
+def new_pair_order(n_bodies, n_pairs):
     """No pair is in a list yet."""
     return PairOrder(np.zeros(n_bodies + 2, dtype=np.int64), np.empty(n_pairs + 1, dtype=np.int64))
 

@@ -1,6 +1,6 @@
 """Where the bodies are, each at the last step at which it was looked at, and how far it has come by then.
 
-Not for: which of them need a look (`due`), and where bodies are between the steps (`drift`).
+Not for: which of them need a look (`due`), and where bodies are between the steps (`motion_bound`).
 """
 
 from typing import NamedTuple
@@ -15,14 +15,14 @@ GROWTH = 1.0 + 1e-9
 """Covers the rounding of a sum of up to four million displacements."""
 
 
-class Placed(NamedTuple):
+class PlacedBodies(NamedTuple):
     """Where each body was seen last.
 
     Attributes:
         links: (links, 4, 4) `world_from_link` [m] of those that were wanted at the last look.
         wanted: (links,) the last look at which each was wanted, or -1.
         poses: (bodies, 4, 4) `world_from_body` [m].
-        travel: (bodies,) [m] no less than what each has moved in all, from look to look.
+        displacements: (bodies,) [m] no less than what each has moved in all, from look to look.
         moves: (bodies,) how often it was found elsewhere than before.
         looks: (bodies,) how often it was looked at after the first time.
     """
@@ -30,15 +30,15 @@ class Placed(NamedTuple):
     links: np.ndarray
     wanted: np.ndarray
     poses: np.ndarray
-    travel: np.ndarray
+    displacements: np.ndarray
     moves: np.ndarray
     looks: np.ndarray
 
 
 @shared
-def room_for_bodies(n_links, n_bodies):
+def new_placed_bodies(n_links, n_bodies):
     """Bodies that are nowhere yet."""
-    return Placed(
+    return PlacedBodies(
         np.empty((n_links, 4, 4)), np.full(n_links, -1), np.empty((n_bodies, 4, 4)), np.zeros(n_bodies),
         np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
     )  # fmt: skip
@@ -91,7 +91,7 @@ def bring(surface, world, bodies, positions, look, placed):
         placed.looks[body] += 1
         if _has_moved(before, after):
             placed.moves[body] += 1
-            placed.travel[body] += (
+            placed.displacements[body] += (
                 displacement(surface, surface.roots[body], before, after) * GROWTH
             )
             _put(after, placed, body)

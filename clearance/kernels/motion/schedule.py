@@ -10,20 +10,20 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, shared
-from clearance.kernels.motion.interval_motion_bound import stride_of
+from clearance.kernels.motion.interval_motion_bound import interval_motion_bound_of
 
 
-class Due(NamedTuple):
+class Schedule(NamedTuple):
     """When each body was looked at, and how far it may move until it is due.
 
     Attributes:
-        reach, noise: of `fill_reach`.
+        motion_radii, noise: of `fill_motion_radii`.
         nearest: (bodies,) [m] the least bound of the pairs of each at the last look at it.
         rows, looks: (bodies,) the step of that look and its number.
         bodies: (bodies,) in front those that are due.
     """
 
-    reach: np.ndarray
+    motion_radii: np.ndarray
     noise: np.ndarray
     nearest: np.ndarray
     rows: np.ndarray
@@ -32,9 +32,9 @@ class Due(NamedTuple):
 
 
 @shared
-def room_for_due(n_bodies, n_columns):
+def new_schedule(n_bodies, n_columns):
     """Nothing is said yet."""
-    return Due(
+    return Schedule(
         np.empty((n_bodies, n_columns)), np.empty(n_bodies), np.empty(n_bodies),
         np.zeros(n_bodies, dtype=np.int64), np.zeros(n_bodies, dtype=np.int64),
         np.empty(n_bodies, dtype=np.int64),
@@ -64,7 +64,9 @@ def find_due(frames, positions, row, look, within, due):
     for body in range(len(frames)):
         if frames[body] < 0:
             continue
-        way = stride_of(positions, due.rows[body], row, due.reach[body], due.noise[body])
+        way = interval_motion_bound_of(
+            positions, due.rows[body], row, due.motion_radii[body], due.noise[body]
+        )
         if due.nearest[body] - way <= within:
             due.bodies[n_due], due.looks[body] = body, look
             n_due += 1

@@ -14,7 +14,7 @@ from clearance.compile.kernel_table import lend
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.motion.answer_cache import (
-    Answers,
+    AnswerCache,
     answer_of,
     no_answers,
     note_answer,
@@ -24,29 +24,29 @@ from clearance.kernels.motion.answer_cache import (
 from clearance.kernels.motion.body_boxes import (
     BodyBoxes,
     bound_of_bodies,
+    new_body_boxes,
     place_box,
-    room_for_boxes,
 )
-from clearance.kernels.motion.interval_motion_bound import fill_reach
+from clearance.kernels.motion.interval_motion_bound import fill_motion_radii
 from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.pair_order import (
     PairOrder,
     fill_order,
-    room_for_order,
+    new_pair_order,
     sort_all,
     sort_first,
     sort_one,
 )
-from clearance.kernels.motion.placed import Placed, bring, put_all, room_for_bodies
-from clearance.kernels.motion.schedule import Due, all_due, find_due, note_look, room_for_due
+from clearance.kernels.motion.placed import PlacedBodies, bring, new_placed_bodies, put_all
+from clearance.kernels.motion.schedule import Schedule, all_due, find_due, new_schedule, note_look
 from clearance.kernels.motion.sweep_rows import pass_over, write_pair, write_step
-from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
+from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
 from clearance.kernels.search.descent import nothing_yet
 from clearance.kernels.search.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 LOOK_AHEAD = 2.0
-"""Mean travel between two looks, so many times: within this beyond the best a pair is still measured, so that
+"""Mean displacement between two looks, so many times: within this beyond the best a pair is still measured, so that
 its bound lasts."""
 
 LITTLE = 0.03
@@ -93,7 +93,7 @@ class FirstLook(NamedTuple):
 
     Attributes:
         rows: (m,) in their order; none if there is to be no such look.
-        effort: of `Asked`; what is found with less than `TO_THE_END` is an upper bound.
+        effort: of `PairQuestion`; what is found with less than `TO_THE_END` is an upper bound.
     """
 
     rows: np.ndarray
@@ -117,14 +117,14 @@ def box_bound(surface, world, pair, placed, boxes, enough):
     return bound_of_bodies(boxes, body_a, body_b, enough)
 
 
-class Known(NamedTuple):
+class SweepState(NamedTuple):
     """What is carried from step to step, and room for the search.
 
     Attributes:
         within: (p,) [m] as in `Goal`, less where that is found.
-        floors: (p,) [m] a bound on each pair's distance plus the travel of both bodies when it was found.
-        order: of each body's pairs by `floors`, unless each has a best of its own.
-        seeds: (p, 2) the faces that were nearest, or NO_FACE.
+        lower_bounds: (p,) [m] a bound on each pair's distance plus the displacement of both bodies when it was found.
+        order: of each body's pairs by `lower_bounds`, unless each has a best of its own.
+        witness_faces: (p, 2) the faces that were nearest, or NO_FACE.
         placed: where the bodies are. due: which of them need a look.
         boxes: of the bodies where they were last asked for.
         answers: the last ones of the pairs.
@@ -132,79 +132,81 @@ class Known(NamedTuple):
     """
 
     within: np.ndarray
-    floors: np.ndarray
+    lower_bounds: np.ndarray
     order: PairOrder
-    seeds: np.ndarray
-    placed: Placed
-    due: Due
+    witness_faces: np.ndarray
+    placed: PlacedBodies
+    due: Schedule
     boxes: BodyBoxes
-    answers: Answers
+    answers: AnswerCache
     fronts: Fronts
     scratch: Scratch
 
 
 @inline(force=True)
-def carried(world, pair, known):
+def carried(world, pair, state):
     """[m] what is left of the bound of a pair: only its first body moves."""
-    return known.floors[pair] - known.placed.travel[world.pairs[pair, 0]]
+    return state.lower_bounds[pair] - state.placed.displacements[world.pairs[pair, 0]]
 
 
 @inline(force=True)
-def _spare(world, pair, known, goal):
+def _spare(world, pair, state, goal):
     """[m] the same, less how near the pair must come where that is another distance for each."""
-    return carried(world, pair, known) - (known.within[pair] if goal.each else 0.0)
+    return carried(world, pair, state) - (state.within[pair] if goal.each else 0.0)
 
 
 @inline(force=True)
-def _bounded_again(surface, world, pair, known, enough):
+def _bounded_again(surface, world, pair, state, enough):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
-    by_boxes = box_bound(surface, world, pair, known.placed, known.boxes, enough)
-    floor = max(carried(world, pair, known), by_boxes)
-    known.floors[pair] = (floor + known.placed.travel[world.pairs[pair, 0]]) * KEPT_DOWN
-    return floor
+    by_boxes = box_bound(surface, world, pair, state.placed, state.boxes, enough)
+    lower_bound = max(carried(world, pair, state), by_boxes)
+    state.lower_bounds[pair] = (
+        lower_bound + state.placed.displacements[world.pairs[pair, 0]]
+    ) * KEPT_DOWN
+    return lower_bound
 
 
 @inline(force=True)
-def nearest_by_boxes(surface, world, bodies, known, winner):
+def nearest_by_boxes(surface, world, bodies, state, winner):
     """The pair to ask first where the last winner has moved farther than it was apart."""
-    order = known.order
+    order = state.order
     nearest = np.inf
     for body in bodies:
         place = order.starts[body]
         while place < order.starts[body + 1]:
             pair = order.pairs[place]
-            if carried(world, pair, known) >= nearest:
+            if carried(world, pair, state) >= nearest:
                 break
-            floor = _bounded_again(surface, world, pair, known, nearest)
-            if floor < nearest:
-                nearest = floor
+            lower_bound = _bounded_again(surface, world, pair, state, nearest)
+            if lower_bound < nearest:
+                nearest = lower_bound
                 winner = pair
             place += 1
-        sort_first(known.floors, order, body, place)
+        sort_first(state.lower_bounds, order, body, place)
     return winner
 
 
 @inline(one_caller=True)
-def _asked(world, pair, floor, gap, effort, lent, known, tally, table):
+def _asked(world, pair, lower_bound, gap, effort, lent, state, tally, table):
     """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on."""
-    placed, answers, seeds = known.placed, known.answers, known.seeds
+    placed, answers, witness_faces = state.placed, state.answers, state.witness_faces
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    moves, moved = placed.moves[body_a], placed.travel[body_a]
+    moves, moved = placed.moves[body_a], placed.displacements[body_a]
     if still_holds(answers, pair, moves, gap):
         return answer_of(answers, pair)
     ahead = moved / max(1, placed.looks[body_a])
     limit = gap + (LOOK_AHEAD * ahead if ahead < LITTLE * gap else 0.0)
-    if floor <= 0.0:
-        forget(known.fronts, pair)  # where bodies may meet, nearest first from the roots is best
-    apart = floor > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
+    if lower_bound <= 0.0:
+        forget(state.fronts, pair)  # where bodies may meet, nearest first from the roots is best
+    apart = lower_bound > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
     measured = measure_pair(
         lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses),
-        Asked(limit, gap, seeds[pair, 0], seeds[pair, 1], apart, effort, was_contact(answers, pair)),
-        known.fronts, pair, moved, known.scratch, table,
+        PairQuestion(limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, was_contact(answers, pair)),
+        state.fronts, pair, moved, state.scratch, table,
     )  # fmt: skip
     note_answer(answers, pair, moves, measured.hit, measured.lower_bound)
-    known.floors[pair] = (measured.lower_bound + moved) * KEPT_DOWN
-    seeds[pair, 0], seeds[pair, 1] = measured.face_a, measured.face_b
+    state.lower_bounds[pair] = (measured.lower_bound + moved) * KEPT_DOWN
+    witness_faces[pair, 0], witness_faces[pair, 1] = measured.face_a, measured.face_b
     tally[0] -= 1
     tally[1] += 1
     tally[2] += measured.tally.nodes
@@ -230,14 +232,14 @@ def _next_look(world, positions, row, look, within, due, rows, tally):
 
 @inline(one_caller=True)
 def nearest_of(
-    surface, world, bodies, first, row, step, lowest, goal, effort, lent, known, pair_rows, tally, table
+    surface, world, bodies, first, row, step, lowest, goal, effort, lent, state, pair_rows, tally, table
 ):  # fmt: skip
     """The nearest pair of some bodies at a row, one of which is asked before all others unless it is -1.
 
     Returns (its nearest points, the pair or -1, [m] a bound on the distance of all pairs where `lowest` is one on
     that of all other bodies').
     """
-    within, floors, order = known.within, known.floors, known.order
+    within, lower_bounds, order = state.within, state.lower_bounds, state.order
     best, best_pair = nothing_yet(np.inf), -1
     gap = within[0]
     order.pairs[len(world.pairs)] = first
@@ -248,31 +250,39 @@ def nearest_of(
         )  # the list of one that is asked first
         nearest = np.inf
         if first >= 0 and body == world.pairs[first, 0]:
-            nearest = _spare(world, first, known, goal)
+            nearest = _spare(world, first, state, goal)
         place, end = order.starts[body], order.starts[body + 1]
         while place < end:
             pair = order.pairs[place]
             place += 1
             if turn >= 0 and pair == first:
                 continue
-            floor = carried(world, pair, known)
+            lower_bound = carried(world, pair, state)
             if (
                 best.gap_sq == 0.0 and pair > best_pair and not goal.each
             ):  # no nearer, and not the least pair
-                nearest = min(nearest, floor)
+                nearest = min(nearest, lower_bound)
                 continue
             if goal.each:
                 gap = within[pair]
-            elif floor > gap:  # and so are those after it
-                lowest, nearest = min(lowest, floor), min(nearest, floor)
+            elif lower_bound > gap:  # and so are those after it
+                lowest, nearest = min(lowest, lower_bound), min(nearest, lower_bound)
                 break
-            if floor <= 0.0 or gap < np.inf:
-                floor = _bounded_again(surface, world, pair, known, gap)
-            if floor > gap:
-                lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
+            if lower_bound <= 0.0 or gap < np.inf:
+                lower_bound = _bounded_again(surface, world, pair, state, gap)
+            if lower_bound > gap:
+                lowest, nearest = (
+                    min(lowest, lower_bound),
+                    min(nearest, _spare(world, pair, state, goal)),
+                )
                 continue
-            hit, floor = _asked(world, pair, floor, gap, effort, lent, known, tally, table)
-            lowest, nearest = min(lowest, floor), min(nearest, _spare(world, pair, known, goal))
+            hit, lower_bound = _asked(
+                world, pair, lower_bound, gap, effort, lent, state, tally, table
+            )
+            lowest, nearest = (
+                min(lowest, lower_bound),
+                min(nearest, _spare(world, pair, state, goal)),
+            )
             if hit.face_a == 2**62:
                 continue
             if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
@@ -284,23 +294,23 @@ def nearest_of(
                 if goal.lasting:
                     within[pair] = min(gap, np.sqrt(hit.gap_sq) * NOT_LESS)
         if turn >= 0:
-            note_look(body, row, nearest, known.due)
+            note_look(body, row, nearest, state.due)
         if goal.each:
             continue
         if turn < 0:
-            sort_one(floors, order, world.pairs[first, 0], first)
+            sort_one(lower_bounds, order, world.pairs[first, 0], first)
         else:
-            sort_first(floors, order, body, place)
+            sort_first(lower_bounds, order, body, place)
     return best, best_pair, lowest
 
 
 @shared
 def nothing_known(world, n_columns, within):
     n_pairs, n_bodies = len(world.pairs), len(world.frames)
-    return Known(
-        within, np.empty(n_pairs), room_for_order(n_bodies, n_pairs), np.full((n_pairs, 2), NO_FACE),
-        room_for_bodies(len(world.links.parents), n_bodies), room_for_due(n_bodies, n_columns),
-        room_for_boxes(n_bodies), no_answers(n_pairs), no_fronts(n_pairs, POOL), new_scratch(),
+    return SweepState(
+        within, np.empty(n_pairs), new_pair_order(n_bodies, n_pairs), np.full((n_pairs, 2), NO_FACE),
+        new_placed_bodies(len(world.links.parents), n_bodies), new_schedule(n_bodies, n_columns),
+        new_body_boxes(n_bodies), no_answers(n_pairs), no_fronts(n_pairs, POOL), new_scratch(),
     )  # fmt: skip
 
 
@@ -324,7 +334,7 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
         for i in range(len(few)):
             for column in range(n_columns):
                 few[i, column] = positions[first.rows[i], column]
-        known = nothing_known(world, n_columns, within)
+        state = nothing_known(world, n_columns, within)
         _sweep(
             surface,
             world,
@@ -332,36 +342,38 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
             first.rows,
             goal,
             first.effort,
-            known,
+            state,
             rows,
             pair_rows,
             tally,
             table,
         )
-    known = nothing_known(world, n_columns, within)
-    _sweep(surface, world, positions, steps, goal, TO_THE_END, known, rows, pair_rows, tally, table)
+    state = nothing_known(world, n_columns, within)
+    _sweep(surface, world, positions, steps, goal, TO_THE_END, state, rows, pair_rows, tally, table)
 
 
 @kernel(reference_counts=False)
-def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_rows, tally, table):
+def _sweep(surface, world, positions, steps, goal, effort, state, rows, pair_rows, tally, table):
     """`sweep`, with room for what is known. The rows after a first look are overwritten."""
-    within, floors, order, placed, due = (
-        known.within,
-        known.floors,
-        known.order,
-        known.placed,
-        known.due,
+    within, lower_bounds, order, placed, due = (
+        state.within,
+        state.lower_bounds,
+        state.order,
+        state.placed,
+        state.due,
     )
     put_all(world, positions[0], placed)
     for pair in range(len(world.pairs)):
-        floors[pair] = box_bound(surface, world, pair, placed, known.boxes, np.inf)
-    winner = np.argmin(floors)
+        lower_bounds[pair] = box_bound(surface, world, pair, placed, state.boxes, np.inf)
+    winner = np.argmin(lower_bounds)
     fill_order(world.pairs, order)
     if not goal.each:
-        sort_all(floors, order)
+        sort_all(lower_bounds, order)
     near_only = within[0] < np.inf
     if near_only:
-        fill_reach(surface, world.frames, world.links, positions, due.reach, due.noise)
+        fill_motion_radii(
+            surface, world.frames, world.links, positions, due.motion_radii, due.noise
+        )
     n_due = all_due(world.frames, due)
     lent = lend(surface)
     lowest = np.inf
@@ -374,12 +386,12 @@ def _sweep(surface, world, positions, steps, goal, effort, known, rows, pair_row
         first = winner if not near_only or due.looks[world.pairs[winner, 0]] == look else -1
         if (
             first >= 0
-            and carried(world, first, known) <= 0.0
-            and not was_contact(known.answers, first)
+            and carried(world, first, state) <= 0.0
+            and not was_contact(state.answers, first)
         ):
-            first = nearest_by_boxes(surface, world, bodies, known, first)
+            first = nearest_by_boxes(surface, world, bodies, state, first)
         best, best_pair, lowest = nearest_of(
-            surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, known, pair_rows, tally,
+            surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, state, pair_rows, tally,
             table,
         )  # fmt: skip
         if best_pair >= 0:

@@ -14,13 +14,13 @@ class StepRows(NamedTuple):
 
     Attributes:
         clearance: (k,) [m] of the nearest pair, infinite where none is within what was asked.
-        floor: (k,) [m] a proven lower bound on the distance of all pairs.
+        lower_bound: (k,) [m] a proven lower bound on the distance of all pairs.
         pair: (k,) the nearest pair, or -1.
         faces: (k, 2) joined face indices. points: (k, 2, 3) witness points in the world [m].
     """
 
     clearance: np.ndarray
-    floor: np.ndarray
+    lower_bound: np.ndarray
     pair: np.ndarray
     faces: np.ndarray
     points: np.ndarray
@@ -42,11 +42,11 @@ class PairRows(NamedTuple):
 
 
 @inline
-def write_step(row, pair, hit, floor, rows):
-    """Writes the nearest pair of a step and its points, -1 if none is known; `floor` [m] bounds all pairs."""
+def write_step(row, pair, hit, lower_bound, rows):
+    """Writes the nearest pair of a step and its points, -1 if none is known; `lower_bound` [m] bounds all pairs."""
     rows.pair[row] = pair
     rows.clearance[row] = np.sqrt(hit.gap_sq) if pair >= 0 else np.inf
-    rows.floor[row] = min(floor, rows.clearance[row])
+    rows.lower_bound[row] = min(lower_bound, rows.clearance[row])
     rows.faces[row, 0] = hit.face_a
     rows.faces[row, 1] = hit.face_b
     write_points(hit, rows.points[row])
@@ -65,8 +65,8 @@ def write_pair(row, step, pair, hit, pair_rows):
 
 
 @inline(force=True)
-def pass_over(n_pairs, row, floor, rows, tally):
-    """Writes a row at which nothing needs a look: none of so many pairs is nearer than `floor` [m]."""
-    write_step(row, -1, nothing_yet(np.inf), floor, rows)
+def pass_over(n_pairs, row, lower_bound, rows, tally):
+    """Writes a row at which nothing needs a look: none of so many pairs is nearer than `lower_bound` [m]."""
+    write_step(row, -1, nothing_yet(np.inf), lower_bound, rows)
     tally[0] += n_pairs
     tally[4] += 1

@@ -41,7 +41,7 @@ class PaperBody(NamedTuple):
     radii: np.ndarray
 
 
-class PaperFound(NamedTuple):
+class PaperDistance(NamedTuple):
     """The least distance over all measured pairs, in the frame of body a, and what was counted.
 
     `gap_sq` is infinite and the faces are -1 where no pair was measured. `passes` holds 1, 2, 3,
@@ -134,4 +134,4 @@ def nearest_bodies_paper(a, b_own, world_from_a, world_from_b, tolerance, rule_1
             found_sq = gap_sq(found.p, found.q)
             if found_sq < best:
                 best, best_p, best_q, face_a, face_b = found_sq, found.p, found.q, i, j
-    return PaperFound(best, best_p, best_q, face_a, face_b, cut_1, cut_2, measured, passes)
+    return PaperDistance(best, best_p, best_q, face_a, face_b, cut_1, cut_2, measured, passes)

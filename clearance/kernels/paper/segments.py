@@ -13,7 +13,7 @@ from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.vec3 import Vec3, along, dot, sub
 
 
-class Closest(NamedTuple):
+class ClosestPoints(NamedTuple):
     """The closest points p, q of two segments and their places t, u in [0, 1]; 0 and 1 are the
     ends."""
 
@@ -54,4 +54,4 @@ def lumelsky(a, b, c, d):
             t = clamped((u * r + s1) / length_1)
     p = b if t == 1.0 else along(a, t, d1)
     q = d if u == 1.0 else along(c, u, d2)
-    return Closest(p, q, t, u)
+    return ClosestPoints(p, q, t, u)

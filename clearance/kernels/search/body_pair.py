@@ -5,7 +5,14 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import SEARCH, Lent, apart, at_address, borrow, table_like
+from clearance.compile.kernel_table import (
+    SEARCH,
+    LentArgument,
+    apart,
+    at_address,
+    borrow,
+    table_like,
+)
 from clearance.kernels.arithmetic.double_double import (
     FRAMES_AT_REST,
     Wide3,
@@ -16,7 +23,7 @@ from clearance.kernels.arithmetic.double_double import (
 from clearance.kernels.arithmetic.vec3 import Vec3, move, row
 from clearance.kernels.features.bounds import rounding_slack
 from clearance.kernels.features.common_point import common_point_of
-from clearance.kernels.features.face_pair import NOTHING_SEEN, Hit, Near, nearest_of_faces
+from clearance.kernels.features.face_pair import NOTHING_SEEN, FacePairState, Hit, nearest_of_faces
 from clearance.kernels.features.refine import error_of
 from clearance.kernels.features.rounding_guard import PASSED_OVER
 from clearance.kernels.mesh.surface import box_of, surface_like
@@ -26,13 +33,13 @@ from clearance.kernels.search.front import (
     HULLS_NEARER,
     HULLS_TOUCH,
     forget,
-    is_worth_parting,
+    is_worth_separating,
     no_fronts,
-    note_parting,
+    note_separating_planes,
 )
 from clearance.kernels.search.overlap import Overlap, overlap_of
 from clearance.kernels.search.scratch import new_scratch
-from clearance.kernels.search.separating_planes import NOTHING_PARTED, parting_of
+from clearance.kernels.search.separating_planes import NOTHING_PARTED, separating_planes_of
 
 NO_FACE = -1
 
@@ -40,7 +47,7 @@ TO_THE_END = 2**62
 """The effort of a search that is not cut short."""
 
 
-class Asked(NamedTuple):
+class PairQuestion(NamedTuple):
     """What is asked of a body pair.
 
     Attributes:
@@ -62,7 +69,7 @@ class Asked(NamedTuple):
     touches: bool
 
 
-class Measured(NamedTuple):
+class PairDistance(NamedTuple):
     """What is known of a body pair.
 
     Attributes:
@@ -92,27 +99,35 @@ def _contact(a, b, frames, found, tally, table):
     face_a, face_b = found.face_a, found.face_b
     common = common_point_of(table, a, face_a, b, face_b, frames, found.meeting)
     p, q = _in_world(frames, common.p), _in_world(frames, common.q)
-    return Measured(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
+    return PairDistance(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
 
 
 NOWHERE = Vec3(0.0, 0.0, 0.0)
 
-NOTHING_MEASURED = Measured(
+NOTHING_MEASURED = PairDistance(
     Hit(np.inf, NO_FACE, NO_FACE, NOWHERE, NOWHERE), 0.0, 0.0, NO_FACE, NO_FACE, Tally(0, 0, 0)
 )
 
 
 def _like():
-    asked = Asked(0.0, 0.0, 0, 0, False, 0, False)
+    asked = PairQuestion(0.0, 0.0, 0, 0, False, 0, False)
     searched = no_fronts(1, 0), 0, 0.0, new_scratch(), table_like()
-    return Lent(surface_like()), 0, Lent(surface_like()), 0, FRAMES_AT_REST, asked, *searched
+    return (
+        LentArgument(surface_like()),
+        0,
+        LentArgument(surface_like()),
+        0,
+        FRAMES_AT_REST,
+        asked,
+        *searched,
+    )
 
 
 @inline(force=True)
 def _afresh(a, root_a, b, root_b, m):
     """What a search begins with that knows nothing: the bodies' centres."""
     p, q = box_of(a, root_a).centre, move(m, box_of(b, root_b).centre)
-    return Near(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
+    return FacePairState(Hit(np.inf, 2**62, 2**62, p, q), NOTHING_SEEN)
 
 
 @inline(force=True)
@@ -124,7 +139,7 @@ def _begin(a, root_a, b, root_b, m, margin, asked):
             return near
         p = row(a.vertices, a.face_vertices[a.face_starts[asked.face_a]])
         q = row(b.vertices, b.face_vertices[b.face_starts[asked.face_b]])
-        return Near(Hit(np.inf, 2**62, 2**62, p, move(m, q)), NOTHING_SEEN)
+        return FacePairState(Hit(np.inf, 2**62, 2**62, p, move(m, q)), NOTHING_SEEN)
     return _afresh(a, root_a, b, root_b, m)
 
 
@@ -134,7 +149,7 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
 
     Args:
         frames: of `frames_of`.
-        asked: what is wanted and known, an `Asked`.
+        asked: what is wanted and known, an `PairQuestion`.
         fronts, pair, moved: of `descend`.
     """
     a, b = borrow(lent_a), borrow(lent_b)
@@ -152,34 +167,42 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
     best = first.best
     limit = asked.limit + margin
     wanted = asked.wanted
-    parting = NOTHING_PARTED
-    if is_worth_parting(fronts, pair):
-        parting = parting_of(
+    separating_planes = NOTHING_PARTED
+    if is_worth_separating(fronts, pair):
+        separating_planes = separating_planes_of(
             table, lent_a, root_a, lent_b, root_b, frames.m, best, limit, margin, slack, scratch
         )
-        n_nodes += parting.n_nodes
-        if parting.n_waiting == 0:
-            note_parting(fronts, pair, parting.floor > limit, HULLS_TOUCH)
-        if parting.floor > limit:
+        n_nodes += separating_planes.n_nodes
+        if separating_planes.n_waiting == 0:
+            note_separating_planes(fronts, pair, separating_planes.lower_bound > limit, HULLS_TOUCH)
+        if separating_planes.lower_bound > limit:
             nothing = nothing_yet(asked.wanted * asked.wanted)
-            floor = max(0.0, parting.floor - slack - 2.0 * margin)
-            return Measured(
-                nothing, floor, 0.0, parting.face_a, parting.face_b, Tally(n_nodes, 0, 0)
+            lower_bound = max(0.0, separating_planes.lower_bound - slack - 2.0 * margin)
+            return PairDistance(
+                nothing,
+                lower_bound,
+                0.0,
+                separating_planes.face_a,
+                separating_planes.face_b,
+                Tally(n_nodes, 0, 0),
             )
     for _ in range(2):
         found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, parting,
+            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, separating_planes,
             fronts, pair, moved, scratch, table,
         )  # fmt: skip
         n_nodes += found.tally.nodes
         n_faces += found.tally.faces
         n_exact += found.tally.exact_decisions
-        if parting.n_waiting > 0:
-            is_all = parting.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
-            note_parting(fronts, pair, is_all, HULLS_NEARER)
+        if separating_planes.n_waiting > 0:
+            is_all = separating_planes.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
+            note_separating_planes(fronts, pair, is_all, HULLS_NEARER)
             if is_all:
                 break
-            best, parting = found.hit, NOTHING_PARTED  # the hulls are nearer than the bodies
+            best, separating_planes = (
+                found.hit,
+                NOTHING_PARTED,
+            )  # the hulls are nearer than the bodies
         else:
             break
     if found.meeting.found:  # which of several is told must not depend on where the search began
@@ -189,19 +212,21 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
             over = Overlap(found.meeting, found.hit.face_a, found.hit.face_b, 0, 0)
         return _contact(a, b, frames, over, tally, table)
     tally = Tally(n_nodes, n_faces, n_exact)
-    if not (asked.apart or parting.n_waiting > 0):
+    if not (asked.apart or separating_planes.n_waiting > 0):
         inside, x = contained(a, body_a, b, body_b, frames, scratch, table)
         if inside:
             forget(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)
-            return Measured(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
-    floor = max(0.0, found.floor - slack - 2.0 * margin)
+            return PairDistance(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
+    lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin)
     face_a, face_b = found.hit.face_a, found.hit.face_b
     if face_a == 2**62:
         face_a, face_b = asked.face_a, asked.face_b
     refined = found.refined
     if refined.face_a == 2**62:
-        return Measured(nothing_yet(asked.wanted * asked.wanted), floor, 0.0, face_a, face_b, tally)
+        return PairDistance(
+            nothing_yet(asked.wanted * asked.wanted), lower_bound, 0.0, face_a, face_b, tally
+        )
     distance = refined.length.hi
     error = error_of(refined, distance) + PASSED_OVER * distance
     hit = Hit(
@@ -211,8 +236,8 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
         _in_world(frames, refined.p),
         _in_world(frames, refined.q),
     )
-    floor = min(floor, max(0.0, distance - error))
-    return Measured(hit, floor, error, refined.face_a, refined.face_b, tally)
+    lower_bound = min(lower_bound, max(0.0, distance - error))
+    return PairDistance(hit, lower_bound, error, refined.face_a, refined.face_b, tally)
 
 
 @inline(one_caller=True)

@@ -23,9 +23,9 @@ from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, size
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.arithmetic.predicates import (
     FILTER,
-    Posed,
+    PosedVertex,
+    new_exact_scratch,
     orient_posed,
-    room_for_exact,
     set_poses,
     side_along,
     turn_along,
@@ -123,10 +123,10 @@ def _crossings(surface, face, side, x, exact):
     """The signed count of the triangles of a face's fan that the ray from x meets."""
     number = 0
     start = surface.face_starts[face]
-    first = Posed(row(surface.exact, surface.face_vertices[start]), side)
+    first = PosedVertex(row(surface.exact, surface.face_vertices[start]), side)
     for k in range(start + 2, surface.face_starts[face + 1]):
-        second = Posed(row(surface.exact, surface.face_vertices[k - 1]), side)
-        third = Posed(row(surface.exact, surface.face_vertices[k]), side)
+        second = PosedVertex(row(surface.exact, surface.face_vertices[k - 1]), side)
+        third = PosedVertex(row(surface.exact, surface.face_vertices[k]), side)
         if not _beside(exact, first, second, third, x):
             number += _crossing(first, second, third, x, exact)
     return number
@@ -172,7 +172,17 @@ def signed_turns_of_caps(surface, body, x):
 def _like():
     nodes = np.empty((0, 2), dtype=np.int32)
     nowhere = Vec3(0.0, 0.0, 0.0)
-    return surface_like(), 0, True, nowhere, nowhere, 0.0, FRAMES_AT_REST, room_for_exact(), nodes
+    return (
+        surface_like(),
+        0,
+        True,
+        nowhere,
+        nowhere,
+        0.0,
+        FRAMES_AT_REST,
+        new_exact_scratch(),
+        nodes,
+    )
 
 
 @apart(WINDING_NUMBER, _like)
@@ -188,7 +198,7 @@ def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
     set_poses(frames, exact)
     side = 1 if is_b else 0
     along_ray = row(exact.poses[side], AXIS)
-    probe = Posed(vertex, 1 - side)
+    probe = PosedVertex(vertex, 1 - side)
     number = 0
     n_waiting = 1
     nodes[0, 0] = surface.roots[body]
@@ -205,8 +215,11 @@ def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
         elif surface.turns[first] != 0:
             number += surface.turns[first] * _crossings(surface, first, side, probe, exact)
     for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
-        one, two = Posed(row(surface.caps, i), side), Posed(row(surface.caps, i + 1), side)
-        three = Posed(row(surface.caps, i + 2), side)
+        one, two = (
+            PosedVertex(row(surface.caps, i), side),
+            PosedVertex(row(surface.caps, i + 1), side),
+        )
+        three = PosedVertex(row(surface.caps, i + 2), side)
         if not _beside(exact, one, two, three, probe):
             number += _crossing(one, two, three, probe, exact)
     return number

@@ -19,16 +19,23 @@ from clearance.kernels.arithmetic.lanes import (
     marks_within,
 )
 from clearance.kernels.arithmetic.vec3 import Vec3
-from clearance.kernels.features.bounds import lower_bound_boxes, lower_bound_faces_in_sight
+from clearance.kernels.features.bounds import lower_bound_boxes, lower_bound_faces_along_direction
 from clearance.kernels.features.face_pair import (
+    FacePairState,
     Hit,
-    Near,
     limit_of,
     may_own_nearest,
     nearest_of_faces,
 )
 from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting_of
-from clearance.kernels.features.refine import N_WAITING, NOTHING_REFINED, Refined, put, settle, shed
+from clearance.kernels.features.refine import (
+    N_WAITING,
+    NOTHING_REFINED,
+    RefinedDistance,
+    put,
+    settle,
+    shed,
+)
 from clearance.kernels.features.rounding_guard import sure_gap, told_apart
 from clearance.kernels.mesh.surface import box_of, is_leaf
 from clearance.kernels.search.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
@@ -40,7 +47,7 @@ from clearance.kernels.search.node_pairs import (
     views_of,
 )
 from clearance.kernels.search.scratch import STACK_DEPTH, swap, wait
-from clearance.kernels.search.warm_start import guess
+from clearance.kernels.search.warm_start import warm_start
 
 
 class Tally(NamedTuple):
@@ -51,20 +58,20 @@ class Tally(NamedTuple):
     exact_decisions: int
 
 
-class Found(NamedTuple):
+class DescentResult(NamedTuple):
     """The outcome of a descent.
 
     Attributes:
         meeting: whether and where the bodies have a common point, in the faces of `hit`.
         hit: the best pair of points in doubles, within the limit or not, no worse than what was given.
-        floor: [m] a lower bound on the distance of the face pairs that were not refined.
+        lower_bound: [m] a lower bound on the distance of the face pairs that were not refined.
         refined: the answer in wide numbers, if there is one within the limit.
     """
 
     meeting: Meeting
     hit: Hit
-    floor: float
-    refined: Refined
+    lower_bound: float
+    refined: RefinedDistance
     tally: Tally
 
 
@@ -108,10 +115,10 @@ def _wait_for_near(
 
 
 @inline(force=True)
-def _leave(scratch, n_left, group, other, marks, floor):
+def _leave(scratch, n_left, group, other, marks, lower_bound):
     """Notes an entry for the front; the number of them."""
     scratch.left[n_left, 0], scratch.left[n_left, 1], scratch.left[n_left, 2] = group, other, marks
-    scratch.floors[n_left] = floor
+    scratch.lower_bounds[n_left] = lower_bound
     return n_left + (n_left <= LONGEST)  # one too many says that not all are there
 
 
@@ -136,17 +143,17 @@ def _nearest_last(scratch, n_waiting):
 def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
     """Splits the front of a pair: what is still far stays in it, the rest waits.
 
-    Returns (kept, waiting, node pairs bounded, floor).
+    Returns (kept, waiting, node pairs bounded, lower bound).
     """
     start = fronts.spans[pair, 0]
     n_kept = 0
     n_waiting = 0
     n_nodes = 0
     nearest = 0
-    floor = math.inf
+    lower_bound = math.inf
     for i in range(start, start + fronts.spans[pair, 1]):
         group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
-        carried = fronts.floors[i]
+        carried = fronts.lower_bounds[i]
         if carried - moved <= cut:
             is_b = marks >= OF_B
             marks %= OF_B
@@ -170,29 +177,29 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
             )
             if n_waiting > n_before and scratch.bounds[n_waiting - 1] < scratch.bounds[nearest]:
                 nearest = n_waiting - 1
-            floor = min(floor, far)
+            lower_bound = min(lower_bound, far)
             if marks == 0:
                 continue
             marks += OF_B if is_b else 0
             carried = (low + moved) * KEPT_DOWN
         else:
-            floor = min(floor, carried - moved)
+            lower_bound = min(lower_bound, carried - moved)
         kept = start + n_kept
         fronts.entries[kept, 0], fronts.entries[kept, 1], fronts.entries[kept, 2] = (
             group,
             other,
             marks,
         )
-        fronts.floors[kept] = carried
+        fronts.lower_bounds[kept] = carried
         n_kept += 1
     if n_waiting > 0:  # nearest last
         swap(scratch, nearest, n_waiting - 1)
-    return n_kept, n_waiting, n_nodes, floor
+    return n_kept, n_waiting, n_nodes, lower_bound
 
 
 @inline(one_caller=True)
 def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, parting, fronts, pair,
+    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, separating_planes, fronts, pair,
     moved, scratch, table,
 ):  # fmt: skip
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
@@ -205,7 +212,7 @@ def descend(
         wanted_gap: [m] face pairs farther apart are not refined.
         slack: [m] of `rounding_slack`.
         effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
-        parting: if leaves wait already only these are looked at; nothing else is nearer than it says.
+        separating_planes: if leaves wait already only these are looked at; nothing else is nearer than it says.
         fronts, pair: where the front of the pair is kept.
         moved: [m] what both bodies have moved in all.
         table: of `kernel_table`.
@@ -227,22 +234,27 @@ def descend(
     met = NO_MEETING
     n_left = 0
     untold_wait = False
-    if parting.n_waiting > 0:
-        n_kept, n_waiting, n_nodes, floor = 0, parting.n_waiting, 0, parting.beyond
+    if separating_planes.n_waiting > 0:
+        n_kept, n_waiting, n_nodes, lower_bound = (
+            0,
+            separating_planes.n_waiting,
+            0,
+            separating_planes.beyond,
+        )
     elif fronts.spans[pair, 1] > 0:
-        n_kept, n_waiting, n_nodes, floor = _resume(
+        n_kept, n_waiting, n_nodes, lower_bound = _resume(
             a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch
         )
     else:
-        n_kept, n_waiting, n_nodes, floor = 0, 1, 1, math.inf
+        n_kept, n_waiting, n_nodes, lower_bound = 0, 1, 1, math.inf
         scratch.nodes[0, 0] = root_a
         scratch.nodes[0, 1] = root_b
         scratch.bounds[0] = lower_bound_boxes(box_of(a, root_a), box_of(b, root_b), m, slack)
         if best_gap == math.inf:
-            n_waiting, n_nodes = guess(a, root_a, b, root_b, from_a, from_b, scratch)
+            n_waiting, n_nodes = warm_start(a, root_a, b, root_b, from_a, from_b, scratch)
     while n_waiting > 0:
         if n_nodes > effort and best_gap < math.inf:
-            floor = -math.inf
+            lower_bound = -math.inf
             break
         n_waiting -= 1
         node_a = scratch.nodes[n_waiting, 0]
@@ -252,7 +264,7 @@ def descend(
         if is_kept:
             node_a = ~node_a
         if bound > cut:
-            floor = min(floor, bound)
+            lower_bound = min(lower_bound, bound)
             if not is_kept:
                 mark = 1 << node_a % WIDTH
                 n_left = _leave(
@@ -261,16 +273,18 @@ def descend(
             continue
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-            in_sight = lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
-            if in_sight > cut:
-                floor = min(floor, in_sight)
+            along_direction = (
+                lower_bound_faces_along_direction(a, face_a, b, face_b, from_a.direction) - slack
+            )
+            if along_direction > cut:
+                lower_bound = min(lower_bound, along_direction)
             elif best.gap_sq > limit * limit or may_own_nearest(
-                a, face_a, b, face_b, from_a.sight, in_sight, best_gap, margin
+                a, face_a, b, face_b, from_a.direction, along_direction, best_gap, margin
             ):
                 n_faces += 1
                 before_sq, before_gap = best.gap_sq, best_gap
                 if face_a == first.best.face_a and face_b == first.best.face_b:
-                    near = Near(best, first.seen)
+                    near = FacePairState(best, first.seen)
                 else:
                     near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
                 best = near.best
@@ -278,10 +292,11 @@ def descend(
                     best_gap = min(limit, math.sqrt(best.gap_sq))
                     cut = best_gap + margin
                     from_a, from_b = views_of(best, m)
-                    in_sight = (
-                        lower_bound_faces_in_sight(a, face_a, b, face_b, from_a.sight) - slack
+                    along_direction = (
+                        lower_bound_faces_along_direction(a, face_a, b, face_b, from_a.direction)
+                        - slack
                     )
-                gap = sure_gap(a, face_a, b, face_b, m, margin, in_sight)
+                gap = sure_gap(a, face_a, b, face_b, m, margin, along_direction)
                 if bound <= 0.0 and gap <= 0.0:
                     met = meeting_of(table, lent_a, face_a, lent_b, face_b, frames, scratch.exact)
                     if met.found:
@@ -307,7 +322,7 @@ def descend(
                                 margin,
                                 scratch.waiting,
                                 n_pairs,
-                                from_a.sight,
+                                from_a.direction,
                                 slack,
                                 0.0,
                                 refined,
@@ -320,9 +335,11 @@ def descend(
                     untold_wait = True
                 elif least_sq < math.inf:
                     gap = math.sqrt(least_sq)
-                    floor = min(floor, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin))
+                    lower_bound = min(
+                        lower_bound, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin)
+                    )
                 else:
-                    floor = min(floor, math.sqrt(best.gap_sq) + margin)
+                    lower_bound = min(lower_bound, math.sqrt(best.gap_sq) + margin)
             if not is_kept:  # the roots
                 n_left = _leave(
                     scratch, n_left, node_a // WIDTH, node_b, 1, (bound + moved) * KEPT_DOWN
@@ -336,7 +353,7 @@ def descend(
         n_waiting, marks, low, far = _wait_for_near(
             a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut
         )
-        floor = min(floor, far)
+        lower_bound = min(lower_bound, far)
         if marks > 0:
             marks += OF_B if is_b else 0
             n_left = _leave(scratch, n_left, group, other, marks, (low + moved) * KEPT_DOWN)
@@ -349,17 +366,17 @@ def descend(
             margin,
             scratch.waiting,
             n_pairs,
-            from_a.sight,
+            from_a.direction,
             slack,
             best_gap,
             refined,
             table,
         )
-    if met.found or floor == -math.inf:
+    if met.found or lower_bound == -math.inf:
         forget(fronts, pair)
-    elif parting.n_waiting == 0:
-        keep(fronts, pair, n_kept, scratch.left, scratch.floors, n_left)
+    elif separating_planes.n_waiting == 0:
+        keep(fronts, pair, n_kept, scratch.left, scratch.lower_bounds, n_left)
     if untold_wait:  # they are no nearer than what is wanted, or refined
-        floor = min(floor, min(best_gap, wanted_gap))
+        lower_bound = min(lower_bound, min(best_gap, wanted_gap))
     tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)
-    return Found(met, best, floor, refined, tally)
+    return DescentResult(met, best, lower_bound, refined, tally)

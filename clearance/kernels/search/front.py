@@ -28,7 +28,7 @@ GROWN, ANYHOW = 1.2, 16
 """A front that has grown to so many times its first length, and so many entries, is built anew from the roots."""
 
 LONG = 32
-"""Entries of a front that take as long as it takes to seek two planes (`parting`)."""
+"""Entries of a front that take as long as it takes to seek two planes (`separating_planes`)."""
 
 HULLS_TOUCH, HULLS_NEARER = 15, 1
 """Searches in which planes are not sought, after none were found or after the bodies were farther apart."""
@@ -45,7 +45,7 @@ class Fronts(NamedTuple):
 
     Attributes:
         entries: (POOL, 3) as above.
-        floors: (POOL,) [m] a lower bound on the distance of all node pairs of the entry, plus what both bodies had
+        lower_bounds: (POOL,) [m] a lower bound on the distance of all node pairs of the entry, plus what both bodies had
             moved by then.
         spans: (p, 6) of each pair: its first place in the pool, its length, its room, its first length; searches
             until planes are sought again, and how many those were at the last time.
@@ -53,7 +53,7 @@ class Fronts(NamedTuple):
     """
 
     entries: np.ndarray
-    floors: np.ndarray
+    lower_bounds: np.ndarray
     spans: np.ndarray
     used: np.ndarray
 
@@ -70,7 +70,7 @@ def no_fronts(n_pairs, pool):
 
 
 @inline
-def is_worth_parting(fronts, pair):
+def is_worth_separating(fronts, pair):
     """True if it may take less to seek planes that part the bodies of a pair than to go on from its front.
 
     Not if they were not found lately, which counts down.
@@ -82,7 +82,7 @@ def is_worth_parting(fronts, pair):
 
 
 @inline
-def note_parting(fronts, pair, found, pause):
+def note_separating_planes(fronts, pair, found, pause):
     """Notes whether planes part the bodies; if not, they are not sought for a while, each time a longer one.
 
     Args:
@@ -104,10 +104,10 @@ def forget(fronts, pair):
 
 
 @inline(force=True)
-def _copy(entries, floors, i, fronts, k):
+def _copy(entries, lower_bounds, i, fronts, k):
     for column in range(3):
         fronts.entries[k, column] = entries[i, column]
-    fronts.floors[k] = floors[i]
+    fronts.lower_bounds[k] = lower_bounds[i]
 
 
 @inline
@@ -117,7 +117,7 @@ def _room_for(fronts, pair, n_kept, length):
     if length <= spans[pair, 2]:
         return True
     room = 2 * length + 16
-    pool = len(fronts.floors)
+    pool = len(fronts.lower_bounds)
     if room > pool:
         return False
     before = spans[pair, 0]
@@ -127,14 +127,14 @@ def _room_for(fronts, pair, n_kept, length):
         fronts.used[0] = 0
     first = fronts.used[0]
     for i in range(n_kept):  # upward: the new place may begin below the old one
-        _copy(fronts.entries, fronts.floors, before + i, fronts, first + i)
+        _copy(fronts.entries, fronts.lower_bounds, before + i, fronts, first + i)
     fronts.used[0] = first + room
     spans[pair, 0], spans[pair, 2] = first, room
     return True
 
 
 @inline(force=True)
-def keep(fronts, pair, n_kept, entries, floors, n_fresh):
+def keep(fronts, pair, n_kept, entries, lower_bounds, n_fresh):
     """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new entries."""
     length = n_kept + n_fresh
     if length > LONGEST or not _room_for(fronts, pair, n_kept, length):
@@ -143,7 +143,7 @@ def keep(fronts, pair, n_kept, entries, floors, n_fresh):
     spans = fronts.spans
     at = spans[pair, 0] + n_kept
     for i in range(n_fresh):
-        _copy(entries, floors, i, fronts, at + i)
+        _copy(entries, lower_bounds, i, fronts, at + i)
     if n_kept == 0:
         spans[pair, 3] = length
     spans[pair, 1] = 0 if length > GROWN * spans[pair, 3] + ANYHOW else length

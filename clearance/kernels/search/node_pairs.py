@@ -4,40 +4,40 @@ from typing import NamedTuple
 
 from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import WIDTH, larger, marks_within, square_root
-from clearance.kernels.arithmetic.vec3 import Rigid, dot, inverse, move, sub
+from clearance.kernels.arithmetic.vec3 import RigidMotion, dot, inverse, move, sub
 from clearance.kernels.features.bounds import (
-    Sight,
+    SeparatingDirection,
+    direction_between,
     lower_bound_boxes,
-    lower_bound_boxes_in_sight,
+    lower_bound_boxes_along_direction,
     opposite,
-    sight_along,
 )
-from clearance.kernels.mesh.normal_cones import facing_of, marks_turned_away, while_moving
+from clearance.kernels.mesh.normal_cones import marks_turned_away, normal_cones_of, while_moving
 from clearance.kernels.mesh.surface import box_at, box_of, group_at, is_leaf
 
 
-class View(NamedTuple):
+class RelativeView(NamedTuple):
     """How two bodies are seen from the frame of one of them.
 
     Attributes:
         m: the motion from the frame of the other to its own.
-        sight: the direction that best parts them so far.
+        direction: the direction that best parts them so far.
     """
 
-    m: Rigid
-    sight: Sight
+    m: RigidMotion
+    direction: SeparatingDirection
 
 
 @inline(force=True)
-def views_along(sight, m):
+def views_along(direction, m):
     """The view from the frame of a and that from b."""
-    return View(m, sight), View(inverse(m), opposite(sight))
+    return RelativeView(m, direction), RelativeView(inverse(m), opposite(direction))
 
 
 @inline(force=True)
 def views_of(best, m):
     """The views in which the best points so far part the bodies."""
-    return views_along(sight_along(best.p, best.q, m), m)
+    return views_along(direction_between(best.p, best.q, m), m)
 
 
 @inline(force=True)
@@ -55,13 +55,13 @@ def _seen(a, b, from_a, from_b, group, other, is_b):
 def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
 
-    The cheap ones in sight if they exclude all that are marked.
+    The cheap ones in direction if they exclude all that are marked.
     """
     p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
-    in_sight = lower_bound_boxes_in_sight(p, q, view.sight) - slack
-    if marks & marks_within(in_sight, cut) == 0:
-        return in_sight
-    return larger(in_sight, lower_bound_boxes(p, q, view.m, slack))
+    along_direction = lower_bound_boxes_along_direction(p, q, view.direction) - slack
+    if marks & marks_within(along_direction, cut) == 0:
+        return along_direction
+    return larger(along_direction, lower_bound_boxes(p, q, view.m, slack))
 
 
 @inline(force=True)
@@ -85,7 +85,9 @@ def _facing(a, b, from_a, from_b, group, other, is_b, slack):
     cones, cones_across = a.cones, b.cones
     if is_b:
         cones, cones_across = b.cones, a.cones
-    return facing_of(cones, group, cones_across, other, view.m, slack), _from_centres(p, q, view)
+    return normal_cones_of(cones, group, cones_across, other, view.m, slack), _from_centres(
+        p, q, view
+    )
 
 
 @inline(force=True)

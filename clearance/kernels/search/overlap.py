@@ -10,7 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import OVERLAP, Lent, apart, at_address, borrow, table_like
+from clearance.compile.kernel_table import (
+    OVERLAP,
+    LentArgument,
+    apart,
+    at_address,
+    borrow,
+    table_like,
+)
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
 from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, marks_within
 from clearance.kernels.arithmetic.vec3 import inverse
@@ -36,9 +43,9 @@ NO_OVERLAP = Overlap(NO_MEETING, -1, -1, 0, 0)
 
 def _like():
     return (
-        Lent(surface_like()),
+        LentArgument(surface_like()),
         0,
-        Lent(surface_like()),
+        LentArgument(surface_like()),
         0,
         FRAMES_AT_REST,
         0.0,

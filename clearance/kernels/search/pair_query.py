@@ -18,7 +18,7 @@ from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.bounds import displacement, rounding_slack
 from clearance.kernels.features.face_pair import write_points
 from clearance.kernels.mesh.surface import box_of
-from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, Asked, measure_pair
+from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
 from clearance.kernels.search.front import KEPT_DOWN, LONGEST, Fronts, forget, no_fronts
 
 ROOM = 2 * LONGEST + 16
@@ -33,9 +33,9 @@ SURELY = 1e-7
 FAR = 1.0
 """Bodies that move farther than this share of the smaller one's breadth are searched from the roots again."""
 
-MOVED, FLOOR, STRIDE = 0, 1, 2
+MOVED, LOWER_BOUND, STRIDE = 0, 1, 2
 
-_FIELDS = ("a", "b", "scratch", "fronts", "poses", "seeds", "carried")
+_FIELDS = ("a", "b", "scratch", "fronts", "poses", "witness_faces", "carried")
 
 
 class HeldPair(NamedTuple):
@@ -45,7 +45,7 @@ class HeldPair(NamedTuple):
         a, b: their surfaces, one body each.
         scratch, fronts: room for the search, and where the last one ended.
         poses: (2, 4, 4) of both bodies at the last search [m].
-        seeds: (2,) the faces that were nearest, or NO_FACE.
+        witness_faces: (2,) the faces that were nearest, or NO_FACE.
         carried: (3,) [m] what both bodies have moved in all; a lower bound on their distance, plus that; how
             far they may move at once before a search from the roots is better.
     """
@@ -55,7 +55,7 @@ class HeldPair(NamedTuple):
     scratch: object
     fronts: object
     poses: np.ndarray
-    seeds: np.ndarray
+    witness_faces: np.ndarray
     carried: np.ndarray
 
 
@@ -104,51 +104,53 @@ def _is_surely_rigid(pose):
     return x * pose[0, 2] + y * pose[1, 2] + z * pose[2, 2] > 0.0
 
 
-class Known(NamedTuple):
+class PairState(NamedTuple):
     """What is known of a pair: the fields of `HeldPair` that change from question to question."""
 
     fronts: Fronts
     poses: np.ndarray
-    seeds: np.ndarray
+    witness_faces: np.ndarray
     carried: np.ndarray
 
 
 @inline
-def _travel(a, b, known, pose_a, pose_b, frames):
+def _accumulated_displacement(a, b, state, pose_a, pose_b, frames):
     """[m] an upper bound on what the points of both bodies have moved in all, by the time of these poses.
 
     Infinite where they may have come to touch, or where little of what is known can be of use: from a front, the
     first contact can take a hundred times the search that it takes from the roots, and then that one as well.
     """
-    way = displacement(a, a.roots[0], known.poses[0], pose_a)
-    way += displacement(b, b.roots[0], known.poses[1], pose_b)
-    if not way <= known.carried[STRIDE]:
+    way = displacement(a, a.roots[0], state.poses[0], pose_a)
+    way += displacement(b, b.roots[0], state.poses[1], pose_b)
+    if not way <= state.carried[STRIDE]:
         return np.inf
     way += rounding_slack(a, a.roots[0], b, b.roots[0], frames)  # where motions cancel
-    moved = (known.carried[MOVED] + way) * ROUNDED_UP
-    return moved if known.carried[FLOOR] > moved else np.inf
+    moved = (state.carried[MOVED] + way) * ROUNDED_UP
+    return moved if state.carried[LOWER_BOUND] > moved else np.inf
 
 
 @inline
-def _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table):
+def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
     """The nearest points of a pair, as `measure_pair` gives them."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
-    moved = _travel(a, b, known, pose_a, pose_b, frames)
-    known.carried[FLOOR] = -np.inf  # until the search has come to its end
-    asked = Asked(np.inf, np.inf, known.seeds[0], known.seeds[1], True, TO_THE_END, False)
+    moved = _accumulated_displacement(a, b, state, pose_a, pose_b, frames)
+    state.carried[LOWER_BOUND] = -np.inf  # until the search has come to its end
+    asked = PairQuestion(
+        np.inf, np.inf, state.witness_faces[0], state.witness_faces[1], True, TO_THE_END, False
+    )
     if moved == np.inf:
         moved = 0.0
-        asked = Asked(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
-        forget(known.fronts, 0)
+        asked = PairQuestion(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
+        forget(state.fronts, 0)
     measured = measure_pair(
-        lent_a, 0, lent_b, 0, frames, asked, known.fronts, 0, moved, scratch, table
+        lent_a, 0, lent_b, 0, frames, asked, state.fronts, 0, moved, scratch, table
     )
-    known.carried[MOVED] = moved
-    known.carried[FLOOR] = (measured.lower_bound + moved) * KEPT_DOWN
-    known.seeds[0], known.seeds[1] = measured.face_a, measured.face_b
+    state.carried[MOVED] = moved
+    state.carried[LOWER_BOUND] = (measured.lower_bound + moved) * KEPT_DOWN
+    state.witness_faces[0], state.witness_faces[1] = measured.face_a, measured.face_b
     for i in range(4):
         for k in range(4):
-            known.poses[0, i, k], known.poses[1, i, k] = pose_a[i, k], pose_b[i, k]
+            state.poses[0, i, k], state.poses[1, i, k] = pose_a[i, k], pose_b[i, k]
     return measured
 
 
@@ -170,11 +172,11 @@ def nearest_at_poses(held, poses_a, poses_b, checked, afresh, numbers, points, c
             _is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])
         ):
             return i
-    known = Known(held.fronts, held.poses, held.seeds, held.carried)
+    state = PairState(held.fronts, held.poses, held.witness_faces, held.carried)
     _nearest(
         held.a,
         held.b,
-        known,
+        state,
         held.scratch,
         poses_a,
         poses_b,
@@ -188,15 +190,15 @@ def nearest_at_poses(held, poses_a, poses_b, checked, afresh, numbers, points, c
 
 
 @kernel(reference_counts=False)
-def _nearest(a, b, known, scratch, poses_a, poses_b, afresh, numbers, points, counts, table):
+def _nearest(a, b, state, scratch, poses_a, poses_b, afresh, numbers, points, counts, table):
     """Fills a row for each pose."""
     lent_a, lent_b = lend(a), lend(b)
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
     for i in range(len(numbers)):
         if afresh:
-            known.carried[FLOOR] = -np.inf
+            state.carried[LOWER_BOUND] = -np.inf
         pose_a, pose_b = poses_a[min(i, last_a)], poses_b[min(i, last_b)]
-        measured = _measure(a, b, lent_a, lent_b, known, scratch, pose_a, pose_b, table)
+        measured = _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table)
         hit, tally = measured.hit, measured.tally
         numbers[i, 0], numbers[i, 1] = np.sqrt(hit.gap_sq), measured.error
         write_points(hit, points[i])

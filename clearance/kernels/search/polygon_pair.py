@@ -8,7 +8,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.compile.kernel_table import (
     POLYGONS,
-    Lent,
+    LentArgument,
     apart,
     at_address,
     borrow,
@@ -16,11 +16,15 @@ from clearance.compile.kernel_table import (
     table_like,
 )
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, minus3, rounded
-from clearance.kernels.arithmetic.predicates import room_for_exact
+from clearance.kernels.arithmetic.predicates import new_exact_scratch
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, row, sub
-from clearance.kernels.features.bounds import SLACK, lower_bound_faces_in_sight, sight_along
+from clearance.kernels.features.bounds import (
+    SLACK,
+    direction_between,
+    lower_bound_faces_along_direction,
+)
 from clearance.kernels.features.common_point import common_point_of
-from clearance.kernels.features.every_feature import Ask
+from clearance.kernels.features.every_feature import FeatureCutoff
 from clearance.kernels.features.face_pair import limit_of, may_meet, nearest_of_faces
 from clearance.kernels.features.meeting import meeting_of
 from clearance.kernels.features.refine import NOTHING_REFINED, error_of, refined_of
@@ -35,7 +39,7 @@ LEAST = 2.0**-1074
 """[m] The least double: half of it is lost when a tiny answer is scaled back."""
 
 
-class Answers(NamedTuple):
+class PolygonPairAnswers(NamedTuple):
     """One row a polygon pair.
 
     Attributes:
@@ -160,8 +164,8 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
     """(distance, error, p, q, contact) of the two polygons that are filled in."""
     a, b = borrow(lent_a), borrow(lent_b)
     near = nearest_of_faces(a, 0, b, 0, frames.m, margin, nothing_yet(np.inf))
-    sight = sight_along(near.best.p, near.best.q, frames.m)
-    if lower_bound_faces_in_sight(a, 0, b, 0, sight) <= margin and may_meet(
+    direction = direction_between(near.best.p, near.best.q, frames.m)
+    if lower_bound_faces_along_direction(a, 0, b, 0, direction) <= margin and may_meet(
         a, 0, b, 0, frames.m, margin
     ):
         found = meeting_of(table, lent_a, 0, lent_b, 0, frames, exact)
@@ -170,7 +174,15 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
     refined = refined_of(
-        table, lent_a, 0, lent_b, 0, frames, near.seen, Ask(limit, margin), NOTHING_REFINED
+        table,
+        lent_a,
+        0,
+        lent_b,
+        0,
+        frames,
+        near.seen,
+        FeatureCutoff(limit, margin),
+        NOTHING_REFINED,
     )
     distance = refined.length.hi
     error = error_of(refined, distance)
@@ -187,8 +199,8 @@ def _measure(lent_a, lent_b, frames, margin, exact, table):
 
 def _like():
     polygons, flags = np.empty((0, 3, 3)), np.empty(0, dtype=np.bool_)
-    answers = Answers(np.empty(0), np.empty(0), polygons, flags, flags)
-    room = Lent(surface_like()), Lent(surface_like()), room_for_exact()
+    answers = PolygonPairAnswers(np.empty(0), np.empty(0), polygons, flags, flags)
+    room = LentArgument(surface_like()), LentArgument(surface_like()), new_exact_scratch()
     return polygons, polygons, *room, answers, table_like()
 
 
@@ -227,5 +239,7 @@ def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
 def nearest_polygons(ps, qs, answers, table):
     """Fills `answers` for each pair `ps[k]`, `qs[k]`; all arrays contiguous and writable."""
     a_p, b_q = _empty_surface(ps.shape[1]), _empty_surface(qs.shape[1])
-    at_address(table, POLYGONS, 0, (ps, qs, lend(a_p), lend(b_q), room_for_exact(), answers, table))
+    at_address(
+        table, POLYGONS, 0, (ps, qs, lend(a_p), lend(b_q), new_exact_scratch(), answers, table)
+    )
     a_p.blunt[0] = b_q.blunt[0] = 0.0  # held until here

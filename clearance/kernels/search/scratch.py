@@ -6,8 +6,8 @@ import numpy as np
 
 from clearance.compile.jit import inline, shared
 from clearance.kernels.arithmetic.lanes import WIDTH
-from clearance.kernels.arithmetic.predicates import Exact, room_for_exact
-from clearance.kernels.features.refine import Waiting, room_for_waiting
+from clearance.kernels.arithmetic.predicates import ExactScratch, new_exact_scratch
+from clearance.kernels.features.refine import RefineQueue, new_refine_queue
 from clearance.kernels.search.front import LONGEST
 
 STACK_DEPTH = WIDTH * LONGEST + 4096
@@ -21,9 +21,9 @@ class Scratch(NamedTuple):
     nodes: np.ndarray  # (STACK_DEPTH, 2) int32
     bounds: np.ndarray  # (STACK_DEPTH,)
     left: np.ndarray  # (LONGEST + 2, 3) int32, entries of a front that were left
-    floors: np.ndarray  # (LONGEST + 2,)
-    waiting: Waiting
-    exact: Exact
+    lower_bounds: np.ndarray  # (LONGEST + 2,)
+    waiting: RefineQueue
+    exact: ExactScratch
 
 
 @shared
@@ -34,8 +34,8 @@ def new_scratch():
         np.empty(STACK_DEPTH),
         np.empty((LONGEST + 2, 3), dtype=np.int32),
         np.empty(LONGEST + 2),
-        room_for_waiting(),
-        room_for_exact(),
+        new_refine_queue(),
+        new_exact_scratch(),
     )
 
 

@@ -18,10 +18,16 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import PARTING, Lent, apart, at_address, borrow
+from clearance.compile.kernel_table import (
+    SEPARATING_PLANES,
+    LentArgument,
+    apart,
+    at_address,
+    borrow,
+)
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, move, row, sub
-from clearance.kernels.features.bounds import sight_along
+from clearance.kernels.features.bounds import direction_between
 from clearance.kernels.features.face_pair import Hit
 from clearance.kernels.features.segments import foot_inside
 from clearance.kernels.mesh.surface import surface_like
@@ -45,17 +51,17 @@ TILTED = 0.25 * TILT * TILT
 """Share of the distance that the room behind the planes must be less than."""
 
 
-class Parting(NamedTuple):
+class SeparatingPlanes(NamedTuple):
     """What two planes say.
 
     Attributes:
-        floor: [m] proven: no points are nearer; -inf if nothing is said.
+        lower_bound: [m] proven: no points are nearer; -inf if nothing is said.
         beyond: [m] proven: no points of other faces than those that wait are nearer.
         n_waiting: pairs of leaves that wait. n_nodes: nodes that were bounded.
         face_a, face_b: faces that touch the planes.
     """
 
-    floor: float
+    lower_bound: float
     beyond: float
     n_waiting: int
     n_nodes: int
@@ -63,7 +69,7 @@ class Parting(NamedTuple):
     face_b: int
 
 
-NOTHING_PARTED = Parting(-math.inf, -math.inf, 0, 0, -1, -1)
+NOTHING_PARTED = SeparatingPlanes(-math.inf, -math.inf, 0, 0, -1, -1)
 
 
 @inline(force=True)
@@ -135,9 +141,9 @@ def _nearest_with(n, p, q, r, w):
 def _like():
     hit = Hit(0.0, 0, 0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
     return (
-        Lent(surface_like()),
+        LentArgument(surface_like()),
         0,
-        Lent(surface_like()),
+        LentArgument(surface_like()),
         0,
         FRAMES_AT_REST.m,
         hit,
@@ -149,7 +155,7 @@ def _like():
 
 
 @inline(force=True)
-def _let_wait(n_a, n_b, floor, scratch):
+def _let_wait(n_a, n_b, lower_bound, scratch):
     """Lets each pair of the leaves in both columns of `scratch.left` wait; how many they are."""
     n_waiting = 0
     for i in range(n_a):
@@ -158,13 +164,13 @@ def _let_wait(n_a, n_b, floor, scratch):
                 ~scratch.left[i, 0],
                 scratch.left[k, 1],
             )
-            scratch.bounds[n_waiting] = floor
+            scratch.bounds[n_waiting] = lower_bound
             n_waiting += 1
     return n_waiting
 
 
-@apart(PARTING, _like)
-def part(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch):
+@apart(SEPARATING_PLANES, _like)
+def separate(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch):
     """Seeks planes that part the bodies by the distance of their nearest points, or by more than the limit [m].
 
     Pairs of leaves that touch the planes wait, as those do that a front has.
@@ -187,31 +193,38 @@ def part(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch)
         room = 16.0 * margin + CLOSE * length
         if not room < TILTED * length or length < LESS * expected:
             break
-        sight = sight_along(near, origin, m)
-        v = Vec3(-sight.v.x, -sight.v.y, -sight.v.z)
+        direction = direction_between(near, origin, m)
+        v = Vec3(-direction.v.x, -direction.v.y, -direction.v.z)
         n_a, n_b = 0, 0
         if is_proof:
-            top_a, n_a, nodes_a = top_of(a, root_a, sight.u, face_a, room, TOUCHING, 0, scratch)
+            top_a, n_a, nodes_a = top_of(a, root_a, direction.u, face_a, room, TOUCHING, 0, scratch)
             top_b, n_b, nodes_b = top_of(b, root_b, v, face_b, room, TOUCHING, 1, scratch)
         else:
-            top_a, nodes_a = high_corner(a, root_a, sight.u, face_a)
+            top_a, nodes_a = high_corner(a, root_a, direction.u, face_a)
             top_b, nodes_b = high_corner(b, root_b, v, face_b)
         n_nodes += nodes_a + nodes_b
         face_a, face_b = top_a.face, top_b.face
         if face_a < 0 or face_b < 0:
             break
-        floor = sight.offset - top_b.height - top_a.height - slack
-        is_as_far = n_points > 0 and floor > 0.0 and floor + room > length + 2.0 * margin
-        if not is_proof and (floor > limit or is_as_far):
+        lower_bound = direction.offset - top_b.height - top_a.height - slack
+        is_as_far = (
+            n_points > 0 and lower_bound > 0.0 and lower_bound + room > length + 2.0 * margin
+        )
+        if not is_proof and (lower_bound > limit or is_as_far):
             is_proof = True
             continue
-        if floor > limit:
-            return Parting(floor, floor, 0, n_nodes, face_a, face_b)
+        if lower_bound > limit:
+            return SeparatingPlanes(lower_bound, lower_bound, 0, n_nodes, face_a, face_b)
         if is_as_far:
             if max(n_a, n_b) > TOUCHING or n_a * n_b > TOUCHING_PAIRS:
                 break
-            return Parting(
-                floor, floor + room, _let_wait(n_a, n_b, floor, scratch), n_nodes, face_a, face_b
+            return SeparatingPlanes(
+                lower_bound,
+                lower_bound + room,
+                _let_wait(n_a, n_b, lower_bound, scratch),
+                n_nodes,
+                face_a,
+                face_b,
             )
         x = row(a.vertices, a.face_vertices[top_a.corner])
         w = sub(x, move(m, row(b.vertices, b.face_vertices[top_b.corner])))
@@ -226,13 +239,15 @@ def part(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch)
             break
         else:
             is_proof = True
-    return Parting(-math.inf, -math.inf, 0, n_nodes, face_a, face_b)
+    return SeparatingPlanes(-math.inf, -math.inf, 0, n_nodes, face_a, face_b)
 
 
 @inline(one_caller=True)
-def parting_of(table, lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch):
+def separating_planes_of(
+    table, lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch
+):
     """The same by address."""
     return at_address(
-        table, PARTING, NOTHING_PARTED,
+        table, SEPARATING_PLANES, NOTHING_PARTED,
         (lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch),
     )  # fmt: skip

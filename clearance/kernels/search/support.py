@@ -25,7 +25,7 @@ UNLIKE_ANY = 2.0**-19
 """Makes `NO_CONE`, which a node without a cone has for a sine, more than any cosine; others lose 2^-19."""
 
 
-class Top(NamedTuple):
+class SupportPoint(NamedTuple):
     """The corner of a body that is farthest along a direction.
 
     Attributes:
@@ -40,19 +40,19 @@ class Top(NamedTuple):
 
 @inline(force=True)
 def _top_of_face(surface, face, u):
-    """The `Top` of one face."""
-    top = Top(-math.inf, face, 0)
+    """The `SupportPoint` of one face."""
+    top = SupportPoint(-math.inf, face, 0)
     for c in range(surface.face_starts[face], surface.face_starts[face + 1]):
         height = dot(u, row(surface.vertices, surface.face_vertices[c]))
         if height > top.height:
-            top = Top(height, face, c)
+            top = SupportPoint(height, face, c)
     return top
 
 
 @inline(force=True)
 def _top_known(surface, face, u):
-    """The `Top` of a face, none for -1."""
-    return _top_of_face(surface, face, u) if face >= 0 else Top(-math.inf, face, 0)
+    """The `SupportPoint` of a face, none for -1."""
+    return _top_of_face(surface, face, u) if face >= 0 else SupportPoint(-math.inf, face, 0)
 
 
 @inline(force=True)
@@ -87,14 +87,14 @@ def _open(surface, node, u, least, scratch, n_waiting):
 
 @inline(force=True)
 def top_of(surface, root, u, face, room, most, column, scratch):
-    """The `Top` of a body along a unit vector `u` of its frame, and the leaves that come near it.
+    """The `SupportPoint` of a body along a unit vector `u` of its frame, and the leaves that come near it.
 
     Args:
         face: where to begin, or -1.
         room: [m] how far below the top leaves are near; more than rounding.
         most: of these are written at most, into a column of `scratch.left`; if there are more, it says one more.
 
-    Returns: (the `Top`, how many leaves, nodes that it took). Some of the leaves may be lower.
+    Returns: (the `SupportPoint`, how many leaves, nodes that it took). Some of the leaves may be lower.
     """
     top = _top_known(surface, face, u)
     scratch.nodes[0, 0], scratch.bounds[0] = root, -math.inf
@@ -123,7 +123,7 @@ def top_of(surface, root, u, face, room, most, column, scratch):
 
 @inline(force=True)
 def high_corner(surface, root, u, face):
-    """A corner that is high along `u`, perhaps not the `Top`, on one way down the tree; the nodes that it took."""
+    """A corner that is high along `u`, perhaps not the `SupportPoint`, on one way down the tree; the nodes that it took."""
     top = _top_known(surface, face, u)
     node, n_nodes = np.int64(root), 1
     while not is_leaf(surface, node):

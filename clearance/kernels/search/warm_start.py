@@ -8,7 +8,7 @@ from clearance.kernels.mesh.surface import is_leaf
 from clearance.kernels.search.node_pairs import between_centres, opened, pair_in_group
 from clearance.kernels.search.scratch import copy, wait
 
-GUESSES = 5
+WARM_STARTS = 5
 """Node pairs that a search which knows nothing yet follows down to faces before it begins at the roots."""
 
 
@@ -25,7 +25,7 @@ def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
 
 
 @inline(one_caller=True)
-def guess(a, root_a, b, root_b, from_a, from_b, scratch):
+def warm_start(a, root_a, b, root_b, from_a, from_b, scratch):
     """Lets few pairs of leaves wait over the pair of roots: those whose centres are nearest, level by level.
 
     They wait as what the front has, since they are met again from the roots. Their bound is the distance of the
@@ -40,7 +40,7 @@ def guess(a, root_a, b, root_b, from_a, from_b, scratch):
     while deeper:
         deeper = False
         n_next = 0
-        after = 1 + GUESSES
+        after = 1 + WARM_STARTS
         for i in range(n_found, 0, -1):
             node_a, node_b, near, count = np.int64(nodes[i, 0]), np.int64(nodes[i, 1]), bounds[i], 1
             is_open = not (is_leaf(a, node_a) and is_leaf(b, node_b))
@@ -53,7 +53,7 @@ def guess(a, root_a, b, root_b, from_a, from_b, scratch):
                 if is_open:
                     node_a, node_b = pair_in_group(is_b, group, k, other)
                     near = lane(found, k)
-                n_next = _among_nearest(scratch, after, n_next, GUESSES, node_a, node_b, near)
+                n_next = _among_nearest(scratch, after, n_next, WARM_STARTS, node_a, node_b, near)
         for i in range(n_next):
             copy(scratch, after + i, 1 + i)
         n_found = n_next

@@ -21,7 +21,7 @@ DONE, FAILED, TOO_LARGE, KEPT = 0, 1, 2, 3
 """Fates of a step: placed; no such place found; a cluster left untried; its equations held already."""
 
 
-class Limits(NamedTuple):
+class StepTolerances(NamedTuple):
     """A step is left alone when its equations hold to `settled`; a numeric one aims at `floor` and
     counts as done at `tolerance` (all [m]), tries `attempts` times, and not with more equations than
     `largest_block`."""
