@@ -1,7 +1,7 @@
 """The optional libraries: which extra brings each, and the one line that says so where one is missing.
 
 `pip install clearance` brings what measuring needs. The other libraries serve one purpose each and are imported
-behind one door each, which asks here first. Not for: the dependencies that are always there (`pyproject.toml`).
+behind one adapter each, which asks here first. Not for: the dependencies that are always there (`pyproject.toml`).
 """
 
 from __future__ import annotations

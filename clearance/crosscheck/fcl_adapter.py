@@ -1,4 +1,4 @@
-"""The one door to python-fcl: bodies as bounding-volume trees in millimetres, distance and contact.
+"""The adapter of python-fcl: bodies as bounding-volume trees in millimetres, distance and contact.
 
 Millimetres, because FCL's triangle kernel skips its vertex-face test where |normal|^2 <= 1e-15 and
 then answers 0: in metres that is every triangle with edges of 0.1 mm, a false contact. Triangles

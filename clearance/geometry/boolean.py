@@ -1,4 +1,4 @@
-"""Closed meshes that share a region, or grow together: the one door to manifold3d.
+"""Closed meshes that share a region, or grow together: the adapter of manifold3d.
 
 manifold3d works on closed surfaces with two faces an edge, in float64, and answers with such a surface
 again. What it cannot take is refused in one line. Not for: convex bodies, which `query.intersection` cuts

@@ -1,4 +1,4 @@
-"""CoACD in a process of its own, and the one door to it: a mesh comes on stdin, parts go to stdout.
+"""CoACD in a process of its own, and its adapter: a mesh comes on stdin, parts go to stdout.
 
 The library is compiled code that ends the whole process on some broken meshes; a run must outlive that. This
 file is started by path and knows nothing of the package. Not for: importing (`decompose` starts it).

@@ -1,4 +1,4 @@
-"""Mesh files to solids, and the one door to trimesh, which writes them.
+"""Mesh files to solids, and the adapter of trimesh, which writes them.
 
 Every format has a reader of our own beside this file, because the usual ones lose or bend something in
 each (NOTES.md). Not for: primitive shapes (`geometry.shapes`).

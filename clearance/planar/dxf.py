@@ -1,4 +1,4 @@
-"""The one door to ezdxf: a DXF drawing's entities as one curve.
+"""The adapter of ezdxf: a DXF drawing's entities as one curve.
 
 LINE, ARC, CIRCLE, LWPOLYLINE and 2-d POLYLINE with bulges, and SPLINE of the model space, in metres where the
 header names a unit ($INSUNITS), else as the numbers stand. Entities that meet end to end become one contour.

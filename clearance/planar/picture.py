@@ -1,4 +1,4 @@
-"""Pictures of a comparison, like Figs. 8, 17 and 18 of the paper: the one door to matplotlib.
+"""Pictures of a comparison, like Figs. 8, 17 and 18 of the paper: the adapter of matplotlib.
 
 Curve a and b, what trimming left of each (bold), the line of the distance, and on request the distance map
 of b with a colour for each nearest arc. Not for: reports' other figures.

@@ -1,4 +1,4 @@
-"""The one door to shapely: unions, offsets, areas and membership of plane regions.
+"""The adapter of shapely: unions, offsets, areas and membership of plane regions.
 
 Rings are (n, 2) arrays without the first point repeated, outer ones counter-clockwise, holes clockwise.
 Not for: bounds (`outline`), which are proven on what comes out of here.

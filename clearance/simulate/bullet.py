@@ -1,4 +1,4 @@
-"""Motion as a physics engine's controlled robot really makes it: the one door to pybullet.
+"""Motion as a physics engine's controlled robot really makes it: the adapter of pybullet.
 
 The robot's masses, joints, limits and efforts come from its URDF, its shapes from our own loader;
 gravity is on, every moving joint is position-controlled towards the trajectory, and each simulation

@@ -68,7 +68,7 @@ class Measurement:
         pair: (n,) index of the pair that attains it, or -1.
         points: (n, 2, 3) witness points [m] in the world frame: on the link, on the obstacle.
         tally: counters by name.
-        find_minima: the least clearance of each pair, or of those that come nearest, of which there are at
+        measure_pair_minima: the least clearance of each pair, or of those that come nearest, of which there are at
             least so many; not measured until it is called. None if it was not asked for.
         every: (n, p) [m] the clearance of each pair at each step, if that was asked for.
         may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).

@@ -294,8 +294,8 @@ def may_own_nearest(a, face_a, b, face_b, direction, along_direction, best_gap, 
     """False if two faces, should they be the nearest of all, are nearest at features that are other faces' own.
 
     Args:
-        along_direction: [m] the bound of the faces along the direction. Where it is within `OWN_DIRECTION` of the least distance,
-            the direction of their nearest points is within `LEANING` of the direction.
+        along_direction: [m] the bound of the faces along `direction`. Where it is within `OWN_DIRECTION` of the
+            least distance, the nearest points lie within `LEANING` of that direction.
     """
     limit = limit_of(a, face_a, b, face_b, best_gap, margin)
     if along_direction < (1.0 - OWN_DIRECTION) * limit or limit > CLEARLY * best_gap:

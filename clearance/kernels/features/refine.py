@@ -89,7 +89,7 @@ def _enough(length, margin):
 
 @inline
 def _better(best, pair, length, face_a, face_b, lower_bound, sure):
-    """`best` after a face pair. The lower bound of one that does not win may be low: it is nearest at others' own."""
+    """`best` after a face pair. The lower bound of one that does not win may be low: others are nearest."""
     sure = lesser(best.sure, sure)
     if _wins(pair.gap_sq, face_a, face_b, best):
         return RefinedDistance(

@@ -79,7 +79,7 @@ def may_hide(a, face_a, b, face_b, m, margin, limit, least):
 
 @inline(force=True)
 def sure_gap(a, face_a, b, face_b, m, margin, along_direction):
-    """[m] a lower bound on the distance of two faces: that in direction, or a greater one if it leaves them untold."""
+    """[m] a lower bound on the distance of two faces: `along_direction`, or a greater one if too close."""
     if told_apart(a, face_a, b, face_b, along_direction, margin):
         return along_direction
     gap = max(along_direction, lower_bound_faces_beside(a, face_a, b, face_b, m) - margin)

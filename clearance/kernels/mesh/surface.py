@@ -41,7 +41,8 @@ class Surface(NamedTuple):
             n // 4; lanes without a node repeat the first.
         boxes: (12 g, 4) in single precision, rounded outward: nine numbers of three axes, three half sizes [m].
         cones: (6 g, 4) in single precision: axis, cosine and sine of the half angle of each node's normal cone
-            (`facing`; its `NO_CONE` for the sine where there is none), and the radius of a ball about its box [m].
+            (`normal_cones`; its `NO_CONE` for the sine where there is none), and the radius of a ball about its
+            box [m].
         children: (4 g, 2) of node n: a group and how many nodes of it, or for a leaf (face, 0). Of faces with the
             same corners, either way round, only the least has a leaf.
         roots: (bodies,) root nodes, each alone in its group.

@@ -3,10 +3,10 @@
 In the middle of an interval the trees are descended as for a distance, but each bound is lowered by how far
 the link can move in the interval: along the direction of the nearest points where two faces or boxes are
 seen apart, so that sliding past costs nothing in the first order. Nodes that are turned away in all of the
-interval are passed over (`facing`): at its first instant the distance is above 0, or nothing is asked. What does
-not stay above the target is halved, the earlier half first; after `most_parts` of them the target of a pair is
-lowered until it can be proven, so that all ends. A bound on a pair holds for later intervals less what its link
-moves in them: pairs that it keeps above the target are not asked.
+interval are passed over (`normal_cones`): at its first instant the distance is above 0, or nothing is asked.
+What does not stay above the target is halved, the earlier half first; after `most_parts` of them the target of a
+pair is lowered until it can be proven, so that all ends. A bound on a pair holds for later intervals less what
+its link moves in them: pairs that it keeps above the target are not asked.
 
 Not for: one pair over one interval (`hold`), the steps themselves (`sweep`).
 """
@@ -159,7 +159,7 @@ def _new_middle(n_links):
 
 @inline
 def _motion_bound_in(surface, tree, body, link, middle):
-    """The drift of a body about `middle`."""
+    """The motion bound of a body about `middle`."""
     pose = rigid(middle.poses[0, link])
     root = surface.roots[body]
     return motion_bound_of(
@@ -175,7 +175,7 @@ def _motion_bound_at(motion_bounds, body):
 
 @inline
 def _go_on(surface, tree, path, step, state):
-    """Goes to the interval after `step`: its middle, how each body drifts about it, and the displacement at its end."""
+    """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
     _go_to(tree, path, step, 0.0, 1.0, state.whole)
     for body in range(len(state.links)):
         link = state.links[body]
@@ -264,7 +264,8 @@ def _like():
     asked, path = CertifiedPairs(pairs, places, poses), JointPath(numbers, rows, rows)
     aim, bounds = CertificateGoal(0.0, 0.0, 0), IntervalBounds(numbers, numbers, numbers, places)
     return (
-        LentArgument(surface_like()), tree, asked, path, places, 0, 0, numbers, aim, bounds, places, state, table_like()
+        LentArgument(surface_like()), tree, asked, path, places, 0, 0, numbers, aim, bounds, places, state,
+        table_like(),
     )  # fmt: skip
 
 

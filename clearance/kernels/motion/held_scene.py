@@ -29,7 +29,7 @@ from clearance.kernels.search.body_pair import TO_THE_END
 LOOK, WINNER = 0, 1
 
 AFRESH = 2**21
-"""Looks after which nothing is carried on: sums of displacement are bounded for twice as many (`placed.GROWTH`)."""
+"""Looks after which nothing is carried on: displacements are bounded for twice as many (`placed.GROWTH`)."""
 
 _FIELDS = ("surface", "world", "goal", "pair_rows", "state", "at")
 

@@ -6,7 +6,7 @@ w no farther than w; a change of several joints is made one after another. So be
     |x' - x| <= sum over the joints k above the link of |q_k' - q_k| reach_k,
 
 with reach_k the farthest that a point of the body gets from joint k in any pose. No pose needs to be made for it.
-Not for: the motion between the steps (`motion_bound`).
+Not for: the motion between the steps (`joint_motion_bound`).
 """
 
 import math
@@ -118,7 +118,7 @@ def interval_motion_bound_of(positions, last, step, motion_radii, noise):
     """[m] no less than what a body moves from one step to another.
 
     Args:
-        positions: as in `fill_motion_radii`; last, step: rows of it. reach: (columns,), noise: of the body.
+        positions: as in `fill_motion_radii`; last, step: rows of it. motion_radii: (columns,), noise: of the body.
     """
     way = noise
     for column in range(len(motion_radii)):

@@ -75,7 +75,7 @@ def _world_axis(tree, poses, link):
 
 @inline
 def motion_bound_of(surface, root, tree, link, poses, swing, bend, world_from_body):
-    """The drift of a body that is fixed to `link`.
+    """The motion bound of a body that is fixed to `link`.
 
     Args:
         poses: (n_links, 4, 4) in the middle of the interval.

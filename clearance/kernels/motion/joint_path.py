@@ -6,7 +6,7 @@ velocities over the mean velocity:
 
     q(s) = q0 + s D + s (1 - s) ((1 - s) e0 - s e1),  D = q1 - q0,  e0 = T v0 - D,  e1 = T v1 - D.
 
-Not for: what that does to the points of a link (`motion_bound`).
+Not for: what that does to the points of a link (`joint_motion_bound`).
 """
 
 from typing import NamedTuple

@@ -1,6 +1,6 @@
 """Where the bodies are, each at the last step at which it was looked at, and how far it has come by then.
 
-Not for: which of them need a look (`due`), and where bodies are between the steps (`motion_bound`).
+Not for: which of them need a look (`schedule`), and where bodies are between the steps (`joint_motion_bound`).
 """
 
 from typing import NamedTuple

@@ -1,8 +1,8 @@
 """Which bodies need a look, where only what is near is asked for: those that may have moved as far as they may.
 
 A body may move as far as the least bound of its pairs exceeds what is asked; until then, by the positions of the
-joints alone (`stride`), no pair of it can come within what is asked. So every body has a clock of its own: at a
-step at which none is due, no pose is made, and where one is, only its pairs are looked at.
+joints alone (`interval_motion_bound`), no pair of it can come within what is asked. So every body has a clock of
+its own: at a step at which none is due, no pose is made, and where one is, only its pairs are looked at.
 """
 
 from typing import NamedTuple

@@ -46,7 +46,7 @@ from clearance.kernels.search.front import KEPT_DOWN, POOL, Fronts, forget, no_f
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 LOOK_AHEAD = 2.0
-"""Mean displacement between two looks, so many times: within this beyond the best a pair is still measured, so that
+"""Mean displacements between two looks: within so many of them beyond the best a pair is still measured, so that
 its bound lasts."""
 
 LITTLE = 0.03
@@ -122,7 +122,7 @@ class SweepState(NamedTuple):
 
     Attributes:
         within: (p,) [m] as in `Goal`, less where that is found.
-        lower_bounds: (p,) [m] a bound on each pair's distance plus the displacement of both bodies when it was found.
+        lower_bounds: (p,) [m] a bound on each pair's distance plus the displacements of both bodies then.
         order: of each body's pairs by `lower_bounds`, unless each has a best of its own.
         witness_faces: (p, 2) the faces that were nearest, or NO_FACE.
         placed: where the bodies are. due: which of them need a look.
@@ -201,7 +201,9 @@ def _asked(world, pair, lower_bound, gap, effort, lent, state, tally, table):
     apart = lower_bound > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
     measured = measure_pair(
         lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses),
-        PairQuestion(limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, was_contact(answers, pair)),
+        PairQuestion(
+            limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, was_contact(answers, pair)
+        ),
         state.fronts, pair, moved, state.scratch, table,
     )  # fmt: skip
     note_answer(answers, pair, moves, measured.hit, measured.lower_bound)

@@ -43,7 +43,7 @@ class PairRows(NamedTuple):
 
 @inline
 def write_step(row, pair, hit, lower_bound, rows):
-    """Writes the nearest pair of a step and its points, -1 if none is known; `lower_bound` [m] bounds all pairs."""
+    """Writes the nearest pair of a step and its points, -1 if none is known; `lower_bound` [m] is of all pairs."""
     rows.pair[row] = pair
     rows.clearance[row] = np.sqrt(hit.gap_sq) if pair >= 0 else np.inf
     rows.lower_bound[row] = min(lower_bound, rows.clearance[row])

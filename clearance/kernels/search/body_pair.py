@@ -188,8 +188,8 @@ def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, s
             )
     for _ in range(2):
         found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort, separating_planes,
-            fronts, pair, moved, scratch, table,
+            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort,
+            separating_planes, fronts, pair, moved, scratch, table,
         )  # fmt: skip
         n_nodes += found.tally.nodes
         n_faces += found.tally.faces

@@ -199,8 +199,8 @@ def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
 
 @inline(one_caller=True)
 def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, separating_planes, fronts, pair,
-    moved, scratch, table,
+    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, separating_planes,
+    fronts, pair, moved, scratch, table,
 ):  # fmt: skip
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
 

@@ -45,8 +45,8 @@ class Fronts(NamedTuple):
 
     Attributes:
         entries: (POOL, 3) as above.
-        lower_bounds: (POOL,) [m] a lower bound on the distance of all node pairs of the entry, plus what both bodies had
-            moved by then.
+        lower_bounds: (POOL,) [m] a lower bound on the distance of all node pairs of the entry, plus both bodies'
+            displacements by then.
         spans: (p, 6) of each pair: its first place in the pool, its length, its room, its first length; searches
             until planes are sought again, and how many those were at the last time.
         used: (1,) places of the pool that are given away.

@@ -1,8 +1,8 @@
 """How far a body reaches along a direction, and which of its faces do: ways down one tree.
 
 A node whose faces look elsewhere holds nothing that is farthest along u: u or -u would be among the directions of
-its normal cone, for the reasons in `facing`, since beyond the farthest point there is nothing, as there is nothing
-between nearest points. Not for: two trees at once (`descent`).
+its normal cone, for the reasons in `normal_cones`, since beyond the farthest point there is nothing, as there is
+nothing between nearest points. Not for: two trees at once (`descent`).
 """
 
 import math
@@ -123,7 +123,7 @@ def top_of(surface, root, u, face, room, most, column, scratch):
 
 @inline(force=True)
 def high_corner(surface, root, u, face):
-    """A corner that is high along `u`, perhaps not the `SupportPoint`, on one way down the tree; the nodes that it took."""
+    """A corner that is high along `u`, perhaps not the `SupportPoint`; the nodes on the one way down to it."""
     top = _top_known(surface, face, u)
     node, n_nodes = np.int64(root), 1
     while not is_leaf(surface, node):

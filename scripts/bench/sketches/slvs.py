@@ -1,4 +1,4 @@
-"""SolveSpace's library on the same sketches. The one door to `python_solvespace`."""
+"""SolveSpace's library on the same sketches. The adapter of `python_solvespace`."""
 
 from __future__ import annotations
 
