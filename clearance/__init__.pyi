@@ -22,7 +22,7 @@ from .query.intersection import Intersection, intersect
 from .query.pair_query import Query
 from .query.penetration import penetration
 from .query.result import Nearest
-from .run import Run, check
+from .run import Question, Resources, Run, answer, check
 from .simulate.checker import Checker
 from .simulate.record import CrossCheck, Record
 from .simulate.workspace import Workspace, shared_workspace
@@ -51,7 +51,9 @@ __all__ = [
     "Polytope",
     "Profile",
     "Query",
+    "Question",
     "Record",
+    "Resources",
     "Robot",
     "Run",
     "Sketch",
@@ -60,6 +62,7 @@ __all__ = [
     "Undecided",
     "Workspace",
     "__version__",
+    "answer",
     "biarcs",
     "box",
     "capsule",

@@ -15,8 +15,8 @@ from clearance.cli.options import Millimetres, OutputPath, motion_option
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
-    from clearance.run import Run
-    from clearance.world.case import Limits
+    from clearance.run import Question, Run
+    from clearance.world.case import Case, Limits
 
 
 @click.command()
@@ -105,55 +105,67 @@ def check(
     (or near), 1 a limit is violated, 2 bad or suspect input, 3 the cross-check disagrees; the
     greatest that holds.
     """
-    from clearance.cli.places import (
-        refuse_inputs_of_cases,
-        require_file_place,
-        require_folder_place,
-    )
+    from clearance.cli.kept import kept_rows
     from clearance.cli.progress import shown_progress
-    from clearance.load.case_file import load_case
+    from clearance.run import Question, Resources, answer
+    from clearance.tolerance import CERTIFY_GAP
 
     if samples_only and (certify or certify_mm is not None):
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
     _require_extras(out, cross_check, motion)
-    require_folder_place(out)
-    require_file_place(junit)
+    _require_places(out, junit)
     _compile_ahead(quiet)
-    case = load_case(case_file)
-    refuse_inputs_of_cases([case], _outputs(out, junit))
-    limits = _limits(case.limits, fail_mm, warn_mm)
-    case = replace(case, accept=tuple(dict.fromkeys([*case.accept, *accept])))
-    from clearance.cli.kept import kept_rows
-    from clearance.run import check as answer
-    from clearance.tolerance import CERTIFY_GAP
-
-    certify = not samples_only and method == "exact"
-    passes = ["measuring"] + ["certifying"] * certify + ["cross-checking"] * cross_check
-    passes += ["looking into contacts"]
-    with kept_rows(out, quiet) as kept:
-        with shown_progress(quiet or as_json, passes) as progress:
-            run = answer(
-                case,
-                need=need,
-                jobs=jobs,
-                method=method,
-                motion=motion,
-                limits=limits,
-                certify=certify,
-                certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
-                cross_check=cross_check,
-                contact=contact,
-                progress=progress,
-                kept=kept,
-                paper_tolerance=paper_tolerance,
-            )
+    question = Question(
+        _case(case_file, _outputs(out, junit), fail_mm, warn_mm, accept),
+        need=need,
+        method=method,
+        motion=motion,
+        certify=not samples_only,
+        certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
+        cross_check=cross_check,
+        contact=contact,
+        paper_tolerance=paper_tolerance,
+    )
+    with kept_rows(out, quiet) as rows:
+        with shown_progress(quiet or as_json, _passes(question)) as progress:
+            run = answer(question, Resources(jobs, progress, rows))
             if out is not None or as_json:
                 run.record.work_out_contacts(progress)
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return ExitCode(run.verdict.exit_code)
+
+
+def _passes(question: Question) -> list[str]:
+    """What a run does over the steps, one after the other, as progress names it."""
+    passes = ["measuring"] + ["certifying"] * question.certify
+    return passes + ["cross-checking"] * question.cross_check + ["looking into contacts"]
+
+
+def _require_places(out: Path | None, junit: Path | None) -> None:
+    from clearance.cli.places import require_file_place, require_folder_place
+
+    require_folder_place(out)
+    require_file_place(junit)
+
+
+def _case(
+    case_file: Path,
+    outputs: list[Path],
+    fail: float | None,
+    warn: float | None,
+    accept: tuple[str, ...],
+) -> Case:
+    """The case with what the command line changes of it."""
+    from clearance.cli.places import refuse_inputs_of_cases
+    from clearance.load.case_file import load_case
+
+    case = load_case(case_file)
+    refuse_inputs_of_cases([case], outputs)
+    accepted = tuple(dict.fromkeys([*case.accept, *accept]))
+    return replace(case, limits=_limits(case.limits, fail, warn), accept=accepted)
 
 
 def _require_extras(out: Path | None, cross_check: bool, motion: str) -> None:
@@ -204,10 +216,10 @@ def _compile_ahead(quiet: bool) -> None:
         click.echo("compiling for this machine, once: about half a minute", err=True)
 
 
-def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits | None:
+def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits:
     """The limits with what the command line changes; raising `fail` alone takes `warn` along."""
     if fail is None and warn is None:
-        return None
+        return given
     if fail is None:
         fail = given.fail
     if warn is None:

@@ -11,20 +11,20 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from clearance.simulate.resumable_rows import MeasuredRows, open_resumable_rows
+from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows, open_resumable_rows
 
 SUFFIX = ".unfinished"
 
 
 @contextmanager
-def kept_rows(out: Path | None, quiet: bool) -> Iterator[MeasuredRows | None]:
-    """The resumable rows for the report folder `out`; None where no report is wanted.
+def kept_rows(out: Path | None, quiet: bool) -> Iterator[MeasuredRows]:
+    """The resumable rows for the report folder `out`; rows in memory where no report is wanted.
 
     Raises:
         Unwritable: another run is writing the same report, or there is no room.
     """
     if out is None:
-        yield None
+        yield IN_MEMORY
         return
     with open_resumable_rows(place_of(out), (lambda line: None) if quiet else _say) as rows:
         yield rows

@@ -1,4 +1,7 @@
-"""Answers a case: from the question, checked, over all that is found, to the record and what it comes to."""
+"""Answers a case: from the question, checked, over all that is found, to the record and what it comes to.
+
+Two ways in: `check` takes a case and the usual options; `answer` takes a `Question`, which has all of them.
+"""
 
 from __future__ import annotations
 
@@ -6,75 +9,55 @@ from os import PathLike
 
 from clearance.errors import BadInput
 from clearance.run.answers import answered
-from clearance.run.question import Means, Question, limited
+from clearance.run.question import DEFAULT_RESOURCES, Question, Resources, limited
 from clearance.run.result import Run
-from clearance.simulate.measure import Progress
-from clearance.simulate.resumable_rows import MeasuredRows
-from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 
-__all__ = ["Run", "check"]
+__all__ = ["Question", "Resources", "Run", "answer", "check"]
 
 
 def check(
     case: Case | str | PathLike[str],
     *,
     need: str = "steps",
-    method: str = "exact",
-    motion: str = "kinematic",
     limits: Limits | None = None,
     certify: bool = True,
-    certify_gap: float = CERTIFY_GAP,
     cross_check: bool = False,
     contact: str = "events",
-    jobs: int | None = None,
-    progress: Progress | None = None,
-    kept: MeasuredRows | None = None,
-    paper_tolerance: float | None = None,
+    motion: str = "kinematic",
+    resources: Resources = DEFAULT_RESOURCES,
 ) -> Run:
-    """The least clearance of every step of a case.
+    """The least clearance of every step of a case, and the proof for the motion between.
 
     Args:
         case: or the path of a case file.
-        need: "steps" for the clearance of every step; "pairs" for that of every pair at every step as well;
-            "limit" for the steps below the warn limit, with a proven lower bound for the others;
-            "minimum" for the least of all steps. The worst step is exact in each.
-        method: "exact", or "paper" for the first paper's algorithm as published (no guarantee).
-        motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
-            controlled robot makes of it.
+        need, certify, cross_check, contact, motion: as in `Question`, which has further options for `answer`.
         limits: instead of the case's.
-        certify: also prove a lower bound for the motion between the steps, joints moving linearly or, where
-            the trajectory has velocities, on cubics; the verdict then rests on it. Without it, and with method
-            "paper", which proves nothing, the verdict is of the samples only, and says so.
-        certify_gap: [m] how far that bound may be below a distance that occurs; no finer than rounding allows
-            (`tolerance.FINEST_CERTIFY_GAP`), with a warning.
-        cross_check: also ask FCL at every step.
-        contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
-            deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
-            The verdict does not depend on it.
-        jobs: threads, as many as the machine has to offer by default; the answer does not depend on it.
-        progress: called with steps done and all steps.
-        kept: where the rows are kept; in memory by default. In `open_resumable_rows` memory does not grow with
-            the steps, and the same question asked again goes on where an interrupted run was.
-        paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
+        resources: threads, progress, and where rows are kept; the answer does not depend on them.
 
     Raises:
-        BadInput: an unknown method, motion or need, or some that do not go together.
+        BadInput: an unknown motion or need, or some that do not go together.
         NothingToMeasure: no pair is left.
     """
+    asked = limited(case if isinstance(case, Case) else _loaded(case), limits)
     question = Question(
-        limited(case if isinstance(case, Case) else _loaded(case), limits),
+        asked,
         need=need,
-        method=method,
-        motion=motion,
         certify=certify,
-        certify_gap=certify_gap,
         cross_check=cross_check,
         contact=contact,
-        paper_tolerance=paper_tolerance,
+        motion=motion,
     )
-    means = Means(jobs, progress, kept or MeasuredRows())
-    return Run(answered(question, means), means.rows)
+    return answer(question, resources)
+
+
+def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
+    """What a question comes to.
+
+    Raises:
+        NothingToMeasure: no pair is left.
+    """
+    return Run(answered(question, resources), resources.rows)
 
 
 def _loaded(path: str | PathLike[str]) -> Case:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from clearance.run.question import Means, Question
+from clearance.run.question import Question, Resources
 from clearance.simulate import inside
 from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.kinematic import kinematic_motion
@@ -63,7 +63,7 @@ class Answers:
     cross_check: CrossCheck | None
 
 
-def answered(question: Question, means: Means) -> Record:
+def answered(question: Question, resources: Resources) -> Record:
     """The record of a question.
 
     Raises:
@@ -71,10 +71,10 @@ def answered(question: Question, means: Means) -> Record:
         BadInput: what only answering finds, as a profile that has no plane.
     """
     plan = _plan(question)
-    if means.rows.folder is not None:
+    if resources.rows.folder is not None:
         case = question.case
-        means.rows.ask(fingerprint(case, plan.motions, plan.pairs, question.of_rows))
-    return _record(plan, _answers(plan, means))
+        resources.rows.ask(fingerprint(case, plan.motions, plan.pairs, question.of_rows))
+    return _record(plan, _answers(plan, resources))
 
 
 def _plan(question: Question) -> MeasurementPlan:
@@ -96,11 +96,11 @@ def _motions(question: Question) -> tuple[Motion, ...]:
     )
 
 
-def _answers(plan: MeasurementPlan, means: Means) -> Answers:
+def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
     question = plan.question
-    found = _measurement(plan, means)
-    certificate = _certificate(plan, found, means) if question.certify else None
-    samples = _samples(plan, found, certificate, means)
+    found = _measurement(plan, resources)
+    certificate = _certificate(plan, found, resources) if question.certify else None
+    samples = _samples(plan, found, certificate, resources)
     return Answers(
         found,
         certificate,
@@ -108,41 +108,45 @@ def _answers(plan: MeasurementPlan, means: Means) -> Answers:
         _contacts(plan, found),
         _notices(plan, certificate),
         _profiles(samples),
-        _peer(samples, means) if question.cross_check else None,
+        _peer(samples, resources) if question.cross_check else None,
     )
 
 
-def _measurement(plan: MeasurementPlan, means: Means) -> Measurement:
+def _measurement(plan: MeasurementPlan, resources: Resources) -> Measurement:
     question = plan.question
     what = question.case, plan.motions, plan.pairs
     if question.method == "exact":
         return measure(
-            *what, question.need, jobs=means.jobs, progress=means.progress, kept=means.rows
+            *what,
+            question.need,
+            jobs=resources.jobs,
+            progress=resources.progress,
+            kept=resources.rows,
         )
     from clearance.query.paper import NO_TOLERANCE
     from clearance.simulate.measure_paper import measure_paper
 
-    return measure_paper(*what, means.progress, question.paper_tolerance or NO_TOLERANCE)
+    return measure_paper(*what, resources.progress, question.paper_tolerance or NO_TOLERANCE)
 
 
-def _certificate(plan: MeasurementPlan, found: Measurement, means: Means) -> Certificate:
+def _certificate(plan: MeasurementPlan, found: Measurement, resources: Resources) -> Certificate:
     from clearance.simulate.certify import certify_motion
 
     question = plan.question
     return certify_motion(
         question.case, plan.motions, plan.pairs, found, question.certify_gap,
-        need=question.need, jobs=means.jobs, progress=means.progress, kept=means.rows,
+        need=question.need, jobs=resources.jobs, progress=resources.progress, kept=resources.rows,
     )  # fmt: skip
 
 
 def _samples(
-    plan: MeasurementPlan, found: Measurement, certificate: Certificate | None, means: Means
+    plan: MeasurementPlan, found: Measurement, certificate: Certificate | None, resources: Resources
 ) -> Samples:
     case, motions, pairs = plan.question.case, plan.motions, plan.pairs
     simulated = plan.question.motion == "simulated"
     batches = step_table(case, motions, pairs, found, certificate=certificate, with_error=simulated)
     unmeasured = (*plan.unmeasured, *cut_throughout(case, pairs, found))
-    return Samples(case, motions, means.rows.table("steps", batches), unmeasured)
+    return Samples(case, motions, resources.rows.table("steps", batches), unmeasured)
 
 
 def _contacts(plan: MeasurementPlan, found: Measurement) -> Sequence[StepContact]:
@@ -174,10 +178,10 @@ def _profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
     return answer_profiles(samples)
 
 
-def _peer(samples: Samples, means: Means) -> CrossCheck:
+def _peer(samples: Samples, resources: Resources) -> CrossCheck:
     from clearance.crosscheck import cross_check
 
-    return cross_check(samples, means.progress)
+    return cross_check(samples, resources.progress)
 
 
 def _record(plan: MeasurementPlan, answers: Answers) -> Record:

@@ -25,8 +25,22 @@ class Question:
 
     Attributes:
         case: with the limits that hold, and all that is suspect about it.
-        need, method, motion, certify_gap, cross_check, contact, paper_tolerance: as in `check`.
-        certify: whether the motion between the steps is proven; never with method "paper", which proves nothing.
+        need: "steps" for the clearance of every step; "pairs" for that of every pair at every step as well;
+            "limit" for the steps below the warn limit, with a proven lower bound for the others;
+            "minimum" for the least of all steps. The worst step is exact in each.
+        method: "exact", or "paper" for the first paper's algorithm as published (no guarantee).
+        motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
+            controlled robot makes of it.
+        certify: also prove a lower bound for the motion between the steps, joints moving linearly or, where
+            the trajectory has velocities, on cubics; the verdict then rests on it. Without it, and with method
+            "paper", which proves nothing, the verdict is of the samples only, and says so.
+        certify_gap: [m] how far that bound may be below a distance that occurs; no finer than rounding allows
+            (`tolerance.FINEST_CERTIFY_GAP`), with a warning.
+        cross_check: also ask FCL at every step.
+        contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
+            deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
+            The verdict does not depend on it.
+        paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
 
     Raises:
         BadInput: an option that is unknown, or some that do not go together.
@@ -43,6 +57,9 @@ class Question:
     paper_tolerance: float | None = None
 
     def __post_init__(self) -> None:
+        if not isinstance(self.case, Case):
+            given = type(self.case).__name__
+            raise BadInput(f"a {given} is given", valid="a Case, as load_case reads one")
         for what, valid in (
             ("method", METHODS),
             ("motion", MOTIONS),
@@ -79,13 +96,14 @@ class Question:
 
 
 @dataclass(frozen=True, eq=False)
-class Means:
+class Resources:
     """What a run may use.
 
     Attributes:
-        jobs: threads; as many as the machine has to offer if None.
+        jobs: threads; as many as the machine has to offer if None. The answer does not depend on it.
         progress: called with steps done and all steps.
-        rows: where they are kept.
+        rows: where they are kept; in memory by default. In `open_resumable_rows` memory does not grow with the
+            steps, and the same question asked again goes on where an interrupted run was.
 
     Raises:
         BadInput: fewer than one thread.
@@ -98,6 +116,10 @@ class Means:
     def __post_init__(self) -> None:
         if self.jobs is not None and (not isinstance(self.jobs, int) or self.jobs < 1):
             raise BadInput(f"{self.jobs} jobs", valid="1 or more")
+
+
+DEFAULT_RESOURCES = Resources()
+"""All threads, nobody told, rows in memory."""
 
 
 def limited(case: Case, limits: Limits | None) -> Case:

@@ -105,14 +105,17 @@ def shapes(case: Case) -> list:
 
 def least(case: Case, contact: str) -> tuple[float, Run]:
     """[s] the least of some runs, after one to warm up, and the last run."""
-    cl.check(case, contact=contact, jobs=1)
-    found = [timed(lambda: cl.check(case, contact=contact, jobs=1)) for _ in range(RUNS)]
+    cl.check(case, contact=contact, resources=cl.Resources(jobs=1))
+    found = [
+        timed(lambda: cl.check(case, contact=contact, resources=cl.Resources(jobs=1)))
+        for _ in range(RUNS)
+    ]
     return min(seconds for seconds, _ in found), found[-1][1]
 
 
 def looked_at(case: Case) -> tuple[float, object]:
     """[s] what the deepest moments of a fresh run take when bodies are known, the least of two; the deepest."""
-    runs = [cl.check(case, jobs=1) for _ in range(2)]
+    runs = [cl.check(case, resources=cl.Resources(jobs=1)) for _ in range(2)]
     found = [timed(lambda run=run: run.record.deepest) for run in runs]
     return min(seconds for seconds, _ in found), found[0][1].known
 

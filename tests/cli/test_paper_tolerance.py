@@ -36,7 +36,7 @@ def test_the_tolerance_is_in_the_summary_and_the_report(tmp_path: Path) -> None:
 
 
 def test_a_report_without_one_says_so(tmp_path: Path) -> None:
-    cl.check(cl.load_case(SCENE), method="paper").save(tmp_path / "out")
+    cl.answer(cl.Question(cl.load_case(SCENE), method="paper")).save(tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_text()
     assert (
         "with no tolerance for its first rejection rule" in page
@@ -47,14 +47,15 @@ def test_a_report_without_one_says_so(tmp_path: Path) -> None:
 def test_what_is_farther_than_the_tolerance_is_left_out() -> None:
     case = cl.load_case(SCENE)
     all_in, some = (
-        cl.check(case, method="paper", paper_tolerance=t).record.tally for t in (100.0, 0.4)
+        cl.answer(cl.Question(case, method="paper", paper_tolerance=t)).record.tally
+        for t in (100.0, 0.4)
     )
     assert (
         all_in["cut_by_rule_1"] == 0 < some["cut_by_rule_1"]
         and some["measured"] < all_in["measured"]
     )
     with pytest.raises(cl.BadInput, match=r"a tolerance above 0\.01 m may do"):
-        cl.check(case, method="paper", paper_tolerance=0.01)
+        cl.answer(cl.Question(case, method="paper", paper_tolerance=0.01))
 
 
 @pytest.mark.parametrize(

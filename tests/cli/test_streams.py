@@ -115,9 +115,9 @@ BARELY_COMPILED = """
 import clearance.run
 from clearance import cli
 from clearance.errors import BadInput
-def check(case, **asked):  # which takes half a minute to compile where nothing is kept
+def answer(question, resources):  # which takes half a minute to compile where nothing is kept
     raise BadInput("nothing is measured here")
-clearance.run.check = check
+clearance.run.answer = answer
 cli.main()
 """
 

@@ -172,7 +172,7 @@ def test_junit_is_red_where_the_run_is_not_passed_whatever_was_asked(need, fail,
 def test_a_limit_that_is_only_not_proven_says_so_below_the_headline(name):
     """Nothing is below the limit, by a nanometre at most: a proof to 0.1 mm does not tell."""
     case = cl.load_case(BOX)
-    limit = float(cl.check(case, certify_gap=1e-9).certificate.lower_bound.min())
+    limit = float(cl.answer(cl.Question(case, certify_gap=1e-9)).certificate.lower_bound.min())
     limits = Limits(limit, limit) if name == "fail" else Limits(0.0, limit)
     run = cl.check(case, limits=limits)
     assert run.status == ("violated" if name == "fail" else "near")

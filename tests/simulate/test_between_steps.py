@@ -178,10 +178,10 @@ def test_neither_threads_nor_parts_change_the_moment(jobs, longest, monkeypatch)
     monkeypatch.setattr(parts, "LONGEST_PART", longest)
     assert measure.parts is parts.parts
     positions = [[-1.0 + 0.29 * i, 0.1 * np.sin(i)] for i in range(8)]
-    run = cl.check(sweeping(positions, PAST), jobs=jobs)
+    run = cl.check(sweeping(positions, PAST), resources=cl.Resources(jobs=jobs))
     known = run.record.worst
     assert (known.step, known.link, known.obstacle) == (3, "fore", "post")
-    again = cl.check(sweeping(positions, PAST), jobs=3 - jobs).record.worst
+    again = cl.check(sweeping(positions, PAST), resources=cl.Resources(jobs=3 - jobs)).record.worst
     assert (known.time, known.clearance, known.point_link) == (
         again.time,
         again.clearance,
@@ -190,27 +190,27 @@ def test_neither_threads_nor_parts_change_the_moment(jobs, longest, monkeypatch)
 
 
 def test_a_paper_run_is_of_the_samples():
-    run = cl.check(sweeping(THROUGH), method="paper")
+    run = cl.answer(cl.Question(sweeping(THROUGH), method="paper"))
     assert (run.verdict.basis, run.certificate) == ("samples", None)
 
 
 def test_a_gap_below_rounding_ends_and_says_what_it_became():
     case = sweeping(THROUGH, post_height=PAST)
-    run = cl.check(case, certify_gap=1e-300)
+    run = cl.answer(cl.Question(case, certify_gap=1e-300))
     (warning,) = run.verdict.warnings
     assert "rounding" in warning and run.certificate.gap > 1e-11
     assert 0.0 < run.certificate.gap < 1e-8
     bound, seen = run.certificate.lower_bound.min(), run.certificate.upper_bound.min()
     assert seen - run.certificate.gap <= bound <= seen
-    assert cl.check(case, certify_gap=1e-6).verdict.warnings == ()
+    assert cl.answer(cl.Question(case, certify_gap=1e-6)).verdict.warnings == ()
 
 
 def test_a_proof_that_takes_too_many_parts_is_widened_and_ends(monkeypatch):
     from clearance.simulate import certify
 
     case = sweeping(THROUGH, post_height=PAST)
-    tight = cl.check(case, certify_gap=1e-6).certificate
+    tight = cl.answer(cl.Question(case, certify_gap=1e-6)).certificate
     monkeypatch.setattr(certify, "MOST_PARTS", 4)
-    wide = cl.check(case, certify_gap=1e-6).certificate
+    wide = cl.answer(cl.Question(case, certify_gap=1e-6)).certificate
     assert wide.lower_bound[0] < tight.lower_bound[0] <= wide.upper_bound[0]
     assert wide.tally["queries"] < tight.tally["queries"]

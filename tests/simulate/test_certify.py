@@ -125,12 +125,12 @@ def test_a_gap_that_is_no_length_is_refused():
     )
     for gap in (0.0, -1.0, np.nan, np.inf):
         with pytest.raises(BadDimension):
-            cl.check(case, certify=True, certify_gap=gap)
+            cl.answer(cl.Question(case, certify=True, certify_gap=gap))
 
 
 def test_the_papers_method_certifies_nothing_and_the_verdict_says_so():
     case = one_joint_case(
         JointKind.PRISMATIC, cl.box((0.1, 0.1, 0.1)), cl.box((0.1, 0.1, 0.1)), at(z=2.0), [0.0, 1.0]
     )
-    run = cl.check(case, certify=True, method="paper")
+    run = cl.answer(cl.Question(case, certify=True, method="paper"))
     assert run.certificate is None and run.verdict.text() == "clear at the samples only"

@@ -43,7 +43,7 @@ def swaying_arm(random: np.random.Generator) -> Case:
 def test_bodies_with_clocks_of_their_own_miss_nothing(seed):
     case = swaying_arm(np.random.default_rng(seed))
     runs = {
-        need: cl.check(case, need=need, jobs=1, certify=False)
+        need: cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=1))
         for need in ("steps", "limit", "minimum")
     }
     truth = runs["steps"].steps["clearance"].to_numpy()

@@ -58,10 +58,12 @@ def saved_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(parts, "SPARSE", 1)
 
 
-def answer(case: Case, place: Path, said: list[str], **asked: object) -> dict[str, object]:
+def answer(
+    case: Case, place: Path, said: list[str], *, jobs=None, progress=None, **asked: object
+) -> dict[str, object]:
     """All that a run found whose rows were kept in `place`, after that is gone."""
     with open_resumable_rows(place, said.append) as kept:
-        run = cl.check(case, kept=kept, **asked)
+        run = cl.check(case, **asked, resources=cl.Resources(jobs, progress, kept))
         kept.let_go()
         found = told(run)
     assert not place.exists()
@@ -101,7 +103,7 @@ def stopping_at(count: int) -> Callable[[int, int], None]:
 def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
     case: Case, name: str, tmp_path: Path
 ) -> None:
-    memory = told(cl.check(case, jobs=1, **ASKED[name]))
+    memory = told(cl.check(case, **ASKED[name], resources=cl.Resources(jobs=1)))
     assert memory["tally"]["queries"] + memory["tally"]["pairs_skipped"] >= 160
     said: list[str] = []
     assert answer(case, tmp_path / "kept", said, jobs=2, **ASKED[name]) == memory
@@ -115,7 +117,7 @@ def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
             )
     with pytest.raises(Interrupted), open_resumable_rows(tmp_path / "kept", said.append) as kept:
         cl.check(
-            case, kept=kept, **ASKED[name]
+            case, **ASKED[name], resources=cl.Resources(rows=kept)
         )  # all is measured, and then the report is interrupted
         raise Interrupted
     assert answer(case, tmp_path / "kept", said, jobs=1, **ASKED[name]) == memory
@@ -130,9 +132,9 @@ def test_a_report_from_disk_has_the_bytes_of_one_from_memory(
     asked = {"need": "pairs", "certify": True}
     cl.check(case, **asked).save(tmp_path / "memory")
     with pytest.raises(Interrupted), open_resumable_rows(tmp_path / "kept", print) as kept:
-        cl.check(case, kept=kept, progress=stopping_at(15), **asked)
+        cl.check(case, **asked, resources=cl.Resources(progress=stopping_at(15), rows=kept))
     with open_resumable_rows(tmp_path / "kept", print) as kept:
-        cl.check(case, kept=kept, **asked).save(tmp_path / "disk")
+        cl.check(case, **asked, resources=cl.Resources(rows=kept)).save(tmp_path / "disk")
     names = sorted(path.name for path in (tmp_path / "memory").iterdir())
     assert names == sorted(path.name for path in (tmp_path / "disk").iterdir())
     for name in names:
@@ -198,7 +200,7 @@ def progress(done, total):
     if len(calls) == 9:
         os.kill(os.getpid(), signal.SIGKILL)
 with open_resumable_rows(pathlib.Path(sys.argv[2]), print) as kept:
-    cl.check(cl.load_case(sys.argv[1]), kept=kept, progress=progress)
+    cl.check(cl.load_case(sys.argv[1]), resources=cl.Resources(progress=progress, rows=kept))
 """
 
 
@@ -229,7 +231,7 @@ def test_a_run_whose_folder_is_gone_can_still_be_asked_and_saved(
     case: Case, tmp_path: Path
 ) -> None:
     with open_resumable_rows(tmp_path / "kept", print) as kept:
-        run = cl.check(case, kept=kept)
+        run = cl.check(case, resources=cl.Resources(rows=kept))
     assert list(run.record.pair_minima) == list(cl.check(case).record.pair_minima)
     run.save(tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
@@ -281,7 +283,9 @@ def most_memory(case: Case, folder: Path, jobs: int) -> int:
     """[bytes] numpy and Python take at most beside the case, from the sweep to the last file but the page."""
     tracemalloc.start()
     with open_resumable_rows(folder / "kept", print) as kept:
-        run = cl.check(case, need="pairs", certify=True, jobs=jobs, kept=kept)
+        run = cl.check(
+            case, need="pairs", certify=True, resources=cl.Resources(jobs=jobs, rows=kept)
+        )
         write_parquet(step_batches(run.record, kept), folder / "steps.parquet")
         write_csv(lambda: step_batches(run.record, kept), folder / "steps.csv")
         write_parquet(pair_batches(run.record, kept), folder / "pairs.parquet")

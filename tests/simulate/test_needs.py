@@ -88,7 +88,10 @@ def test_less_asked_is_less_done(runs: dict[str, cl.Run]) -> None:
 @pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
 def test_threads_change_nothing(need: str) -> None:
     case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
-    one, two, four = (cl.check(case, need=need, jobs=jobs, certify=False) for jobs in (1, 2, 4))
+    one, two, four = (
+        cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=jobs))
+        for jobs in (1, 2, 4)
+    )
     for other in (two, four):
         assert one.steps.equals(other.steps)
         assert one.record.tally == other.record.tally

@@ -26,7 +26,10 @@ def runs(request):
         pytest.skip("the shared cases are not beside this checkout")
     case = cl.load_case(path)
     needs = ("steps", "pairs", "limit", "minimum")
-    return {need: cl.check(case, need=need, jobs=1, certify=False) for need in needs}
+    return {
+        need: cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=1))
+        for need in needs
+    }
 
 
 def cut_to(placed, n_steps):
@@ -84,9 +87,9 @@ def test_the_minimum_tests_fewer_polygons_than_the_first_tenth_of_the_steps_wher
     if not path.exists():
         pytest.skip("the shared cases are not beside this checkout")
     case = cl.load_case(path)
-    least = cl.check(case, need="minimum", jobs=1, certify=False).record
+    least = cl.check(case, need="minimum", certify=False, resources=cl.Resources(jobs=1)).record
     n_steps = len(least.clearances)
     begun = replace(case, robots=tuple(cut_to(placed, n_steps // 10) for placed in case.robots))
-    tenth = cl.check(begun, need="steps", jobs=1, certify=False).record
+    tenth = cl.check(begun, need="steps", certify=False, resources=cl.Resources(jobs=1)).record
     assert len(tenth.clearances) == n_steps // 10
     assert least.tally["polygon_tests"] < tenth.tally["polygon_tests"]

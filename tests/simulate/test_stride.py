@@ -122,8 +122,8 @@ def test_a_finer_motion_takes_few_more_looks(name, need):
     )
     case = replace(case, robots=(finer,))
     whole, found = (
-        cl.check(case, jobs=1, certify=False),
-        cl.check(case, need=need, jobs=1, certify=False),
+        cl.check(case, certify=False, resources=cl.Resources(jobs=1)),
+        cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=1)),
     )
     share = 0.5 if (name, need) == ("panda_shelf", "limit") else 0.6
     assert found.record.tally["steps_passed_over"] > share * len(times)

@@ -86,7 +86,7 @@ def test_needs_and_threads_agree(run, need, jobs, monkeypatch):
     truth = run.steps["clearance"].to_numpy()
     limit = float(np.median(truth))
     case = replace(run.record.case, limits=cl.Limits(0.0, limit))
-    found = cl.check(case, need=need, jobs=jobs, certify=False).steps
+    found = cl.check(case, need=need, certify=False, resources=cl.Resources(jobs=jobs)).steps
     clearances = found["clearance"].to_numpy()
     known = ~np.isnan(clearances)
     must_know = {
