@@ -1,7 +1,7 @@
 """What only a file tells of values that look like a wrong unit: angles as they are written, scales, radii.
 
 Not for: what the case itself tells (`world.plausibility`), and values that cannot be right (`schema`,
-`trajectory_file`).
+`trajectory_csv`).
 """
 
 from __future__ import annotations
