@@ -136,7 +136,7 @@ class _Sweep:
         array = self.kept.array
         return KeptRows(
             array(f"{name}.clearance", (n_rows,)),
-            array(f"{name}.floor", (n_rows,)),
+            array(f"{name}.lower_bound", (n_rows,)),
             array(f"{name}.pair", (n_rows,), np.int64),
             array(f"{name}.points", (n_rows, 2, 3)),
         )

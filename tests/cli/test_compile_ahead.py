@@ -22,14 +22,13 @@ FROM_A_SECOND_PROCESS = """
 import json
 from clearance.cli import compile_ahead
 from clearance.compile import kernel_table
-from clearance.kernels.search import body_pair
-from clearance.kernels.search import separating_planes as parting
+from clearance.kernels.search import body_pair, separating_planes
 from clearance.kernels.features import refine
 told = {"kept": [kernel_table.is_kept(place) for place in compile_ahead.FIRST], "first": compile_ahead.start()}
 for place in compile_ahead.FIRST:
     kernel_table.compile_kernel(place)
-told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, refine.refine, parting.part)]
-told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, refine.refine, parting.part)]
+told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, refine.refine, separating_planes.separate)]
+told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, refine.refine, separating_planes.separate)]
 told["again"] = compile_ahead._start_once.__wrapped__()
 print(json.dumps(told))
 """

@@ -69,8 +69,8 @@ def answers_without_rules(n):
 
     rules = {
         "lower_bound_boxes": nothing_known,
-        "lower_bound_boxes_in_sight": nothing_known,
-        "lower_bound_faces_in_sight": lambda *_: -np.inf,
+        "lower_bound_boxes_along_direction": nothing_known,
+        "lower_bound_faces_along_direction": lambda *_: -np.inf,
         "sure_gap": lambda *_: -np.inf,
         "turned_away": lambda *_: 0,
     }

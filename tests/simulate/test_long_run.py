@@ -263,7 +263,7 @@ def test_a_refused_run_leaves_nothing(tmp_path: Path) -> None:
 def test_a_state_whose_rows_are_gone_is_not_believed(case: Case, tmp_path: Path) -> None:
     with pytest.raises(Interrupted):
         answer(case, tmp_path / "kept", [], progress=stopping_at(5))
-    (tmp_path / "kept" / "steps.floor.rows").write_bytes(b"torn")
+    (tmp_path / "kept" / "steps.lower_bound.rows").write_bytes(b"torn")
     said: list[str] = []
     assert answer(case, tmp_path / "kept", said) == told(cl.check(case))
     assert said == []

@@ -175,7 +175,8 @@ def test_needs_that_do_not_go_together_are_refused() -> None:
         ({"need": "all"}, "unknown need 'all'"),
         ({"need": "limit", "cross_check": True}, "cross-check needs every step"),
         ({"need": "pairs", "method": "paper"}, "method 'paper' measures every step"),
-        ({"jobs": 0}, "0 jobs"),
     ]:
         with pytest.raises(BadInput, match=told):
-            cl.check(case, **asked)
+            cl.answer(cl.Question(case, **asked))
+    with pytest.raises(BadInput, match="0 jobs"):
+        cl.Resources(jobs=0)

@@ -1,4 +1,4 @@
-"""Two planes part bodies by no more than their distance; only faces that touch them are as near as they say."""
+"""Two planes separate bodies by no more than their distance; only faces that touch them are as near as they say."""
 
 import math
 
@@ -45,7 +45,7 @@ def tops(surface, directions, rooms, heights, high, leaves, n_leaves):
 
 
 @kernel
-def partings(a, b, poses, points, limits, out, waiting, table):
+def separate_all(a, b, poses, points, limits, out, waiting, table):
     """Fills `out` (n, 3): what the planes prove [m], of all and of what does not wait, and the margin.
 
     b is at `poses` (n, 4, 4) in the frame of a; the search begins at `points` (n, 2, 3) in the frame of a.
@@ -74,7 +74,7 @@ def partings(a, b, poses, points, limits, out, waiting, table):
             slack,
             scratch,
         )
-        out[i, 0], out[i, 1], out[i, 2] = found.floor, found.beyond, margin
+        out[i, 0], out[i, 1], out[i, 2] = found.lower_bound, found.beyond, margin
         for k in range(found.n_waiting):
             waiting[i, k, 0] = a.children[~scratch.nodes[k, 0], 0]
             waiting[i, k, 1] = b.children[scratch.nodes[k, 1], 0]
@@ -142,7 +142,7 @@ def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> N
         [random.choice([math.inf, 0.5 * near.distance, 0.99 * near.distance]) for near in truths]
     )
     out, waiting = np.empty((n, 3)), np.full((n, 144, 2), -1)
-    call(partings, surface_of(a), surface_of(b), poses, points, limits, out, waiting)
+    call(separate_all, surface_of(a), surface_of(b), poses, points, limits, out, waiting)
     for i, near in enumerate(truths):
         floor, beyond, margin = out[i]
         if i < 4:
@@ -160,20 +160,20 @@ def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> N
 
 
 @pytest.mark.parametrize(
-    ("a", "b", "pose", "is_parted"),
+    ("a", "b", "pose", "are_separated"),
     [
         (ball(1.0, 2), ball(1.0, 2), at(2.5, 0.3, 0.1), True),
         (box((1.0, 1.0, 1.0)), cylinder(0.5, 2.0), at(1.0, 0.9, 1.6), True),
         (torus(0.8, 0.1, 24, 8), ball(0.2, 1), at(0.1), False),  # in the ring's hole
     ],
 )
-def test_where_hulls_are_as_far_apart_as_bodies_they_are_parted(
-    a: Polyhedron, b: Polyhedron, pose: np.ndarray, is_parted: bool
+def test_hulls_as_far_apart_as_their_bodies_are_separated(
+    a: Polyhedron, b: Polyhedron, pose: np.ndarray, are_separated: bool
 ) -> None:
     points = np.array([[[0.1, 0.0, 0.0], pose[:3, 3]]])
     out, waiting = np.empty((1, 3)), np.full((1, 144, 2), -1)
     call(
-        partings,
+        separate_all,
         surface_of(a),
         surface_of(b),
         pose[None],
@@ -182,10 +182,10 @@ def test_where_hulls_are_as_far_apart_as_bodies_they_are_parted(
         out,
         waiting,
     )
-    assert (waiting[0, 0, 0] >= 0) == is_parted
+    assert (waiting[0, 0, 0] >= 0) == are_separated
     assert (
         out[0, 0] == pytest.approx(cl.distance(a, b, pose_b=pose).distance, rel=1e-9)
-    ) == is_parted
+    ) == are_separated
 
 
 @kernel
