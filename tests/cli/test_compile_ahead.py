@@ -27,8 +27,9 @@ from clearance.kernels.features import refine
 told = {"kept": [kernel_table.is_kept(place) for place in compile_ahead.FIRST], "first": compile_ahead.start()}
 for place in compile_ahead.FIRST:
     kernel_table.compile_kernel(place)
-told["taken"] = [sum(f.stats.cache_hits.values()) for f in (body_pair.search, refine.refine, separating_planes.separate)]
-told["made"] = [sum(f.stats.cache_misses.values()) for f in (body_pair.search, refine.refine, separating_planes.separate)]
+kernels = (body_pair.search, refine.refine, separating_planes.separate)
+told["taken"] = [sum(f.stats.cache_hits.values()) for f in kernels]
+told["made"] = [sum(f.stats.cache_misses.values()) for f in kernels]
 told["again"] = compile_ahead._start_once.__wrapped__()
 print(json.dumps(told))
 """

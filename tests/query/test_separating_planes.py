@@ -1,4 +1,4 @@
-"""Two planes separate bodies by no more than their distance; only faces that touch them are as near as they say."""
+"""Two planes separate bodies by no more than their distance; only faces touching them are as near as they say."""
 
 import math
 
