@@ -183,6 +183,11 @@ def _compile_here(place: int) -> None:
 def _type_of(value: object) -> types.Type:
     if isinstance(value, LentArgument):
         return types.CPointer(numba.typeof(value.value))
+    if isinstance(value, tuple):  # numba.typeof knows nothing of what is lent within
+        return types.BaseTuple.from_types(
+            tuple(_type_of(item) for item in value),
+            type(value) if hasattr(value, "_fields") else None,
+        )
     return numba.typeof(value)
 
 

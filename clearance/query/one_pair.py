@@ -12,7 +12,13 @@ from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.geometry.tree import surface_of
 from clearance.kernels.search.body_pair import NO_FACE
-from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.pair_query import (
+    AFRESH,
+    POSES_ARE_RIGID,
+    ROOM,
+    hold_pair,
+    nearest_at_poses,
+)
 from clearance.kernels.search.scratch import Scratch, new_scratch
 from clearance.query.inside import doubt_of
 from clearance.query.result import Nearest
@@ -39,19 +45,18 @@ class OnePair:
         require_polyhedron(a, "a"), require_polyhedron(b, "b")
         self.held = hold_pair(surface_of(a), surface_of(b), ROOM if goes_on else 0, scratch)
         self.doubt = doubt_of(a, b)
-        self._goes_on = goes_on
+        self._how = 0 if goes_on else AFRESH
         self._poses, self._rows = (np.empty((1, 4, 4)), np.empty((1, 4, 4))), answer_rows(1)
 
     def nearest(self, given_a: np.ndarray | None, given_b: np.ndarray | None) -> Nearest:
         """The answer at one pose of each, (4, 4) or None for the identity."""
         pose_a, pose_b = _pose(given_a), _pose(given_b)
         self._poses[0][0], self._poses[1][0] = pose_a, pose_b
-        if (
-            call(nearest_at_poses, self.held, *self._poses, False, not self._goes_on, *self._rows)
-            >= 0
-        ):
+        how = self._how
+        if call(nearest_at_poses, self.held, *self._poses, how, *self._rows) >= 0:
             validated_pose(pose_a), validated_pose(pose_b)
-            call(nearest_at_poses, self.held, *self._poses, True, not self._goes_on, *self._rows)
+            how |= POSES_ARE_RIGID
+            call(nearest_at_poses, self.held, *self._poses, how, *self._rows)
         numbers, points, counts = self._rows
         ((distance, error),), (point_a, point_b) = numbers.tolist(), points[0].copy()
         ((face_a, face_b, n_nodes, n_faces, n_exact),) = counts.tolist()

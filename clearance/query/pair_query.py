@@ -17,7 +17,7 @@ from clearance.compile.kernel_table import call
 from clearance.errors import BadShape, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
-from clearance.kernels.search.pair_query import nearest_at_poses
+from clearance.kernels.search.pair_query import POSES_ARE_RIGID, nearest_at_poses
 from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import OnePair, answer_rows
 from clearance.query.result import Nearest
@@ -122,15 +122,11 @@ class Query:
         numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
         with self._alone() as pair:
             held = pair.held
-            if (
-                call(
-                    nearest_at_poses, held, poses_a, poses_b, False, False, numbers, points, counts
-                )
-                >= 0
-            ):
+            if call(nearest_at_poses, held, poses_a, poses_b, 0, numbers, points, counts) >= 0:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
-                call(nearest_at_poses, held, poses_a, poses_b, True, False, numbers, points, counts)
+                how = POSES_ARE_RIGID
+                call(nearest_at_poses, held, poses_a, poses_b, how, numbers, points, counts)
         distances = numbers[:, 0].copy()
         undecided = _undecided(pair, distances, poses_a, poses_b)
         return NearestAtPoses(

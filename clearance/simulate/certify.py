@@ -16,7 +16,9 @@ from clearance.geometry.edges import rings_of
 from clearance.kernels.mesh.surface import ANYTHING, Surface
 from clearance.kernels.motion.certify import (
     CertificateGoal,
+    CertifiedMotion,
     CertifiedPairs,
+    CertifiedSteps,
     IntervalBounds,
     certify,
 )
@@ -223,11 +225,10 @@ class _Work:
             ends = slice(span.start, span.stop + 1)
             nearest = np.searchsorted(self.chosen, self.question.found.pair[span])
             own = IntervalBounds(*(column[span] for column in bounds))
-            call(
-                certify, self.surface, self.tree, self.asked, _joint_path(self.motion, ends),
-                np.maximum(nearest, 0) % len(self.chosen), 0, span.stop - span.start,
-                self.question.distances(ends), self.question.aim, own, counts,
-            )  # fmt: skip
+            motion = CertifiedMotion(self.tree, _joint_path(self.motion, ends), self.asked)
+            order = np.maximum(nearest, 0) % len(self.chosen)
+            steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
+            call(certify, self.surface, motion, steps, self.question.aim, own, counts)
             seen = own.pair >= 0
             own.pair[seen] = self.chosen[own.pair[seen]]
             return span.stop, counts

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.kernels.motion.sweep import NOT_LESS, FirstLook, Goal, sweep
-from clearance.kernels.motion.sweep_rows import PairRows, StepRows
+from clearance.kernels.motion.sweep import NOT_LESS, FirstLook, Goal, SweptSteps, sweep
+from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.simulate.layout import Layout, lay_out, positions_at
 from clearance.simulate.parts import blocks, in_order, parts, usable_cores
 from clearance.simulate.resumable_rows import MeasuredRows
@@ -152,12 +152,10 @@ class _Sweep:
             sweep,
             self.layout.surface,
             self.layout.world,
-            positions,
-            numbers,
+            SweptSteps(positions, numbers),
             goal,
             first,
-            rows,
-            found,
+            SweepRows(rows, found),
             counts,
         )
         return counts

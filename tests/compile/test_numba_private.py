@@ -266,7 +266,7 @@ def ask_for_sum(x, numbers, table):
 
 def test_a_kernel_is_called_by_its_address_and_what_it_raises_is_handed_on(place):
     like = (Vec3(0.0, 0.0, 0.0), np.zeros(1))
-    apart(place, lambda: (kernel_table.Lent(like),))(sum_of)
+    apart(place, lambda: (kernel_table.LentArgument(like),))(sum_of)
     asking = kernel(ask_for_sum)
     assert call(asking, 1.0, np.array([0.0, 4.0])) == 10.0
     if not numba.config.DISABLE_JIT:

@@ -95,10 +95,11 @@ def meetings(n):
     from clearance.kernels.arithmetic.predicates import new_exact_scratch
     from clearance.kernels.arithmetic.vec3 import rigid
     from clearance.kernels.features.meeting import meeting
+    from clearance.kernels.features.posed_pair import PosedPair
 
     @numba.njit(error_model="numpy")
     def meet(one, i, two, j, frames, exact):
-        return meeting(lend(one), i, lend(two), j, frames, exact)
+        return meeting(PosedPair(lend(one), i, lend(two), j, frames), exact)
 
     exact, found = new_exact_scratch(), []
     for a, b, pose in body_pairs(n):

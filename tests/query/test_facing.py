@@ -19,12 +19,13 @@ from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.features.bounds import direction_between, rounding_slack
 from clearance.kernels.mesh.normal_cones import CONE_ROWS, NO_CONE
 from clearance.kernels.search.node_pairs import (
+    NodeGroup,
     bounds_of_group,
     turned_away,
     turned_away_while,
     views_along,
 )
-from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.pair_query import POSES_ARE_RIGID, ROOM, hold_pair, nearest_at_poses
 from clearance.kernels.search.scratch import new_scratch
 from clearance.query.one_pair import answer_rows
 from tests import oracle
@@ -48,16 +49,17 @@ def all_turned_away(a, b, pose_a, pose_b, of_a, of_b):
     """Fills, for each pair of nodes (i, j) that are apart, if i is left out from j, and j from i."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    from_a, from_b = views_along(
+    views = views_along(
         direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
     )
     for i in range(len(a.children)):
         for j in range(len(b.children)):
-            bounds = bounds_of_group(a, b, from_a, from_b, i // WIDTH, j, False, ALL, slack, np.inf)
-            away = turned_away(a, b, from_a, from_b, i // WIDTH, j, False, slack)
+            group_a, group_b = NodeGroup(False, i // WIDTH, j), NodeGroup(True, j // WIDTH, i)
+            bounds = bounds_of_group(a, b, views, group_a, ALL, slack, np.inf)
+            away = turned_away(a, b, views, group_a, slack)
             of_a[i, j] = lane(bounds, i % WIDTH) > 0.0 and away >> i % WIDTH & 1
-            bounds = bounds_of_group(a, b, from_a, from_b, j // WIDTH, i, True, ALL, slack, np.inf)
-            away = turned_away(a, b, from_a, from_b, j // WIDTH, i, True, slack)
+            bounds = bounds_of_group(a, b, views, group_b, ALL, slack, np.inf)
+            away = turned_away(a, b, views, group_b, slack)
             of_b[i, j] = lane(bounds, j % WIDTH) > 0.0 and away >> j % WIDTH & 1
 
 
@@ -198,15 +200,15 @@ def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
     """As `all_turned_away`, in all of a motion about these poses, also where nodes are not apart."""
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     slack = rounding_slack(a, a.roots[0], b, b.roots[0], frames)
-    from_a, from_b = views_along(
+    views = views_along(
         direction_between(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 1.0), frames.m), frames.m
     )
     motion = np.cos(turn), np.sin(turn), way
     for i in range(len(a.children)):
         for j in range(len(b.children)):
-            away = turned_away_while(a, b, from_a, from_b, i // WIDTH, j, False, slack, *motion)
+            away = turned_away_while(a, b, views, NodeGroup(False, i // WIDTH, j), slack, *motion)
             of_a[i, j] = away >> i % WIDTH & 1
-            away = turned_away_while(a, b, from_a, from_b, j // WIDTH, i, True, slack, *motion)
+            away = turned_away_while(a, b, views, NodeGroup(True, j // WIDTH, i), slack, *motion)
             of_b[i, j] = away >> j % WIDTH & 1
 
 
@@ -257,7 +259,7 @@ def asked(a, b, poses):
     """Answers at all poses in turn, of contacts only that they are; then how many nodes and faces it took."""
     numbers, points, counts = answer_rows(len(poses))
     held = hold_pair(a, b, ROOM, new_scratch())
-    call(nearest_at_poses, held, np.eye(4)[None], poses, True, False, numbers, points, counts)
+    call(nearest_at_poses, held, np.eye(4)[None], poses, POSES_ARE_RIGID, numbers, points, counts)
     apart = numbers[:, 0] > 0.0
     told = numbers.tobytes(), points[apart].tobytes(), counts[apart, :2].tobytes()
     return told, counts[:, 2:4].sum(axis=0)

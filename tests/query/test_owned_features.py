@@ -10,7 +10,7 @@ from clearance.compile.kernel_table import call
 from clearance.geometry.shapes import box, cylinder, pipe, sphere
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import ANYTHING, LISTED
-from clearance.kernels.search.pair_query import ROOM, hold_pair, nearest_at_poses
+from clearance.kernels.search.pair_query import AFRESH, ROOM, hold_pair, nearest_at_poses
 from clearance.kernels.search.scratch import new_scratch
 from tests.examples import examples
 from tests.made_cases import torus, without_cones
@@ -62,7 +62,16 @@ def answers(a, b, poses, *, afresh):
         np.empty((n, 5), dtype=np.int64),
     )
     assert (
-        call(nearest_at_poses, held, np.eye(4)[None], poses, False, afresh, numbers, points, counts)
+        call(
+            nearest_at_poses,
+            held,
+            np.eye(4)[None],
+            poses,
+            AFRESH if afresh else 0,
+            numbers,
+            points,
+            counts,
+        )
         == -1
     )
     return b"".join(x.tobytes() for x in (numbers, points, counts[:, :2].copy())), int(

@@ -10,8 +10,9 @@ from clearance.geometry.shapes import cylinder
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
-from clearance.kernels.search.front import POOL, no_fronts
+from clearance.kernels.search.front import POOL, PairFront, no_fronts
 from clearance.kernels.search.scratch import new_scratch
 from tests.made_cases import SOLIDS, at
 from tests.strategies import rotations
@@ -34,7 +35,8 @@ def searches(a, b, poses, limits, wanted, seeds, moved, out, table):
             face_a, face_b = seeds[i, 0], seeds[i, 1]
         asked = PairQuestion(limits[i], wanted[i], face_a, face_b, True, TO_THE_END, False)
         frames = frames_of(rigid(np.eye(4)), rigid(poses[i]))
-        found = measure_pair(lent_a, 0, lent_b, 0, frames, asked, fronts, 0, way, scratch, table)
+        bodies = PosedPair(lent_a, 0, lent_b, 0, frames)
+        found = measure_pair(table, bodies, asked, PairFront(fronts, 0, way), scratch)
         out[i, 0] = np.sqrt(found.hit.gap_sq) if found.hit.face_a != 2**62 else np.inf
         out[i, 1] = found.lower_bound
         face_a, face_b = found.face_a, found.face_b

@@ -13,9 +13,9 @@ from clearance.geometry.shapes import box, cylinder, pipe
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
-from clearance.kernels.features.bounds import rounding_slack
+from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.face_pair import Hit
-from clearance.kernels.search.descent import margin_of
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.search.front import (
     forget,
     is_worth_separating,
@@ -57,24 +57,12 @@ def separate_all(a, b, poses, points, limits, out, waiting, table):
     for i in range(len(poses)):
         frames = frames_of(rigid(np.eye(4)), rigid(poses[i]))
         slack = rounding_slack(a, root_a, b, root_b, frames)
-        margin = margin_of(slack)
         p = Vec3(points[i, 0, 0], points[i, 0, 1], points[i, 0, 2])
         q = Vec3(points[i, 1, 0], points[i, 1, 1], points[i, 1, 2])
         begin = Hit(np.inf, 2**62, 2**62, p, q)
-        found = separating_planes_of(
-            table,
-            lent_a,
-            root_a,
-            lent_b,
-            root_b,
-            frames.m,
-            begin,
-            limits[i],
-            margin,
-            slack,
-            scratch,
-        )
-        out[i, 0], out[i, 1], out[i, 2] = found.lower_bound, found.beyond, margin
+        roots = PosedPair(lent_a, root_a, lent_b, root_b, frames)
+        found = separating_planes_of(table, roots, begin, limits[i], slack, scratch)
+        out[i, 0], out[i, 1], out[i, 2] = found.lower_bound, found.beyond, margin_of(slack)
         for k in range(found.n_waiting):
             waiting[i, k, 0] = a.children[~scratch.nodes[k, 0], 0]
             waiting[i, k, 1] = b.children[scratch.nodes[k, 1], 0]

@@ -168,6 +168,9 @@ def test_limits_are_numbers_of_metres():
     assert cl.check(case).status == "suspect"  # a limit of a metre
     with pytest.raises(BadDimension, match="'a'"):
         cl.Limits(fail="a")
-    for wrong in ({"limits": (0.1, 0.2)}, {"certify_gap": "a"}, {"jobs": "2"}):
-        with pytest.raises(cl.BadInput):
-            cl.check(case, **wrong)
+    with pytest.raises(cl.BadInput):
+        cl.check(case, limits=(0.1, 0.2))
+    with pytest.raises(cl.BadInput):
+        cl.Question(case, certify_gap="a")
+    with pytest.raises(cl.BadInput):
+        cl.Resources(jobs="2")

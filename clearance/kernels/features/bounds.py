@@ -254,6 +254,12 @@ def rounding_slack(a, root_a, b, root_b, frames):
     return (SLACK + 8.0 * frames.defect) * (apart + _reach(a, root_a) + _reach(b, root_b))
 
 
+@inline
+def margin_of(slack):
+    """[m] the rounding of a distance between two points of the bodies, with room, of their `rounding_slack`."""
+    return 4.0 * slack
+
+
 @inline(force=True)
 def displacement(surface, root, before, after):
     """[m] an upper bound on how far a motion of the body from one pose to another moves any of its points.

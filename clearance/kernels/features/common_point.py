@@ -6,9 +6,8 @@ Not for: whether they meet (`predicates`).
 from typing import NamedTuple
 
 from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import COMMON_POINT, apart, at_address
+from clearance.compile.kernel_table import COMMON_POINT, apart, at_address, borrow
 from clearance.kernels.arithmetic.double_double import (
-    FRAMES_AT_REST,
     ZERO3,
     Wide3,
     along3,
@@ -23,8 +22,8 @@ from clearance.kernels.arithmetic.double_double import (
 )
 from clearance.kernels.arithmetic.vec3 import row
 from clearance.kernels.features.meeting import NO_MEETING
+from clearance.kernels.features.posed_pair import posed_pair_like
 from clearance.kernels.features.wide_features import point_and_triangle, two_segments
-from clearance.kernels.mesh.surface import surface_like
 
 
 class CommonPointPair(NamedTuple):
@@ -54,19 +53,21 @@ def _of_edge_and_triangle(p, q, x, y, z):
     return CommonPointPair(best.p, best.q)
 
 
-@apart(COMMON_POINT, lambda: (surface_like(), 0, surface_like(), 0, FRAMES_AT_REST, NO_MEETING))
-def common_point(a, face_a, b, face_b, frames, found):
+@apart(COMMON_POINT, lambda: (posed_pair_like(), NO_MEETING))
+def common_point(faces, found):
     """The points of two faces nearest to coinciding, where an edge was found to meet a triangle."""
+    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    frames = faces.frames
     if found.edge_of_a:
         p = point_of_a(frames, row(a.exact, a.face_vertices[found.p]))
         q = point_of_a(frames, row(a.exact, a.face_vertices[found.q]))
-        x = point_of_b(frames, row(b.exact, b.face_vertices[b.face_starts[face_b]]))
+        x = point_of_b(frames, row(b.exact, b.face_vertices[b.face_starts[faces.b]]))
         y = point_of_b(frames, row(b.exact, b.face_vertices[found.k]))
         z = point_of_b(frames, row(b.exact, b.face_vertices[found.k + 1]))
         return _of_edge_and_triangle(p, q, x, y, z)
     p = point_of_b(frames, row(b.exact, b.face_vertices[found.p]))
     q = point_of_b(frames, row(b.exact, b.face_vertices[found.q]))
-    x = point_of_a(frames, row(a.exact, a.face_vertices[a.face_starts[face_a]]))
+    x = point_of_a(frames, row(a.exact, a.face_vertices[a.face_starts[faces.a]]))
     y = point_of_a(frames, row(a.exact, a.face_vertices[found.k]))
     z = point_of_a(frames, row(a.exact, a.face_vertices[found.k + 1]))
     common = _of_edge_and_triangle(p, q, x, y, z)
@@ -77,6 +78,6 @@ _NOWHERE = CommonPointPair(ZERO3, ZERO3)
 
 
 @inline(one_caller=True)
-def common_point_of(table, a, face_a, b, face_b, frames, found):
+def common_point_of(table, faces, found):
     """The same by address."""
-    return at_address(table, COMMON_POINT, _NOWHERE, (a, face_a, b, face_b, frames, found))
+    return at_address(table, COMMON_POINT, _NOWHERE, (faces, found))

@@ -47,6 +47,13 @@ class Hit(NamedTuple):
 
 
 @inline
+def nothing_yet(limit_sq):
+    """The hit that any pair of points within the limit beats."""
+    nowhere = Vec3(0.0, 0.0, 0.0)
+    return Hit(limit_sq, 2**62, 2**62, nowhere, nowhere)
+
+
+@inline
 def write_points(hit, points):
     """Fills `points` (2, 3) with those of a hit."""
     for axis in range(3):
@@ -94,14 +101,14 @@ def limit_of(a, face_a, b, face_b, best_gap, margin):
 
 
 @inline(force=True)
-def take(near, found_sq, upper_sq, face_a, face_b, p, q, kind, i, j):
-    """`near` with one more candidate, which is within the limit."""
-    best = near.best
-    if upper_sq < best.gap_sq:
-        best = Hit(upper_sq, face_a, face_b, p, q)
-    if found_sq < near.seen.near_sq:
-        return FacePairState(best, FeatureCandidate(found_sq, kind, i, j))
-    return FacePairState(best, near.seen)
+def take(near, hit, candidate):
+    """`near` with one more pair of points and of features, which are within the limit."""
+    best, seen = near.best, near.seen
+    if hit.gap_sq < best.gap_sq:
+        best = hit
+    if candidate.near_sq < seen.near_sq:
+        seen = candidate
+    return FacePairState(best, seen)
 
 
 @inline(force=True)
@@ -160,7 +167,8 @@ def vertices_to_face(a, face_a, b, face_b, m, limit_sq, margin, near):
             if h * h <= limit_sq and is_over(b, face_b, x):
                 q = move(m, along(x, -h, row(b.normals, face_b)))
                 upper_sq = _upper_sq(b, face_b, h, margin)
-                near = take(near, h * h, upper_sq, face_a, face_b, p, q, CORNER_FACE, i, 0)
+                hit = Hit(upper_sq, face_a, face_b, p, q)
+                near = take(near, hit, FeatureCandidate(h * h, CORNER_FACE, i, 0))
     return near
 
 
@@ -176,7 +184,8 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
             if h * h <= limit_sq and is_over(a, face_a, q):
                 p = along(q, -h, row(a.normals, face_a))
                 upper_sq = _upper_sq(a, face_a, h, margin)
-                near = take(near, h * h, upper_sq, face_a, face_b, p, q, FACE_CORNER, 0, j)
+                hit = Hit(upper_sq, face_a, face_b, p, q)
+                near = take(near, hit, FeatureCandidate(h * h, FACE_CORNER, 0, j))
         for e in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[e, 0])
             p1 = row(a.vertices, a.owned_edges[e, 1])
@@ -184,7 +193,8 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGE_CORNER, e, j)
+                    hit = Hit(found_sq, face_a, face_b, p, q)
+                    near = take(near, hit, FeatureCandidate(found_sq, EDGE_CORNER, e, j))
     return near
 
 
@@ -213,7 +223,8 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNER_EDGE, i, e)
+                    hit = Hit(found_sq, face_a, face_b, p, q)
+                    near = take(near, hit, FeatureCandidate(found_sq, CORNER_EDGE, i, e))
         for i in range(a.edge_starts[face_a], a.edge_starts[face_a + 1]):
             p0 = row(a.vertices, a.owned_edges[i, 0])
             p1 = row(a.vertices, a.owned_edges[i, 1])
@@ -223,7 +234,8 @@ def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
             if inside:
                 found_sq = gap_sq(p, q)
                 if found_sq <= limit_sq:
-                    near = take(near, found_sq, found_sq, face_a, face_b, p, q, EDGES, i, e)
+                    hit = Hit(found_sq, face_a, face_b, p, q)
+                    near = take(near, hit, FeatureCandidate(found_sq, EDGES, i, e))
     return near
 
 
@@ -238,7 +250,8 @@ def vertices_to_vertices(a, face_a, b, face_b, m, limit_sq, near):
             p = row(a.vertices, i)
             found_sq = gap_sq(p, q)
             if found_sq <= limit_sq:
-                near = take(near, found_sq, found_sq, face_a, face_b, p, q, CORNERS, i, j)
+                hit = Hit(found_sq, face_a, face_b, p, q)
+                near = take(near, hit, FeatureCandidate(found_sq, CORNERS, i, j))
     return near
 
 

@@ -5,12 +5,12 @@ apart. Each pair of triangles is convex and has one that does: that between its 
 """
 
 from clearance.compile.jit import inline, kernel
-from clearance.compile.kernel_table import FANS, LentArgument, apart, at_address, borrow
-from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, less, lesser
+from clearance.compile.kernel_table import FANS, apart, at_address, borrow
+from clearance.kernels.arithmetic.double_double import less, lesser
 from clearance.kernels.features.face_lower_bounds import CornerRange, corners_of, lower_bound_along
 from clearance.kernels.features.feature import simplex
+from clearance.kernels.features.posed_pair import posed_pair_like
 from clearance.kernels.features.wide_features import NOTHING_SIZED, Simplex, wide_feature
-from clearance.kernels.mesh.surface import surface_like
 
 MOST = 64
 """Triangle pairs that are worth it; faces of more keep the bound of their convex hulls."""
@@ -51,26 +51,18 @@ def _nearest_of_triangles(frames, one, two):
 
 def _like():
     far = NOTHING_SIZED.length
-    return (
-        LentArgument(surface_like()),
-        0,
-        LentArgument(surface_like()),
-        0,
-        FRAMES_AT_REST,
-        NOTHING_SIZED.pair,
-        far,
-        far,
-    )
+    return posed_pair_like(), NOTHING_SIZED.pair, far, far
 
 
 @apart(FANS, _like)
-def lower_bound_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, lower_bound):
+def lower_bound_of_fans(faces, pair, least, lower_bound):
     """[m] `lower_bound`, or a greater lower bound on the distance of two faces.
 
     Args:
         least: (`Wide`) the lower bound that is enough: triangles that have it along `pair` are not looked at.
     """
-    a, b = borrow(lent_a), borrow(lent_b)
+    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    face_a, face_b, frames = faces.a, faces.b, faces.frames
     start_a, end_a = a.face_starts[face_a], a.face_starts[face_a + 1]
     start_b, end_b = b.face_starts[face_b], b.face_starts[face_b + 1]
     if (end_a - start_a - 2) * (end_b - start_b - 2) > MOST:
@@ -92,8 +84,6 @@ def lower_bound_of_fans(lent_a, face_a, lent_b, face_b, frames, pair, least, low
 
 
 @inline
-def fans_lower_bound_of(table, lent_a, face_a, lent_b, face_b, frames, pair, least, lower_bound):
+def fans_lower_bound_of(table, faces, pair, least, lower_bound):
     """The same by address."""
-    return at_address(
-        table, FANS, lower_bound, (lent_a, face_a, lent_b, face_b, frames, pair, least, lower_bound)
-    )
+    return at_address(table, FANS, lower_bound, (faces, pair, least, lower_bound))

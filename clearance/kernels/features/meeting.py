@@ -7,8 +7,8 @@ definite surface. Not for: where they meet (`common_point`).
 from typing import NamedTuple
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import MEETING, LentArgument, apart, at_address, borrow
-from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST, size
+from clearance.compile.kernel_table import MEETING, apart, at_address, borrow
+from clearance.kernels.arithmetic.double_double import size
 from clearance.kernels.arithmetic.predicates import (
     PosedVertex,
     new_exact_scratch,
@@ -18,7 +18,7 @@ from clearance.kernels.arithmetic.predicates import (
 from clearance.kernels.arithmetic.vec3 import dot, move, move_back, row, sub
 from clearance.kernels.features.bounds import SLACK
 from clearance.kernels.features.face_pair import ROUGH, has_plane, height
-from clearance.kernels.mesh.surface import surface_like
+from clearance.kernels.features.posed_pair import posed_pair_like
 
 
 @inline
@@ -134,25 +134,15 @@ def _edges_clearly_miss(one, face_one, two, face_two, edge_of_a, frames):
     return True
 
 
-def _like():
-    return (
-        LentArgument(surface_like()),
-        0,
-        LentArgument(surface_like()),
-        0,
-        FRAMES_AT_REST,
-        new_exact_scratch(),
-    )
-
-
-@apart(MEETING, _like)
-def meeting(lent_a, face_a, lent_b, face_b, frames, exact):
+@apart(MEETING, lambda: (posed_pair_like(), new_exact_scratch()))
+def meeting(faces, exact):
     """Where two faces have a point in common, exactly: the first edge and triangle found to meet.
 
     Of two flat faces that meet an edge of one meets the other. Where one is bent, its fan's diagonals are
     edges too.
     """
-    a, b = borrow(lent_a), borrow(lent_b)
+    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    face_a, face_b, frames = faces.a, faces.b, faces.frames
     bent = a.bent[face_a] or b.bent[face_b]
     if (
         not bent
@@ -176,6 +166,6 @@ def meeting(lent_a, face_a, lent_b, face_b, frames, exact):
 
 
 @inline(one_caller=True)
-def meeting_of(table, lent_a, face_a, lent_b, face_b, frames, exact):
+def meeting_of(table, faces, exact):
     """The same by address."""
-    return at_address(table, MEETING, NO_MEETING, (lent_a, face_a, lent_b, face_b, frames, exact))
+    return at_address(table, MEETING, NO_MEETING, (faces, exact))

@@ -15,7 +15,6 @@ from clearance.compile.jit import inline, shared
 from clearance.compile.kernel_table import (
     REFINE,
     REFINE_EVERY,
-    LentArgument,
     apart,
     at_address,
     borrow,
@@ -23,7 +22,6 @@ from clearance.compile.kernel_table import (
 )
 from clearance.kernels.arithmetic.double_double import (
     FAR,
-    FRAMES_AT_REST,
     NOISE,
     ZERO3,
     Wide,
@@ -34,15 +32,15 @@ from clearance.kernels.arithmetic.double_double import (
     root,
     wide,
 )
-from clearance.kernels.features.bounds import lower_bound_faces_along_direction
+from clearance.kernels.features.bounds import SeparatingDirection, lower_bound_faces_along_direction
 from clearance.kernels.features.every_feature import FeatureCutoff, nearest_of_every
 from clearance.kernels.features.face_lower_bounds import SURE, UNSURE, lower_bound_of
 from clearance.kernels.features.face_pair import NOTHING_SEEN, UNSEEN, FeatureCandidate, limit_of
 from clearance.kernels.features.fan_lower_bounds import fans_lower_bound_of
 from clearance.kernels.features.feature import nearest_feature, simplex, simplex_here
+from clearance.kernels.features.posed_pair import parts, posed_pair_like
 from clearance.kernels.features.rounding_guard import may_hide
 from clearance.kernels.features.wide_features import sized_of, too_far, wide_feature_here
-from clearance.kernels.mesh.surface import surface_like
 
 N_WAITING = 64
 """Face pairs that wait to be refined; where more are equally near, the waiting ones are refined first."""
@@ -100,17 +98,14 @@ def _better(best, pair, length, face_a, face_b, lower_bound, sure):
     )
 
 
-def _two_faces_like():
-    return LentArgument(surface_like()), 0, LentArgument(surface_like()), 0, FRAMES_AT_REST
-
-
 @apart(
     REFINE_EVERY,
-    lambda: (*_two_faces_like(), FeatureCutoff(0.0, 0.0), NOTHING_REFINED, table_like()),
+    lambda: (posed_pair_like(), FeatureCutoff(0.0, 0.0), NOTHING_REFINED, table_like()),
 )
-def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best, table):
+def refine_every(faces, ask, best, table):
     """`best`, or better: all features of two faces within the limit."""
-    a, b = borrow(lent_a), borrow(lent_b)
+    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    face_a, face_b, frames = faces.a, faces.b, faces.frames
     chosen = nearest_of_every(a, face_a, b, face_b, frames, ask, table)
     if chosen.gap_sq.hi == math.inf:
         return best
@@ -122,25 +117,24 @@ def refine_every(lent_a, face_a, lent_b, face_b, frames, ask, best, table):
     lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
     enough = _enough(length, ask.margin)
     if less(lower_bound, enough) and (a.bent[face_a] or b.bent[face_b]):
-        lower_bound = fans_lower_bound_of(
-            table, lent_a, face_a, lent_b, face_b, frames, pair, enough, lower_bound
-        )
+        lower_bound = fans_lower_bound_of(table, faces, pair, enough, lower_bound)
     return _better(best, pair, length, face_a, face_b, minus(lower_bound, sized.off), chosen.sure)
 
 
 @apart(
     REFINE,
     lambda: (
-        *_two_faces_like(),
+        posed_pair_like(),
         NOTHING_SEEN,
         FeatureCutoff(0.0, 0.0),
         NOTHING_REFINED,
         table_like(),
     ),
 )
-def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
+def refine(faces, seen, ask, best, table):
     """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
-    a, b = borrow(lent_a), borrow(lent_b)
+    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    face_a, face_b, frames = faces.a, faces.b, faces.frames
     if seen.kind != UNSEEN:
         feature = nearest_feature(a, face_a, b, face_b, frames.m, seen)
         one = simplex_here(a, face_a, feature.n_a, feature.i)
@@ -154,23 +148,13 @@ def refine(lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table):
                 return _better(
                     best, pair, length, face_a, face_b, minus(lower_bound, off), minus(length, off)
                 )
-    return at_address(
-        table,
-        REFINE_EVERY,
-        NOTHING_REFINED,
-        (lent_a, face_a, lent_b, face_b, frames, ask, best, table),
-    )
+    return at_address(table, REFINE_EVERY, NOTHING_REFINED, (faces, ask, best, table))
 
 
 @inline(one_caller=True)
-def refined_of(table, lent_a, face_a, lent_b, face_b, frames, seen, ask, best):
+def refined_of(table, faces, seen, ask, best):
     """The same by address."""
-    return at_address(
-        table,
-        REFINE,
-        NOTHING_REFINED,
-        (lent_a, face_a, lent_b, face_b, frames, seen, ask, best, table),
-    )
+    return at_address(table, REFINE, NOTHING_REFINED, (faces, seen, ask, best, table))
 
 
 class RefineQueue(NamedTuple):
@@ -207,47 +191,49 @@ def put(waiting, at, face_a, face_b, seen, least_sq):
     features[at, 0], features[at, 1], features[at, 2] = seen.kind, seen.i, seen.j
 
 
+class Outlook(NamedTuple):
+    """What is known of all faces when some are refined.
+
+    Attributes:
+        direction: along which the bodies are farthest apart, as far as is known. slack: [m] its rounding.
+        least: [m] no two faces are nearer but for what rounding hides.
+    """
+
+    direction: SeparatingDirection
+    slack: float
+    least: float
+
+
 @inline(force=True)
-def settle(
-    lent_a,
-    lent_b,
-    frames,
-    best_gap,
-    margin,
-    waiting,
-    n_waiting,
-    direction,
-    slack,
-    least,
-    best,
-    table,
-):
+def settle(table, bodies, waiting, n_waiting, cutoff, outlook, best):
     """`best` after all waiting face pairs that can still win, by what was seen or by what rounding hides.
 
     Args:
-        direction: the best one so far. slack: [m] its rounding.
-        least: [m] no two faces are nearer but for what rounding hides.
+        bodies: any parts of the surfaces that the faces are of.
+        cutoff: of `FeatureCutoff`, for the faces nearest so far.
+        outlook: of `Outlook`.
     """
-    a, b = borrow(lent_a), borrow(lent_b)
+    a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    margin = cutoff.margin
     for i in range(n_waiting):
         face_a, face_b = waiting.faces[i, 0], waiting.faces[i, 1]
-        limit = limit_of(a, face_a, b, face_b, best_gap, margin)
+        limit = limit_of(a, face_a, b, face_b, cutoff.limit, margin)
         near_sq = waiting.near_sq[i]
         if waiting.least_sq[i] > limit * limit:
             continue
         if near_sq > limit * limit:
             along_direction = (
-                lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
+                lower_bound_faces_along_direction(a, face_a, b, face_b, outlook.direction)
+                - outlook.slack
             )
             if along_direction > limit or not may_hide(
-                a, face_a, b, face_b, frames.m, margin, limit, least
+                a, face_a, b, face_b, bodies.frames.m, margin, limit, outlook.least
             ):
                 continue
         features = waiting.features
         seen = FeatureCandidate(near_sq, features[i, 0], features[i, 1], features[i, 2])
-        best = refined_of(
-            table, lent_a, face_a, lent_b, face_b, frames, seen, FeatureCutoff(limit, margin), best
-        )
+        faces = parts(bodies, face_a, face_b)
+        best = refined_of(table, faces, seen, FeatureCutoff(limit, margin), best)
     return best
 
 

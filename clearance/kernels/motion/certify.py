@@ -28,6 +28,7 @@ from clearance.compile.kernel_table import (
 )
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import box_of, surface_like
 from clearance.kernels.motion.certify_pair import allowed_gap, hold
 from clearance.kernels.motion.joint_motion_bound import (
@@ -64,6 +65,34 @@ class CertifiedPairs(NamedTuple):
     bodies: np.ndarray
     links: np.ndarray
     standing: np.ndarray
+
+
+class CertifiedMotion(NamedTuple):
+    """What moves and how.
+
+    Attributes:
+        path: how the joint of each link moves from step to step.
+    """
+
+    tree: KinematicTree
+    path: JointPath
+    pairs: CertifiedPairs
+
+
+class CertifiedSteps(NamedTuple):
+    """The steps between which the motion is certified, and what is known of them.
+
+    Attributes:
+        first, last: the intervals are those between these two.
+        order: (n,) the pair to look at first in each interval.
+        clearance: (n,) [m] of the steps over these pairs, proven to within rounding; or any distance, where it is
+            enough to know whether the motion stays that far, less the gap.
+    """
+
+    first: int
+    last: int
+    order: np.ndarray
+    clearance: np.ndarray
 
 
 class CertificateGoal(NamedTuple):
@@ -200,59 +229,37 @@ def _go_on(surface, tree, path, step, state):
 
 
 @inline
-def _hold_pair(surface, asked, pair, middle, motion_bound, least, gap, aim, state, tally, table):
+def _hold_pair(lent, pairs, pair, middle, motion_bound, least, aim, state, tally, table):
     """`hold` of a pair at the state in `middle`."""
-    body_a, body_b = asked.bodies[pair, 0], asked.bodies[pair, 1]
-    frames = frames_of(rigid(middle.poses[0, asked.links[pair]]), rigid(asked.standing[body_b]))
+    body_a, body_b = pairs.bodies[pair, 0], pairs.bodies[pair, 1]
+    frames = frames_of(rigid(middle.poses[0, pairs.links[pair]]), rigid(pairs.standing[body_b]))
     tally[1] += 1
-    witness_faces = state.witness_faces
-    held = hold(
-        surface, body_a, surface, body_b, frames, motion_bound, least, gap, aim.fail,
-        witness_faces[pair, 0], witness_faces[pair, 1], state.scratch, tally, table,
-    )  # fmt: skip
-    witness_faces[pair, 0], witness_faces[pair, 1] = held.face_a, held.face_b
+    witness_faces = state.witness_faces[pair]
+    bodies = PosedPair(lent, body_a, lent, body_b, frames)
+    held = hold(bodies, witness_faces, motion_bound, least, aim, state.scratch, tally, table)
+    witness_faces[0], witness_faces[1] = held.face_a, held.face_b
     return held
 
 
 @kernel
-def certify(surface, tree, asked, path, order, first, last, clearance, aim, bounds, tally, table):
-    """Fills `bounds` for the motion between the steps `first` to `last`.
+def certify(surface, motion, steps, aim, bounds, tally, table):
+    """Fills `bounds` for the motion between some steps.
 
     Args:
         surface: every face owns all its features.
-        path: how the joint of each link moves from step to step, a `JointPath`.
-        order: (n,) the pair to look at first in each interval.
-        clearance: (n,) [m] of the steps over these pairs, proven to within rounding; or any distance, where it is
-            enough to know whether the motion stays that far, less the gap.
+        motion: a `CertifiedMotion`. steps: `CertifiedSteps`. aim: a `CertificateGoal`.
+        tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
     """
-    n_links, n_pairs, n_bodies = path.positions.shape[1], len(asked.bodies), len(surface.roots)
+    n_links, n_bodies = motion.path.positions.shape[1], len(surface.roots)
+    n_pairs = len(motion.pairs.bodies)
     state = CertifyState(
         _new_middle(n_links), _new_middle(n_links), np.full(n_bodies, -1), np.empty((n_bodies, 8)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
     for pair in range(n_pairs):
-        state.links[asked.bodies[pair, 0]] = asked.links[pair]
-    at_address(
-        table,
-        CERTIFY,
-        0,
-        (
-            lend(surface),
-            tree,
-            asked,
-            path,
-            order,
-            first,
-            last,
-            clearance,
-            aim,
-            bounds,
-            tally,
-            state,
-            table,
-        ),
-    )
+        state.links[motion.pairs.bodies[pair, 0]] = motion.pairs.links[pair]
+    at_address(table, CERTIFY, 0, (lend(surface), motion, steps, aim, bounds, tally, state, table))
 
 
 def _like():
@@ -261,41 +268,42 @@ def _like():
     tree = KinematicTree(rows, places, places, poses, rows)
     middle = IntervalMiddle(rows, numbers, numbers, np.empty((0, 0, 0, 0)))
     state = CertifyState(middle, middle, places, rows, numbers, numbers, pairs, rows, new_scratch())
-    asked, path = CertifiedPairs(pairs, places, poses), JointPath(numbers, rows, rows)
+    motion = CertifiedMotion(
+        tree, JointPath(numbers, rows, rows), CertifiedPairs(pairs, places, poses)
+    )
+    steps = CertifiedSteps(0, 0, places, numbers)
     aim, bounds = CertificateGoal(0.0, 0.0, 0), IntervalBounds(numbers, numbers, numbers, places)
     return (
-        LentArgument(surface_like()), tree, asked, path, places, 0, 0, numbers, aim, bounds, places, state,
-        table_like(),
+        LentArgument(surface_like()), motion, steps, aim, bounds, places, state, table_like()
     )  # fmt: skip
 
 
 @apart(CERTIFY, _like)
-def _certify(
-    lent, tree, asked, path, order, first, last, clearance, aim, bounds, tally, state, table
-):
+def _certify(lent, motion, steps, aim, bounds, tally, state, table):
     """`certify`, with room for what is known."""
     surface = borrow(lent)
-    n_pairs = len(asked.bodies)
+    pairs, order, clearance = motion.pairs, steps.order, steps.clearance
+    n_pairs = len(pairs.bodies)
     displacements, lower_bounds = state.displacements, state.lower_bounds
     for i in range(len(tally)):
         tally[i] = 0
-    for step in range(first, last):
+    for step in range(steps.first, steps.last):
         least = min(clearance[step], clearance[step + 1])
         lower_bound = least  # 0 for a contact: then nothing is left to prove
         share, seen = -1.0, np.int64(-1)
-        _go_on(surface, tree, path, step, state)
+        _go_on(surface, motion.tree, motion.path, step, state)
         for turn in range(-1, n_pairs):
             pair = order[step] if turn < 0 else turn
             if turn == order[step] or least <= 0.0:
                 continue
-            moved = displacements[asked.bodies[pair, 0]]
+            moved = displacements[pairs.bodies[pair, 0]]
             carried = lower_bounds[pair] - moved
             if carried >= least - allowed_gap(least, aim.gap, aim.fail):
                 lower_bound = min(lower_bound, carried)
                 tally[0] += 1
                 continue
             over = _hold_interval(
-                surface, tree, asked, path, step, pair, least, aim, state, tally, table
+                lent, surface, motion, step, pair, least, aim, state, tally, table
             )
             lower_bounds[pair] = (over.lower_bound + moved) * KEPT_DOWN
             if over.share >= 0.0:
@@ -309,14 +317,12 @@ def _certify(
 
 
 @inline
-def _hold_interval(surface, tree, asked, path, step, pair, least, aim, state, tally, table):
+def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, table):
     """`hold` of a pair over the whole interval after `step`, halved until that is done."""
-    body = asked.bodies[pair, 0]
+    tree, path, pairs = motion.tree, motion.path, motion.pairs
+    body = pairs.bodies[pair, 0]
     motion_bound = _motion_bound_at(state.motion_bounds, body)
-    gap = aim.gap
-    held = _hold_pair(
-        surface, asked, pair, state.whole, motion_bound, least, gap, aim, state, tally, table
-    )
+    held = _hold_pair(lent, pairs, pair, state.whole, motion_bound, least, aim, state, tally, table)
     share = 0.5 if held.least < least else -1.0
     if held.completed or held.least <= 0.0:
         return PairInterval(held.lower_bound, held.least, share)
@@ -332,11 +338,11 @@ def _hold_interval(surface, tree, asked, path, step, pair, least, aim, state, ta
         n_parts += 1
         low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
         if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
-            gap *= WIDER
+            aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
         _go_to(tree, path, step, low, high, state.part)
-        motion_bound = _motion_bound_in(surface, tree, body, asked.links[pair], state.part)
+        motion_bound = _motion_bound_in(surface, tree, body, pairs.links[pair], state.part)
         held = _hold_pair(
-            surface, asked, pair, state.part, motion_bound, least, gap, aim, state, tally, table
+            lent, pairs, pair, state.part, motion_bound, least, aim, state, tally, table
         )
         if held.least < least:
             least, share = held.least, 0.5 * (low + high)

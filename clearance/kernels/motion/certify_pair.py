@@ -9,27 +9,29 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import lend
+from clearance.compile.kernel_table import borrow
 from clearance.kernels.arithmetic.lanes import WIDTH, lane, larger, marks_within
-from clearance.kernels.arithmetic.vec3 import inverse
 from clearance.kernels.features.bounds import (
     direction_beside,
     direction_between,
     lower_bound_boxes,
     lower_bound_boxes_along_direction,
     lower_bound_faces_along_direction,
+    margin_of,
     rounding_slack,
 )
-from clearance.kernels.features.face_pair import may_meet, nearest_of_faces
+from clearance.kernels.features.face_pair import may_meet, nearest_of_faces, nothing_yet
 from clearance.kernels.features.meeting import meeting_of
+from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.joint_motion_bound import (
+    MotionBound,
     motion_bound_of_box,
     motion_bound_of_box_along,
     motion_bound_of_face_along,
 )
-from clearance.kernels.search.descent import margin_of, nothing_yet
 from clearance.kernels.search.node_pairs import (
+    Views,
     opened,
     pair_in_group,
     turned_away_while,
@@ -68,30 +70,55 @@ class PairProof(NamedTuple):
     face_b: int
 
 
+class IntervalSearch(NamedTuple):
+    """What a search has seen in the middle of an interval.
+
+    Attributes:
+        face_a, face_b: the nearest faces, or -1. nearest: [m] their distance. views: of the bodies along it.
+        least: [m] what was asked about or seen. allowed: [m] how far below it the bound may stay.
+    """
+
+    face_a: int
+    face_b: int
+    nearest: float
+    views: Views
+    least: float
+    allowed: float
+
+
+class MovingPair(NamedTuple):
+    """A pair of bodies of which the first moves.
+
+    Attributes:
+        motion_bound: of the first, about the middle. slack: [m] what rounding can raise a bound by.
+    """
+
+    motion_bound: MotionBound
+    slack: float
+
+
 @inline
-def _node_lower_bounds(p, q, m, direction, slack, motion_bound, target):
+def _node_lower_bounds(p, q, view, moving, target):
     """[m] lower bounds on the distances of boxes in lanes over the interval."""
+    motion_bound, slack = moving.motion_bound, moving.slack
     along_direction = (
-        lower_bound_boxes_along_direction(p, q, direction)
+        lower_bound_boxes_along_direction(p, q, view.direction)
         - slack
-        - motion_bound_of_box_along(p, direction.u, motion_bound)
+        - motion_bound_of_box_along(p, view.direction.u, motion_bound)
     )
     if marks_within(along_direction, target) == 0:
         return along_direction
-    apart = lower_bound_boxes(p, q, m, slack) - slack
+    apart = lower_bound_boxes(p, q, view.m, slack) - slack
     return larger(along_direction, apart - motion_bound_of_box(p, motion_bound))
 
 
 @inline
-def _lower_bounds_of_group(a, b, group, other, is_b, m, direction, slack, motion_bound, target):
+def _lower_bounds_of_group(a, b, nodes, view, moving, target):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body over the interval."""
-    if is_b:
-        return _node_lower_bounds(
-            box_of(a, other), group_of(b, group), m, direction, slack, motion_bound, target
-        )
-    return _node_lower_bounds(
-        group_of(a, group), box_of(b, other), m, direction, slack, motion_bound, target
-    )
+    group, other = nodes.group, nodes.other
+    if nodes.is_of_b:
+        return _node_lower_bounds(box_of(a, other), group_of(b, group), view, moving, target)
+    return _node_lower_bounds(group_of(a, group), box_of(b, other), view, moving, target)
 
 
 @inline
@@ -102,124 +129,127 @@ def allowed_gap(least, gap, fail):
     return max(min(gap, 0.5 * (least - fail)), gap * FINEST)
 
 
+@inline(one_caller=True)
+def _begin(a, b, faces, least, aim, margin):
+    """What is seen first: the faces that were nearest before, if any were."""
+    m = faces.frames.m
+    best = nothing_yet(math.inf)
+    if faces.a >= 0:
+        best = nearest_of_faces(a, faces.a, b, faces.b, m, margin, best).best
+        least = min(least, math.sqrt(best.gap_sq) + margin)
+    views = views_along(direction_between(best.p, best.q, m), m)
+    allowed = allowed_gap(least, aim.gap, aim.fail)
+    return IntervalSearch(faces.a, faces.b, math.sqrt(best.gap_sq), views, least, allowed)
+
+
 @inline
-def hold(
-    a,
-    body_a,
-    b,
-    body_b,
-    frames,
-    motion_bound,
-    least,
-    gap,
-    fail,
-    witness_face_a,
-    witness_face_b,
-    scratch,
-    tally,
-    table,
-):
+def _meet(a, b, faces, margin, scratch, table):
+    """True if two faces have a point in common, by exact signs."""
+    if not may_meet(a, faces.a, b, faces.b, faces.frames.m, margin):
+        return False
+    return meeting_of(table, faces, scratch.exact).found
+
+
+@inline
+def _face_lower_bound(a, b, faces, direction, moving):
+    """[m] a lower bound on the distance of two faces over the interval, seen along one direction."""
+    apart = lower_bound_faces_along_direction(a, faces.a, b, faces.b, direction) - moving.slack
+    return apart - motion_bound_of_face_along(a, faces.a, direction.u, moving.motion_bound)
+
+
+@inline(one_caller=True)
+def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, table):
+    """([m] a lower bound on the faces' distance over the interval, what is seen then, True if they touch)."""
+    face_a, face_b, m = faces.a, faces.b, faces.frames.m
+    slack, margin, views = moving.slack, margin_of(moving.slack), search.views
+    target = search.least - search.allowed
+    touches = False
+    bound = max(bound, _face_lower_bound(a, b, faces, views.a.direction, moving))
+    if bound < target:
+        beside = direction_beside(a, face_a, b, face_b, m, views.b.m)
+        apart = _face_lower_bound(a, b, faces, beside, moving)
+        if apart > 0.0:  # what may touch is told by exact signs below
+            bound = max(bound, apart)
+    if bound < target:
+        tally[3] += 1
+        near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
+        own = direction_between(near.p, near.q, m)
+        apart = lower_bound_faces_along_direction(a, face_a, b, face_b, own) - slack
+        if apart <= 0.0 and _meet(a, b, faces, margin, scratch, table):
+            touches = True
+        else:
+            of_face = motion_bound_of_face_along(a, face_a, own.u, moving.motion_bound)
+            bound = max(bound, apart - of_face)
+            least, allowed, seen = search.least, search.allowed, math.sqrt(near.gap_sq)
+            if seen + margin < least:
+                least = seen + margin
+                allowed = allowed_gap(least, aim.gap, aim.fail)
+            if seen < search.nearest:
+                search = IntervalSearch(face_a, face_b, seen, views_along(own, m), least, allowed)
+            else:
+                search = IntervalSearch(
+                    search.face_a, search.face_b, search.nearest, views, least, allowed
+                )
+    return bound, search, touches
+
+
+@inline
+def hold(bodies, witness_faces, motion_bound, least, aim, scratch, tally, table):
     """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
 
     The search is given up where that cannot be proven, unless the body stands still.
 
-    `a` and `b` are surfaces in which every face owns all its features, so that a face pair is seen whole.
+    Args:
+        bodies: of surfaces in which every face owns all its features, so that a face pair is seen whole.
+        witness_faces: (2,) the faces that were nearest before, or -1.
+        motion_bound: of the first body. least: [m] asked about. aim: a `CertificateGoal`.
     """
-    m = frames.m
-    m_back = inverse(m)
-    root_a, root_b = a.roots[body_a], b.roots[body_b]
-    slack = CHAIN_SLACK * rounding_slack(a, root_a, b, root_b, frames)
-    margin = margin_of(slack)
-    moved = motion_bound_of_box(box_of(a, root_a), motion_bound)
+    a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
+    slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, bodies.frames)
+    moving = MovingPair(motion_bound, slack)
+    moved = motion_bound_of_box(box_of(a, roots.a), motion_bound)
     cos_turn, sin_turn = math.cos(motion_bound.turn), math.sin(motion_bound.turn)
-    near_a, near_b = witness_face_a, witness_face_b
-    best = nothing_yet(math.inf)
-    if witness_face_a >= 0:
-        best = nearest_of_faces(a, witness_face_a, b, witness_face_b, m, margin, best).best
-        least = min(least, math.sqrt(best.gap_sq) + margin)
-    nearest = math.sqrt(best.gap_sq)
-    allowed = allowed_gap(least, gap, fail)
-    target = least - allowed
-    direction = direction_between(best.p, best.q, m)
-    from_a, from_b = views_along(direction, m)
+    near = parts(bodies, witness_faces[0], witness_faces[1])
+    search = _begin(a, b, near, least, aim, margin_of(slack))
     lower_bound = math.inf
-    scratch.nodes[0, 0], scratch.nodes[0, 1] = root_a, root_b
+    scratch.nodes[0, 0], scratch.nodes[0, 1] = roots.a, roots.b
     scratch.bounds[0] = -math.inf
     n_waiting = 1
     while n_waiting > 0:
         n_waiting -= 1
+        target = search.least - search.allowed
         node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
         bound = scratch.bounds[n_waiting]
         if bound >= target:
             lower_bound = min(lower_bound, bound)
             continue
         if is_leaf(a, node_a) and is_leaf(b, node_b):
-            face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-            bound = max(
-                bound, _face_lower_bound(a, face_a, b, face_b, direction, slack, motion_bound)
+            faces = parts(bodies, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
+            bound, search, touches = _look_at_faces(
+                a, b, faces, bound, moving, search, aim, scratch, tally, table
             )
-            if bound < target:
-                beside = direction_beside(a, face_a, b, face_b, m, m_back)
-                apart = _face_lower_bound(a, face_a, b, face_b, beside, slack, motion_bound)
-                bound = (
-                    max(bound, apart) if apart > 0.0 else bound
-                )  # what may touch is told by exact signs below
-            if bound < target:
-                tally[3] += 1
-                near = nearest_of_faces(a, face_a, b, face_b, m, margin, nothing_yet(math.inf)).best
-                own = direction_between(near.p, near.q, m)
-                apart = lower_bound_faces_along_direction(a, face_a, b, face_b, own) - slack
-                if apart <= 0.0 and _meet(a, face_a, b, face_b, frames, margin, scratch, table):
-                    return PairProof(0.0, 0.0, True, face_a, face_b)
-                bound = max(
-                    bound, apart - motion_bound_of_face_along(a, face_a, own.u, motion_bound)
-                )
-                seen = math.sqrt(near.gap_sq)
-                if seen < nearest:
-                    nearest, near_a, near_b, direction = seen, face_a, face_b, own
-                    from_a, from_b = views_along(direction, m)
-                if seen + margin < least:
-                    least = seen + margin
-                    allowed = allowed_gap(least, gap, fail)
-                    target = least - allowed
+            if touches:
+                return PairProof(0.0, 0.0, True, faces.a, faces.b)
             lower_bound = min(lower_bound, bound)
-            if bound < target and moved >= STILL * allowed:
-                return PairProof(0.0, least, False, near_a, near_b)
+            if bound < search.least - search.allowed and moved >= STILL * search.allowed:
+                return PairProof(0.0, search.least, False, search.face_a, search.face_b)
             continue
-        is_b, group, count, other = opened(a, node_a, b, node_b)
-        lower_bounds = _lower_bounds_of_group(
-            a, b, group, other, is_b, m, direction, slack, motion_bound, target
-        )
+        nodes, count = opened(a, node_a, b, node_b)
+        bounds = _lower_bounds_of_group(a, b, nodes, search.views.a, moving, target)
         tally[2] += count
         away = 0
-        if motion_bound.turn < MOST_TURNED and marks_within(lower_bounds, target):
-            away = turned_away_while(
-                a, b, from_a, from_b, group, other, is_b, slack, cos_turn, sin_turn, moved
-            )
+        if motion_bound.turn < MOST_TURNED and marks_within(bounds, target):
+            away = turned_away_while(a, b, search.views, nodes, slack, cos_turn, sin_turn, moved)
         assert n_waiting + WIDTH <= STACK_DEPTH
         first = n_waiting
         for k in range(count):
             if away >> k & 1:
                 continue
-            bound = lane(lower_bounds, k)
+            bound = lane(bounds, k)
             if bound >= target:
                 lower_bound = min(lower_bound, bound)
                 continue
-            node_a, node_b = pair_in_group(is_b, group, k, other)
+            node_a, node_b = pair_in_group(nodes, k)
             n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
-    return PairProof(lower_bound, least, True, near_a, near_b)
-
-
-@inline
-def _meet(a, face_a, b, face_b, frames, margin, scratch, table):
-    """True if two faces have a point in common, by exact signs."""
-    if not may_meet(a, face_a, b, face_b, frames.m, margin):
-        return False
-    return meeting_of(table, lend(a), face_a, lend(b), face_b, frames, scratch.exact).found
-
-
-@inline
-def _face_lower_bound(a, face_a, b, face_b, direction, slack, motion_bound):
-    """[m] a lower bound on the distance of two faces over the interval, seen along one direction."""
-    apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
-    return apart - motion_bound_of_face_along(a, face_a, direction.u, motion_bound)
+    return PairProof(lower_bound, search.least, True, search.face_a, search.face_b)

@@ -17,6 +17,7 @@ from clearance.kernels.motion.placed import bring, put_all
 from clearance.kernels.motion.schedule import all_due
 from clearance.kernels.motion.sweep import (
     Goal,
+    RowLook,
     box_bound,
     carried,
     nearest_by_boxes,
@@ -110,10 +111,8 @@ def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tall
     first = at[WINNER]
     if carried(world, first, state) <= 0.0:
         first = nearest_by_boxes(surface, world, bodies, state, first)
-    best, best_pair, lowest = nearest_of(
-        surface, world, bodies, first, row, row, np.inf, goal, TO_THE_END, lend(surface), state, pair_rows, tally,
-        table,
-    )  # fmt: skip
-    at[WINNER] = best_pair
+    asked = RowLook(bodies, row, row, first, np.inf, TO_THE_END)
+    best = nearest_of(lend(surface), world, asked, goal, state, pair_rows, tally, table)
+    at[WINNER] = best.pair
     at[LOOK] = look + 1
-    write_step(row, best_pair, best, lowest, rows)
+    write_step(row, best.pair, best.hit, best.lowest, rows)

@@ -10,9 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel, shared
-from clearance.compile.kernel_table import lend
+from clearance.compile.kernel_table import borrow, lend
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.features.face_pair import Hit, nothing_yet
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.motion.answer_cache import (
     AnswerCache,
     answer_of,
@@ -41,8 +43,14 @@ from clearance.kernels.motion.placed import PlacedBodies, bring, new_placed_bodi
 from clearance.kernels.motion.schedule import Schedule, all_due, find_due, new_schedule, note_look
 from clearance.kernels.motion.sweep_rows import pass_over, write_pair, write_step
 from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
-from clearance.kernels.search.descent import nothing_yet
-from clearance.kernels.search.front import KEPT_DOWN, POOL, Fronts, forget, no_fronts
+from clearance.kernels.search.front import (
+    KEPT_DOWN,
+    POOL,
+    Fronts,
+    PairFront,
+    forget,
+    no_fronts,
+)
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 LOOK_AHEAD = 2.0
@@ -86,6 +94,17 @@ class Goal(NamedTuple):
     within: np.ndarray
     each: bool
     lasting: bool
+
+
+class SweptSteps(NamedTuple):
+    """What is swept.
+
+    Attributes:
+        positions: (k, columns) of the joints at the steps [rad or m]. steps: (k,) their numbers.
+    """
+
+    positions: np.ndarray
+    steps: np.ndarray
 
 
 class FirstLook(NamedTuple):
@@ -199,13 +218,16 @@ def _asked(world, pair, lower_bound, gap, effort, lent, state, tally, table):
     if lower_bound <= 0.0:
         forget(state.fronts, pair)  # where bodies may meet, nearest first from the roots is best
     apart = lower_bound > 0.0 or effort < TO_THE_END  # an upper bound is one inside, too
+    touches = was_contact(answers, pair)
     measured = measure_pair(
-        lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses),
+        table,
+        PosedPair(lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses)),
         PairQuestion(
-            limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, was_contact(answers, pair)
+            limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, touches
         ),
-        state.fronts, pair, moved, state.scratch, table,
-    )  # fmt: skip
+        PairFront(state.fronts, pair, moved),
+        state.scratch,
+    )
     note_answer(answers, pair, moves, measured.hit, measured.lower_bound)
     state.lower_bounds[pair] = (measured.lower_bound + moved) * KEPT_DOWN
     witness_faces[pair, 0], witness_faces[pair, 1] = measured.face_a, measured.face_b
@@ -232,24 +254,71 @@ def _next_look(world, positions, row, look, within, due, rows, tally):
     return row, n_due, lowest
 
 
-@inline(one_caller=True)
-def nearest_of(
-    surface, world, bodies, first, row, step, lowest, goal, effort, lent, state, pair_rows, tally, table
-):  # fmt: skip
-    """The nearest pair of some bodies at a row, one of which is asked before all others unless it is -1.
+class RowLook(NamedTuple):
+    """What one row asks for.
 
-    Returns (its nearest points, the pair or -1, [m] a bound on the distance of all pairs where `lowest` is one on
-    that of all other bodies').
+    Attributes:
+        bodies: those that are looked at. row: its place in the results. step: its number.
+        first: the pair that is asked before all others, or -1.
+        lowest: [m] a bound on the distance of all pairs of all other bodies.
+        effort: of `PairQuestion`.
     """
-    within, lower_bounds, order = state.within, state.lower_bounds, state.order
-    best, best_pair = nothing_yet(np.inf), -1
-    gap = within[0]
+
+    bodies: np.ndarray
+    row: int
+    step: int
+    first: int
+    lowest: float
+    effort: int
+
+
+class RowNearest(NamedTuple):
+    """What a row comes to.
+
+    Attributes:
+        hit, pair: the nearest points and their pair, or -1. gap: [m] what is farther is not asked.
+        lowest: [m] a bound on the distance of all pairs.
+    """
+
+    hit: Hit
+    pair: int
+    gap: float
+    lowest: float
+
+
+@inline(one_caller=True)
+def _with_pair(surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table):
+    """(the best of a row after a pair, [m] a bound on its distance): it is measured where it may be nearer."""
+    gap = state.within[pair] if goal.each else best.gap
+    lower_bound = carried(world, pair, state)
+    if lower_bound <= 0.0 or gap < np.inf:
+        lower_bound = _bounded_again(surface, world, pair, state, gap)
+    if lower_bound <= gap:
+        hit, lower_bound = _asked(
+            world, pair, lower_bound, gap, look.effort, lent, state, tally, table
+        )
+        if hit.face_a != 2**62:
+            seen = np.sqrt(hit.gap_sq)
+            if hit.gap_sq < best.hit.gap_sq or (hit.gap_sq == best.hit.gap_sq and pair < best.pair):
+                best = RowNearest(hit, pair, best.gap if goal.each else min(gap, seen), best.lowest)
+            if goal.each:
+                write_pair(look.row, look.step, pair, hit, pair_rows)
+                if goal.lasting:
+                    state.within[pair] = min(gap, seen * NOT_LESS)
+    return best, lower_bound
+
+
+@inline(one_caller=True)
+def nearest_of(lent, world, look, goal, state, pair_rows, tally, table):
+    """The nearest pair of some bodies at a row, as a `RowNearest`; `lent` is the surface of all bodies."""
+    surface = borrow(lent)
+    order, first = state.order, look.first
+    best = RowNearest(nothing_yet(np.inf), -1, state.within[0], look.lowest)
+    lowest = look.lowest
     order.pairs[len(world.pairs)] = first
     tally[0] += len(world.pairs)
-    for turn in range(-1 if first >= 0 else 0, len(bodies)):
-        body = (
-            len(world.frames) if turn < 0 else bodies[turn]
-        )  # the list of one that is asked first
+    for turn in range(-1 if first >= 0 else 0, len(look.bodies)):
+        body = len(world.frames) if turn < 0 else look.bodies[turn]  # the list of one, asked first
         nearest = np.inf
         if first >= 0 and body == world.pairs[first, 0]:
             nearest = _spare(world, first, state, goal)
@@ -260,50 +329,26 @@ def nearest_of(
             if turn >= 0 and pair == first:
                 continue
             lower_bound = carried(world, pair, state)
-            if (
-                best.gap_sq == 0.0 and pair > best_pair and not goal.each
-            ):  # no nearer, and not the least pair
-                nearest = min(nearest, lower_bound)
+            if best.hit.gap_sq == 0.0 and pair > best.pair and not goal.each:
+                nearest = min(nearest, lower_bound)  # no nearer, and not the least pair
                 continue
-            if goal.each:
-                gap = within[pair]
-            elif lower_bound > gap:  # and so are those after it
+            if not goal.each and lower_bound > best.gap:  # and so are those after it
                 lowest, nearest = min(lowest, lower_bound), min(nearest, lower_bound)
                 break
-            if lower_bound <= 0.0 or gap < np.inf:
-                lower_bound = _bounded_again(surface, world, pair, state, gap)
-            if lower_bound > gap:
-                lowest, nearest = (
-                    min(lowest, lower_bound),
-                    min(nearest, _spare(world, pair, state, goal)),
-                )
-                continue
-            hit, lower_bound = _asked(
-                world, pair, lower_bound, gap, effort, lent, state, tally, table
+            best, lower_bound = _with_pair(
+                surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table
             )
-            lowest, nearest = (
-                min(lowest, lower_bound),
-                min(nearest, _spare(world, pair, state, goal)),
-            )
-            if hit.face_a == 2**62:
-                continue
-            if hit.gap_sq < best.gap_sq or (hit.gap_sq == best.gap_sq and pair < best_pair):
-                best, best_pair = hit, pair
-                if not goal.each:
-                    gap = min(gap, np.sqrt(hit.gap_sq))
-            if goal.each:
-                write_pair(row, step, pair, hit, pair_rows)
-                if goal.lasting:
-                    within[pair] = min(gap, np.sqrt(hit.gap_sq) * NOT_LESS)
+            lowest = min(lowest, lower_bound)
+            nearest = min(nearest, _spare(world, pair, state, goal))
         if turn >= 0:
-            note_look(body, row, nearest, state.due)
+            note_look(body, look.row, nearest, state.due)
         if goal.each:
             continue
         if turn < 0:
-            sort_one(lower_bounds, order, world.pairs[first, 0], first)
+            sort_one(state.lower_bounds, order, world.pairs[first, 0], first)
         else:
-            sort_first(lower_bounds, order, body, place)
-    return best, best_pair, lowest
+            sort_first(state.lower_bounds, order, body, place)
+    return RowNearest(best.hit, best.pair, best.gap, lowest)
 
 
 @shared
@@ -317,16 +362,17 @@ def nothing_known(world, n_columns, within):
 
 
 @kernel
-def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally, table):
-    """Fills `rows` for `steps` (k,) and `tally`: pairs skipped, queries, nodes, faces, steps passed over.
+def sweep(surface, world, path, goal, first, found, tally, table):
+    """Fills `found` and `tally`: pairs skipped, queries, nodes, faces, steps passed over.
 
     Ties go to the least pair. What is exact in the rows does not depend on where a sweep starts. Without
-    `goal.each`, `pair_rows` is not touched.
+    `goal.each`, the rows of pairs are not touched.
 
     Args:
-        positions: (k, columns) of the joints at the steps [rad or m].
+        path: a `SweptSteps`. found: `SweepRows`.
         first: a `FirstLook`, for a goal that is lasting, with one best for all pairs.
     """
+    positions = path.positions
     for i in range(len(tally)):
         tally[i] = 0
     n_columns = positions.shape[1]
@@ -337,33 +383,18 @@ def sweep(surface, world, positions, steps, goal, first, rows, pair_rows, tally,
             for column in range(n_columns):
                 few[i, column] = positions[first.rows[i], column]
         state = nothing_known(world, n_columns, within)
-        _sweep(
-            surface,
-            world,
-            few,
-            first.rows,
-            goal,
-            first.effort,
-            state,
-            rows,
-            pair_rows,
-            tally,
-            table,
-        )
+        rough = SweptSteps(few, first.rows)
+        _sweep(surface, world, rough, goal, first.effort, state, found, tally, table)
     state = nothing_known(world, n_columns, within)
-    _sweep(surface, world, positions, steps, goal, TO_THE_END, state, rows, pair_rows, tally, table)
+    _sweep(surface, world, path, goal, TO_THE_END, state, found, tally, table)
 
 
 @kernel(reference_counts=False)
-def _sweep(surface, world, positions, steps, goal, effort, state, rows, pair_rows, tally, table):
+def _sweep(surface, world, path, goal, effort, state, found, tally, table):
     """`sweep`, with room for what is known. The rows after a first look are overwritten."""
-    within, lower_bounds, order, placed, due = (
-        state.within,
-        state.lower_bounds,
-        state.order,
-        state.placed,
-        state.due,
-    )
+    positions, steps, rows = path.positions, path.steps, found.rows
+    within, lower_bounds, order = state.within, state.lower_bounds, state.order
+    placed, due = state.placed, state.due
     put_all(world, positions[0], placed)
     for pair in range(len(world.pairs)):
         lower_bounds[pair] = box_bound(surface, world, pair, placed, state.boxes, np.inf)
@@ -392,18 +423,19 @@ def _sweep(surface, world, positions, steps, goal, effort, state, rows, pair_row
             and not was_contact(state.answers, first)
         ):
             first = nearest_by_boxes(surface, world, bodies, state, first)
-        best, best_pair, lowest = nearest_of(
-            surface, world, bodies, first, row, steps[row], lowest, goal, effort, lent, state, pair_rows, tally,
-            table,
-        )  # fmt: skip
-        if best_pair >= 0:
-            winner = best_pair
+        asked = RowLook(bodies, row, steps[row], first, lowest, effort)
+        best = nearest_of(lent, world, asked, goal, state, found.pair_rows, tally, table)
+        lowest = best.lowest
+        if best.pair >= 0:
+            winner = best.pair
             if goal.lasting and not goal.each:
-                within[0] = min(within[0], np.sqrt(best.gap_sq) * NOT_LESS)
-        write_step(row, best_pair, best, lowest, rows)
+                within[0] = min(within[0], np.sqrt(best.hit.gap_sq) * NOT_LESS)
+        write_step(row, best.pair, best.hit, lowest, rows)
         row += 1
         look += 1
-        if goal.lasting and not goal.each and best.gap_sq == 0.0:  # nothing is nearer than contact
+        if (
+            goal.lasting and not goal.each and best.hit.gap_sq == 0.0
+        ):  # nothing is nearer than contact
             for after in range(row, len(steps)):
                 pass_over(len(world.pairs), after, 0.0, rows, tally)
             break

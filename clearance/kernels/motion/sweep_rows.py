@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline
-from clearance.kernels.features.face_pair import write_points
-from clearance.kernels.search.descent import nothing_yet
+from clearance.kernels.features.face_pair import nothing_yet, write_points
 
 
 class StepRows(NamedTuple):
@@ -39,6 +38,13 @@ class PairRows(NamedTuple):
     clearance: np.ndarray
     step: np.ndarray
     points: np.ndarray
+
+
+class SweepRows(NamedTuple):
+    """All that a sweep finds."""
+
+    rows: StepRows
+    pair_rows: PairRows
 
 
 @inline

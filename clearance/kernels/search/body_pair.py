@@ -7,31 +7,37 @@ import numpy as np
 from clearance.compile.jit import inline
 from clearance.compile.kernel_table import (
     SEARCH,
-    LentArgument,
     apart,
     at_address,
     borrow,
     table_like,
 )
 from clearance.kernels.arithmetic.double_double import (
-    FRAMES_AT_REST,
     Wide3,
     plus3,
     rounded,
     wide,
 )
 from clearance.kernels.arithmetic.vec3 import Vec3, move, row
-from clearance.kernels.features.bounds import rounding_slack
+from clearance.kernels.features.bounds import margin_of, rounding_slack
 from clearance.kernels.features.common_point import common_point_of
-from clearance.kernels.features.face_pair import NOTHING_SEEN, FacePairState, Hit, nearest_of_faces
+from clearance.kernels.features.face_pair import (
+    NOTHING_SEEN,
+    FacePairState,
+    Hit,
+    nearest_of_faces,
+    nothing_yet,
+)
+from clearance.kernels.features.posed_pair import parts, posed_pair_like
 from clearance.kernels.features.refine import error_of
 from clearance.kernels.features.rounding_guard import PASSED_OVER
-from clearance.kernels.mesh.surface import box_of, surface_like
+from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.search.containment import contained
-from clearance.kernels.search.descent import Tally, descend, margin_of, nothing_yet
+from clearance.kernels.search.descent import SearchLimits, Tally, descend
 from clearance.kernels.search.front import (
     HULLS_NEARER,
     HULLS_TOUCH,
+    PairFront,
     forget,
     is_worth_separating,
     no_fronts,
@@ -39,7 +45,7 @@ from clearance.kernels.search.front import (
 )
 from clearance.kernels.search.overlap import Overlap, overlap_of
 from clearance.kernels.search.scratch import new_scratch
-from clearance.kernels.search.separating_planes import NOTHING_PARTED, separating_planes_of
+from clearance.kernels.search.separating_planes import NOT_SEPARATED, separating_planes_of
 
 NO_FACE = -1
 
@@ -95,10 +101,10 @@ def _in_world(frames, x):
 
 
 @inline(one_caller=True)
-def _contact(a, b, frames, found, tally, table):
+def _contact(bodies, found, tally, table):
     face_a, face_b = found.face_a, found.face_b
-    common = common_point_of(table, a, face_a, b, face_b, frames, found.meeting)
-    p, q = _in_world(frames, common.p), _in_world(frames, common.q)
+    common = common_point_of(table, parts(bodies, face_a, face_b), found.meeting)
+    p, q = _in_world(bodies.frames, common.p), _in_world(bodies.frames, common.q)
     return PairDistance(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
 
 
@@ -111,16 +117,8 @@ NOTHING_MEASURED = PairDistance(
 
 def _like():
     asked = PairQuestion(0.0, 0.0, 0, 0, False, 0, False)
-    searched = no_fronts(1, 0), 0, 0.0, new_scratch(), table_like()
-    return (
-        LentArgument(surface_like()),
-        0,
-        LentArgument(surface_like()),
-        0,
-        FRAMES_AT_REST,
-        asked,
-        *searched,
-    )
+    front = PairFront(no_fronts(1, 0), 0, 0.0)
+    return posed_pair_like(), asked, front, new_scratch(), table_like()
 
 
 @inline(force=True)
@@ -143,111 +141,103 @@ def _begin(a, root_a, b, root_b, m, margin, asked):
     return _afresh(a, root_a, b, root_b, m)
 
 
-@apart(SEARCH, _like)
-def search(lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table):
-    """The nearest points of two bodies, or a proof that they are farther apart than the limit.
+@inline(one_caller=True)
+def _seek_planes(roots, best, limit, slack, front, scratch, table):
+    """Planes that separate the bodies, where it may take less to seek them than to go on from the front."""
+    fronts, pair = front.fronts, front.pair
+    if not is_worth_separating(fronts, pair):
+        return NOT_SEPARATED
+    planes = separating_planes_of(table, roots, best, limit, slack, scratch)
+    if planes.n_waiting == 0:
+        note_separating_planes(fronts, pair, planes.lower_bound > limit, HULLS_TOUCH)
+    return planes
 
-    Args:
-        frames: of `frames_of`.
-        asked: what is wanted and known, an `PairQuestion`.
-        fronts, pair, moved: of `descend`.
-    """
-    a, b = borrow(lent_a), borrow(lent_b)
-    root_a, root_b = a.roots[body_a], b.roots[body_b]
-    slack = rounding_slack(a, root_a, b, root_b, frames)
-    margin = margin_of(slack)
-    n_nodes, n_faces, n_exact = 0, 0, 0
-    if asked.touches:
-        over = overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch)
-        n_nodes, n_faces = over.n_nodes, over.n_faces
-        if over.meeting.found:
-            forget(fronts, pair)
-            return _contact(a, b, frames, over, Tally(n_nodes, n_faces, 0), table)
-    first = _begin(a, root_a, b, root_b, frames.m, margin, asked)
-    best = first.best
-    limit = asked.limit + margin
-    wanted = asked.wanted
-    separating_planes = NOTHING_PARTED
-    if is_worth_separating(fronts, pair):
-        separating_planes = separating_planes_of(
-            table, lent_a, root_a, lent_b, root_b, frames.m, best, limit, margin, slack, scratch
-        )
-        n_nodes += separating_planes.n_nodes
-        if separating_planes.n_waiting == 0:
-            note_separating_planes(fronts, pair, separating_planes.lower_bound > limit, HULLS_TOUCH)
-        if separating_planes.lower_bound > limit:
-            nothing = nothing_yet(asked.wanted * asked.wanted)
-            lower_bound = max(0.0, separating_planes.lower_bound - slack - 2.0 * margin)
-            return PairDistance(
-                nothing,
-                lower_bound,
-                0.0,
-                separating_planes.face_a,
-                separating_planes.face_b,
-                Tally(n_nodes, 0, 0),
-            )
-    for _ in range(2):
-        found = descend(
-            lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted, slack, asked.effort,
-            separating_planes, fronts, pair, moved, scratch, table,
-        )  # fmt: skip
-        n_nodes += found.tally.nodes
-        n_faces += found.tally.faces
-        n_exact += found.tally.exact_decisions
-        if separating_planes.n_waiting > 0:
-            is_all = separating_planes.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
-            note_separating_planes(fronts, pair, is_all, HULLS_NEARER)
-            if is_all:
-                break
-            best, separating_planes = (
-                found.hit,
-                NOTHING_PARTED,
-            )  # the hulls are nearer than the bodies
-        else:
-            break
-    if found.meeting.found:  # which of several is told must not depend on where the search began
-        over = overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch)
-        tally = Tally(n_nodes + over.n_nodes, n_faces + over.n_faces, n_exact)
-        if not over.meeting.found:
-            over = Overlap(found.meeting, found.hit.face_a, found.hit.face_b, 0, 0)
-        return _contact(a, b, frames, over, tally, table)
-    tally = Tally(n_nodes, n_faces, n_exact)
-    if not (asked.apart or separating_planes.n_waiting > 0):
-        inside, x = contained(a, body_a, b, body_b, frames, scratch, table)
-        if inside:
-            forget(fronts, pair)  # a contact must not depend on where the search begins
-            x = move(frames.a, x)
-            return PairDistance(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
-    lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin)
+
+@inline(one_caller=True)
+def _of_planes(planes, asked, slack, tally):
+    """What planes say that are farther apart than the limit."""
+    nothing = nothing_yet(asked.wanted * asked.wanted)
+    lower_bound = max(0.0, planes.lower_bound - slack - 2.0 * margin_of(slack))
+    return PairDistance(nothing, lower_bound, 0.0, planes.face_a, planes.face_b, tally)
+
+
+@inline(one_caller=True)
+def _of_descent(found, asked, frames, slack, tally):
+    """What a descent has come to that has found no contact."""
+    lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin_of(slack))
     face_a, face_b = found.hit.face_a, found.hit.face_b
     if face_a == 2**62:
         face_a, face_b = asked.face_a, asked.face_b
     refined = found.refined
     if refined.face_a == 2**62:
-        return PairDistance(
-            nothing_yet(asked.wanted * asked.wanted), lower_bound, 0.0, face_a, face_b, tally
-        )
+        nothing = nothing_yet(asked.wanted * asked.wanted)
+        return PairDistance(nothing, lower_bound, 0.0, face_a, face_b, tally)
     distance = refined.length.hi
     error = error_of(refined, distance) + PASSED_OVER * distance
-    hit = Hit(
-        distance * distance,
-        refined.face_a,
-        refined.face_b,
-        _in_world(frames, refined.p),
-        _in_world(frames, refined.q),
-    )
+    p, q = _in_world(frames, refined.p), _in_world(frames, refined.q)
+    hit = Hit(distance * distance, refined.face_a, refined.face_b, p, q)
     lower_bound = min(lower_bound, max(0.0, distance - error))
     return PairDistance(hit, lower_bound, error, refined.face_a, refined.face_b, tally)
 
 
+@apart(SEARCH, _like)
+def search(bodies, asked, front, scratch, table):
+    """The nearest points of two bodies, or a proof that they are farther apart than the limit.
+
+    Args:
+        bodies: their numbers in their surfaces.
+        asked: what is wanted and known, a `PairQuestion`.
+        front: a `PairFront`.
+    """
+    a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    frames, fronts, pair = bodies.frames, front.fronts, front.pair
+    roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
+    slack = rounding_slack(a, roots.a, b, roots.b, frames)
+    margin = margin_of(slack)
+    n_nodes, n_faces, n_exact = 0, 0, 0
+    if asked.touches:
+        over = overlap_of(table, roots, slack, scratch)
+        n_nodes, n_faces = over.n_nodes, over.n_faces
+        if over.meeting.found:
+            forget(fronts, pair)
+            return _contact(bodies, over, Tally(n_nodes, n_faces, 0), table)
+    first = _begin(a, roots.a, b, roots.b, frames.m, margin, asked)
+    limit = asked.limit + margin
+    planes = _seek_planes(roots, first.best, limit, slack, front, scratch, table)
+    n_nodes += planes.n_nodes
+    if planes.lower_bound > limit:
+        return _of_planes(planes, asked, slack, Tally(n_nodes, 0, 0))
+    limits = SearchLimits(limit, asked.wanted, slack, asked.effort)
+    best = first.best
+    for _ in range(2):
+        found = descend(roots, best, first, limits, planes, front, scratch, table)
+        n_nodes += found.tally.nodes
+        n_faces += found.tally.faces
+        n_exact += found.tally.exact_decisions
+        if planes.n_waiting == 0:
+            break
+        is_all = planes.beyond > min(limit, np.sqrt(found.hit.gap_sq)) + margin
+        note_separating_planes(fronts, pair, is_all, HULLS_NEARER)
+        if is_all:
+            break
+        best, planes = found.hit, NOT_SEPARATED  # the hulls are nearer than the bodies
+    if found.meeting.found:  # which of several is told must not depend on where the search began
+        over = overlap_of(table, roots, slack, scratch)
+        tally = Tally(n_nodes + over.n_nodes, n_faces + over.n_faces, n_exact)
+        if not over.meeting.found:
+            over = Overlap(found.meeting, found.hit.face_a, found.hit.face_b, 0, 0)
+        return _contact(bodies, over, tally, table)
+    tally = Tally(n_nodes, n_faces, n_exact)
+    if not (asked.apart or planes.n_waiting > 0):
+        inside, x = contained(a, bodies.a, b, bodies.b, frames, scratch, table)
+        if inside:
+            forget(fronts, pair)  # a contact must not depend on where the search begins
+            x = move(frames.a, x)
+            return PairDistance(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
+    return _of_descent(found, asked, frames, slack, tally)
+
+
 @inline(one_caller=True)
-def measure_pair(
-    lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table
-):
+def measure_pair(table, bodies, asked, front, scratch):
     """The same by address."""
-    return at_address(
-        table,
-        SEARCH,
-        NOTHING_MEASURED,
-        (lent_a, body_a, lent_b, body_b, frames, asked, fronts, pair, moved, scratch, table),
-    )
+    return at_address(table, SEARCH, NOTHING_MEASURED, (bodies, asked, front, scratch, table))

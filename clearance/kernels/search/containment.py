@@ -14,6 +14,7 @@ caps give another number unless they are seen from there under three quarters of
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -169,6 +170,19 @@ def signed_turns_of_caps(surface, body, x):
     return total / (4.0 * math.pi)
 
 
+class Probe(NamedTuple):
+    """A vertex of the other body that may be inside.
+
+    Attributes:
+        vertex: in that body's frame, exact.
+        x: the same in the body's own frame, rounded by no more than ROUNDING of `far` [m].
+    """
+
+    vertex: Vec3
+    x: Vec3
+    far: float
+
+
 def _like():
     nodes = np.empty((0, 2), dtype=np.int32)
     nowhere = Vec3(0.0, 0.0, 0.0)
@@ -176,9 +190,7 @@ def _like():
         surface_like(),
         0,
         True,
-        nowhere,
-        nowhere,
-        0.0,
+        Probe(nowhere, nowhere, 0.0),
         FRAMES_AT_REST,
         new_exact_scratch(),
         nodes,
@@ -186,26 +198,25 @@ def _like():
 
 
 @apart(WINDING_NUMBER, _like)
-def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
+def winding_number(surface, body, is_b, probe, frames, exact, nodes):
     """How often the closed components of a body wind round a point that is not on its surface, exactly.
 
     Args:
         is_b: True if the body is b.
-        vertex: of the other body, in its frame.
-        x: the same in the body's own frame, rounded by no more than ROUNDING of `far` [m].
+        probe: the point, a `Probe`.
         nodes: (k, 2) room for nodes that wait.
     """
     set_poses(frames, exact)
     side = 1 if is_b else 0
     along_ray = row(exact.poses[side], AXIS)
-    probe = PosedVertex(vertex, 1 - side)
+    vertex = PosedVertex(probe.vertex, 1 - side)
     number = 0
     n_waiting = 1
     nodes[0, 0] = surface.roots[body]
     while n_waiting > 0:
         n_waiting -= 1
         node = np.int64(nodes[n_waiting, 0])
-        if not _ray_may_meet(surface, node, x, along_ray, far):
+        if not _ray_may_meet(surface, node, probe.x, along_ray, probe.far):
             continue
         first = np.int64(surface.children[node, 0])
         if not is_leaf(surface, node):
@@ -213,15 +224,15 @@ def winding_number(surface, body, is_b, vertex, x, far, frames, exact, nodes):
                 nodes[n_waiting, 0] = WIDTH * first + k
                 n_waiting += 1
         elif surface.turns[first] != 0:
-            number += surface.turns[first] * _crossings(surface, first, side, probe, exact)
+            number += surface.turns[first] * _crossings(surface, first, side, vertex, exact)
     for i in range(surface.cap_starts[body], surface.cap_starts[body + 1], 3):
         one, two = (
             PosedVertex(row(surface.caps, i), side),
             PosedVertex(row(surface.caps, i + 1), side),
         )
         three = PosedVertex(row(surface.caps, i + 2), side)
-        if not _beside(exact, one, two, three, probe):
-            number += _crossing(one, two, three, probe, exact)
+        if not _beside(exact, one, two, three, vertex):
+            number += _crossing(one, two, three, vertex, exact)
     return number
 
 
@@ -240,8 +251,8 @@ def contained(a, body_a, b, body_b, frames, scratch, table):
             x = move_back(frames.m, v) if is_a else move(frames.m, v)
             away = far + size(v)
             if in_box(two, two.roots[body_two], x, away):
-                probe = row(one.exact, one.probes[i])
-                asked = (two, body_two, is_a, probe, x, away, frames, scratch.exact, scratch.nodes)
+                probe = Probe(row(one.exact, one.probes[i]), x, away)
+                asked = (two, body_two, is_a, probe, frames, scratch.exact, scratch.nodes)
                 number = at_address(table, WINDING_NUMBER, 0, asked)
                 if number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL:
                     return True, v if is_a else x

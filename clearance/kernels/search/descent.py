@@ -18,8 +18,12 @@ from clearance.kernels.arithmetic.lanes import (
     least_of,
     marks_within,
 )
-from clearance.kernels.arithmetic.vec3 import Vec3
-from clearance.kernels.features.bounds import lower_bound_boxes, lower_bound_faces_along_direction
+from clearance.kernels.features.bounds import (
+    lower_bound_boxes,
+    lower_bound_faces_along_direction,
+    margin_of,
+)
+from clearance.kernels.features.every_feature import FeatureCutoff
 from clearance.kernels.features.face_pair import (
     FacePairState,
     Hit,
@@ -28,9 +32,11 @@ from clearance.kernels.features.face_pair import (
     nearest_of_faces,
 )
 from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting_of
+from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.features.refine import (
     N_WAITING,
     NOTHING_REFINED,
+    Outlook,
     RefinedDistance,
     put,
     settle,
@@ -40,6 +46,8 @@ from clearance.kernels.features.rounding_guard import sure_gap, told_apart
 from clearance.kernels.mesh.surface import box_of, is_leaf
 from clearance.kernels.search.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.search.node_pairs import (
+    NodeGroup,
+    Views,
     bounds_of_group,
     opened,
     pair_in_group,
@@ -75,36 +83,105 @@ class DescentResult(NamedTuple):
     tally: Tally
 
 
-@inline
-def nothing_yet(limit_sq):
-    """The hit that any pair of points within the limit beats."""
-    nowhere = Vec3(0.0, 0.0, 0.0)
-    return Hit(limit_sq, 2**62, 2**62, nowhere, nowhere)
+class SearchLimits(NamedTuple):
+    """How far a search goes.
+
+    Attributes:
+        limit: [m] node pairs farther than this, or than the best, are not opened.
+        wanted: [m] face pairs farther apart are not refined.
+        slack: [m] of `rounding_slack`.
+        effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
+    """
+
+    limit: float
+    wanted: float
+    slack: float
+    effort: int
+
+
+class NearestSoFar(NamedTuple):
+    """The best pair of points so far, and what follows from it.
+
+    Attributes:
+        gap: [m] theirs, or the limit if that is less. cut: [m] what is farther than this is left.
+        views: the bodies seen in the direction from one point to the other.
+    """
+
+    hit: Hit
+    gap: float
+    cut: float
+    views: Views
+
+
+class RefineProgress(NamedTuple):
+    """The face pairs that could be the minimum.
+
+    Attributes:
+        n_waiting: so many wait. refined: the best of those that waited before.
+        hides: True if rounding may hide nearer points of one that waits than were seen.
+    """
+
+    n_waiting: int
+    refined: RefinedDistance
+    hides: bool
+
+
+class FaceSearch(NamedTuple):
+    """What is known from the face pairs that were looked at.
+
+    Attributes:
+        lower_bound: [m] of those that are left.
+        n_measured: how many were measured.
+    """
+
+    near: NearestSoFar
+    progress: RefineProgress
+    meeting: Meeting
+    lower_bound: float
+    n_measured: int
+
+
+class NodeQueue(NamedTuple):
+    """Node pairs that wait, in `Scratch`, when a search begins.
+
+    Attributes:
+        n_kept: entries of the front that stay in it. n_waiting: node pairs. n_bounded: those bounded for it.
+        lower_bound: [m] of all that does not wait.
+    """
+
+    n_kept: int
+    n_waiting: int
+    n_bounded: int
+    lower_bound: float
 
 
 @inline(force=True)
-def _wait_for_near(
-    a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut
-):
+def _nearest_so_far(hit, limits, m):
+    gap = min(limits.limit, math.sqrt(hit.gap_sq))
+    return NearestSoFar(hit, gap, gap + margin_of(limits.slack), views_of(hit, m))
+
+
+@inline(force=True)
+def _wait_for_near(a, b, near, nodes, marks, bounds, slack, scratch, n_waiting):
     """Lets the marked nodes of a group wait that may hold nearest points with a node of the other body.
 
     Leaves stay marked, so that all of a group stay in one entry; what waits of them has ~a for a. What is turned
-    away stays too. Returns (waiting, marks that stay, the least bound of those, that of those beyond `cut`).
+    away stays too. Returns (waiting, marks that stay, the least bound of those, that of those beyond the cut).
     """
-    near = marks & marks_within(bounds, cut)
-    far = least_of(bounds, marks ^ near)
+    within = marks & marks_within(bounds, near.cut)
+    far = least_of(bounds, marks ^ within)
     first = n_waiting
     low = math.inf
-    apart = near & ~marks_within(bounds, 0.0)
+    apart = within & ~marks_within(bounds, 0.0)
     if apart:
-        away = apart & turned_away(a, b, from_a, from_b, group, other, is_b, slack)
+        away = apart & turned_away(a, b, near.views, nodes, slack)
         low = least_of(bounds, away)
-        near ^= away
-    while near:
-        i = first_of(near)
-        near &= near - 1
+        within ^= away
+    while within:
+        i = first_of(within)
+        within &= within - 1
         bound = lane(bounds, i)
-        node_a, node_b = pair_in_group(is_b, group, i, other)
+        node_a, node_b = pair_in_group(nodes, i)
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             low = min(low, bound)
             node_a = ~node_a
@@ -115,17 +192,20 @@ def _wait_for_near(
 
 
 @inline(force=True)
-def _leave(scratch, n_left, group, other, marks, lower_bound):
+def _leave(scratch, n_left, nodes, marks, lower_bound):
     """Notes an entry for the front; the number of them."""
-    scratch.left[n_left, 0], scratch.left[n_left, 1], scratch.left[n_left, 2] = group, other, marks
-    scratch.lower_bounds[n_left] = lower_bound
+    left = scratch.left
+    left[n_left, 0], left[n_left, 1] = nodes.group, nodes.other
+    left[n_left, 2] = marks + OF_B if nodes.is_of_b else marks
+    scratch.lower_bounds[n_left] = lower_bound * KEPT_DOWN
     return n_left + (n_left <= LONGEST)  # one too many says that not all are there
 
 
-@inline
-def margin_of(slack):
-    """[m] the rounding of a distance between two points of the bodies, with room."""
-    return 4.0 * slack
+@inline(force=True)
+def _leave_pair(scratch, n_left, node_a, node_b, lower_bound):
+    """The same of one node pair."""
+    nodes = NodeGroup(False, node_a // WIDTH, node_b)
+    return _leave(scratch, n_left, nodes, 1 << node_a % WIDTH, lower_bound)
 
 
 @inline(force=True)
@@ -140,243 +220,211 @@ def _nearest_last(scratch, n_waiting):
 
 
 @inline(one_caller=True)
-def _resume(a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch):
-    """Splits the front of a pair: what is still far stays in it, the rest waits.
-
-    Returns (kept, waiting, node pairs bounded, lower bound).
-    """
-    start = fronts.spans[pair, 0]
+def _resume(a, b, near, slack, front, scratch):
+    """Splits the front of a pair: what is still far stays in it, the rest waits."""
+    fronts, moved = front.fronts, front.moved
+    start = fronts.spans[front.pair, 0]
     n_kept = 0
     n_waiting = 0
     n_nodes = 0
     nearest = 0
     lower_bound = math.inf
-    for i in range(start, start + fronts.spans[pair, 1]):
+    for i in range(start, start + fronts.spans[front.pair, 1]):
         group, other, marks = fronts.entries[i, 0], fronts.entries[i, 1], fronts.entries[i, 2]
         carried = fronts.lower_bounds[i]
-        if carried - moved <= cut:
-            is_b = marks >= OF_B
+        if carried - moved <= near.cut:
+            nodes = NodeGroup(marks >= OF_B, group, other)
             marks %= OF_B
             n_nodes += how_many(marks)
-            bounds = bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
+            bounds = bounds_of_group(a, b, near.views, nodes, marks, slack, near.cut)
             n_before = n_waiting
             n_waiting, marks, low, far = _wait_for_near(
-                a,
-                b,
-                from_a,
-                from_b,
-                scratch,
-                n_waiting,
-                group,
-                other,
-                is_b,
-                marks,
-                bounds,
-                slack,
-                cut,
+                a, b, near, nodes, marks, bounds, slack, scratch, n_waiting
             )
             if n_waiting > n_before and scratch.bounds[n_waiting - 1] < scratch.bounds[nearest]:
                 nearest = n_waiting - 1
             lower_bound = min(lower_bound, far)
             if marks == 0:
                 continue
-            marks += OF_B if is_b else 0
+            marks += OF_B if nodes.is_of_b else 0
             carried = (low + moved) * KEPT_DOWN
         else:
             lower_bound = min(lower_bound, carried - moved)
         kept = start + n_kept
-        fronts.entries[kept, 0], fronts.entries[kept, 1], fronts.entries[kept, 2] = (
-            group,
-            other,
-            marks,
-        )
+        fronts.entries[kept, 0], fronts.entries[kept, 1] = group, other
+        fronts.entries[kept, 2] = marks
         fronts.lower_bounds[kept] = carried
         n_kept += 1
     if n_waiting > 0:  # nearest last
         swap(scratch, nearest, n_waiting - 1)
-    return n_kept, n_waiting, n_nodes, lower_bound
+    return NodeQueue(n_kept, n_waiting, n_nodes, lower_bound)
 
 
 @inline(one_caller=True)
-def descend(
-    lent_a, root_a, lent_b, root_b, frames, best, first, limit, wanted_gap, slack, effort, separating_planes,
-    fronts, pair, moved, scratch, table,
-):  # fmt: skip
+def _begin(a, b, roots, near, slack, planes, front, scratch):
+    """What waits first: what the separating planes or the front have left, or the roots."""
+    if planes.n_waiting > 0:
+        return NodeQueue(0, planes.n_waiting, 0, planes.beyond)
+    if front.fronts.spans[front.pair, 1] > 0:
+        return _resume(a, b, near, slack, front, scratch)
+    scratch.nodes[0, 0], scratch.nodes[0, 1] = roots.a, roots.b
+    scratch.bounds[0] = lower_bound_boxes(
+        box_of(a, roots.a), box_of(b, roots.b), roots.frames.m, slack
+    )
+    n_waiting, n_nodes = 1, 1
+    if near.gap == math.inf:
+        n_waiting, n_nodes = warm_start(a, b, roots, near.views, scratch)
+    return NodeQueue(0, n_waiting, n_nodes, math.inf)
+
+
+@inline(force=True)
+def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch, table):
+    """Lets a face pair wait to be refined; where too many wait, those are refined that can still win."""
+    near, progress = search.near, search.progress
+    margin = margin_of(limits.slack)
+    n_waiting, refined = progress.n_waiting, progress.refined
+    if n_waiting == N_WAITING:
+        n_waiting = shed(a, b, near.gap, margin, scratch.waiting, n_waiting)
+        if n_waiting > N_WAITING // 2:
+            outlook = Outlook(near.views.a.direction, limits.slack, 0.0)
+            cutoff = FeatureCutoff(min(near.gap, limits.wanted), margin)
+            refined = settle(table, faces, scratch.waiting, n_waiting, cutoff, outlook, refined)
+            n_waiting = 0
+    put(scratch.waiting, n_waiting, faces.a, faces.b, seen, least_sq)
+    return RefineProgress(n_waiting + 1, refined, progress.hides)
+
+
+@inline(one_caller=True)
+def _look_at_faces(a, b, faces, bound, first, search, limits, n_waiting, scratch, table):
+    """What is known after a pair of leaves, `bound` [m] apart at least, while so many node pairs wait."""
+    before, slack, margin = search.near, limits.slack, margin_of(limits.slack)
+    face_a, face_b, m = faces.a, faces.b, faces.frames.m
+    near, lower_bound, met = before, search.lower_bound, search.meeting
+    progress, n_measured = search.progress, search.n_measured
+    direction = before.views.a.direction
+    apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
+    if apart > before.cut:
+        lower_bound = min(lower_bound, apart)
+    elif before.hit.gap_sq > limits.limit * limits.limit or may_own_nearest(
+        a, face_a, b, face_b, direction, apart, before.gap, margin
+    ):
+        n_measured += 1
+        if face_a == first.best.face_a and face_b == first.best.face_b:
+            measured = FacePairState(before.hit, first.seen)
+        else:
+            measured = nearest_of_faces(a, face_a, b, face_b, m, margin, before.hit)
+        near = NearestSoFar(measured.best, before.gap, before.cut, before.views)
+        if measured.best.gap_sq < before.hit.gap_sq:
+            near = _nearest_so_far(measured.best, limits, m)
+            direction = near.views.a.direction
+            apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
+        gap = sure_gap(a, face_a, b, face_b, m, margin, apart)
+        if bound <= 0.0 and gap <= 0.0:
+            met = meeting_of(table, faces, scratch.exact)
+        if met.found:
+            touching = Hit(0.0, face_a, face_b, m.t, m.t)
+            near = NearestSoFar(touching, near.gap, near.cut, near.views)
+        else:
+            if n_waiting > 1 and near.gap < before.gap:
+                _nearest_last(scratch, n_waiting)
+            least_sq = measured.seen.near_sq
+            is_told = told_apart(a, face_a, b, face_b, gap, margin)
+            if not is_told:  # nearer ones may be hidden
+                least_sq = min(least_sq, max(0.0, gap) * max(0.0, gap))
+            reach = limit_of(a, face_a, b, face_b, before.gap, margin)
+            may_win = least_sq < math.inf and least_sq <= reach * reach
+            if may_win:
+                known = FaceSearch(near, progress, met, lower_bound, n_measured)
+                progress = _let_wait(
+                    a, b, faces, measured.seen, least_sq, known, limits, scratch, table
+                )
+            if may_win and not is_told:
+                progress = RefineProgress(progress.n_waiting, progress.refined, True)
+            elif least_sq < math.inf:
+                seen = math.sqrt(least_sq)
+                left = 2.0 * seen - limit_of(a, face_a, b, face_b, seen, margin)
+                lower_bound = min(lower_bound, left)
+            else:
+                lower_bound = min(lower_bound, math.sqrt(near.hit.gap_sq) + margin)
+    return FaceSearch(near, progress, met, lower_bound, n_measured)
+
+
+@inline(one_caller=True)
+def descend(roots, best, first, limits, planes, front, scratch, table):
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
 
     Args:
+        roots: of the bodies' trees.
         best: where to start: a hit, or none; its points say in which direction the bodies are seen apart, also
             where they are farther apart than the limit.
         first: the hit of two faces that are measured already, and what was seen of them.
-        limit: [m] node pairs farther than this, or than the best, are not opened.
-        wanted_gap: [m] face pairs farther apart are not refined.
-        slack: [m] of `rounding_slack`.
-        effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
-        separating_planes: if leaves wait already only these are looked at; nothing else is nearer than it says.
-        fronts, pair: where the front of the pair is kept.
-        moved: [m] what both bodies have moved in all.
+        limits: of `SearchLimits`.
+        planes: of `SeparatingPlanes`: if leaves wait already only these are looked at; nothing else is nearer than
+            it says.
+        front: of `PairFront`, where the front of the pair is kept.
         table: of `kernel_table`.
 
     A pair of nodes or faces is left only if a lower bound exceeds the best distance by more than its own
     error, so that every face pair that attains the minimum is refined, and the answer does not depend on
     the order of the search. It stops at the first contact.
     """
-    a, b = borrow(lent_a), borrow(lent_b)
-    m = frames.m
-    margin = margin_of(slack)
-    best_gap = min(limit, math.sqrt(best.gap_sq))
-    cut = best_gap + margin
-    from_a, from_b = views_of(best, m)
-    refined = NOTHING_REFINED
-    n_faces = 0
-    n_exact = scratch.exact.count[0]
-    n_pairs = 0
-    met = NO_MEETING
-    n_left = 0
-    untold_wait = False
-    if separating_planes.n_waiting > 0:
-        n_kept, n_waiting, n_nodes, lower_bound = (
-            0,
-            separating_planes.n_waiting,
-            0,
-            separating_planes.beyond,
-        )
-    elif fronts.spans[pair, 1] > 0:
-        n_kept, n_waiting, n_nodes, lower_bound = _resume(
-            a, b, from_a, from_b, slack, cut, fronts, pair, moved, scratch
-        )
-    else:
-        n_kept, n_waiting, n_nodes, lower_bound = 0, 1, 1, math.inf
-        scratch.nodes[0, 0] = root_a
-        scratch.nodes[0, 1] = root_b
-        scratch.bounds[0] = lower_bound_boxes(box_of(a, root_a), box_of(b, root_b), m, slack)
-        if best_gap == math.inf:
-            n_waiting, n_nodes = warm_start(a, root_a, b, root_b, from_a, from_b, scratch)
-    while n_waiting > 0:
-        if n_nodes > effort and best_gap < math.inf:
+    a, b = borrow(roots.surface_a), borrow(roots.surface_b)
+    slack, n_exact = limits.slack, scratch.exact.count[0]
+    near = _nearest_so_far(best, limits, roots.frames.m)
+    queue = _begin(a, b, roots, near, slack, planes, front, scratch)
+    n_waiting, n_nodes, n_left = queue.n_waiting, queue.n_bounded, 0
+    nothing_waits = RefineProgress(0, NOTHING_REFINED, False)
+    search = FaceSearch(near, nothing_waits, NO_MEETING, queue.lower_bound, 0)
+    lower_bound = math.inf  # of the node pairs that are left
+    while n_waiting > 0 and not search.meeting.found:
+        near = search.near
+        if n_nodes > limits.effort and near.gap < math.inf:
             lower_bound = -math.inf
             break
         n_waiting -= 1
-        node_a = scratch.nodes[n_waiting, 0]
-        node_b = scratch.nodes[n_waiting, 1]
+        node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
         bound = scratch.bounds[n_waiting]
         is_kept = node_a < 0  # leaves, which the front has
         if is_kept:
             node_a = ~node_a
-        if bound > cut:
+        if bound > near.cut:
             lower_bound = min(lower_bound, bound)
             if not is_kept:
-                mark = 1 << node_a % WIDTH
-                n_left = _leave(
-                    scratch, n_left, node_a // WIDTH, node_b, mark, (bound + moved) * KEPT_DOWN
-                )
-            continue
-        if is_leaf(a, node_a) and is_leaf(b, node_b):
-            face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
-            along_direction = (
-                lower_bound_faces_along_direction(a, face_a, b, face_b, from_a.direction) - slack
+                n_left = _leave_pair(scratch, n_left, node_a, node_b, bound + front.moved)
+        elif is_leaf(a, node_a) and is_leaf(b, node_b):
+            faces = parts(roots, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
+            search = _look_at_faces(
+                a, b, faces, bound, first, search, limits, n_waiting, scratch, table
             )
-            if along_direction > cut:
-                lower_bound = min(lower_bound, along_direction)
-            elif best.gap_sq > limit * limit or may_own_nearest(
-                a, face_a, b, face_b, from_a.direction, along_direction, best_gap, margin
-            ):
-                n_faces += 1
-                before_sq, before_gap = best.gap_sq, best_gap
-                if face_a == first.best.face_a and face_b == first.best.face_b:
-                    near = FacePairState(best, first.seen)
-                else:
-                    near = nearest_of_faces(a, face_a, b, face_b, m, margin, best)
-                best = near.best
-                if best.gap_sq < before_sq:
-                    best_gap = min(limit, math.sqrt(best.gap_sq))
-                    cut = best_gap + margin
-                    from_a, from_b = views_of(best, m)
-                    along_direction = (
-                        lower_bound_faces_along_direction(a, face_a, b, face_b, from_a.direction)
-                        - slack
-                    )
-                gap = sure_gap(a, face_a, b, face_b, m, margin, along_direction)
-                if bound <= 0.0 and gap <= 0.0:
-                    met = meeting_of(table, lent_a, face_a, lent_b, face_b, frames, scratch.exact)
-                    if met.found:
-                        best = Hit(0.0, face_a, face_b, m.t, m.t)
-                        break
-                if n_waiting > 1 and best_gap < before_gap:
-                    _nearest_last(scratch, n_waiting)
-                least_sq = near.seen.near_sq
-                is_told = told_apart(a, face_a, b, face_b, gap, margin)
-                if not is_told:  # nearer ones may be hidden
-                    least_sq = min(least_sq, max(0.0, gap) * max(0.0, gap))
-                reach = limit_of(a, face_a, b, face_b, before_gap, margin)
-                may_win = least_sq < math.inf and least_sq <= reach * reach
-                if may_win:
-                    if n_pairs == N_WAITING:
-                        n_pairs = shed(a, b, best_gap, margin, scratch.waiting, n_pairs)
-                        if n_pairs > N_WAITING // 2:
-                            refined = settle(
-                                lent_a,
-                                lent_b,
-                                frames,
-                                min(best_gap, wanted_gap),
-                                margin,
-                                scratch.waiting,
-                                n_pairs,
-                                from_a.direction,
-                                slack,
-                                0.0,
-                                refined,
-                                table,
-                            )
-                            n_pairs = 0
-                    put(scratch.waiting, n_pairs, face_a, face_b, near.seen, least_sq)
-                    n_pairs += 1
-                if may_win and not is_told:
-                    untold_wait = True
-                elif least_sq < math.inf:
-                    gap = math.sqrt(least_sq)
-                    lower_bound = min(
-                        lower_bound, 2.0 * gap - limit_of(a, face_a, b, face_b, gap, margin)
-                    )
-                else:
-                    lower_bound = min(lower_bound, math.sqrt(best.gap_sq) + margin)
             if not is_kept:  # the roots
-                n_left = _leave(
-                    scratch, n_left, node_a // WIDTH, node_b, 1, (bound + moved) * KEPT_DOWN
-                )
-            continue
-        is_b, group, count, other = opened(a, node_a, b, node_b)
-        marks = (1 << count) - 1
-        bounds = bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut)
-        n_nodes += count
-        assert n_waiting + WIDTH <= STACK_DEPTH
-        n_waiting, marks, low, far = _wait_for_near(
-            a, b, from_a, from_b, scratch, n_waiting, group, other, is_b, marks, bounds, slack, cut
-        )
-        lower_bound = min(lower_bound, far)
-        if marks > 0:
-            marks += OF_B if is_b else 0
-            n_left = _leave(scratch, n_left, group, other, marks, (low + moved) * KEPT_DOWN)
+                n_left = _leave_pair(scratch, n_left, node_a, node_b, bound + front.moved)
+        else:
+            nodes, count = opened(a, node_a, b, node_b)
+            marks = (1 << count) - 1
+            bounds = bounds_of_group(a, b, near.views, nodes, marks, slack, near.cut)
+            n_nodes += count
+            assert n_waiting + WIDTH <= STACK_DEPTH
+            n_waiting, marks, low, far = _wait_for_near(
+                a, b, near, nodes, marks, bounds, slack, scratch, n_waiting
+            )
+            lower_bound = min(lower_bound, far)
+            if marks > 0:
+                n_left = _leave(scratch, n_left, nodes, marks, low + front.moved)
+    lower_bound = min(lower_bound, search.lower_bound)
+    near, progress, met = search.near, search.progress, search.meeting
+    enough = min(near.gap, limits.wanted)
+    refined = progress.refined
     if not met.found:
+        outlook = Outlook(near.views.a.direction, slack, near.gap)
+        cutoff = FeatureCutoff(enough, margin_of(slack))
         refined = settle(
-            lent_a,
-            lent_b,
-            frames,
-            min(best_gap, wanted_gap),
-            margin,
-            scratch.waiting,
-            n_pairs,
-            from_a.direction,
-            slack,
-            best_gap,
-            refined,
-            table,
+            table, roots, scratch.waiting, progress.n_waiting, cutoff, outlook, refined
         )
     if met.found or lower_bound == -math.inf:
-        forget(fronts, pair)
-    elif separating_planes.n_waiting == 0:
-        keep(fronts, pair, n_kept, scratch.left, scratch.lower_bounds, n_left)
-    if untold_wait:  # they are no nearer than what is wanted, or refined
-        lower_bound = min(lower_bound, min(best_gap, wanted_gap))
-    tally = Tally(n_nodes, n_faces, scratch.exact.count[0] - n_exact)
-    return DescentResult(met, best, lower_bound, refined, tally)
+        forget(front.fronts, front.pair)
+    elif planes.n_waiting == 0:
+        keep(front.fronts, front.pair, queue.n_kept, scratch.left, scratch.lower_bounds, n_left)
+    if progress.hides:  # they are no nearer than what is wanted, or refined
+        lower_bound = min(lower_bound, enough)
+    tally = Tally(n_nodes, search.n_measured, scratch.exact.count[0] - n_exact)
+    return DescentResult(met, near.hit, lower_bound, refined, tally)

@@ -21,7 +21,13 @@ from clearance.kernels.arithmetic.vec3 import (
     row,
     sub,
 )
-from clearance.kernels.search.containment import DOUBTFUL, in_box, signed_turns_of_caps, solid_angle
+from clearance.kernels.search.containment import (
+    DOUBTFUL,
+    Probe,
+    in_box,
+    signed_turns_of_caps,
+    solid_angle,
+)
 from clearance.kernels.search.scratch import new_scratch
 
 WOUND = 0.98
@@ -50,7 +56,7 @@ def generalized_windings(surface, points, poses, poses_of_points, least, most, t
             away = size(frames.m.t) + size(v)
             number = 0.0
             if in_box(surface, surface.roots[0], x, away):
-                asked = (surface, 0, False, v, x, away, frames, scratch.exact, scratch.nodes)
+                asked = (surface, 0, False, Probe(v, x, away), frames, scratch.exact, scratch.nodes)
                 number = abs(
                     at_address(table, WINDING_NUMBER, 0, asked)
                     - signed_turns_of_caps(surface, 0, x)

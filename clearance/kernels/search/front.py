@@ -58,6 +58,18 @@ class Fronts(NamedTuple):
     used: np.ndarray
 
 
+class PairFront(NamedTuple):
+    """The front of one pair.
+
+    Attributes:
+        pair: its number in `fronts`. moved: [m] what both bodies have moved in all.
+    """
+
+    fronts: Fronts
+    pair: int
+    moved: float
+
+
 @shared
 def no_fronts(n_pairs, pool):
     """Fronts of length 0; those of single queries have no pool."""

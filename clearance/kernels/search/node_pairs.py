@@ -16,6 +16,18 @@ from clearance.kernels.mesh.normal_cones import marks_turned_away, normal_cones_
 from clearance.kernels.mesh.surface import box_at, box_of, group_at, is_leaf
 
 
+class NodeGroup(NamedTuple):
+    """Nodes of one body that lie in one group, and the node of the other body that they are looked at with.
+
+    Attributes:
+        is_of_b: True if the group is of b. group: its number. other: the node of the other body.
+    """
+
+    is_of_b: bool
+    group: int
+    other: int
+
+
 class RelativeView(NamedTuple):
     """How two bodies are seen from the frame of one of them.
 
@@ -28,10 +40,17 @@ class RelativeView(NamedTuple):
     direction: SeparatingDirection
 
 
+class Views(NamedTuple):
+    """Two bodies seen from the frame of a, and from that of b."""
+
+    a: RelativeView
+    b: RelativeView
+
+
 @inline(force=True)
 def views_along(direction, m):
     """The view from the frame of a and that from b."""
-    return RelativeView(m, direction), RelativeView(inverse(m), opposite(direction))
+    return Views(RelativeView(m, direction), RelativeView(inverse(m), opposite(direction)))
 
 
 @inline(force=True)
@@ -41,23 +60,28 @@ def views_of(best, m):
 
 
 @inline(force=True)
-def _seen(a, b, from_a, from_b, group, other, is_b):
-    """The boxes of a group, that of a node of the other body, and the view from the group's body."""
+def boxes_of_group(a, b, nodes):
+    """The boxes of a group, and that of the node of the other body."""
     boxes, centres, boxes_across, centres_across = a.boxes, a.centres, b.boxes, b.centres
-    view = from_a
-    if is_b:
+    if nodes.is_of_b:
         boxes, centres, boxes_across, centres_across = b.boxes, b.centres, a.boxes, a.centres
-        view = from_b
-    return group_at(boxes, centres, group), box_at(boxes_across, centres_across, other), view
+    return group_at(boxes, centres, nodes.group), box_at(boxes_across, centres_across, nodes.other)
 
 
 @inline(force=True)
-def bounds_of_group(a, b, from_a, from_b, group, other, is_b, marks, slack, cut):
+def _seen(a, b, views, nodes):
+    """The boxes of a group, that of a node of the other body, and the view from the group's body."""
+    p, q = boxes_of_group(a, b, nodes)
+    return p, q, views.b if nodes.is_of_b else views.a
+
+
+@inline(force=True)
+def bounds_of_group(a, b, views, nodes, marks, slack, cut):
     """[m] lower bounds on the distances of the nodes of a group to a node of the other body, in lanes.
 
     The cheap ones in direction if they exclude all that are marked.
     """
-    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    p, q, view = _seen(a, b, views, nodes)
     along_direction = lower_bound_boxes_along_direction(p, q, view.direction) - slack
     if marks & marks_within(along_direction, cut) == 0:
         return along_direction
@@ -71,36 +95,35 @@ def _from_centres(p, q, view):
 
 
 @inline(force=True)
-def between_centres(a, b, from_a, from_b, group, other, is_b):
+def between_centres(a, b, views, nodes):
     """[m] from the centres of a group's boxes to that of a node of the other body, in lanes."""
-    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    p, q, view = _seen(a, b, views, nodes)
     d = _from_centres(p, q, view)
     return square_root(dot(d, d))
 
 
 @inline(force=True)
-def _facing(a, b, from_a, from_b, group, other, is_b, slack):
+def _facing(a, b, views, nodes, slack):
     """How a group and a node of the other body face each other, and what is from centre to centre."""
-    p, q, view = _seen(a, b, from_a, from_b, group, other, is_b)
+    p, q, view = _seen(a, b, views, nodes)
     cones, cones_across = a.cones, b.cones
-    if is_b:
+    if nodes.is_of_b:
         cones, cones_across = b.cones, a.cones
-    return normal_cones_of(cones, group, cones_across, other, view.m, slack), _from_centres(
-        p, q, view
-    )
+    facing = normal_cones_of(cones, nodes.group, cones_across, nodes.other, view.m, slack)
+    return facing, _from_centres(p, q, view)
 
 
 @inline(force=True)
-def turned_away(a, b, from_a, from_b, group, other, is_b, slack):
+def turned_away(a, b, views, nodes, slack):
     """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
-    facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
+    facing, d = _facing(a, b, views, nodes, slack)
     return marks_turned_away(facing, d)
 
 
 @inline(force=True)
-def turned_away_while(a, b, from_a, from_b, group, other, is_b, slack, cos_turn, sin_turn, way):
+def turned_away_while(a, b, views, nodes, slack, cos_turn, sin_turn, way):
     """The same at every instant of a motion about the views' `m`: see `while_moving`."""
-    facing, d = _facing(a, b, from_a, from_b, group, other, is_b, slack)
+    facing, d = _facing(a, b, views, nodes, slack)
     return marks_turned_away(while_moving(facing, cos_turn, sin_turn, way), d)
 
 
@@ -113,16 +136,16 @@ def _breadth(box):
 
 @inline(force=True)
 def opened(a, node_a, b, node_b):
-    """What is looked at next of a node pair, not both leaves: (is of b, group, how many nodes, node across)."""
+    """What is looked at next of a node pair, not both leaves: (a group, how many nodes it has)."""
     if is_leaf(a, node_a) or (
         not is_leaf(b, node_b) and _breadth(box_of(a, node_a)) < _breadth(box_of(b, node_b))
     ):
-        return True, b.children[node_b, 0], b.children[node_b, 1], node_a
-    return False, a.children[node_a, 0], a.children[node_a, 1], node_b
+        return NodeGroup(True, b.children[node_b, 0], node_a), b.children[node_b, 1]
+    return NodeGroup(False, a.children[node_a, 0], node_b), a.children[node_a, 1]
 
 
 @inline(force=True)
-def pair_in_group(is_b, group, k, other):
+def pair_in_group(nodes, k):
     """Node `k` of a group and the node across, that of a first."""
-    node = WIDTH * group + k
-    return (other, node) if is_b else (node, other)
+    node = WIDTH * nodes.group + k
+    return (nodes.other, node) if nodes.is_of_b else (node, nodes.other)

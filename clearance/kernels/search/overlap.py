@@ -10,21 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import (
-    OVERLAP,
-    LentArgument,
-    apart,
-    at_address,
-    borrow,
-    table_like,
-)
-from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
+from clearance.compile.kernel_table import OVERLAP, apart, at_address, borrow, table_like
 from clearance.kernels.arithmetic.lanes import WIDTH, first_of, lane, marks_within
 from clearance.kernels.arithmetic.vec3 import inverse
 from clearance.kernels.features.bounds import lower_bound_boxes
 from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting_of
-from clearance.kernels.mesh.surface import box_at, group_at, is_leaf, surface_like
-from clearance.kernels.search.node_pairs import opened, pair_in_group
+from clearance.kernels.features.posed_pair import parts, posed_pair_like
+from clearance.kernels.mesh.surface import is_leaf
+from clearance.kernels.search.node_pairs import boxes_of_group, opened, pair_in_group
 from clearance.kernels.search.scratch import STACK_DEPTH, new_scratch, wait
 
 
@@ -41,31 +34,19 @@ class Overlap(NamedTuple):
 NO_OVERLAP = Overlap(NO_MEETING, -1, -1, 0, 0)
 
 
-def _like():
-    return (
-        LentArgument(surface_like()),
-        0,
-        LentArgument(surface_like()),
-        0,
-        FRAMES_AT_REST,
-        0.0,
-        new_scratch(),
-        table_like(),
-    )
-
-
-@apart(OVERLAP, _like)
-def overlap(lent_a, root_a, lent_b, root_b, frames, slack, scratch, table):
+@apart(OVERLAP, lambda: (posed_pair_like(), 0.0, new_scratch(), table_like()))
+def overlap(roots, slack, scratch, table):
     """The first two faces found to have a point in common, exactly; all that can are looked at.
 
     Args:
+        roots: of the bodies' trees.
         slack: [m] of `rounding_slack`, by which nodes may seem to be apart.
     """
-    a, b = borrow(lent_a), borrow(lent_b)
-    m = frames.m
+    a, b = borrow(roots.surface_a), borrow(roots.surface_b)
+    m = roots.frames.m
     back = inverse(m)
     n_nodes, n_faces, n_waiting = 1, 0, 1
-    scratch.nodes[0, 0], scratch.nodes[0, 1], scratch.bounds[0] = root_a, root_b, 0.0
+    scratch.nodes[0, 0], scratch.nodes[0, 1], scratch.bounds[0] = roots.a, roots.b, 0.0
     while n_waiting > 0:
         n_waiting -= 1
         node_a, node_b = (
@@ -75,35 +56,26 @@ def overlap(lent_a, root_a, lent_b, root_b, frames, slack, scratch, table):
         if is_leaf(a, node_a) and is_leaf(b, node_b):
             face_a, face_b = np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0])
             n_faces += 1
-            met = meeting_of(table, lent_a, face_a, lent_b, face_b, frames, scratch.exact)
+            met = meeting_of(table, parts(roots, face_a, face_b), scratch.exact)
             if met.found:
                 return Overlap(met, face_a, face_b, n_nodes, n_faces)
             continue
-        is_b, group, count, other = opened(a, node_a, b, node_b)
+        nodes, count = opened(a, node_a, b, node_b)
         n_nodes += count
-        if is_b:
-            p, q, turn = (
-                group_at(b.boxes, b.centres, group),
-                box_at(a.boxes, a.centres, other),
-                back,
-            )
-        else:
-            p, q, turn = group_at(a.boxes, a.centres, group), box_at(b.boxes, b.centres, other), m
-        bounds = lower_bound_boxes(p, q, turn, slack)
+        p, q = boxes_of_group(a, b, nodes)
+        bounds = lower_bound_boxes(p, q, back if nodes.is_of_b else m, slack)
         near = ((1 << count) - 1) & marks_within(bounds, 0.0)
         assert n_waiting + WIDTH <= STACK_DEPTH
         first = n_waiting
         while near:
             i = first_of(near)
             near &= near - 1
-            node_a, node_b = pair_in_group(is_b, group, i, other)
+            node_a, node_b = pair_in_group(nodes, i)
             n_waiting = wait(scratch, n_waiting, node_a, node_b, lane(bounds, i), first)
     return Overlap(NO_MEETING, np.int64(-1), np.int64(-1), n_nodes, n_faces)
 
 
 @inline(one_caller=True)
-def overlap_of(table, lent_a, root_a, lent_b, root_b, frames, slack, scratch):
+def overlap_of(table, roots, slack, scratch):
     """The same by address."""
-    return at_address(
-        table, OVERLAP, NO_OVERLAP, (lent_a, root_a, lent_b, root_b, frames, slack, scratch, table)
-    )
+    return at_address(table, OVERLAP, NO_OVERLAP, (roots, slack, scratch, table))

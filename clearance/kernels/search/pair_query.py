@@ -17,9 +17,17 @@ from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.bounds import displacement, rounding_slack
 from clearance.kernels.features.face_pair import write_points
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
-from clearance.kernels.search.front import KEPT_DOWN, LONGEST, Fronts, forget, no_fronts
+from clearance.kernels.search.front import (
+    KEPT_DOWN,
+    LONGEST,
+    Fronts,
+    PairFront,
+    forget,
+    no_fronts,
+)
 
 ROOM = 2 * LONGEST + 16
 """Node pairs that the front of the pair has room for: as many as the longest front asks for."""
@@ -34,6 +42,9 @@ FAR = 1.0
 """Bodies that move farther than this share of the smaller one's breadth are searched from the roots again."""
 
 MOVED, LOWER_BOUND, STRIDE = 0, 1, 2
+
+POSES_ARE_RIGID, AFRESH = 1, 2
+"""How `nearest_at_poses` is asked; numbers, since each argument that Python hands over takes time."""
 
 _FIELDS = ("a", "b", "scratch", "fronts", "poses", "witness_faces", "carried")
 
@@ -142,9 +153,8 @@ def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
         moved = 0.0
         asked = PairQuestion(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
         forget(state.fronts, 0)
-    measured = measure_pair(
-        lent_a, 0, lent_b, 0, frames, asked, state.fronts, 0, moved, scratch, table
-    )
+    bodies = PosedPair(lent_a, 0, lent_b, 0, frames)
+    measured = measure_pair(table, bodies, asked, PairFront(state.fronts, 0, moved), scratch)
     state.carried[MOVED] = moved
     state.carried[LOWER_BOUND] = (measured.lower_bound + moved) * KEPT_DOWN
     state.witness_faces[0], state.witness_faces[1] = measured.face_a, measured.face_b
@@ -155,47 +165,37 @@ def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
 
 
 @kernel
-def nearest_at_poses(held, poses_a, poses_b, checked, afresh, numbers, points, counts, table):
+def nearest_at_poses(held, poses_a, poses_b, how, numbers, points, counts, table):
     """Fills a row for each pose and returns -1, or nothing and the first row with a pose that is in doubt.
 
     Args:
         poses_a, poses_b: (n, 4, 4) `world_from_body` [m]; (1, 4, 4) for a body that stands.
-        checked: True if no pose is to be doubted.
-        afresh: True if nothing is to be taken from what was asked before.
+        how: `POSES_ARE_RIGID` if none is to be doubted, `AFRESH` if nothing is to be taken from what was asked
+            before, their sum or 0.
         numbers: (n, 2) [m] distance, error bound.
         points: (n, 2, 3) [m] witness points in the world.
         counts: (n, 5) faces of a and b, then nodes, faces and exact decisions that it took.
     """
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
-    for i in range(0 if checked else len(numbers)):
+    for i in range(0 if how & POSES_ARE_RIGID else len(numbers)):
         if not (
             _is_surely_rigid(poses_a[min(i, last_a)]) and _is_surely_rigid(poses_b[min(i, last_b)])
         ):
             return i
     state = PairState(held.fronts, held.poses, held.witness_faces, held.carried)
     _nearest(
-        held.a,
-        held.b,
-        state,
-        held.scratch,
-        poses_a,
-        poses_b,
-        afresh,
-        numbers,
-        points,
-        counts,
-        table,
+        held.a, held.b, state, held.scratch, poses_a, poses_b, how, numbers, points, counts, table
     )
     return -1
 
 
 @kernel(reference_counts=False)
-def _nearest(a, b, state, scratch, poses_a, poses_b, afresh, numbers, points, counts, table):
+def _nearest(a, b, state, scratch, poses_a, poses_b, how, numbers, points, counts, table):
     """Fills a row for each pose."""
     lent_a, lent_b = lend(a), lend(b)
     last_a, last_b = len(poses_a) - 1, len(poses_b) - 1
     for i in range(len(numbers)):
-        if afresh:
+        if how & AFRESH:
             state.carried[LOWER_BOUND] = -np.inf
         pose_a, pose_b = poses_a[min(i, last_a)], poses_b[min(i, last_b)]
         measured = _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table)

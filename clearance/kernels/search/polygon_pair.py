@@ -25,12 +25,12 @@ from clearance.kernels.features.bounds import (
 )
 from clearance.kernels.features.common_point import common_point_of
 from clearance.kernels.features.every_feature import FeatureCutoff
-from clearance.kernels.features.face_pair import limit_of, may_meet, nearest_of_faces
+from clearance.kernels.features.face_pair import limit_of, may_meet, nearest_of_faces, nothing_yet
 from clearance.kernels.features.meeting import meeting_of
+from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.features.refine import NOTHING_REFINED, error_of, refined_of
 from clearance.kernels.mesh.face_planes import plane_of, unit
 from clearance.kernels.mesh.surface import ANYTHING, Surface, surface_like
-from clearance.kernels.search.descent import nothing_yet
 
 UNDERFLOWN = 2.0**-400
 """Distance at our scale below which squares underflow: 10^-180 of the polygons' size."""
@@ -160,30 +160,22 @@ def _fill(surface, points, first, origin, scale):
 
 
 @inline(one_caller=True)
-def _measure(lent_a, lent_b, frames, margin, exact, table):
+def _measure(faces, margin, exact, table):
     """(distance, error, p, q, contact) of the two polygons that are filled in."""
-    a, b = borrow(lent_a), borrow(lent_b)
+    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
+    frames = faces.frames
     near = nearest_of_faces(a, 0, b, 0, frames.m, margin, nothing_yet(np.inf))
     direction = direction_between(near.best.p, near.best.q, frames.m)
     if lower_bound_faces_along_direction(a, 0, b, 0, direction) <= margin and may_meet(
         a, 0, b, 0, frames.m, margin
     ):
-        found = meeting_of(table, lent_a, 0, lent_b, 0, frames, exact)
+        found = meeting_of(table, faces, exact)
         if found.found:
-            common = common_point_of(table, a, 0, b, 0, frames, found)
+            common = common_point_of(table, faces, found)
             return 0.0, 0.0, rounded(common.p), rounded(common.q), True
     limit = limit_of(a, 0, b, 0, np.sqrt(near.best.gap_sq), margin)
-    refined = refined_of(
-        table,
-        lent_a,
-        0,
-        lent_b,
-        0,
-        frames,
-        near.seen,
-        FeatureCutoff(limit, margin),
-        NOTHING_REFINED,
-    )
+    cutoff = FeatureCutoff(limit, margin)
+    refined = refined_of(table, faces, near.seen, cutoff, NOTHING_REFINED)
     distance = refined.length.hi
     error = error_of(refined, distance)
     if distance < UNDERFLOWN:  # its square is not a number any more
@@ -208,7 +200,6 @@ def _like():
 def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
     """Fills `answers`, with room for one polygon of each side."""
     a_p, b_q = borrow(lent_p), borrow(lent_q)
-    frames = FRAMES_AT_REST
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])
         in_order = _comes_first(ps[k], first_p, qs[k], first_q)
@@ -221,7 +212,8 @@ def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
         a, b = lent_p, lent_q
         if not in_order:
             a, b = lent_q, lent_p
-        distance, error, p, q, contact = _measure(a, b, frames, margin, exact, table)
+        faces = PosedPair(a, 0, b, 0, FRAMES_AT_REST)
+        distance, error, p, q, contact = _measure(faces, margin, exact, table)
         if not in_order:
             p, q = q, p
         answers.distance[k] = distance * unscale

@@ -18,21 +18,14 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline
-from clearance.compile.kernel_table import (
-    SEPARATING_PLANES,
-    LentArgument,
-    apart,
-    at_address,
-    borrow,
-)
-from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
+from clearance.compile.kernel_table import SEPARATING_PLANES, apart, at_address, borrow
 from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, move, row, sub
-from clearance.kernels.features.bounds import direction_between
+from clearance.kernels.features.bounds import direction_between, margin_of
 from clearance.kernels.features.face_pair import Hit
+from clearance.kernels.features.posed_pair import posed_pair_like
 from clearance.kernels.features.segments import foot_inside
-from clearance.kernels.mesh.surface import surface_like
 from clearance.kernels.search.scratch import new_scratch
-from clearance.kernels.search.support import TILT, high_corner, top_of
+from clearance.kernels.search.support import TILT, SupportPoint, high_corner, top_of
 
 TURNS = 24
 """Directions that are tried at most."""
@@ -69,7 +62,7 @@ class SeparatingPlanes(NamedTuple):
     face_b: int
 
 
-NOTHING_PARTED = SeparatingPlanes(-math.inf, -math.inf, 0, 0, -1, -1)
+NOT_SEPARATED = SeparatingPlanes(-math.inf, -math.inf, 0, 0, -1, -1)
 
 
 @inline(force=True)
@@ -140,18 +133,7 @@ def _nearest_with(n, p, q, r, w):
 
 def _like():
     hit = Hit(0.0, 0, 0, Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
-    return (
-        LentArgument(surface_like()),
-        0,
-        LentArgument(surface_like()),
-        0,
-        FRAMES_AT_REST.m,
-        hit,
-        0.0,
-        0.0,
-        0.0,
-        new_scratch(),
-    )
+    return posed_pair_like(), hit, 0.0, 0.0, new_scratch()
 
 
 @inline(force=True)
@@ -169,46 +151,98 @@ def _let_wait(n_a, n_b, lower_bound, scratch):
     return n_waiting
 
 
+class HullSimplex(NamedTuple):
+    """Points of a less points of b, one to three, whose hull comes nearest to the origin.
+
+    Attributes:
+        n: how many. near: the nearest point to the origin of their hull.
+    """
+
+    n: int
+    near: Vec3
+    p: Vec3
+    q: Vec3
+    r: Vec3
+
+
+class Extremes(NamedTuple):
+    """What lies highest in both bodies along a direction, towards one another.
+
+    Attributes:
+        top_a, top_b: the highest corners. n_a, n_b: leaves that are as high but for the room, if asked for.
+        n_nodes: that were bounded.
+    """
+
+    top_a: SupportPoint
+    top_b: SupportPoint
+    n_a: int
+    n_b: int
+    n_nodes: int
+
+
+@inline(force=True)
+def _extremes(a, b, roots, direction, face_a, face_b, room, scratch):
+    """The extremes of two bodies, and in `scratch.left` the leaves within `room` [m] unless that is negative."""
+    v = Vec3(-direction.v.x, -direction.v.y, -direction.v.z)
+    n_a, n_b = 0, 0
+    if room >= 0.0:
+        top_a, n_a, nodes_a = top_of(a, roots.a, direction.u, face_a, room, TOUCHING, 0, scratch)
+        top_b, n_b, nodes_b = top_of(b, roots.b, v, face_b, room, TOUCHING, 1, scratch)
+    else:
+        top_a, nodes_a = high_corner(a, roots.a, direction.u, face_a)
+        top_b, nodes_b = high_corner(b, roots.b, v, face_b)
+    return Extremes(top_a, top_b, n_a, n_b, nodes_a + nodes_b)
+
+
+@inline(force=True)
+def _with_corners(simplex, a, b, corner_a, corner_b, m):
+    """The simplex with the difference of two corners, less what its nearest point is not of."""
+    x = row(a.vertices, a.face_vertices[corner_a])
+    w = sub(x, move(m, row(b.vertices, b.face_vertices[corner_b])))
+    if simplex.n == 0:
+        return HullSimplex(1, w, w, simplex.q, simplex.r)
+    near, n, p, q, r = _nearest_with(simplex.n, simplex.p, simplex.q, simplex.r, w)
+    return HullSimplex(n, near, p, q, r)
+
+
 @apart(SEPARATING_PLANES, _like)
-def separate(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch):
+def separate(roots, best, limit, slack, scratch):
     """Seeks planes that part the bodies by the distance of their nearest points, or by more than the limit [m].
 
     Pairs of leaves that touch the planes wait, as those do that a front has.
 
     Args:
-        best: a hit, whose points say where to begin. m, margin, slack: of `descend`.
+        roots: of the bodies' trees.
+        best: a hit, whose points say where to begin.
+        slack: [m] of `rounding_slack`.
     """
-    a, b = borrow(lent_a), borrow(lent_b)
-    origin = Vec3(0.0, 0.0, 0.0)
-    near = sub(best.p, best.q)
-    p, q, r = near, near, near  # points of a less points of b
+    a, b = borrow(roots.surface_a), borrow(roots.surface_b)
+    m, margin = roots.frames.m, margin_of(slack)
+    origin, near = Vec3(0.0, 0.0, 0.0), sub(best.p, best.q)
+    simplex = HullSimplex(0, near, near, near, near)
     face_a, face_b = np.int64(-1), np.int64(-1)
-    n_points, n_nodes, expected = 0, 0, 0.0
+    n_nodes, expected = 0, 0.0
     if best.face_a < 2**62:
         face_a, face_b = np.int64(best.face_a), np.int64(best.face_b)
-        n_points, expected = 1, min(limit, math.sqrt(best.gap_sq))
-    is_proof = n_points > 0
+        simplex = HullSimplex(1, near, near, near, near)
+        expected = min(limit, math.sqrt(best.gap_sq))
+    is_proof = simplex.n > 0
     for _ in range(TURNS):
-        length = math.sqrt(dot(near, near))
+        length = math.sqrt(dot(simplex.near, simplex.near))
         room = 16.0 * margin + CLOSE * length
         if not room < TILTED * length or length < LESS * expected:
             break
-        direction = direction_between(near, origin, m)
-        v = Vec3(-direction.v.x, -direction.v.y, -direction.v.z)
-        n_a, n_b = 0, 0
-        if is_proof:
-            top_a, n_a, nodes_a = top_of(a, root_a, direction.u, face_a, room, TOUCHING, 0, scratch)
-            top_b, n_b, nodes_b = top_of(b, root_b, v, face_b, room, TOUCHING, 1, scratch)
-        else:
-            top_a, nodes_a = high_corner(a, root_a, direction.u, face_a)
-            top_b, nodes_b = high_corner(b, root_b, v, face_b)
-        n_nodes += nodes_a + nodes_b
-        face_a, face_b = top_a.face, top_b.face
+        direction = direction_between(simplex.near, origin, m)
+        seen = _extremes(
+            a, b, roots, direction, face_a, face_b, room if is_proof else -1.0, scratch
+        )
+        n_nodes += seen.n_nodes
+        face_a, face_b = seen.top_a.face, seen.top_b.face
         if face_a < 0 or face_b < 0:
             break
-        lower_bound = direction.offset - top_b.height - top_a.height - slack
+        lower_bound = direction.offset - seen.top_b.height - seen.top_a.height - slack
         is_as_far = (
-            n_points > 0 and lower_bound > 0.0 and lower_bound + room > length + 2.0 * margin
+            simplex.n > 0 and lower_bound > 0.0 and lower_bound + room > length + 2.0 * margin
         )
         if not is_proof and (lower_bound > limit or is_as_far):
             is_proof = True
@@ -216,24 +250,17 @@ def separate(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scra
         if lower_bound > limit:
             return SeparatingPlanes(lower_bound, lower_bound, 0, n_nodes, face_a, face_b)
         if is_as_far:
-            if max(n_a, n_b) > TOUCHING or n_a * n_b > TOUCHING_PAIRS:
+            if max(seen.n_a, seen.n_b) > TOUCHING or seen.n_a * seen.n_b > TOUCHING_PAIRS:
                 break
+            n_waiting = _let_wait(seen.n_a, seen.n_b, lower_bound, scratch)
             return SeparatingPlanes(
-                lower_bound,
-                lower_bound + room,
-                _let_wait(n_a, n_b, lower_bound, scratch),
-                n_nodes,
-                face_a,
-                face_b,
+                lower_bound, lower_bound + room, n_waiting, n_nodes, face_a, face_b
             )
-        x = row(a.vertices, a.face_vertices[top_a.corner])
-        w = sub(x, move(m, row(b.vertices, b.face_vertices[top_b.corner])))
-        if n_points == 0:
-            near, n_points, p = w, 1, w
-            continue
-        nearer, n_of, p_of, q_of, r_of = _nearest_with(n_points, p, q, r, w)
-        if dot(nearer, nearer) < dot(near, near):
-            near, n_points, p, q, r = nearer, n_of, p_of, q_of, r_of
+        nearer = _with_corners(simplex, a, b, seen.top_a.corner, seen.top_b.corner, m)
+        if simplex.n == 0:
+            simplex = nearer
+        elif dot(nearer.near, nearer.near) < dot(simplex.near, simplex.near):
+            simplex = nearer
             is_proof = False
         elif is_proof:
             break
@@ -243,11 +270,6 @@ def separate(lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scra
 
 
 @inline(one_caller=True)
-def separating_planes_of(
-    table, lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch
-):
+def separating_planes_of(table, roots, best, limit, slack, scratch):
     """The same by address."""
-    return at_address(
-        table, SEPARATING_PLANES, NOTHING_PARTED,
-        (lent_a, root_a, lent_b, root_b, m, best, limit, margin, slack, scratch),
-    )  # fmt: skip
+    return at_address(table, SEPARATING_PLANES, NOT_SEPARATED, (roots, best, limit, slack, scratch))

@@ -25,7 +25,7 @@ def _among_nearest(scratch, first, n_found, most, node_a, node_b, bound):
 
 
 @inline(one_caller=True)
-def warm_start(a, root_a, b, root_b, from_a, from_b, scratch):
+def warm_start(a, b, roots, views, scratch):
     """Lets few pairs of leaves wait over the pair of roots: those whose centres are nearest, level by level.
 
     They wait as what the front has, since they are met again from the roots. Their bound is the distance of the
@@ -35,7 +35,7 @@ def warm_start(a, root_a, b, root_b, from_a, from_b, scratch):
     nodes, bounds = scratch.nodes, scratch.bounds
     n_nodes = 0
     n_found = 1
-    nodes[1, 0], nodes[1, 1], bounds[1] = root_a, root_b, 0.0
+    nodes[1, 0], nodes[1, 1], bounds[1] = roots.a, roots.b, 0.0
     deeper = True
     while deeper:
         deeper = False
@@ -45,13 +45,13 @@ def warm_start(a, root_a, b, root_b, from_a, from_b, scratch):
             node_a, node_b, near, count = np.int64(nodes[i, 0]), np.int64(nodes[i, 1]), bounds[i], 1
             is_open = not (is_leaf(a, node_a) and is_leaf(b, node_b))
             if is_open:
-                is_b, group, count, other = opened(a, node_a, b, node_b)
-                found = between_centres(a, b, from_a, from_b, group, other, is_b)
+                group, count = opened(a, node_a, b, node_b)
+                found = between_centres(a, b, views, group)
                 n_nodes += count
                 deeper = True
             for k in range(count):
                 if is_open:
-                    node_a, node_b = pair_in_group(is_b, group, k, other)
+                    node_a, node_b = pair_in_group(group, k)
                     near = lane(found, k)
                 n_next = _among_nearest(scratch, after, n_next, WARM_STARTS, node_a, node_b, near)
         for i in range(n_next):
