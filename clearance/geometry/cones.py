@@ -50,7 +50,8 @@ def node_cones(
         n_below += np.bincount(node, minlength=n_nodes)
     few = (n_below > 1) & (n_below <= FEW)
     pairs = [np.stack([node, face])[:, few[node]] for node, face in above]
-    _narrow(axis, angle, *np.concatenate(pairs, axis=1), axes, angles, either_way=True)
+    nodes, faces = np.concatenate(pairs, axis=1)
+    _narrow(axis, angle, nodes, faces, axes, angles, either_way=True)
     wide = ~(angle <= WIDEST) | ~axis.any(axis=0)  # the latter are lanes without a node
     axis[:, wide] = 0.0
     cosine = np.cos(angle, where=~wide, out=np.zeros(n_nodes))

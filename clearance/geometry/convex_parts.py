@@ -241,6 +241,7 @@ def _of_concave(body: Polyhedron, hull: Polytope, solid: Any) -> ConvexParts:
 
 def _cut(body: Polyhedron, hull: Polytope) -> list[Polytope]:
     """CoACD's parts; finer ones where it finds nothing to cut though the hull is much more than the body."""
+    assert body.volume is not None, "only closed bodies are cut"
     for threshold in decompose.THRESHOLDS:
         corners = decompose.cut_into_hulls(body.vertices, body.triangles(), threshold)
         if len(corners) > 1:

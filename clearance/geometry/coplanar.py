@@ -154,7 +154,7 @@ def _without_covered_needles(points: np.ndarray, faces: _Faces) -> _Faces:
         longest[k] = corners[list(np.unravel_index(spread.argmax(), spread.shape))]
     edges = edge_keys(tails[proper], heads[proper], len(points))
     keep = np.ones(len(faces.axes), dtype=bool)
-    keep[needles] = ~np.isin(edge_keys(*longest.T, len(points)), edges)
+    keep[needles] = ~np.isin(edge_keys(longest[:, 0], longest[:, 1], len(points)), edges)
     return _selected(faces, keep)
 
 

@@ -146,7 +146,7 @@ def _warp(vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, planes: Pl
     ring = rings_of(starts)
     offsets = vertices[flat] - planes.centres[ring.face]
     heights = np.abs((offsets * planes.normals[ring.face]).sum(axis=1))
-    no_plane = ~planes.normals.any(axis=1)[ring.face]
+    no_plane: np.ndarray = ~np.any(planes.normals, axis=1)[ring.face]
     if no_plane.any():
         heights = np.where(no_plane, _off_line(offsets, starts, ring.face), heights)
     allowed = FLATNESS * planes.radii + _allowance(vertices, starts, flat)

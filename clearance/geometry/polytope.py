@@ -194,7 +194,9 @@ class Polytope:
 
     @cached_property
     def _twin(self) -> np.ndarray:
-        return twins(self.face_starts, self.face_vertices, len(self.vertices))
+        twin = twins(self.face_starts, self.face_vertices, len(self.vertices))
+        assert twin is not None, "`hull_faces` gives only faces of which each edge has its reverse"
+        return twin
 
     @cached_property
     def vertex_graph(self) -> tuple[np.ndarray, np.ndarray]:

@@ -57,14 +57,14 @@ def trivalent_form(
     first = np.full(n_vertices, -1)
     first[face_vertices[::-1]] = np.arange(len(face_vertices))[::-1]
     i, j = turn[first], turn[turn[first]]
-    vertex, corners, fans = np.arange(n_vertices), [], []
+    vertex, vertices, fans = np.arange(n_vertices), [], []
     while len(vertex):
-        corners.append(vertex)
+        vertices.append(vertex)
         fans.append(np.stack([ring.face[first[vertex]], ring.face[i], ring.face[j]], axis=1))
         i, j = j, turn[j]
         more = j != first[vertex]
         vertex, i, j = vertex[more], i[more], j[more]
-    corners = np.concatenate(corners)
+    corners = np.concatenate(vertices)
     near = np.argsort(corners, kind="stable")
     planes = np.concatenate(fans)[near]
     across = _across(planes, len(face_starts) - 1)

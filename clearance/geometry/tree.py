@@ -125,13 +125,15 @@ def _build(shape: Polyhedron) -> Surface:
     bent = np.empty(shape.n_faces, dtype=np.bool_)
     face_planes(vertices, starts, corners, normals, blunt, width, bent)
     first_corners, vertex_starts = _owned(corners, ring.face, shape.n_faces)
-    edges = np.stack([corners, corners[ring.ahead]], axis=1)
-    first_uses, edge_starts = _owned(edge_keys(*edges.T, len(vertices)), ring.face, shape.n_faces)
+    heads = corners[ring.ahead]
+    edges = np.stack([corners, heads], axis=1)
+    keys = edge_keys(corners, heads, len(vertices))
+    first_uses, edge_starts = _owned(keys, ring.face, shape.n_faces)
     owned_edges = np.sort(edges[first_uses], axis=1)
     owned_edges, edge_starts = _with_diagonals(
         owned_edges, edge_starts, corners, ring.face, starts, bent
     )
-    twin = twins(*edges.T)
+    twin = twins(corners, heads)
     copies = copies_of(corners, starts, ring, twin, bent)
     centres, boxes, children = _tree(vertices[corners], starts, copies.kept)
     _, first_faces = np.unique(shape.face_component, return_index=True)

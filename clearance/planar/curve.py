@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from clearance.planar.curve_facts import CurveFacts
 from clearance.planar.entries import checked_transform
 from clearance.planar.joining import joined
 from clearance.planar.primitives import arc_of, bezier_of, bspline_of, polyline_of
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,12 +39,12 @@ class Curve(CurveFacts):
     """
 
     @classmethod
-    def line(cls, start: Sequence[float], end: Sequence[float]) -> Curve:
+    def line(cls, start: ArrayLike, end: ArrayLike) -> Curve:
         """The segment between two points; parameter 0 to 1."""
         return cls.polyline([start, end])
 
     @classmethod
-    def polyline(cls, points: np.ndarray, *, closed: bool = False) -> Curve:
+    def polyline(cls, points: ArrayLike | Sequence[ArrayLike], *, closed: bool = False) -> Curve:
         """The polyline through `points` (n, 2), n >= 2; vertex i has the parameter i.
 
         `closed` adds the segment back to the first point. Repeated points are passed over.
@@ -52,10 +56,10 @@ class Curve(CurveFacts):
     @classmethod
     def bspline(
         cls,
-        control: np.ndarray,
+        control: ArrayLike,
         degree: int = 3,
-        knots: np.ndarray | None = None,
-        weights: np.ndarray | None = None,
+        knots: ArrayLike | None = None,
+        weights: ArrayLike | None = None,
     ) -> Curve:
         """The B-spline or NURBS of `control` (n, 2), over [knots[degree], knots[n]].
 
@@ -70,12 +74,12 @@ class Curve(CurveFacts):
         return cls(*bspline_of(control, degree, knots, weights))
 
     @classmethod
-    def bezier(cls, control: np.ndarray, weights: np.ndarray | None = None) -> Curve:
+    def bezier(cls, control: ArrayLike, weights: ArrayLike | None = None) -> Curve:
         """The Bézier curve of `control` (n, 2), of degree n - 1, with optional `weights`; parameter 0 to 1."""
         return cls(*bezier_of(control, weights))
 
     @classmethod
-    def arc(cls, center: Sequence[float], radius: float, start: float, end: float) -> Curve:
+    def arc(cls, center: ArrayLike, radius: float, start: float, end: float) -> Curve:
         """The arc about `center` from the angle `start` to `end` [rad], clockwise where `end` < `start`.
 
         It is exact: rational quadratics of at most a quarter turn; the parameter runs from 0 to 1.
@@ -85,7 +89,7 @@ class Curve(CurveFacts):
         return cls(*arc_of(center, radius, start, end))
 
     @classmethod
-    def circle(cls, center: Sequence[float], radius: float) -> Curve:
+    def circle(cls, center: ArrayLike, radius: float) -> Curve:
         """The whole circle, counter-clockwise from the angle 0; parameter 0 to 1."""
         return cls.arc(center, radius, 0.0, 2.0 * math.pi)
 
@@ -114,16 +118,16 @@ class Curve(CurveFacts):
         # By name: the reader builds on this module, which must not import it in turn.
         return import_module("clearance.planar.dxf").read_dxf(path)
 
-    def transformed(self, matrix: np.ndarray) -> Curve:
+    def transformed(self, matrix: ArrayLike) -> Curve:
         """The curve under the affine map `matrix` (2, 3) or (3, 3): x -> matrix[:2, :2] x + matrix[:2, 2].
 
         Raises: BadShape, NotFinite, BadCurve (a singular map).
         """
-        matrix = checked_transform(matrix)
+        affine = checked_transform(matrix)
         rows = self.pieces.control.copy()
         rows[:, :2] = rows[:, :2] / rows[:, 2:]
-        rows[:, :2] = rows[:, :2] @ matrix[:, :2].T
-        base = matrix[:, :2] @ self.origin + matrix[:, 2]
+        rows[:, :2] = rows[:, :2] @ affine[:, :2].T
+        base = affine[:, :2] @ self.origin + affine[:, 2]
         return Curve(*assembled(rows, self.pieces.first, self.limits, self.contour, base))
 
     def reversed(self) -> Curve:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from clearance.kernels.hausdorff.segments import segment_boxes
 from clearance.planar.entries import BadCurve
 from clearance.planar.extent import least_box
 from clearance.tolerance import BIARC, CLOSED, MEETING, TANGENT, UNIT_ROUNDOFF
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,20 +116,20 @@ class CurveFacts:
         speed = np.hypot(*self._jets(which, local.ravel())[:, 2:4].T).reshape(local.shape)
         return float((speed @ weights) @ half)
 
-    def point(self, parameter: np.ndarray) -> np.ndarray:
+    def point(self, parameter: ArrayLike) -> np.ndarray:
         """Points (..., 2) at the given parameters; a parameter outside is held to the nearest end."""
         return self.derivative(parameter, 0)
 
-    def derivative(self, parameter: np.ndarray, order: int = 1) -> np.ndarray:
+    def derivative(self, parameter: ArrayLike, order: int = 1) -> np.ndarray:
         """Derivatives (..., 2) of the given order, 0 to 2, by the curve's own parameter."""
         if order not in (0, 1, 2):
             raise BadCurve(f"derivative of order {order}", where="order", valid="0, 1 or 2")
-        parameter = np.asarray(parameter, float)
-        which, local = self.locate(parameter.ravel())
+        asked = np.asarray(parameter, float)
+        which, local = self.locate(asked.ravel())
         found = self._jets(which, local)[:, 2 * order : 2 * order + 2]
         width = (self.limits[which, 1] - self.limits[which, 0])[:, None]
         found = found / width**order if order else found + self.origin
-        return found.reshape((*parameter.shape, 2))
+        return found.reshape((*asked.shape, 2))
 
     def locate(self, parameter: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The piece and its local parameter in [0, 1] of each parameter (k,)."""

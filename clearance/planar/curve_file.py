@@ -12,6 +12,7 @@ Angles in radians. Not for: writing curves.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from clearance.errors import (
@@ -26,7 +27,7 @@ from clearance.errors import (
 )
 from clearance.planar.curve import Curve
 
-_FORMS = {
+_FORMS: dict[str, tuple[Callable[..., Curve], tuple[str, ...], tuple[str, ...]]] = {
     "line": (Curve.line, ("start", "end"), ()),
     "polyline": (Curve.polyline, ("points",), ("closed",)),
     "bspline": (Curve.bspline, ("control",), ("degree", "knots", "weights")),

@@ -113,7 +113,9 @@ def _spread(a: Curve, samples: int) -> tuple[np.ndarray, np.ndarray]:
     return np.insert(which, last + 1, which[last]), np.insert(local, last + 1, 1.0)
 
 
-def _measured(a: Curve, b: Curve, which: np.ndarray, local: np.ndarray):
+def _measured(
+    a: Curve, b: Curve, which: np.ndarray, local: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 2) of a, and the distance, its lower bound, piece and local parameter (n, 4) of b's nearest."""
     shift, _ = placed(a, b)
     own = a._jets(which, local)[:, :2]
@@ -122,7 +124,14 @@ def _measured(a: Curve, b: Curve, which: np.ndarray, local: np.ndarray):
     return own + a.origin, found
 
 
-def _refined(a: Curve, b: Curve, which, local, distance, limit: float):
+def _refined(
+    a: Curve,
+    b: Curve,
+    which: np.ndarray,
+    local: np.ndarray,
+    distance: np.ndarray,
+    limit: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The samples, with more of them wherever an excursion beyond `limit`, or back, could hide between two.
 
     The distance changes by no more than the length run through, at most `_fastest` times the parameter.
@@ -158,7 +167,14 @@ def _fastest(curve: Curve) -> np.ndarray:
     return np.diff(first - np.arange(len(first))) * longest * ratio**2
 
 
-def _beyond(a, b, which, local, distance, limit) -> np.ndarray:
+def _beyond(
+    a: Curve,
+    b: Curve,
+    which: np.ndarray,
+    local: np.ndarray,
+    distance: np.ndarray,
+    limit: float,
+) -> np.ndarray:
     """The intervals of a's parameter beyond `limit`, from the samples, their ends bisected."""
     out, same = distance > limit, np.diff(a.contour[which]) == 0
     low, high = a.limits[which].T
@@ -176,7 +192,9 @@ def _beyond(a, b, which, local, distance, limit) -> np.ndarray:
     return np.stack([starts[first], stops[last]], axis=1)
 
 
-def _crossings(a: Curve, b: Curve, inside: np.ndarray, outside: np.ndarray, limit: float):
+def _crossings(
+    a: Curve, b: Curve, inside: np.ndarray, outside: np.ndarray, limit: float
+) -> np.ndarray:
     """Where the distance passes `limit` between pairs of parameters, all bisected at once; on the outer side."""
     outside = outside.copy()
     inside, going = inside.copy(), np.arange(len(inside))

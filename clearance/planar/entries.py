@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, NotFinite
 from clearance.tolerance import PARAMETER
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
 
 class BadCurve(BadInput):
     """Control points, knots, weights or angles that make no curve."""
 
 
-def checked_points(points: np.ndarray, where: str, *, least: int) -> np.ndarray:
+def checked_points(
+    points: ArrayLike | Sequence[ArrayLike], where: str, *, least: int
+) -> np.ndarray:
     """`points` as float64 (n, 2), n >= `least`, all finite."""
     array = _numbers(points, where, f"({least} or more, 2) numbers")
     if array.ndim != 2 or array.shape[1] != 2:
@@ -26,7 +32,7 @@ def checked_points(points: np.ndarray, where: str, *, least: int) -> np.ndarray:
     return array
 
 
-def checked_weights(weights: np.ndarray | None, n: int) -> np.ndarray:
+def checked_weights(weights: ArrayLike | None, n: int) -> np.ndarray:
     """`weights` as float64 (n,), all positive; ones where None."""
     if weights is None:
         return np.ones(n)
@@ -42,7 +48,7 @@ def checked_weights(weights: np.ndarray | None, n: int) -> np.ndarray:
     return array
 
 
-def checked_knots(knots: np.ndarray | None, n: int, degree: int) -> np.ndarray:
+def checked_knots(knots: ArrayLike | None, n: int, degree: int) -> np.ndarray:
     """`knots` as float64 (n + degree + 1,), non-decreasing, continuous inside; clamped uniform where None."""
     if knots is None:
         inner = np.linspace(0.0, 1.0, n - degree + 1)
@@ -78,23 +84,25 @@ def checked_knots(knots: np.ndarray | None, n: int, degree: int) -> np.ndarray:
     return array
 
 
-def sweep_of(center: Sequence[float], radius: float, start: float, end: float):
+def sweep_of(
+    center: ArrayLike, radius: float, start: float, end: float
+) -> tuple[np.ndarray, float, float]:
     """Centre (2,), radius and signed sweep [rad] of an arc."""
-    center = _numbers(center, "center", "two numbers")
-    if center.shape != (2,):
-        raise BadShape(f"an array of shape {center.shape}", where="center", valid="shape (2,)")
+    middle = _numbers(center, "center", "two numbers")
+    if middle.shape != (2,):
+        raise BadShape(f"an array of shape {middle.shape}", where="center", valid="shape (2,)")
     numbers = _numbers([radius, start, end], "radius, start, end", "three numbers")
-    _finite(np.concatenate([center, numbers]), "center, radius, start, end")
+    _finite(np.concatenate([middle, numbers]), "center, radius, start, end")
     sweep = float(numbers[2] - numbers[1])
     if not numbers[0] > 0.0:
         raise BadCurve(f"radius {numbers[0]:g}", where="radius", valid="a positive number")
     if not 0.0 < abs(sweep) <= 2.0 * math.pi * (1.0 + PARAMETER):
         valid = "more than 0 and at most a full turn, 2 pi"
         raise BadCurve(f"a sweep of {sweep:g} rad", where="start, end", valid=valid)
-    return center, float(numbers[0]), math.copysign(min(abs(sweep), 2.0 * math.pi), sweep)
+    return middle, float(numbers[0]), math.copysign(min(abs(sweep), 2.0 * math.pi), sweep)
 
 
-def checked_transform(matrix: np.ndarray) -> np.ndarray:
+def checked_transform(matrix: ArrayLike) -> np.ndarray:
     """The upper two rows (2, 3) of an affine map that is not singular."""
     array = _numbers(matrix, "matrix", "(2, 3) or (3, 3) numbers")
     if array.shape not in ((2, 3), (3, 3)):
@@ -120,7 +128,7 @@ def checked_number(value: float, where: str, *, least: float = -math.inf) -> flo
     return float(array)
 
 
-def _numbers(value, where: str, valid: str) -> np.ndarray:
+def _numbers(value: ArrayLike | Sequence[ArrayLike], where: str, valid: str) -> np.ndarray:
     try:
         array = np.array(value, dtype=np.float64, order="C")
     except (TypeError, ValueError):

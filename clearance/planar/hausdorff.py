@@ -182,7 +182,8 @@ def _budget(a: Curve, b: Curve) -> float:
     return BUDGET + INTERVALS_A_PIECE * (a.n_pieces + b.n_pieces)
 
 
-def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: SearchGoal):
+def _solve(a: Curve, b: Curve, shift: np.ndarray, aim: SearchGoal) -> tuple[np.ndarray, np.ndarray]:
+    """Both directed searches: (2,) SEARCH_STATE and witnesses (2, 5)."""
     if a.is_polyline and b.is_polyline:
         return solve_polylines(a, b, shift, aim)
     return both_directions(arrays_of(a), arrays_of(b), shift[0], shift[1], aim)

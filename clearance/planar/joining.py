@@ -20,7 +20,10 @@ def joined(parts: Sequence[CurveFacts], *, together: bool) -> CurveFields:
     parts = list(parts)
     if not parts or not all(isinstance(part, CurveFacts) for part in parts):
         raise BadCurve(f"{len(parts)} parts", where="parts", valid="a list of at least one Curve")
-    rows, limits, contour, at, n_contours = [], [], [], 0.0, 0
+    at, n_contours = 0.0, 0
+    rows: list[np.ndarray] = []
+    limits: list[np.ndarray] = []
+    contours: list[np.ndarray] = []
     for k, part in enumerate(parts):
         cartesian = part.pieces.control.copy()
         cartesian[:, :2] = cartesian[:, :2] / cartesian[:, 2:] + (part.origin - parts[0].origin)
@@ -34,11 +37,11 @@ def joined(parts: Sequence[CurveFacts], *, together: bool) -> CurveFields:
         rows.append(cartesian)
         limits.append(part.limits - part.limits[0, 0] + at)
         at = limits[-1][-1, 1]
-        contour.append(np.zeros_like(part.contour) if together else part.contour + n_contours)
+        contours.append(np.zeros_like(part.contour) if together else part.contour + n_contours)
         n_contours += int(part.contour[-1]) + 1
     sizes = np.concatenate([np.diff(part.pieces.first) for part in parts])
     first = np.concatenate([[0], np.cumsum(sizes)])
-    contour = np.concatenate(contour)
+    contour = np.concatenate(contours)
     return assembled(np.concatenate(rows), first, np.concatenate(limits), contour, parts[0].origin)
 
 

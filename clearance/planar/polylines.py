@@ -23,7 +23,9 @@ from clearance.planar.curve import Curve
 from clearance.tolerance import MEETING, NORMAL, PARAMETER, TANGENT
 
 
-def solve_polylines(a: Curve, b: Curve, shift: np.ndarray, aim: SearchGoal):
+def solve_polylines(
+    a: Curve, b: Curve, shift: np.ndarray, aim: SearchGoal
+) -> tuple[np.ndarray, np.ndarray]:
     """Both directed searches, (2,) SEARCH_STATE and witnesses (2, 5), as those of other curves."""
     states, points = np.zeros(2, SEARCH_STATE), np.empty((2, 5))
     for k, (one, two, step) in enumerate(((a, b, shift), (b, a, -shift))):

@@ -6,6 +6,8 @@ Not for: curves made of curves (`joining`).
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,13 +22,16 @@ from clearance.planar.entries import (
 )
 from clearance.tolerance import PARAMETER
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-def polyline_of(points: np.ndarray, closed: bool) -> CurveFields:
+
+def polyline_of(points: ArrayLike | Sequence[ArrayLike], closed: bool) -> CurveFields:
     """See `Curve.polyline`."""
-    points = checked_points(points, "points", least=2)
-    if closed and np.any(points[0] != points[-1]):
-        points = np.concatenate([points, points[:1]])
-    x, y = points.T
+    vertices = checked_points(points, "points", least=2)
+    if closed and np.any(vertices[0] != vertices[-1]):
+        vertices = np.concatenate([vertices, vertices[:1]])
+    x, y = vertices.T
     box = np.array([[x.min(), y.min()], [x.max(), y.max()]])
     checked_size(box[1] - box[0])
     origin = origin_of(box)
@@ -42,31 +47,33 @@ def polyline_of(points: np.ndarray, closed: bool) -> CurveFields:
     return CurveFields(pieces, origin, limits, np.zeros(n, np.int64))
 
 
-def bspline_of(control, degree: int, knots, weights) -> CurveFields:
+def bspline_of(
+    control: ArrayLike, degree: int, knots: ArrayLike | None, weights: ArrayLike | None
+) -> CurveFields:
     """See `Curve.bspline`."""
     degree = _checked_degree(degree)
-    control = checked_points(control, "control", least=degree + 1)
-    weights = checked_weights(weights, len(control))
-    knots = checked_knots(knots, len(control), degree)
-    base = origin_of(control)
-    weighted = np.column_stack([(control - base) * weights[:, None], weights])
-    rows, limits = pieces_of_spline(weighted, knots, degree)
+    points = checked_points(control, "control", least=degree + 1)
+    weight = checked_weights(weights, len(points))
+    knot = checked_knots(knots, len(points), degree)
+    base = origin_of(points)
+    weighted = np.column_stack([(points - base) * weight[:, None], weight])
+    rows, limits = pieces_of_spline(weighted, knot, degree)
     rows[:, :2] /= rows[:, 2:]
     return assembled(rows, np.arange(len(limits) + 1) * (degree + 1), limits, base=base)
 
 
-def bezier_of(control: np.ndarray, weights: np.ndarray | None) -> CurveFields:
+def bezier_of(control: ArrayLike, weights: ArrayLike | None) -> CurveFields:
     """See `Curve.bezier`."""
-    control = checked_points(control, "control", least=2)
-    _checked_degree(len(control) - 1)
-    rows = np.empty((len(control), 3))
-    rows[:, :2], rows[:, 2] = control, checked_weights(weights, len(control))
-    return assembled(rows, np.array([0, len(control)]), np.array([[0.0, 1.0]]))
+    points = checked_points(control, "control", least=2)
+    _checked_degree(len(points) - 1)
+    rows = np.empty((len(points), 3))
+    rows[:, :2], rows[:, 2] = points, checked_weights(weights, len(points))
+    return assembled(rows, np.array([0, len(points)]), np.array([[0.0, 1.0]]))
 
 
-def arc_of(center, radius: float, start: float, end: float) -> CurveFields:
+def arc_of(center: ArrayLike, radius: float, start: float, end: float) -> CurveFields:
     """See `Curve.arc`."""
-    center, radius, sweep = sweep_of(center, radius, start, end)
+    middle, radius, sweep = sweep_of(center, radius, start, end)
     n = max(1, math.ceil(abs(sweep) / (0.5 * math.pi) - PARAMETER))
     half = 0.5 * sweep / n
     angles = start + half * np.arange(2 * n + 1)
@@ -80,7 +87,7 @@ def arc_of(center, radius: float, start: float, end: float) -> CurveFields:
         rows[k::3, 2] = math.cos(half) if k == 1 else 1.0
     low = np.arange(n) / n
     limits = np.stack([low, low + 1.0 / n], axis=1)
-    return assembled(rows, np.arange(n + 1) * 3, limits, base=center)
+    return assembled(rows, np.arange(n + 1) * 3, limits, base=middle)
 
 
 def _checked_degree(degree: int) -> int:

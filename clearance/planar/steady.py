@@ -38,7 +38,7 @@ class SteadyCurve(Curve):
     @property
     def rounding(self) -> float:
         """As for any curve, and `HALVINGS` more passes."""
-        return (1.0 + 0.25 * HALVINGS) * Curve.rounding.func(self)
+        return (1.0 + 0.25 * HALVINGS) * super().rounding
 
     def parameter_of(self, piece: int, local: float) -> float:
         """The given curve's parameter; nearer to an end than floats lie it is that end."""

@@ -88,11 +88,13 @@ def compare(a: DrawnOutline, b: DrawnOutline, *, limit: float | None = None) -> 
         from clearance.profiles.region import area, difference
 
         gained, lost = area(difference(b.region, a.region)), area(difference(a.region, b.region))
-    makers = {}
+    makers: dict[str, tuple[str, int]] = {}
     for side, drawn, at in (("a", a, found.parameter_a), ("b", b, found.parameter_b)):
-        if drawn.profile is not None and drawn.profile.origin is not None:
-            piece = min(int(np.floor(at)), drawn.profile.n_pieces - 1)
-            makers[side] = drawn.profile.maker(piece)
+        if drawn.profile is None:
+            continue
+        maker = drawn.profile.maker(min(int(np.floor(at)), drawn.profile.n_pieces - 1))
+        if maker is not None:
+            makers[side] = maker
     beyond = (*_beyond("a", a, forth), *_beyond("b", b, back))
     return Comparison(a, b, found, forth, back, gained, lost, limit, beyond, makers)
 

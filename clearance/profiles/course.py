@@ -34,7 +34,7 @@ def positions_at(motion: Motion, instant: np.ndarray) -> np.ndarray:
     ahead = np.minimum(step + 1, motion.n_steps - 1)
     if motion.velocities is None or motion.n_steps == 1:
         return motion.positions[step] * (1.0 - share) + motion.positions[ahead] * share
-    found = position_on(_cubics(motion, step), share)
+    found = position_on(_cubics(motion, motion.velocities, step), share)
     return np.where(share == 1.0, motion.positions[ahead], found)
 
 
@@ -48,7 +48,7 @@ def course_of(motion: Motion, low: np.ndarray, high: np.ndarray) -> Course:
         none = np.zeros_like(position)
         return Course(position, 0.5 * (ends[1] - ends[0]), none, none)
     step, share = _located(motion, middle)
-    cubic, rest = _cubics(motion, step), 1.0 - share
+    cubic, rest = _cubics(motion, motion.velocities, step), 1.0 - share
     slope = (
         cubic.step + rest * (1.0 - 3.0 * share) * cubic.e0 + share * (3.0 * share - 2.0) * cubic.e1
     )
@@ -63,6 +63,6 @@ def _located(motion: Motion, instant: np.ndarray) -> tuple[np.ndarray, np.ndarra
     return step, (instant - step)[:, None]
 
 
-def _cubics(motion: Motion, step: np.ndarray) -> Cubics:
-    found = cubics_of(motion.times, motion.positions, motion.velocities)
+def _cubics(motion: Motion, velocities: np.ndarray, step: np.ndarray) -> Cubics:
+    found = cubics_of(motion.times, motion.positions, velocities)
     return Cubics(*(part[step] for part in found))

@@ -33,7 +33,8 @@ def contours_of_chains(found: list[Chain]) -> tuple[Contour, ...]:
     """What the chains draw now."""
     contours = []
     for chain in found:
-        vertices, bulges = [], []
+        vertices: list[np.ndarray] = []
+        bulges: list[float] = []
         for entity, back, n in chain:
             _draw(entity, back, n, vertices, bulges)
         contours.append(Contour(np.array(vertices), np.array(bulges)))
@@ -47,7 +48,7 @@ def _parts(entity) -> int:
     return max(1, math.ceil((end - start) / LONGEST_ARC))
 
 
-def _draw(entity, back: bool, n: int, vertices: list, bulges: list) -> None:
+def _draw(entity, back: bool, n: int, vertices: list[np.ndarray], bulges: list[float]) -> None:
     """Appends the start of each of `n` equal parts of an entity, and their bulge."""
     if isinstance(entity, Segment):
         vertices.append(ends_of(entity)[1 if back else 0].position)

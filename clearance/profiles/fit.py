@@ -100,7 +100,9 @@ def _drawn(profile: Profile | DrawnOutline | Curve) -> DrawnOutline:
     return DrawnOutline(profile.name or "profile", profile.curve, profile)
 
 
-def _best(search: NearestFit | BoundedFit, starts: list[np.ndarray]):
+def _best(
+    search: NearestFit | BoundedFit, starts: list[np.ndarray]
+) -> tuple[FitCandidate | None, int]:
     best, tried = None, 0
     for start in starts:
         tried += 1

@@ -83,7 +83,7 @@ class BoundedFit(FitSearch):
                 fresh = target.gaps(moved.pieces, samples, given)
                 missing = max(0.0, wanted - float(fresh.distance.min()))
                 gained = merit - target.score(moved) - price * missing
-            if gained > 0.0:
+            if moved is not None and gained > 0.0:
                 here, gaps = moved, fresh
                 rows, chosen, change = self._rows(here, gaps)
                 share = gained / found.value

@@ -33,8 +33,8 @@ class NearestFit(FitSearch):
             step = np.linalg.lstsq(normal + ridge, -scaled.T @ rows.distance, rcond=None)[0]
             step = np.clip(step, *self.bounds(here, np.inf))
             moved = self.shape.at(here.numbers + step * self.shape.scale)
-            fresh = None if moved is None else self._gaps(moved).distance
-            if fresh is not None and fresh @ fresh < rows.distance @ rows.distance:
+            fresh = rows.distance if moved is None else self._gaps(moved).distance
+            if moved is not None and fresh @ fresh < rows.distance @ rows.distance:
                 before = rows.distance @ rows.distance
                 here, damping, rows = moved, max(1e-12, 0.1 * damping), self._rows(moved)
                 if np.abs(step).max() < 1e-13 or 0.99 * before < fresh @ fresh > 1e-12 * before:
@@ -59,11 +59,12 @@ class NearestFit(FitSearch):
             if hoped <= 1e-9 * whole.distance + self.tiny:
                 break
             moved = self.shape.at(here.numbers + step)
-            there = None if moved is None else self._distance(moved)
-            if there is not None:
+            gained, there = -1.0, whole
+            if moved is not None:
+                there = self._distance(moved)
                 looked = self._with_witness(moved, there, *looked)
-            gained = -1.0 if there is None else (whole.distance - there.distance) / hoped
-            if gained > 0.0:
+                gained = (whole.distance - there.distance) / hoped
+            if moved is not None and gained > 0.0:
                 here, whole = moved, there
                 slopes = self.shape.slopes(here)
                 reach *= 2.0 if gained > 0.7 else 1.0 if gained > 0.2 else 0.4
@@ -78,13 +79,15 @@ class NearestFit(FitSearch):
 
     def _with_witness(
         self, here: PlacedShape, whole: Hausdorff, samples: Places, given: np.ndarray
-    ):
+    ) -> tuple[Places, np.ndarray]:
         """The places that are looked at and the certified witnesses: of steps that failed as well."""
         own = np.stack([whole.point_a, whole.directed["a_to_b"].point_a])
         theirs = np.stack([whole.point_b, whole.directed["b_to_a"].point_a])
         return self.with_places(here, own, samples), np.vstack([given, theirs])
 
-    def _chosen_rows(self, here: PlacedShape, slopes: list, samples: Places, given: np.ndarray):
+    def _chosen_rows(
+        self, here: PlacedShape, slopes: list, samples: Places, given: np.ndarray
+    ) -> tuple[FitRows, np.ndarray]:
         """The rows that matter most, and which they are."""
         gaps = self.target.distances(here.pieces, samples, given)
         chosen = np.sort(np.argsort(-np.abs(gaps.distance), kind="stable")[:MOST_ROWS])

@@ -125,7 +125,7 @@ def _fill(
         _shade(axes, difference(b.region, a.region), COLORS["gained"], shade[0])
         _shade(axes, difference(a.region, b.region), COLORS["lost"], shade[1])
     for drawn, color in ((a, COLORS["a"]), (b, COLORS["b"])):
-        label = drawn.name
+        label: str | None = drawn.name
         for ring in rings_of_curve(drawn.curve):
             closed = np.concatenate([ring, ring[:1]]) if drawn.curve.is_closed else ring
             axes.plot(*closed.T, color=color, linewidth=1.3, label=label, zorder=3)

@@ -7,13 +7,14 @@ Not for: bounds (`outline`), which are proven on what comes out of here.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 import numpy as np
 import shapely
 
 from clearance.kernels.profile.swept_cover import Raster
 
-Region = shapely.Geometry
+Region: TypeAlias = shapely.Geometry
 """A polygon or several, possibly empty."""
 
 GRID = 1e-9

@@ -68,15 +68,13 @@ class Section:
         knots, vertices = self.knots, self.shape.vertices
         yield self._filled()
         triangles = self.shape.triangles()
-        places = self._placed(knots.poses[:1], vertices)
-        runs = [(0, 0, 0.0)] + [(i, i + 1, knots.chord[i]) for i in np.flatnonzero(knots.moves)]
+        moving = np.flatnonzero(knots.moves).tolist()
+        runs = [(0, 0, 0.0)] + [(i, i + 1, float(knots.chord[i])) for i in moving]
         for i, j, reach in runs:
-            places = self._placed(knots.poses[[i, j]], vertices)
-            found = cut_hulls(
-                raster, sums, places[0], places[1], triangles, float(reach), width, slack
-            )
-            self._open_cut |= len(found[0]) > 0 and not self._closed.all()
-            yield Hulls(*found, np.full(len(found[0]), knots.instant[i]))
+            start, end = self._placed(knots.poses[[i, j]], vertices)
+            corners, count = cut_hulls(raster, sums, start, end, triangles, reach, width, slack)
+            self._open_cut |= len(corners) > 0 and not self._closed.all()
+            yield Hulls(corners, count, np.full(len(corners), knots.instant[i]))
 
     def _filled(self) -> Hulls:
         """What the closed parts fill at the first knot, part by part, as convex polygons."""
@@ -103,7 +101,7 @@ def region_of_cuts(cuts: np.ndarray):
     """What directed segments (n, 4) enclose that meet end to end to the last bit."""
     from clearance.profiles.region import region_of
 
-    following = {}
+    following: dict[tuple[float, float], list[tuple[float, float]]] = {}
     for row in cuts.tolist():
         following.setdefault((row[0], row[1]), []).append((row[2], row[3]))
     rings = []

@@ -86,8 +86,8 @@ class Silhouette:
         """The polygons that are not covered, a few instants at a time."""
         knots = self.knots
         first = self._seen(knots.poses[:1], self.shape.vertices)[0]
-        found = triangle_hulls(raster, sums, first, self.shape.triangles(), width)
-        yield Hulls(*found, np.full(len(found[0]), knots.instant[0]))
+        corners, count = triangle_hulls(raster, sums, first, self.shape.triangles(), width)
+        yield Hulls(corners, count, np.full(len(corners), knots.instant[0]))
         moving = np.flatnonzero(knots.moves)
         for run in np.split(moving, np.flatnonzero(np.diff(moving) != 1) + 1):
             for start in range(0, len(run), CHUNK):

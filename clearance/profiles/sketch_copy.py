@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.sketch import Sketch
+from clearance.sketch.entities import Arc, Circle, Entity, Line, Point, Segment
 
 
 def copied(
@@ -27,19 +28,20 @@ def copied(
     made = Sketch()
     for name, value in sketch.parameters.items():
         made.parameter(name, value)
+    points: dict[str, Point] = {}
     for entity in sketch.entities.values():
-        _copy_entity(made, entity, motion)
+        _copy_entity(made, points, entity, motion)
     for c in sketch.constraints.values():
         if c.built_in:
             continue
         driven = (c.driven and c.name not in driving) or c.name in released
-        value = c.given
-        if value is not None and not isinstance(value, str):
-            value = float(sketch.value(c.name))
+        given = c.given
+        if given is not None and not isinstance(given, str):
+            given = float(sketch.value(c.name))
         again = made.add(
             c.kind,
             *(entity.name for entity in c.entities),
-            value=value,
+            value=given,
             name=c.name,
             driven=driven,
             **c.options,
@@ -49,22 +51,28 @@ def copied(
     return made
 
 
-def _copy_entity(made: Sketch, entity, motion: np.ndarray) -> None:
-    def moved(point) -> list[float]:
-        return (motion[:, :2] @ point + motion[:, 2]).tolist()
+def _copy_entity(
+    made: Sketch, points: dict[str, Point], entity: Entity, motion: np.ndarray
+) -> None:
+    """The same entity in the new sketch, whose `points` so far are known by name."""
+
+    def moved(place: np.ndarray) -> list[float]:
+        return (motion[:, :2] @ place + motion[:, 2]).tolist()
 
     name = entity.name
-    if entity.what == "point":
-        made.point(*moved(entity.position), name=name)
-    elif entity.what == "circle":
-        made.circle(made.entity(entity.center.name), entity.radius, name=name)
-    elif entity.what == "arc":
-        ends = (made.entity(p.name) for p in (entity.center, entity.start, entity.end))
-        made.arc(*ends, name=name)
-    else:
+    if isinstance(entity, Point):
+        x, y = moved(entity.position)
+        points[name] = made.point(x, y, name=name)
+    elif isinstance(entity, Arc):
+        center, start, end = (points[p.name] for p in (entity.center, entity.start, entity.end))
+        made.arc(center, start, end, name=name)
+    elif isinstance(entity, Circle):
+        made.circle(points[entity.center.name], entity.radius, name=name)
+    elif isinstance(entity, Line):
+        draw = made.segment if isinstance(entity, Segment) else made.line
         if entity.ends is not None:
-            ends = [made.entity(p.name) for p in entity.ends]
+            a, b = entity.ends
+            draw(points[a.name], points[b.name], name=name)
         else:
-            foot = entity.foot
-            ends = [moved(foot - 0.5 * entity.direction), moved(foot + 0.5 * entity.direction)]
-        (made.segment if entity.what == "segment" else made.line)(*ends, name=name)
+            foot, half = entity.foot, 0.5 * entity.direction
+            draw(moved(foot - half), moved(foot + half), name=name)

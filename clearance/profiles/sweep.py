@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -28,6 +29,9 @@ from clearance.profiles.swept_bodies import (
 )
 from clearance.simulate.record import Samples
 from clearance.world.case import Case
+
+if TYPE_CHECKING:
+    from clearance.profiles.section import Section
 
 TOLERANCE = 5e-4
 """[m] How far a swept profile may exceed what is swept, by default."""
@@ -97,7 +101,15 @@ def swept_profile(
     return _swept(name, moving, seen_on, section, tolerance, progress, parts)
 
 
-def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
+def _swept(
+    name: str,
+    moving: Sequence[MovingBody],
+    plane: Plane,
+    section: float | None,
+    tolerance: float,
+    progress: Progress | None,
+    parts: dict[str, Profile] | None,
+) -> Profile:
     views = _views(moving, plane, section, tolerance)
     raster = _page(views)
     for view in views:
@@ -138,7 +150,7 @@ def _swept(name, moving, plane, section, tolerance, progress, parts) -> Profile:
 
 def _views(
     moving: Sequence[MovingBody], plane: Plane, section: float | None, tolerance: float
-) -> list:
+) -> list[Silhouette | Section]:
     if section is None:
         return [
             Silhouette(
@@ -161,7 +173,7 @@ def _views(
     ]
 
 
-def _page(views: Sequence) -> Raster:
+def _page(views: Sequence[Silhouette | Section]) -> Raster:
     boxes = np.array([view.box() for view in views])
     low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     pixel = float((high - low).max()) / PIXELS

@@ -37,6 +37,7 @@ class MovingBody:
     def knots(self, plane: Plane, limit: float, *, solid: bool) -> Knots:
         """The instants at which it is looked at."""
         if self.motion is None:
+            assert self.pose is not None, "what has no motion stands at a pose"
             return standing(self.pose)
         return knots_of(self.motion, self.body, plane, limit, solid=solid)
 
@@ -51,7 +52,7 @@ class RecordHolder(Protocol):
 def motions_of(run: Case | Samples | RecordHolder) -> tuple[str, tuple[Motion, ...]]:
     if isinstance(run, Case):
         return run.name, tuple(kinematic_motion(placed) for placed in run.robots)
-    record: Samples = getattr(run, "record", run)
+    record = run if isinstance(run, Samples) else run.record
     return record.case.name, record.motions
 
 
@@ -75,8 +76,13 @@ def chosen_links(motions: Sequence[Motion], links: Sequence[str] | None) -> list
     return [one for one in found if one.label in set(links)]
 
 
-def standing_obstacles(run, names: Sequence[str]) -> list[MovingBody]:
-    case: Case = run if isinstance(run, Case) else getattr(run, "record", run).case
+def standing_obstacles(
+    run: Case | Samples | RecordHolder, names: Sequence[str]
+) -> list[MovingBody]:
+    if isinstance(run, Case):
+        case = run
+    else:
+        case = run.case if isinstance(run, Samples) else run.record.case
     known = {obstacle.name: obstacle for obstacle in case.obstacles}
     for name in names:
         if name not in known:

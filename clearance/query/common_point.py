@@ -146,7 +146,14 @@ def _names_a_face(bodies: list[Polytope], name: int) -> bool:
     return name >= 0 and name >> 32 < len(bodies) and name & 0xFFFFFFFF < bodies[name >> 32].n_faces
 
 
-def _deepened(bodies, frames, origin, basis, names, begin) -> tuple[bool, int, int]:
+def _deepened(
+    bodies: list[Polytope],
+    frames: list[np.ndarray],
+    origin: np.ndarray,
+    basis: np.ndarray,
+    names: np.ndarray,
+    begin: int,
+) -> tuple[bool, int, int]:
     """(settled, faces brought in, passes): two bodies at a time until none has a worse face."""
     m = len(bodies)
     placed = [PlacedBody(bodies[k].packed, frames[k], k) for k in range(m)]
@@ -166,7 +173,9 @@ def _deepened(bodies, frames, origin, basis, names, begin) -> tuple[bool, int, i
     return False, total, MAX_PASSES
 
 
-def _keep_what_is_sure(bodies, frames, origin, basis) -> None:
+def _keep_what_is_sure(
+    bodies: list[Polytope], frames: list[np.ndarray], origin: np.ndarray, basis: np.ndarray
+) -> None:
     """Sets t to what the point really keeps of every face, where the simplex method came to no end."""
     point = basis[POINT, :3] + origin
     for body, frame in zip(bodies, frames, strict=True):
@@ -174,7 +183,14 @@ def _keep_what_is_sure(bodies, frames, origin, basis) -> None:
         basis[POINT, 3] = min(basis[POINT, 3], (body.offsets_about(there) / body.face_widths).min())
 
 
-def _judged(bodies, origin, basis, names: list[int], n_faces: int, passes: int) -> CommonPoint:
+def _judged(
+    bodies: list[Polytope],
+    origin: np.ndarray,
+    basis: np.ndarray,
+    names: list[int],
+    n_faces: int,
+    passes: int,
+) -> CommonPoint:
     shares, depth = basis[SHARE].tolist(), float(basis[POINT, 3])
     if depth > PLAINLY * sum(shares) * sum([body.size for body in bodies]):
         warm = tuple(names) if min(names) >= 0 else ()

@@ -15,7 +15,7 @@ import numpy as np
 from clearance.errors import BadInput, ClearanceError
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
-from clearance.geometry.convex_parts import ConvexParts, convex_parts, hull_drawn_in, solid_of
+from clearance.geometry.convex_parts import ConvexParts, convex_parts, hull_drawn_in
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.pose import inverse, validated_pose
@@ -24,7 +24,7 @@ from clearance.query.intersection import Intersection, intersect
 from clearance.query.penetration import ConvexCorners, Penetration, depths_at_most, penetration
 from clearance.query.region_bounds import ball_depth, thickness, ways_through
 from clearance.query.retreat import Ray, shortened, shortened_through, ways_out
-from clearance.query.solid_near import SolidNear, solid_near
+from clearance.query.solid_near import SolidNear, solid_for, solid_near
 
 EXACT = 1e-12
 """[-] Bounds that differ by no more, relative to the bodies' size, are one value."""
@@ -146,16 +146,8 @@ class BodyPair:
     def shared(self, b_from_a: np.ndarray) -> ClosedMesh | None:
         """What the meshes of two solids share, not both convex; None where that is not known."""
         try:
-            a = (
-                self.near_a
-                if self.near_a and self.near_a.holds(self.b, inverse(b_from_a))
-                else self.parts_a
-            )
-            b = self.near_b if self.near_b and self.near_b.holds(self.a, b_from_a) else self.parts_b
-            solids = (
-                one.solid if one.solid is not None else solid_of(one.outer[0]) for one in (a, b)
-            )
-            one, other = solids
+            one = solid_for(self.parts_a, self.near_a, self.b, inverse(b_from_a))
+            other = solid_for(self.parts_b, self.near_b, self.a, b_from_a)
         except ClearanceError:
             return None
         return boolean.mesh_of(boolean.moved(one, b_from_a) ^ other)
@@ -226,7 +218,7 @@ class _PlacedPair:
         if self._by_region:
             ray = self._through_region(ray)
         elif self._needs_search:
-            extra = np.array([whole.direction, *self._thin_ways()])
+            extra = np.array([whole.direction, *(thin.direction for thin in self._thin_rays())])
             rays = ways_out(self.outer_a, self.outer_b, whole.depth, extra)
             ray = self._confirmed([*rays, ray])
         at_least = self._depth_of_balls() if self._by_region else self._depth_of_inner()
@@ -252,8 +244,7 @@ class _PlacedPair:
     def _through_region(self, proven: Ray) -> Ray:
         """The shortest way that the bodies confirm along what the region is thin in, or its normals."""
         region = self._region[0]
-        thin = [Ray(self._thin.depth, way) for way in self._thin_ways()]
-        rays = sorted([*thin, *ways_through(region)], key=lambda ray: ray.length)
+        rays = sorted([*self._thin_rays(), *ways_through(region)], key=lambda ray: ray.length)
         found = shortened_through(
             self._padded(rays), proven.length, self._is_clear, self._still_shared
         )
@@ -312,9 +303,12 @@ class _PlacedPair:
         corners = ConvexCorners(region.vertices, np.zeros((0, 3)))
         return penetration(corners, corners)
 
-    def _thin_ways(self) -> list[np.ndarray]:
-        """The two directions in which the region is thinnest; none where it is empty."""
-        return [] if self._thin is None else [self._thin.direction, -self._thin.direction]
+    def _thin_rays(self) -> list[Ray]:
+        """The two ways out of what is shared where it is thinnest; none where it is empty."""
+        thin = self._thin
+        if thin is None:
+            return []
+        return [Ray(thin.depth, way) for way in (thin.direction, -thin.direction)]
 
     def _width_of_region(self, more_than: float, only_convex: bool) -> float:
         """[m] the width of a convex part of the region: to part the bodies, it must be parted from itself.

@@ -227,3 +227,15 @@ def cut_down(task: Task, side: float = 0.0) -> Cutting | None:
         if not cutting.patched_by(members[0], rest.pop(0)):
             return None
     return cutting if cutting.by(*rest) else None
+
+
+def cut_whole(task: Task) -> Cutting:
+    """What all bodies share, of which the halves are known already.
+
+    Raises:
+        Broken: see there; also where rounding leaves nothing of the whole.
+    """
+    cutting = cut_down(task)
+    if cutting is None:
+        raise BrokenRim
+    return cutting

@@ -20,7 +20,7 @@ from clearance.errors import BadDimension
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.polytope_hull import NotSolid
 from clearance.query.common_point import CommonPoint, checked_bodies, common_point
-from clearance.query.cutting import BrokenRim, Cutting, Task, cut_down
+from clearance.query.cutting import BrokenRim, Cutting, Task, cut_down, cut_whole
 from clearance.query.duals import dual_region
 from clearance.query.region import Region
 from clearance.query.thin import is_thin, refined
@@ -91,13 +91,14 @@ class Intersection:
 
     @cached_property
     def _surface(self) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
+        assert self._cuttings is not None, "asked only where a solid region is shared"
         if isinstance(self._cuttings, Region):
             return self._cuttings.surface()
         if len(self._cuttings) == 2:
             corners, rings, provenance = Region.sewn(self._cuttings).surface()
             if 2 * (len(corners) + len(rings) - 2) == sum(map(len, rings)):
                 return corners, rings, provenance
-            return Region.of(cut_down(self._cuttings[0].task)).surface()
+            return Region.of(cut_whole(self._cuttings[0].task)).surface()
         return Region.of(self._cuttings[0]).surface()
 
 
@@ -122,7 +123,7 @@ def intersect(
         raise BadDimension(f"threads is {threads!r}", valid="1 or more")
     bodies = checked_bodies(polytopes)
     met = common_point(bodies)
-    if met.relation == "apart":
+    if met.point is None:  # apart
         return Intersection("apart", 0.0, None, met, "none")
     if met.relation == "overlap":
         region, moments, used = _region(Task.about(bodies, met.point), method, threads)

@@ -52,8 +52,15 @@ class OnePair:
         """The answer at one pose of each, (4, 4) or None for the identity."""
         pose_a, pose_b = _pose(given_a), _pose(given_b)
         self._poses[0][0], self._poses[1][0] = pose_a, pose_b
+<<<<<<< HEAD
         how = self._how
         if call(nearest_at_poses, self.held, *self._poses, how, *self._rows) >= 0:
+=======
+        if (
+            call(nearest_at_poses, self.held, *self._poses, False, not self._goes_on, *self._rows)
+            != -1
+        ):
+>>>>>>> typesa
             validated_pose(pose_a), validated_pose(pose_b)
             how |= POSES_ARE_RIGID
             call(nearest_at_poses, self.held, *self._poses, how, *self._rows)
@@ -81,8 +88,8 @@ def answer_rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 class _KeptPair:
     """A pair that was asked about; its room goes when one of the solids does."""
 
-    def __init__(self, a: Polyhedron, b: Polyhedron, scratch: Scratch) -> None:
-        self.room: OnePair | None = OnePair(a, b, scratch, goes_on=False)
+    def __init__(self, a: Polyhedron, b: Polyhedron, room: OnePair) -> None:
+        self.room: OnePair | None = room
         self._a, self._b = weakref.ref(a, self._let_go), weakref.ref(b, self._let_go)
 
     def is_of(self, a: Polyhedron, b: Polyhedron) -> bool:
@@ -106,11 +113,14 @@ _thread = _Thread()
 def room_for(a: Polyhedron, b: Polyhedron) -> OnePair:
     """Room for a pair: that of an earlier question of this thread, if there is one."""
     asked = _thread.asked.get((id(a), id(b)))
-    if asked is None or not asked.is_of(a, b):  # one that is gone may have had the same address
-        if len(_thread.asked) == HELD:
-            _thread.asked.clear()
-        asked = _thread.asked[id(a), id(b)] = _KeptPair(a, b, _thread.scratch)
-    return asked.room
+    # a solid that is gone may have had the same address
+    if asked is not None and asked.room is not None and asked.is_of(a, b):
+        return asked.room
+    if len(_thread.asked) == HELD:
+        _thread.asked.clear()
+    room = OnePair(a, b, _thread.scratch, goes_on=False)
+    _thread.asked[id(a), id(b)] = _KeptPair(a, b, room)
+    return room
 
 
 def _pose(given: np.ndarray | None) -> np.ndarray:

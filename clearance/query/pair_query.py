@@ -122,7 +122,7 @@ class Query:
         numbers, points, counts = answer_rows(lengths.pop() if lengths else 1)
         with self._alone() as pair:
             held = pair.held
-            if call(nearest_at_poses, held, poses_a, poses_b, 0, numbers, points, counts) >= 0:
+            if call(nearest_at_poses, held, poses_a, poses_b, 0, numbers, points, counts) != -1:
                 _validate(poses_a, "worlds_from_a")
                 _validate(poses_b, "worlds_from_b")
                 how = POSES_ARE_RIGID
@@ -141,8 +141,11 @@ def _undecided(
     found = np.zeros(len(distances), dtype=bool)
     apart = np.flatnonzero(distances > 0.0)
     if pair.doubt is not None and len(apart):
-        rows = (poses if len(poses) == 1 else poses[apart] for poses in (poses_a, poses_b))
-        found[apart] = pair.doubt.at(*(np.resize(poses, (len(apart), 4, 4)) for poses in rows))
+        at_a, at_b = (
+            np.resize(poses if len(poses) == 1 else poses[apart], (len(apart), 4, 4))
+            for poses in (poses_a, poses_b)
+        )
+        found[apart] = pair.doubt.at(at_a, at_b)
     return found
 
 

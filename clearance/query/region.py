@@ -11,7 +11,7 @@ import numpy as np
 
 from clearance.geometry.edges import rings_of
 from clearance.kernels.polytope.faces import ring_moments
-from clearance.query.cutting import Cutting, Task, cut_down
+from clearance.query.cutting import Cutting, Task, cut_whole
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,10 +40,10 @@ class Region:
         for name, ring in others.items():
             here, there = _opened(rings.get(name, []), on_seam), _opened(ring, on_other)
             if here is None or there is None or (here == []) != (len(there) == len(ring)):
-                return cls.of(cut_down(one.task))
+                return cls.of(cut_whole(one.task))
             rings[name] = here + [i + shift for i in there]
         if any(on_seam & set(ring) for ring in rings.values()):
-            return cls.of(cut_down(one.task))
+            return cls.of(cut_whole(one.task))
         places = np.concatenate([one.places, other.places])
         starts = np.concatenate([[0], np.cumsum([len(ring) for ring in rings.values()])])
         return cls(
@@ -69,13 +69,13 @@ class Region:
         lengths = np.linalg.norm(places[ends[:, 0]] - places[ends[:, 1]], axis=1)
         merged = _least_of_each_cluster(len(rows), ends[lengths <= 8.0 * self.task.tolerance])
         kept, number = np.unique(merged, return_inverse=True)
-        rings, names = [], []
+        rings, kept_planes = [], []
         for name, ring in zip(self.planes, np.split(number[index], self.starts[1:-1]), strict=True):
             ring = ring[ring != np.roll(ring, 1)]
             if len(np.unique(ring)) > 2:
                 rings.append(ring)
-                names.append(name)
-        names = np.array(names, dtype=np.int64)
+                kept_planes.append(name)
+        names = np.array(kept_planes, dtype=np.int64)
         owners = np.searchsorted(self.task.bases, names, side="right") - 1
         provenance = np.column_stack([owners, names - self.task.bases[owners]])
         return places[kept] + self.task.origin, rings, provenance

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from clearance.geometry import boolean
-from clearance.geometry.convex_parts import ConvexParts
+from clearance.geometry.convex_parts import ConvexParts, solid_of
 from clearance.geometry.polyhedron import Polyhedron
 
 LARGE = 5000
@@ -44,6 +44,19 @@ def solid_near(
     room = ROOM * float(np.linalg.norm(np.ptp(other.bounds, axis=0)))
     box = np.array([boxes[:, 0].min(axis=0) - room, boxes[:, 1].max(axis=0) + room])
     return SolidNear(boolean.evaluated(parts.solid ^ boolean.block(box)), box)
+
+
+def solid_for(
+    parts: ConvexParts, near: SolidNear | None, other: Polyhedron, own_from_other: np.ndarray
+) -> Any:
+    """manifold3d's solid to share with the other body: the part near it, else the whole, else the convex part.
+
+    Raises:
+        ClearanceError: manifold3d cannot take the convex part.
+    """
+    if near is not None and near.holds(other, own_from_other):
+        return near.solid
+    return parts.solid if parts.solid is not None else solid_of(parts.outer[0])
 
 
 def box_at(body: Polyhedron, pose: np.ndarray) -> np.ndarray:

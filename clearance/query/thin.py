@@ -68,7 +68,7 @@ def _near_faces(task: Task, frame: np.ndarray, middle: np.ndarray) -> tuple[np.n
     names, corners = [], []
     for base, body in zip(task.bases, task.bodies, strict=False):
         over = np.abs(body.normals @ frame).sum(axis=1) - body.offsets_about(task.origin + middle)
-        for face in np.flatnonzero(over > -8.0 * task.tolerance):
+        for face in np.flatnonzero(over > -8.0 * task.tolerance).tolist():
             for triple in _exact_triples(body, face):
                 names.append(base + face)
                 corners.append(triple)

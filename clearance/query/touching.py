@@ -14,7 +14,8 @@ from clearance.query.common_point import ROUNDING, CommonPoint
 
 def touching_set(bodies: list[Polytope], met: CommonPoint) -> np.ndarray:
     """(k, 3) [m] corners in order: three or more of a polygon, two of a segment, one point."""
-    proof = met.certificate
+    proof, point = met.certificate, met.point
+    assert proof is not None and point is not None, "bodies that touch have both"
     heaviest = int(proof.weights.argmax())
     normal = bodies[proof.parts[heaviest]].normals[proof.faces[heaviest]]
     aside = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
@@ -24,11 +25,11 @@ def touching_set(bodies: list[Polytope], met: CommonPoint) -> np.ndarray:
     slack = ROUNDING * max(body.size for body in bodies)
     ring = 2.0 * size * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     for body in bodies:
-        flat, offsets = body.normals @ axes.T, body.offsets_about(met.point)
+        flat, offsets = body.normals @ axes.T, body.offsets_about(point)
         for i in np.flatnonzero(np.abs(flat).sum(axis=1) * 3.0 * size > offsets - slack):
             ring = _cut(ring, flat[i], offsets[i], slack)
     ring = _distinct(ring, 8.0 * slack)
-    return met.point + ring @ axes if len(ring) else met.point[None, :]
+    return point + ring @ axes if len(ring) else point[None, :]
 
 
 def _cut(ring: np.ndarray, normal: np.ndarray, offset: float, slack: float) -> np.ndarray:
@@ -50,11 +51,11 @@ def _distinct(ring: np.ndarray, slack: float) -> np.ndarray:
     """The corners without repeats; the two ends where they lie on a line; one where all agree."""
     if not len(ring):
         return ring
-    kept = [ring[0]]
+    corners = [ring[0]]
     for corner in ring[1:]:
-        if min(np.linalg.norm(corner - other) for other in kept) > slack:
-            kept.append(corner)
-    kept = np.array(kept)
+        if min(np.linalg.norm(corner - other) for other in corners) > slack:
+            corners.append(corner)
+    kept = np.array(corners)
     if len(kept) < 2:
         return kept
     far = kept[np.linalg.norm(kept - kept[0], axis=1).argmax()]

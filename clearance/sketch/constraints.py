@@ -54,7 +54,7 @@ class Form(NamedTuple):
     """One way to use a kind: the entities it takes, how it becomes rows, and its dimension's
     unit."""
 
-    takes: tuple[type, ...]
+    takes: tuple[type[Entity], ...]
     rows: Callable[..., list[Row]]
     unit: str = ""
     spans: bool = False
@@ -127,25 +127,29 @@ def _check_spans(kind: str, form: Form, entities: Sequence[Entity]) -> None:
 
 def measured(constraint: Constraint, x: list[float]) -> float:
     """The dimension as it is in the sketch now ([m], [rad] or [-]); NaN for kinds without one."""
-    kind, entities = constraint.kind, constraint.entities
-    if kind in ("radius", "diameter"):
-        return x[entities[0].variable] * (2.0 if kind == "diameter" else 1.0)
-    if kind == "angle":
-        turn = math.remainder(rows.turns(x, *entities), 2.0 * math.pi)
-        return abs(turn)
-    if kind == "ratio":
-        a, b = entities
-        if isinstance(a, Circle):
-            return x[a.variable] / x[b.variable]
-        return rows.span(x, *a.ends) / rows.span(x, *b.ends)
-    if kind != "distance":
-        return math.nan
-    a, b = entities
-    if isinstance(b, Point):
-        return rows.span(x, a, b)
-    if isinstance(b, Circle):
-        return abs(rows.span(x, a, b.center) - x[b.variable])
-    if isinstance(a, Point):
-        return abs(rows.gap(x, a, b))
-    same = rows.sign(math.cos(rows.turns(x, a, b)))
-    return abs(x[b.variable + 1] - same * x[a.variable + 1])
+    match constraint.kind, *constraint.entities:
+        case "radius", Circle() as c:
+            return x[c.variable]
+        case "diameter", Circle() as c:
+            return 2.0 * x[c.variable]
+        case "angle", Line() as a, Line() as b:
+            return abs(math.remainder(rows.turns(x, a, b), 2.0 * math.pi))
+        case "ratio", Circle() as c, Circle() as d:
+            return x[c.variable] / x[d.variable]
+        case "ratio", Line() as a, Line() as b:
+            return _length(x, a) / _length(x, b)
+        case "distance", Point() as p, Point() as q:
+            return rows.span(x, p, q)
+        case "distance", Point() as p, Circle() as c:
+            return abs(rows.span(x, p, c.center) - x[c.variable])
+        case "distance", Point() as p, Line() as a:
+            return abs(rows.gap(x, p, a))
+        case "distance", Line() as a, Line() as b:
+            same = rows.sign(math.cos(rows.turns(x, a, b)))
+            return abs(x[b.variable + 1] - same * x[a.variable + 1])
+    return math.nan
+
+
+def _length(x: list[float], line: Line) -> float:
+    assert line.ends is not None, "`form_of` refuses lines without points where a kind spans them"
+    return rows.span(x, *line.ends)

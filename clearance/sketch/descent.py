@@ -9,7 +9,7 @@ Sources: Conn, Gould, Toint 2000 (trust regions); Transtrum, Sethna 2012 (correc
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from clearance.kernels.sketch.solve.columns import bend, spread, step_by
 from clearance.sketch.mobility import numbered
 from clearance.sketch.problem import Problem
 from clearance.sketch.steps import FLOOR
+
+if TYPE_CHECKING:
+    from scipy.sparse import csc_array
 
 LONGEST = 200
 """Steps of a descent; patches of 1000 slivered triangles take 30 to 140."""
@@ -36,7 +39,7 @@ class Place(NamedTuple):
 
     x: np.ndarray
     error: np.ndarray
-    matrix: object
+    matrix: csc_array
     total: float
 
 

@@ -95,6 +95,7 @@ class Segment(Line):
     """The part of a line between two points."""
 
     what = "segment"
+    ends: tuple[Point, Point]
 
 
 class Circle(Entity):

@@ -17,6 +17,7 @@ from clearance.kernels.sketch.solve.execute import FAILED, KEPT
 from clearance.kernels.sketch.solve.fit import set_down
 from clearance.kernels.sketch.solve.search import BANDED, RESTARTS, solve_block
 from clearance.kernels.sketch.solve.start import unsettled
+from clearance.sketch.contacts import Contacts
 from clearance.sketch.folds import solve_from
 from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
@@ -112,12 +113,12 @@ def _run_at_unit(
         x = x[problem.alias]
     residual, broken = _verdict(problem, x)
     if dependent.size and RESIDUAL * size < residual <= NEARLY * size:
-        for p in np.unique(problem.row_part[dependent]):
+        for p in np.unique(problem.row_part[dependent]).tolist():
             _numeric_part(problem, p, x, x.copy(), effort)
         x = x[problem.alias]
         residual, broken = _verdict(problem, x)
     if problem.contacts is not None and broken == -1 and effort == 2:
-        x = _touching(problem, x, active)[problem.alias]
+        x = _touching(problem, problem.contacts, x, active)[problem.alias]
         residual, broken = _verdict(problem, x)
     outcome = Outcome(x, fates, broken, residual)
     if broken == -1 and sides and not sides_hold(x, sides, size):
@@ -152,7 +153,7 @@ def _solve_parts(
         return fates, x
     loose = _loosened(problem, problem.plan.dependent)
     broken = unsettled(s, loose, problem.n_parts, x, problem.length_scale, RESIDUAL * size)
-    for p in np.flatnonzero(broken & active_part):
+    for p in np.flatnonzero(broken & active_part).tolist():
         if effort < 2 or not _from_drawing(problem, p, x, start):
             _numeric_part(problem, p, x, start, effort)
     if effort < 2:
@@ -161,10 +162,12 @@ def _solve_parts(
     return fates, _nearest(problem, x, sketch, start, active_part)
 
 
-def _touching(problem: Problem, x: np.ndarray, active: np.ndarray) -> np.ndarray:
+def _touching(
+    problem: Problem, contacts: Contacts, x: np.ndarray, active: np.ndarray
+) -> np.ndarray:
     """x with the points of contact where they touch to the last digits."""
-    parts = np.unique(problem.row_part[problem.contacts.rows])
-    for p in parts[parts >= 0]:
+    parts = np.unique(problem.row_part[contacts.rows])
+    for p in parts[parts >= 0].tolist():
         moved = closed(problem, p, x) if active[p] else None
         x = x if moved is None else moved
     return x
@@ -180,7 +183,7 @@ def _nearest(
         weight = np.ones(s.kind.shape[0])
         weight[s.kind == POINT] = problem.weight[s.root[s.kind == POINT]]
         set_down(s, problem.part, settle, x, sketch, weight)
-    for p in np.flatnonzero(~rigid & (active > 0) & (problem.free > 0)):
+    for p in np.flatnonzero(~rigid & (active > 0) & (problem.free > 0)).tolist():
         moved = least_movement(problem, p, x, sketch, problem.weight, start)
         if moved is not None:
             x = moved

@@ -11,7 +11,7 @@ import ast
 import functools
 import math
 import operator
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from clearance.errors import BadSyntax, NotFinite, UnknownKey, nearest_name
 
@@ -19,12 +19,14 @@ _FUNCTIONS = {
     name: getattr(math, name)
     for name in "sqrt sin cos tan asin acos atan atan2 radians degrees hypot".split()
 } | {"abs": abs, "min": min, "max": max}
-_OPERATORS = {
+_BINARY: dict[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
     ast.Pow: operator.pow,
+}
+_UNARY: dict[type[ast.unaryop], Callable[[float], float]] = {
     ast.USub: operator.neg,
     ast.UAdd: operator.pos,
 }
@@ -81,8 +83,9 @@ def _parsed(expression: str) -> ast.expr:
 
 
 def _value(node: ast.expr, numbers: Mapping[str, float], whole: str) -> float:
-    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
-        return float(node.value)
+    if isinstance(node, ast.Constant):
+        if isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
+            return float(node.value)
     if isinstance(node, ast.Name):
         if node.id == "pi":
             return math.pi
@@ -91,11 +94,11 @@ def _value(node: ast.expr, numbers: Mapping[str, float], whole: str) -> float:
                 f"unknown parameter {node.id!r} in {whole!r}", valid=nearest_name(node.id, numbers)
             )
         return numbers[node.id]
-    if isinstance(node, ast.BinOp) and type(node.op) in _OPERATORS:
+    if isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
         left, right = _value(node.left, numbers, whole), _value(node.right, numbers, whole)
-        return _OPERATORS[type(node.op)](left, right)
-    if isinstance(node, ast.UnaryOp) and type(node.op) in _OPERATORS:
-        return _OPERATORS[type(node.op)](_value(node.operand, numbers, whole))
+        return _BINARY[type(node.op)](left, right)
+    if isinstance(node, ast.UnaryOp) and type(node.op) in _UNARY:
+        return _UNARY[type(node.op)](_value(node.operand, numbers, whole))
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
         if node.func.id in _FUNCTIONS:
             return _FUNCTIONS[node.func.id](*(_value(a, numbers, whole) for a in node.args))

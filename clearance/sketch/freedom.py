@@ -125,12 +125,14 @@ def redundant_constraints(problem: Problem, x: np.ndarray, solved: bool) -> list
     """
     problem, x = at_unit(problem, x)
     owner = problem.tables.owner
-    rows = list(np.flatnonzero(problem.fate >= 2))
+    rows: list[int] = np.flatnonzero(problem.fate >= 2).tolist()
     if solved:
         suspicious = suspicious_parts(problem, x)
-        rows += [r for p in np.flatnonzero(suspicious) for r in _implied_rows(problem, p, x)]
+        rows += [
+            r for p in np.flatnonzero(suspicious).tolist() for r in _implied_rows(problem, p, x)
+        ]
     else:
-        rows += list(problem.plan.dependent)
+        rows += problem.plan.dependent.tolist()
     count = np.bincount(owner[rows], minlength=owner.max(initial=-1) + 1)
     whole = (count > 0) & (count == np.bincount(owner))
     whole[owner[problem.repeated]] = True
@@ -190,7 +192,8 @@ def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> 
     """The columns of vertices placed first that hold a part: as many as rigid motions are left to it."""
     vertices, first = equations.vertices, equations.first
     motions = rigid_motions(problem, x, vertices, first)[:, : (3, 2, 0)[problem.hold[part]]]
-    inside, columns = set(map(int, vertices)), []
+    inside = set(map(int, vertices))
+    columns: list[int] = []
     steps = range(problem.plan.vertex.size)
     placed = [v for k in steps for v in _placed(problem, k) if v in inside]
     for v in dict.fromkeys([*placed, *map(int, vertices)]):

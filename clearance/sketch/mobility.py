@@ -224,7 +224,7 @@ def dependent(matrix: np.ndarray) -> list[int]:
         rest = row - basis.T @ (basis @ row)
         rest -= basis.T @ (basis @ rest)
         norm = np.linalg.norm(rest)
-        if norm <= SINGULAR * max(np.linalg.norm(row), 1.0):
+        if norm <= SINGULAR * max(float(np.linalg.norm(row)), 1.0):
             out.append(k)
         else:
             basis = np.vstack([basis, rest / norm])

@@ -12,7 +12,7 @@ from clearance.sketch.entities import Arc, Circle, Line, Point, Segment
 def svg_of(sketch, *, width: int = 800, title: str = "") -> str:
     """The text of an SVG picture, y upwards."""
     points = np.array(
-        [e.position for e in sketch.entities.values() if isinstance(e, Point)] or [[0.0, 0.0]]
+        [e.position for e in sketch.entities.values() if isinstance(e, Point)] or [np.zeros(2)]
     )
     low, high = points.min(axis=0), points.max(axis=0)
     for e in sketch.entities.values():

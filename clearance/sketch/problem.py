@@ -147,7 +147,7 @@ def joined(tables: Tables) -> tuple[np.ndarray, np.ndarray, list[int]]:
         return alias, np.ones(n), []
     row_at = {int(o): k for k, o in reversed(list(enumerate(tables.owner)))}
     repeated = []
-    group = {}
+    group: dict[int, int] = {}
 
     def find(i: int) -> int:
         while group.setdefault(i, i) != i:
@@ -183,12 +183,11 @@ def problem_of(tables: Tables, x: np.ndarray, like: Problem | None = None) -> Pr
         tables.code, var, tables.coef, value, tables.role, length_scale, DEPENDENT * size
     )
     coef = inner_and_outer(tables, var, parent, shift)
-    same = (
+    if (
         like is not None
         and np.array_equal(parent, like.system.parent)
         and np.array_equal(fate, like.fate)
-    )
-    if same:
+    ):
         system = like.system._replace(coef=coef, value=value, scale=scale, shift=shift)
         out = Problem(**{**vars(like), "tables": tables, "system": system})
         out.size, out.length_scale = size, length_scale

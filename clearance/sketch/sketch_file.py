@@ -27,7 +27,7 @@ from clearance.errors import (
     at,
     nearest_name,
 )
-from clearance.sketch.entities import Entity
+from clearance.sketch.entities import Line
 
 _SECTIONS = ("parameters", "points", "lines", "segments", "circles", "arcs", "constraints")
 _FIELDS = {"kind", "of", "value", "name", "driven", "inside"}
@@ -185,7 +185,7 @@ def _tree(sketch) -> dict:
     return {k: v for k, v in tree.items() if v}
 
 
-def _drawn(line: Entity) -> list:
+def _drawn(line: Line) -> list:
     foot = line.foot
     return [(foot - 0.5 * line.direction).tolist(), (foot + 0.5 * line.direction).tolist()]
 

@@ -5,12 +5,14 @@ The rest of the drawing stays as it is. Not for: running the plan (`execution`).
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from clearance.kernels.sketch.solve.start import agree
 from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
 
-Sides = list[tuple[int, int, int]]
+Sides = Sequence[tuple[int, int, int]]
 """Every `same_side` as the variables of two points and a line."""
 
 

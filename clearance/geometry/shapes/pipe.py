@@ -49,10 +49,7 @@ def pipe(
             where="inner_radius",
             valid="less than outer_radius",
         )
-    if (length is None) == (path is None):
-        given = "both" if path is not None else "neither"
-        raise BadDimension(f"{given} of length and path given", valid="one of them is needed")
-    if path is None:
+    if path is None and length is not None:
         if bend_radius is not None:
             raise BadDimension(
                 "bend_radius is given without path", valid="a straight pipe has no bends"
@@ -60,6 +57,9 @@ def pipe(
         return _straight(
             inner, outer, positive(length, "length"), sections_for(outer, tolerance, sections)
         )
+    if path is None or length is not None:
+        given = "both" if path is not None else "neither"
+        raise BadDimension(f"{given} of length and path given", valid="one of them is needed")
     return _bent(
         inner,
         outer,
