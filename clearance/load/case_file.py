@@ -55,7 +55,7 @@ def load_case(path: str | Path) -> Case:
         robot = placed.robot
         allow = checked_pairs(given.allow, robot.link_names, [o.name for o in obstacles])
         profiles = reserved_spaces(given.profiles, path.parent, files, robot.link_names)
-    given_joints = [*placed.trajectory.joint_names, *placed.fixed_positions]
+    given_joints = [*placed.asked.joint_names, *placed.fixed_positions]
     case = Case(
         name=given.name or _name_of(path),
         robots=(placed,),
