@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 from clearance.errors import BadInput, MissingFile, at
@@ -34,7 +35,7 @@ from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
 
-def load_case(path: str | Path) -> Case:
+def load_case(path: str | PathLike[str]) -> Case:
     """The case in a YAML file, with robot, scene and trajectory read and checked.
 
     Args:
