@@ -58,7 +58,8 @@ def start() -> bool:
 
 @functools.cache
 def _start_once() -> bool:
-    if numba.config.DISABLE_JIT or all(map(kernel_table.is_kept, FIRST)):
+    disabled = numba.config.DISABLE_JIT  # type: ignore[attr-defined]  # numba sets it at run time
+    if disabled or all(map(kernel_table.is_kept, FIRST)):
         return False
     if cache_root() is not None and usable_cores() > 1 and _can_start():
         with suppress(OSError):  # then all is compiled here
@@ -85,7 +86,8 @@ def _second_process() -> subprocess.Popen:
     script = (
         f"import sys; sys.path[:] = {found!r}; from clearance.cli.compile_ahead import main; main()"
     )
-    options = [*subprocess._args_from_interpreter_flags(), "-P"]
+    flags = subprocess._args_from_interpreter_flags()  # type: ignore[attr-defined]  # stubs leave it out
+    options = [*flags, "-P"]
     return subprocess.Popen(
         [sys.executable, *options, "-c", script],
         env={**os.environ, IS_SECOND: "1"}, stdin=subprocess.PIPE, stdout=subprocess.PIPE,

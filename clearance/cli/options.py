@@ -34,14 +34,19 @@ class OutputPath(click.Path):
         super().__init__(path_type=Path)
 
     def convert(
-        self, value: str | Path, param: click.Parameter | None, ctx: click.Context | None
+        self,
+        value: str | os.PathLike[str],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
     ) -> Path:
         """The path."""
         if not os.fspath(value):
             self.fail(
                 "an empty path; a place to write is needed ('.' is the current folder)", param, ctx
             )
-        return super().convert(value, param, ctx)
+        path = super().convert(value, param, ctx)
+        assert isinstance(path, Path)  # as `path_type` says
+        return path
 
 
 motion_option = click.option(

@@ -59,9 +59,9 @@ def fit(
     if picture is not None:
         from clearance.profiles.picture import draw_outlines
 
-        sketch = DrawnOutline(out.name, found.curve)
+        drawn = DrawnOutline(out.name, found.curve)
         shade = ("only in the sketch", "only in the outline")
-        draw_outlines(outline, sketch, found.ends, found.title, picture, shade=shade)
+        draw_outlines(outline, drawn, found.ends, found.title, picture, shade=shade)
         click.echo(f"picture {picture}")
 
 

@@ -37,7 +37,13 @@ def make_streams_safe() -> None:
     warnings.formatwarning = _in_one_line
 
 
-def _in_one_line(message: Warning | str, *_: object) -> str:
+def _in_one_line(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    line: str | None = None,
+) -> str:
     return f"warning: {message}\n"
 
 

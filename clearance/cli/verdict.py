@@ -112,7 +112,7 @@ def _worst(record: Record) -> list[Text]:
 def _certified(record: Record) -> list[Text]:
     if record.certificate is None:
         return [_row("certified", "no: nothing is said about the motion between the samples")]
-    lines = [_row("certified", certified_text(certified_of(record)))]
+    lines = [_row("certified", certified_text(certified_of(record, record.certificate)))]
     sample = record.worst_sample
     if record.worst is not sample:
         told = f"{mm(sample.clearance)} mm at step {sample.step}, {seconds(sample.time)}"
@@ -134,9 +134,10 @@ def _deepest(record: Record) -> list[Text]:
     if len(record.contacts):
         with shown_progress(False, ["looking into contacts"]) as progress:
             record.work_out_contacts(progress)
-    if record.deepest is None:
+    found = contact_of(record)
+    if found is None:
         return []
-    told = contact_of(record)["deepest"]
+    told = found["deepest"]
     way = ", ".join(f"{value:.4f}" for value in told["direction"])
     text = f"step {told['step']}, {told['link']} in {told['obstacle']}: {contact_text(told)}"
     return [_row("deepest", f"{text}; way out of the link ({way})")]

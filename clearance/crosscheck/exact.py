@@ -17,11 +17,16 @@ Triangle = Sequence[Point]
 
 def placed(corners: np.ndarray, world_from_body: np.ndarray) -> list[Point]:
     """Corners (n, 3) [m] at a pose (4, 4), without rounding."""
-    rows = [[Fraction(x) for x in row] for row in world_from_body[:3].tolist()]
+    first, second, third = ([Fraction(x) for x in row] for row in world_from_body[:3].tolist())
     return [
-        tuple(sum((r * x for r, x in zip(row, point, strict=False)), row[3]) for row in rows)
-        for point in ([Fraction(x) for x in corner] for corner in corners.tolist())
+        (_on_axis(first, x, y, z), _on_axis(second, x, y, z), _on_axis(third, x, y, z))
+        for x, y, z in ([Fraction(x) for x in corner] for corner in corners.tolist())
     ]
+
+
+def _on_axis(row: Sequence[Fraction], x: Fraction, y: Fraction, z: Fraction) -> Fraction:
+    """One coordinate of a point at a pose, by the row of the pose for it."""
+    return row[3] + row[0] * x + row[1] * y + row[2] * z
 
 
 def point_sq(x: Point, triangles: Sequence[Triangle]) -> Fraction:
@@ -76,7 +81,11 @@ def _passes(p: Point, q: Point, triangle: Triangle) -> bool:
 
 
 def _along(p: Point, q: Point, share: Fraction) -> Point:
-    return tuple(a + share * (b - a) for a, b in zip(p, q, strict=True))
+    return (
+        p[0] + share * (q[0] - p[0]),
+        p[1] + share * (q[1] - p[1]),
+        p[2] + share * (q[2] - p[2]),
+    )
 
 
 def _to_triangle(x: Point, triangle: Triangle) -> Fraction:

@@ -8,6 +8,8 @@ out.
 
 from __future__ import annotations
 
+from types import ModuleType
+
 import numpy as np
 
 from clearance.crosscheck.triangles import TriangleSoup
@@ -58,10 +60,10 @@ class PeerBody:
         result = self._fcl.DistanceResult()
         request = self._fcl.DistanceRequest(enable_nearest_points=True)
         self._fcl.distance(self._object, other._object, request, result)
-        named = (result.b1, self._kept), (result.b2, other._kept)
-        if not all(0 <= i < len(kept) for i, kept in named):
+        i, j = result.b1, result.b2
+        if not (0 <= i < len(self._kept) and 0 <= j < len(other._kept)):
             return None
-        return tuple(int(kept[i]) for i, kept in named)
+        return int(self._kept[i]), int(other._kept[j])
 
     def collides(self, other: PeerBody) -> bool:
         """True if FCL's collision test, which shares no code with its distance, finds a contact."""
@@ -82,7 +84,7 @@ def peer_name() -> str:
     return f"python-fcl {_fcl().__version__}"
 
 
-def _fcl():
+def _fcl() -> ModuleType:
     with importing("crosscheck", "the cross-check"):
-        import fcl
+        import fcl  # type: ignore[import-untyped]  # it brings no types
     return fcl

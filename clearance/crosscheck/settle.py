@@ -6,6 +6,8 @@ bodies inside others, which no two faces decide.
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 import numpy as np
 
 from clearance.crosscheck.exact import placed, point_sq, triangles_sq
@@ -65,12 +67,12 @@ def _attained(
     )
 
 
-def _exceeds(distance_sq: object, length: float) -> bool:
+def _exceeds(distance_sq: Fraction, length: float) -> bool:
     """True if a distance, given as its exact square, is more than a length [m]."""
-    return length < 0.0 or distance_sq > type(distance_sq)(length) ** 2
+    return length < 0.0 or distance_sq > Fraction(length) ** 2
 
 
-def _distance_sq(pair: PeerPair, poses: np.ndarray, faces: tuple[int, int]):
+def _distance_sq(pair: PeerPair, poses: np.ndarray, faces: tuple[int, int]) -> Fraction:
     (link, link_pose), (obstacle, pose) = _placed_sides(pair, poses)
     return triangles_sq(
         placed(link.soup.corners[faces[0]], link_pose),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 from clearance.errors import BadInput, MissingFile, at
@@ -34,7 +35,7 @@ from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
 
-def load_case(path: str | Path) -> Case:
+def load_case(path: str | PathLike[str]) -> Case:
     """The case in a YAML file, with robot, scene and trajectory read and checked.
 
     Args:
@@ -55,7 +56,7 @@ def load_case(path: str | Path) -> Case:
         robot = placed.robot
         allow = checked_pairs(given.allow, robot.link_names, [o.name for o in obstacles])
         profiles = reserved_spaces(given.profiles, path.parent, files, robot.link_names)
-    given_joints = [*placed.trajectory.joint_names, *placed.fixed_positions]
+    given_joints = [*placed.asked.joint_names, *placed.fixed_positions]
     case = Case(
         name=given.name or _name_of(path),
         robots=(placed,),

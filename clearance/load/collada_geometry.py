@@ -40,7 +40,7 @@ class Ids:
             BadSyntax: there is none, it is in another file, or there are several.
         """
         found = self._found.get((kind, (reference or "")[1:]), [])
-        if not found or not (reference or "").startswith("#"):
+        if reference is None or not found or not reference.startswith("#"):
             raise BadSyntax(
                 f"there is no <{kind}> {reference!r:.60}", valid="'#' and an id in this file"
             )

@@ -47,9 +47,9 @@ def read_glb(data: bytes) -> Triangles:
     with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
         surface = joined(_Scene(document, binary).pieces())
         turned = surface.vertices @ Z_FROM_Y_UP.T
-    notes = ("turned from y up to z up, as glTF says",)
-    if len(document.list("scenes")) > 1:
-        notes += (f"one of its {len(document.list('scenes'))} scenes is read",)
+    notes: tuple[str, ...] = ("turned from y up to z up, as glTF says",)
+    if len(document.items("scenes")) > 1:
+        notes += (f"one of its {len(document.items('scenes'))} scenes is read",)
     return Triangles(turned, surface.corners, notes)
 
 
@@ -84,7 +84,7 @@ def _refuse_extensions(document: GltfObject) -> None:
     version = document.object("asset").value.get("version")
     if not isinstance(version, str) or not version.startswith("2."):
         raise BadSyntax(f"glTF version {version!r:.20}", valid="2.0")
-    for name in document.list("extensionsRequired"):
+    for name in document.items("extensionsRequired"):
         if name not in _READ and not str(name).startswith(_HARMLESS):
             raise BadSyntax(
                 f"the file requires the extension {name!r:.60}, which is not read",
@@ -103,7 +103,7 @@ class _Scene:
 
     def pieces(self) -> Iterator[tuple[Hashable, Triangles]]:
         """Each placed piece, in the scene's order, with what it is a copy of."""
-        if not self.document.list("scenes"):
+        if not self.document.items("scenes"):
             raise EmptyMesh("the file has no scene", valid="a scene that places a mesh")
         scene = self.document.item("scenes", self.document.index("scene", 0))
         for i_node in scene.indices("nodes"):

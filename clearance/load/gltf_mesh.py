@@ -24,14 +24,13 @@ def mesh_pieces(mesh: GltfObject, weights: np.ndarray | None, buffers: Buffers) 
     Args:
         weights: of the morph targets; None for the mesh's own.
     """
-    if weights is None:
-        weights = mesh.numbers("weights", ())
+    used = mesh.numbers("weights", ()) if weights is None else weights
     pieces = []
-    for i in range(len(mesh.list("primitives"))):
+    for i in range(len(mesh.items("primitives"))):
         with at(f"primitive {i}"):
             primitive = mesh.item("primitives", i)
             if primitive.index("mode", _TRIANGLES) not in _POINTS_AND_LINES:
-                pieces.append(_piece(primitive, weights, buffers))
+                pieces.append(_piece(primitive, used, buffers))
     return pieces
 
 
@@ -64,7 +63,7 @@ def _morphed(
     vertices: np.ndarray, primitive: GltfObject, weights: np.ndarray, buffers: Buffers
 ) -> np.ndarray:
     """The vertices with each morph target's displacements added by its weight."""
-    targets = primitive.list("targets")
+    targets = primitive.items("targets")
     if len(weights) not in (0, len(targets)):
         raise BadSyntax(
             f"{len(weights)} weights", valid=f"{len(targets)}, one for each morph target"

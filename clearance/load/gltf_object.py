@@ -5,7 +5,8 @@ Not for: what the fields mean (`gltf_file`, `gltf_mesh`).
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, overload
 
 import numpy as np
 
@@ -21,7 +22,7 @@ class GltfObject:
         self.value: dict[str, Any] = value
         self.place = place
 
-    def list(self, key: str) -> list[Any]:
+    def items(self, key: str) -> list[Any]:
         """The list at `key`; empty where there is none."""
         found = self.value.get(key, [])
         if not isinstance(found, list):
@@ -36,7 +37,7 @@ class GltfObject:
 
     def item(self, key: str, index: int) -> GltfObject:
         """The object `index` of the list at `key`."""
-        items = self.list(key)
+        items = self.items(key)
         if index >= len(items):
             raise BadSyntax(f"{key}[{index}] is referred to", valid=f"there are {len(items)}")
         return GltfObject(items[index], f"{key}[{index}]")
@@ -52,13 +53,21 @@ class GltfObject:
 
     def indices(self, key: str) -> list[int]:
         """The whole numbers of the list at `key`."""
-        return [GltfObject({key: found}, self.place).index(key) for found in self.list(key)]
+        return [GltfObject({key: found}, self.place).index(key) for found in self.items(key)]
 
-    def numbers(self, key: str, default: Any, length: int | None = None) -> np.ndarray | None:
+    @overload
+    def numbers(
+        self, key: str, default: Sequence[float], length: int | None = None
+    ) -> np.ndarray: ...
+    @overload
+    def numbers(self, key: str, default: None, length: int | None = None) -> np.ndarray | None: ...
+    def numbers(
+        self, key: str, default: Sequence[float] | None, length: int | None = None
+    ) -> np.ndarray | None:
         """The numbers of the list at `key`; `default` where there is none."""
         if key not in self.value:
             return None if default is None else np.array(default)
-        found = self.list(key)
+        found = self.items(key)
         plain = all(isinstance(x, int | float) and not isinstance(x, bool) for x in found)
         if not plain or length not in (None, len(found)):
             raise BadSyntax(

@@ -13,8 +13,8 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
@@ -54,7 +54,7 @@ class InputFiles:
             self._sources[path] = Source(self.shown(path), digest, len(data), str(path))
         return self._contents[path]
 
-    def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
+    def unread(self, path: Path) -> tuple[Callable[[], BufferedReader], int]:
         """Opens a long file, again and again, and how many bytes it has; its checksum is remembered,
         its content is not.
 
@@ -91,7 +91,7 @@ class _NotRegular(OSError):
     """A pipe, socket or device."""
 
 
-def _regular(path: Path) -> BinaryIO:
+def _regular(path: Path) -> BufferedReader:
     """Opens a file on disk; a pipe or a device, which may never end, is not waited for."""
     descriptor = os.open(
         path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)

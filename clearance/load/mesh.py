@@ -91,7 +91,9 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
     import trimesh
 
     turned = vertices @ Z_FROM_Y_UP if kind == "glb" else vertices
-    return trimesh.Trimesh(turned, triangles, process=False).export(file_type=kind)
+    content = trimesh.Trimesh(turned, triangles, process=False).export(file_type=kind)
+    assert isinstance(content, bytes)  # as both kinds are
+    return content
 
 
 def _solid(triangles: Triangles) -> LoadedMesh:

@@ -7,15 +7,14 @@ tables (`trajectory_csv`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import AnyStr
 
 import numpy as np
 
 from clearance.errors import BadSyntax
 
-Words = Sequence[str] | Sequence[bytes]
 
-
-def floats(words: Words) -> np.ndarray:
+def floats(words: Sequence[AnyStr]) -> np.ndarray:
     """(n,) the words as float64, each to the nearest double.
 
     Raises:
@@ -24,7 +23,7 @@ def floats(words: Words) -> np.ndarray:
     return _numbers(words, np.float64, "a number")
 
 
-def integers(words: Words) -> np.ndarray:
+def integers(words: Sequence[AnyStr]) -> np.ndarray:
     """(n,) the words as int64.
 
     Raises:
@@ -33,11 +32,11 @@ def integers(words: Words) -> np.ndarray:
     return _numbers(words, np.int64, "a whole number")
 
 
-def _numbers(words: Words, kind: type, wanted: str) -> np.ndarray:
+def _numbers(words: Sequence[AnyStr], kind: type[np.generic], wanted: str) -> np.ndarray:
     if not len(words):
         return np.empty(0, dtype=kind)
     try:
-        values = np.array(words, dtype=kind)
+        values: np.ndarray = np.array(words, dtype=kind)
         fits = _is_plain(words)
     except (ValueError, OverflowError):
         fits = False
@@ -46,12 +45,12 @@ def _numbers(words: Words, kind: type, wanted: str) -> np.ndarray:
     raise BadSyntax(f"{_shown(next(w for w in words if not _fits(w, kind)))} is not {wanted}")
 
 
-def _is_plain(words: Words) -> bool:
+def _is_plain(words: Sequence[AnyStr]) -> bool:
     joined = words[0][:0].join(words)
     return joined.isascii() and (b"_" if isinstance(joined, bytes) else "_") not in joined
 
 
-def _fits(word: str | bytes, kind: type) -> bool:
+def _fits(word: AnyStr, kind: type[np.generic]) -> bool:
     try:
         np.array([word], dtype=kind)
     except (ValueError, OverflowError):

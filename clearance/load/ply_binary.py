@@ -19,13 +19,11 @@ class BinaryRows:
         """The next rows."""
         lists = [item for item in element.properties if item.length_kind is not None]
         sizes = [(item.length_kind or item.kind).itemsize for item in element.properties]
-        if element.count * sum(sizes) > len(self.body) - self.place:
-            raise BadSyntax(f"{element.count} rows do not fit in the file: it is cut off")
-        if element.count and not element.properties:
-            raise BadSyntax(f"{element.count} rows without properties")
-        if not element.count or not lists:
-            return self._block(element, {})
-        lengths = self._first_lengths(element)
+        if element.n_rows * sum(sizes) > len(self.body) - self.place:
+            raise BadSyntax(f"{element.n_rows} rows do not fit in the file: it is cut off")
+        if element.n_rows and not element.properties:
+            raise BadSyntax(f"{element.n_rows} rows without properties")
+        lengths = self._first_lengths(element) if element.n_rows and lists else {}
         same = self._block(element, lengths) if lengths is not None else None
         return same if same is not None else self._one_by_one(element)
 
@@ -41,13 +39,13 @@ class BinaryRows:
             place += item.length_kind.itemsize + max(0, lengths[item.name]) * item.kind.itemsize
         fits = (
             min(lengths.values()) >= 0
-            and (place - self.place) * element.count <= len(self.body) - self.place
+            and (place - self.place) * element.n_rows <= len(self.body) - self.place
         )
         return lengths if fits else None
 
     def _block(self, element: Element, lengths: dict[str, int]) -> PlyRows | None:
         """All rows at once, if all lists are of the given lengths; else None."""
-        fields = []
+        fields: list[tuple[str, np.dtype] | tuple[str, np.dtype, tuple[int]]] = []
         for k, item in enumerate(element.properties):
             if item.length_kind is None:
                 fields.append((f"v{k}", item.kind))
@@ -57,7 +55,7 @@ class BinaryRows:
                     (f"v{k}", item.kind, (lengths.get(item.name, 0),)),
                 ]
         kind = np.dtype(fields)
-        table = self._take(kind, element.count, self.place)
+        table = self._take(kind, element.n_rows, self.place)
         columns, lists = {}, {}
         for k, item in enumerate(element.properties):
             if item.length_kind is None:
@@ -67,13 +65,13 @@ class BinaryRows:
             if (counts != lengths.get(item.name, 0)).any():
                 return None
             lists[item.name] = (table[f"v{k}"].reshape(-1), counts)
-        self.place += element.count * kind.itemsize
-        return PlyRows(element.count, columns, lists)
+        self.place += element.n_rows * kind.itemsize
+        return PlyRows(element.n_rows, columns, lists)
 
     def _one_by_one(self, element: Element) -> PlyRows:
         found: dict[str, list[np.ndarray]] = {item.name: [] for item in element.properties}
         counts: dict[str, list[int]] = {item.name: [] for item in element.properties}
-        for _ in range(element.count):
+        for _ in range(element.n_rows):
             for item in element.properties:
                 count = 1
                 if item.length_kind is not None:
@@ -87,7 +85,7 @@ class BinaryRows:
                 columns[item.name] = flat
             else:
                 lists[item.name] = (flat, np.array(counts[item.name]))
-        return PlyRows(element.count, columns, lists)
+        return PlyRows(element.n_rows, columns, lists)
 
     def _next(self, kind: np.dtype, count: int) -> np.ndarray:
         values = self._take(kind, count, self.place)

@@ -73,7 +73,7 @@ def _take_line(row: list[str], elements: list[Element], order: str) -> None:
         return
     if row[0] == "element" and len(row) == 3:
         elements.append(Element(row[1], int(integers([row[2]])[0]), []))
-        if elements[-1].count >= 0:
+        if elements[-1].n_rows >= 0:
             return
     elif row[0] == "property" and elements and len(row) == (5 if row[1:2] == ["list"] else 3):
         made = _property(row, order)
@@ -90,10 +90,10 @@ def _take_line(row: list[str], elements: list[Element], order: str) -> None:
 
 
 def _property(row: list[str], order: str) -> Property | None:
-    kinds = [_TYPES.get(word) for word in (row[2:4] if row[1] == "list" else row[1:2])]
-    if None in kinds:
+    words = row[2:4] if row[1] == "list" else row[1:2]
+    if any(word not in _TYPES for word in words):
         return None
-    made = [np.dtype(order + kind) for kind in kinds]
+    made = [np.dtype(order + _TYPES[word]) for word in words]
     if len(made) == 1:
         return Property(row[-1], made[0], None)
     return Property(row[-1], made[1], made[0]) if made[0].kind in "iu" else None

@@ -45,7 +45,7 @@ def _points(elements: dict[str, PlyRows]) -> np.ndarray:
 
 def _rings(elements: dict[str, PlyRows], name: str, points: np.ndarray, ends: bool = False):
     """The corners of all faces or strips and how many each has, if there are any; `ends`: -1 stands between."""
-    if name not in elements or not elements[name].count:
+    if name not in elements or not elements[name].n_rows:
         return
     lists = [elements[name].lists[key] for key in _CORNERS if key in elements[name].lists]
     if len(lists) != 1:

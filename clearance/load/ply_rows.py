@@ -19,7 +19,7 @@ class Element(NamedTuple):
     """One kind of row, as the header announces it."""
 
     name: str
-    count: int
+    n_rows: int
     properties: list[Property]
 
 
@@ -27,11 +27,11 @@ class PlyRows(NamedTuple):
     """All rows of one element.
 
     Attributes:
-        count: how many there are.
+        n_rows: how many there are.
         columns: (n,) the values of each property.
         lists: for each list property all values, one row after the other, and (n,) how many each row has.
     """
 
-    count: int
+    n_rows: int
     columns: dict[str, np.ndarray]
     lists: dict[str, tuple[np.ndarray, np.ndarray]]

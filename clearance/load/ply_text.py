@@ -18,12 +18,12 @@ class TextRows:
 
     def rows(self, element: Element) -> PlyRows:
         """The next rows."""
-        lines = self.lines[self.place : self.place + element.count]
-        if len(lines) < element.count:
+        lines = self.lines[self.place : self.place + element.n_rows]
+        if len(lines) < element.n_rows:
             raise BadSyntax(
-                f"{len(lines)} of its {element.count} lines are there: the file is cut off"
+                f"{len(lines)} of its {element.n_rows} lines are there: the file is cut off"
             )
-        self.place += element.count
+        self.place += element.n_rows
         lists = [item for item in element.properties if item.length_kind is not None]
         if not lists:
             return self._table(lines, element.properties)

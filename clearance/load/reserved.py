@@ -25,7 +25,8 @@ def reserved_spaces(
         DuplicateName, UnknownLink, MissingFile and what sketches raise; BadShape: a sketch that contradicts
         itself or has an open contour.
     """
-    links, made = tuple(links), []
+    links = tuple(links)
+    made: list[ReservedSpace] = []
     for i, entry in enumerate(given):
         with at(f"profiles[{i}]"):
             if entry.name in [space.name for space in made]:

@@ -9,7 +9,7 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
@@ -119,7 +119,13 @@ class NamedPose(StrictModel):
     pose: Pose = Pose()
 
 
-class Obstacle(with_shapes(NamedPose, StrictModel)):
+if TYPE_CHECKING:
+    _Shaped = NamedPose
+else:  # the keys come from a table, which a type checker cannot follow
+    _Shaped = with_shapes(NamedPose, StrictModel)
+
+
+class Obstacle(_Shaped):
     """A named solid that stands somewhere."""
 
     mesh: Mesh | None = None

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from clearance.errors import BadDimension, BadInput, BadShape, ClearanceError, MissingKey, NotFinite
+
+if TYPE_CHECKING:
+    from pydantic_core import ErrorDetails
 
 Model = TypeVar("Model", bound=BaseModel)
 
@@ -41,7 +44,7 @@ def place(location: tuple[int | str, ...]) -> str:
     return text.lstrip(".")
 
 
-def _translated(detail: dict, shown: str) -> ClearanceError:
+def _translated(detail: ErrorDetails, shown: str) -> ClearanceError:
     location = tuple(detail["loc"])
     own = detail.get("ctx", {}).get("error")
     if isinstance(own, ClearanceError):
@@ -65,7 +68,7 @@ def _given(value: object) -> str:
     return f"{text if len(text) <= 60 else text[:57] + '...'} is given"
 
 
-def _remedy(detail: dict) -> str:
+def _remedy(detail: ErrorDetails) -> str:
     context = detail.get("ctx", {})
     if detail["type"] in ("too_short", "too_long"):
         least, most = context.get("min_length"), context.get("max_length")

@@ -95,7 +95,7 @@ def pose_of(element: Element) -> np.ndarray:
     return np.eye(4) if origin is None else pose_from_rpy(*_origin(origin))
 
 
-def number(element: Element, attribute: str, default: float | None = None) -> float:
+def number(element: Element, attribute: str, default: float) -> float:
     """The number in an attribute of a checked document."""
     (value,) = numbers(element, attribute, (default,))
     return value

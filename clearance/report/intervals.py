@@ -175,9 +175,10 @@ class _LeastBetween:
 
     def moment(self, step: int) -> dict[str, Any]:
         """What is known of a step, or of the moment after it that gives it its status."""
-        if not self.between[step]:
+        certificate = self.record.certificate
+        if certificate is None or not self.between[step]:
             return self.sample(step)
-        moment = self.record.certificate.moment_of(step)
+        moment = certificate.moment_of(step)
         return {name: getattr(moment, name) for name in _TOLD}
 
     def sample(self, step: int) -> dict[str, Any]:

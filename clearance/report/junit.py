@@ -134,7 +134,7 @@ def _certificate(suite: ElementTree.Element, record: Record) -> None:
         return
     codes = motion_codes(record.certificate, record.case.limits, slice(None))
     violated = int(codes.max()) >= STATUSES.index(Status.VIOLATED)
-    text = certified_text(certified_of(record))
+    text = certified_text(certified_of(record, record.certificate))
     _tell(case, text, "LimitViolated" if violated else None)
 
 

@@ -10,7 +10,7 @@ from markupsafe import Markup, escape
 
 def element(tag: str, *content: object, **attributes: object) -> Markup:
     """`<tag ...>content</tag>` with everything escaped that is not `Markup`; `_` in a name becomes `-`."""
-    inner = Markup("").join(content)
+    inner = Markup("".join(map(escape, content)))
     pairs = ((name.rstrip("_").replace("_", "-"), value) for name, value in attributes.items())
     given = "".join(f' {name}="{escape(str(value))}"' for name, value in pairs if value is not None)
     return Markup(f"<{tag}{given}>{inner}</{tag}>")

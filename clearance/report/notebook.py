@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from markupsafe import Markup
+
 from clearance.report.markup import element, table
 from clearance.report.verdict import verdict_of
 from clearance.report.wording import limit_mm, mm, moment_text
@@ -43,6 +45,6 @@ def _worst(record: Record) -> str:
     return f"{mm(worst.clearance)} mm, {worst.link} - {worst.obstacle} at {moment_text(worst)}"
 
 
-def _row(pair: PairMinimum) -> str:
+def _row(pair: PairMinimum) -> Markup:
     cells = (pair.link, pair.obstacle, mm(pair.clearance), pair.step, f"{pair.time:.3f}")
     return element("tr", *[element("td", cell) for cell in cells])

@@ -66,8 +66,10 @@ def header(summary: dict[str, Any]) -> Markup:
 
 def badge_text(summary: dict[str, Any]) -> str:
     """The verdict in a few words."""
-    parts = (summary[name] for name in ("verdict", "measured", "basis", "disputed_by"))
-    text = verdict_text(*parts, shown=_TITLES.__getitem__)
+    status, measured, basis, disputed_by = (
+        summary[name] for name in ("verdict", "measured", "basis", "disputed_by")
+    )
+    text = verdict_text(status, measured, basis, disputed_by, shown=_TITLES.__getitem__)
     return text[0].upper() + text[1:]
 
 

@@ -15,7 +15,8 @@ from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, not_listed, status_counts
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.verdict import Verdict, verdict_of
-from clearance.simulate.record import CrossCheck, Moment, ProfileAnswer, Record
+from clearance.simulate.moment import Moment
+from clearance.simulate.record import Certificate, CrossCheck, ProfileAnswer, Record
 from clearance.simulate.replay import link_label
 from clearance.simulate.standing import standing_hint
 from clearance.simulate.steps import status_of
@@ -28,7 +29,7 @@ FORMAT = 2
 def summary_of(record: Record) -> dict[str, Any]:
     """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
     exist is None."""
-    case, verdict = record.case, verdict_of(record)
+    case, verdict, certificate = record.case, verdict_of(record), record.certificate
     times = record.steps["time"].to_numpy()
     return {
         "format": FORMAT,
@@ -53,7 +54,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "pairs": [asdict(minimum) for minimum in record.pair_minima],
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
         "contact": contact_of(record),
-        "certified": certified_of(record),
+        "certified": None if certificate is None else certified_of(record, certificate),
         "cross_check": _cross_check(record.cross_check),
         "tracking_error": _tracking_error(record),
         "robots": [_robot(record, motion) for motion in record.motions],
@@ -152,11 +153,8 @@ def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
     }
 
 
-def certified_of(record: Record) -> dict[str, Any] | None:
+def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
     """The least proven bound [m], the interval it holds for, and the least distance seen there, if one was."""
-    certificate = record.certificate
-    if certificate is None:
-        return None
     step = certificate.worst_interval
     times = record.steps["time"].to_numpy()
     cubic = any(motion.velocities is not None for motion in record.motions)

@@ -83,7 +83,8 @@ def step_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.
 
 
 def pair_batches(record: Record, kept: MeasuredRows = IN_MEMORY) -> Iterator[pa.Table]:
-    """Every pair at every step of a record in the same way."""
+    """Every pair at every step of a record that has them, in the same way."""
+    assert record.every_pair is not None
     for batch in record.every_pair.batches():
         yield batch
         kept.let_go()

@@ -99,15 +99,16 @@ def verdict_of(record: Record) -> Verdict:
     open_suspects = tuple(one for one in suspects if one.kind not in record.case.accept)
     measured = _measured(record)
     check = record.cross_check
-    disputed = check is not None and not check.agrees
+    disputing = None if check is None or check.agrees else check
     unproven = _unproven(record)
     reasons = [reason for reason in (_occurring(record), unproven) if reason is not None]
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
     broken = [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
     reasons += broken
     reasons += [f"suspect {one.kind}: {one.text}" for one in open_suspects]
-    if disputed:
-        reasons.append(f"{check.peer} disagrees at {count(len(check.disagreements), 'step')}")
+    if disputing is not None:
+        n_steps = count(len(disputing.disagreements), "step")
+        reasons.append(f"{disputing.peer} disagrees at {n_steps}")
     return Verdict(
         status=SUSPECT if open_suspects else measured,
         measured=measured,
@@ -116,7 +117,7 @@ def verdict_of(record: Record) -> Verdict:
         unproven=unproven,
         suspects=open_suspects,
         warnings=tuple(_warnings(record, notices)),
-        disputed_by=check.peer if disputed else None,
+        disputed_by=None if disputing is None else disputing.peer,
         not_checked=NOT_CHECKED + (BETWEEN_ROBOTS if len(record.case.robots) > 1 else ()),
         broken=tuple(broken),
     )

@@ -80,11 +80,11 @@ def _robot_faces(workspace: Workspace) -> Iterator[tuple[np.ndarray, tuple[int, 
         }
         for paler, step in enumerate(sorted({0, motion.n_steps // 2, motion.n_steps - 1})):
             poses = motion.poses(step, step + 1)[0]
-            colour = tuple(int(c + (255 - c) * 0.28 * paler) for c in COLOURS[i % len(COLOURS)])
+            r, g, b = (int(c + (255 - c) * 0.28 * paler) for c in COLOURS[i % len(COLOURS)])
             for name, hull in hulls.items():
                 pose = poses[robot.link_names.index(name)]
                 for k in range(hull.n_faces):
-                    yield hull.face(k) @ pose[:3, :3].T + pose[:3, 3], colour
+                    yield hull.face(k) @ pose[:3, :3].T + pose[:3, 3], (r, g, b)
 
 
 def _normal(face: np.ndarray) -> np.ndarray:
@@ -119,6 +119,6 @@ def _words(workspace: Workspace, scale: float) -> Iterator[str]:
         yield f'<text x="{MARGIN + 20}" y="{y}" font-size="14" fill="#4a5664">{escape(name)}</text>'
     bar = 10.0 ** np.floor(np.log10(200.0 / scale))
     end = MARGIN + bar * scale
-    y = HEIGHT - 24
-    yield f'<path d="M{MARGIN} {y}H{end:.1f}" stroke="#17202b" stroke-width="2"/>'
-    yield f'<text x="{end + 8:.1f}" y="{y + 5}" font-size="13" fill="#4a5664">{bar:g} m</text>'
+    foot = HEIGHT - 24
+    yield f'<path d="M{MARGIN} {foot}H{end:.1f}" stroke="#17202b" stroke-width="2"/>'
+    yield f'<text x="{end + 8:.1f}" y="{foot + 5}" font-size="13" fill="#4a5664">{bar:g} m</text>'

@@ -6,7 +6,6 @@ asked (`question`), nor what it comes to (`result`).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from clearance.run.question import Question, Resources
@@ -17,11 +16,11 @@ from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import (
     Certificate,
+    Contacts,
     CrossCheck,
     ProfileAnswer,
     Record,
     Samples,
-    StepContact,
 )
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
 from clearance.world.case import Omission
@@ -57,7 +56,7 @@ class Answers:
     measurement: Measurement
     certificate: Certificate | None
     samples: Samples
-    contacts: Sequence[StepContact]
+    contacts: Contacts | tuple[()]
     notices: tuple[Notice, ...]
     profiles: tuple[ProfileAnswer, ...]
     cross_check: CrossCheck | None
@@ -149,7 +148,7 @@ def _samples(
     return Samples(case, motions, resources.rows.table("steps", batches), unmeasured)
 
 
-def _contacts(plan: MeasurementPlan, found: Measurement) -> Sequence[StepContact]:
+def _contacts(plan: MeasurementPlan, found: Measurement) -> Contacts | tuple[()]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
     if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
         return ()

@@ -157,7 +157,7 @@ class _OverlapFinder:
         """How deep the steps `few` of an event seem to be: [m^3] shared, or [m] of the hulls."""
         poses = self._poses(i_pair, steps[few])
         if by_volume:
-            return np.array([pair.shared(pose).volume for pose in poses])
+            return np.array([_volume_shared(pair, pose) for pose in poses])
         corners = pair.hull_a.vertices, pair.hull_b.vertices
         return hull_depths(*corners, pair.hull_b.normals, poses)
 
@@ -195,7 +195,7 @@ class _OverlapFinder:
                 return f"{name}: {error.problem}"
             if parts[-1].note:
                 self._told[f"contact: {name}: {parts[-1].note}"] = None
-        return BodyPair(*bodies, *parts)
+        return BodyPair(*bodies, parts[0], parts[1])
 
     def _tell(self, i_pair: int, why: str) -> None:
         links, obstacles = self._names
@@ -225,3 +225,9 @@ class _OverlapFinder:
     @property
     def _names(self) -> tuple[list[str], list[str]]:
         return pair_names(self.case, self.pairs)
+
+
+def _volume_shared(pair: BodyPair, b_from_a: np.ndarray) -> float:
+    """[m^3] what two solids share at a pose; 0 where that is not known."""
+    shared = pair.shared(b_from_a)
+    return 0.0 if shared is None else shared.volume

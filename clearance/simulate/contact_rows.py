@@ -16,7 +16,7 @@ import numpy as np
 
 from clearance.geometry.boolean import ClosedMesh
 from clearance.query.contact import Contact
-from clearance.simulate.record import StepContact
+from clearance.simulate.record import Contacts, StepContact
 
 MOST_REGIONS = 2000
 """Regions that are kept; one takes some 2 to 10 kB."""
@@ -61,7 +61,7 @@ class ContactFinder(Protocol):
 
 
 @dataclass(eq=False)
-class ContactRows(Sequence[StepContact]):
+class ContactRows(Contacts):
     """Every pair in contact at every step, steps first.
 
     Attributes:
@@ -73,12 +73,13 @@ class ContactRows(Sequence[StepContact]):
     names: Sequence[tuple[str, str]]
     times: np.ndarray
     finder: ContactFinder
-    _slots: np.ndarray | None = None
+    _slots: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=np.int64))
     _n_known: int = 0
     _rows: np.ndarray = field(default_factory=lambda: np.empty(64, dtype=_ROW))
     _regions: list[ClosedMesh] = field(default_factory=list)
     _notes: dict[tuple[str, ...], int] = field(default_factory=dict)
-    _told: tuple[str, ...] | None = None
+    _told: tuple[str, ...] = ()
+    _is_worked_out: bool = False
 
     @cached_property
     def _touching(self) -> tuple[np.ndarray, np.ndarray]:
@@ -96,11 +97,12 @@ class ContactRows(Sequence[StepContact]):
 
     def work_out(self, progress: Progress | None = None) -> None:
         """Works out what the run asks for, once; `progress` is told how many of how many."""
-        if self._told is None:
+        if not self._is_worked_out:
             self._slots = np.full(len(self), -1, dtype=np.int64)
             for i, found in self.finder.chosen(*self._touching, progress):
                 self._add(i, found)
             self._told = self.finder.notes()
+            self._is_worked_out = True
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -177,6 +179,11 @@ class _SelectedRows(Sequence[StepContact]):
 
     def __len__(self) -> int:
         return len(self.which)
+
+    @overload
+    def __getitem__(self, index: int) -> StepContact: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[StepContact, ...]: ...
 
     def __getitem__(self, index: int | slice) -> StepContact | tuple[StepContact, ...]:
         chosen = self.which[index]

@@ -46,9 +46,9 @@ def _set_unit_axes(robot: ET.Element, placed: PlacedRobot) -> None:
     """Writes unit axes: to the engine an axis of length 3 means three times the way."""
     axes = {joint.name: joint.axis for joint in placed.robot.joints}
     for joint in robot.findall("joint"):
-        axis = joint.find("axis")
-        if axis is not None and joint.get("name") in axes:
-            axis.set("xyz", " ".join(repr(float(part)) for part in axes[joint.get("name")]))
+        axis, name = joint.find("axis"), joint.get("name", "")
+        if axis is not None and name in axes:
+            axis.set("xyz", " ".join(repr(float(part)) for part in axes[name]))
 
 
 def notes_on_masses(placed: PlacedRobot) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -58,7 +59,28 @@ class StepContact:
     @cached_property
     def found(self) -> Contact:
         """The overlap with its region."""
-        return self.known if self.again is None else self.again()
+        if self.again is not None:
+            return self.again()
+        assert self.known is not None  # one of the two is always given
+        return self.known
+
+
+class Contacts(Sequence[StepContact]):
+    """Every pair in contact at every step, steps first; what the run works out of them waits until it is asked."""
+
+    @abstractmethod
+    def work_out(self, progress: Callable[[int, int], None] | None = None) -> None:
+        """Works out what the run asks for, once; `progress` is told how many of how many."""
+
+    @property
+    @abstractmethod
+    def worked_out(self) -> Sequence[StepContact]:
+        """The rows that the run works out, steps first."""
+
+    @property
+    @abstractmethod
+    def notes(self) -> tuple[str, ...]:
+        """What stands for the bodies in contact, where it is not they themselves; one line each."""
 
 
 @dataclass(frozen=True)
@@ -279,23 +301,23 @@ class Record(Samples):
     every_pair: EveryPair | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
     notices: tuple[Notice, ...] = ()
-    contacts: Sequence[StepContact] = ()
+    contacts: Contacts | tuple[()] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is told how many of how many."""
-        if len(self.contacts):
+        if isinstance(self.contacts, Contacts) and len(self.contacts):
             self.contacts.work_out(progress)
 
     @property
     def worked_out(self) -> Sequence[StepContact]:
         """The contacts whose depth the run works out: the deepest moment of each event, all, or none."""
-        return getattr(self.contacts, "worked_out", self.contacts)
+        return self.contacts.worked_out if isinstance(self.contacts, Contacts) else ()
 
     @property
     def contact_notes(self) -> tuple[str, ...]:
         """What stands for the bodies in contact, where it is not they themselves."""
-        return getattr(self.contacts, "notes", ())
+        return self.contacts.notes if isinstance(self.contacts, Contacts) else ()
 
     @cached_property
     def deepest(self) -> StepContact | None:

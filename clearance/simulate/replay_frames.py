@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyarrow as pa
+from numpy.typing import ArrayLike
 
 from clearance.simulate.moment import Moment
 from clearance.simulate.parts import blocks
@@ -60,7 +61,7 @@ class ReplayFrames:
         is_shown = known & np.isin(kept, list(shown)) & between_of(table)
         clearances = np.array([moment.clearance for moment in moments])
         ends = [(*moment.point_link, *moment.point_obstacle) for moment in moments]
-        joined = {
+        joined: dict[str, tuple[np.ndarray, ArrayLike]] = {
             "steps": (kept, [moment.step for moment in moments]),
             "times": (
                 table["time"].to_numpy().astype(np.float64),

@@ -169,7 +169,8 @@ class _ResumableLog(PassLog):
         if not last and time.monotonic() - self._saved < SAVE_AFTER:
             return
         text = io.BytesIO()
-        np.savez(text, done=done, **gathered)
+        # mypy takes a name for `allow_pickle`, which numpy 2.0 does not know
+        np.savez(text, done=done, **gathered)  # type: ignore[arg-type]
         with unwritable(self.path.parent):
             for mapped in self.arrays:
                 mapped.flush()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
 from functools import cached_property
+from typing import overload
 
 import numpy as np
 import pyarrow as pa
@@ -157,6 +158,11 @@ class PairMinima(Sequence[PairMinimum]):
     def __len__(self) -> int:
         return len(self._rows)
 
+    @overload
+    def __getitem__(self, index: int) -> PairMinimum: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[PairMinimum, ...]: ...
+
     def __getitem__(self, index: int | slice) -> PairMinimum | tuple[PairMinimum, ...]:
         if "_rows" not in self.__dict__ and isinstance(index, slice):
             if (
@@ -198,7 +204,7 @@ def every_pair(case: Case, pairs: Sequence[Pair], found: Measurement) -> EveryPa
 
 def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Omission]:
     """The pairs of which the paper's method says nothing at any step; none for the exact method."""
-    if not found.may_cut_pairs:
+    if not found.may_cut_pairs or found.measure_pair_minima is None:
         return []
     links, obstacles = pair_names(case, pairs)
     cut = np.flatnonzero(np.isinf(found.measure_pair_minima(None).clearance))

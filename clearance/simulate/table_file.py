@@ -27,6 +27,7 @@ def mapped_table(batches: Iterable[pa.Table], path: Path) -> tuple[pa.Table, mma
         for batch in batches:
             writer = writer or pa.ipc.new_file(file, batch.schema)
             writer.write_table(batch)
+        assert writer is not None  # a run has steps
         writer.close()
     with path.open("rb") as file:
         mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)

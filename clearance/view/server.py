@@ -76,8 +76,7 @@ class PageServer:
 class _Guarded(tornado.web.RequestHandler):
     """Answers only who has asked for the address by its number, from a page of ours or from none."""
 
-    def initialize(self, host: str) -> None:
-        self._host = host
+    _host: str
 
     def prepare(self) -> None:
         origin = self.request.headers.get("Origin")
@@ -98,8 +97,7 @@ class _Guarded(tornado.web.RequestHandler):
 
 class _Page(_Guarded):
     def initialize(self, host: str, content: bytes, kind: str) -> None:
-        super().initialize(host)
-        self._content, self._kind = content, kind
+        self._host, self._content, self._kind = host, content, kind
 
     def get(self) -> None:
         self.set_header("Content-Type", f"{self._kind}; charset=utf-8")
@@ -107,6 +105,9 @@ class _Page(_Guarded):
 
 
 class _Nothing(_Guarded):
+    def initialize(self, host: str) -> None:
+        self._host = host
+
     def prepare(self) -> None:
         super().prepare()
         raise tornado.web.HTTPError(404)
@@ -114,8 +115,7 @@ class _Nothing(_Guarded):
 
 class _Scene(_Guarded, tornado.websocket.WebSocketHandler):
     def initialize(self, host: str, messages: Sequence[bytes]) -> None:
-        super().initialize(host)
-        self._messages = messages
+        self._host, self._messages = host, messages
 
     def check_origin(self, origin: str) -> bool:
         return origin == f"http://{self._host}"

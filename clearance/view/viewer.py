@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Protocol
 
 import meshcat
 import meshcat.animation
@@ -45,13 +46,19 @@ class _HeldTrack(meshcat.animation.AnimationTrack):
         return {**super().lower(), "interpolation": _HOLD}
 
 
+class _Command(Protocol):
+    """A command of meshcat's, which knows how its viewer reads it."""
+
+    def lower(self) -> dict: ...
+
+
 class _Commands:
     """Stands in for meshcat's window: keeps every command as its viewer reads them."""
 
     def __init__(self) -> None:
         self.packed: list[bytes] = []
 
-    def send(self, command: object) -> None:
+    def send(self, command: _Command) -> None:
         self.tell(command.lower())
 
     def tell(self, command: dict) -> None:

@@ -239,7 +239,7 @@ def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
     names = [placed.robot.name for placed in robots]
     if name is None and len(names) == 1:
         return 0
-    if names.count(name) != 1:
+    if name is None or names.count(name) != 1:
         raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
     return names.index(name)
 
@@ -248,7 +248,7 @@ def _require_same_times(robots: Sequence[PlacedRobot]) -> None:
     """Refuses robots that are not sampled at the same times: their steps would be of different moments."""
     moving = [placed for placed in robots if placed.trajectory is not None]
     for other in moving[1:]:
-        if not np.array_equal(moving[0].trajectory.times, other.trajectory.times):
+        if not np.array_equal(moving[0].asked.times, other.asked.times):
             raise BadTime(
                 f"robots {moving[0].robot.name!r} and {other.robot.name!r} have other times",
                 valid="the trajectories of all robots sampled at the same times",

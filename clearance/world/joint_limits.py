@@ -43,7 +43,7 @@ def notices_on_joints(placed: PlacedRobot, rule: str) -> list[Notice]:
     """
     if rule not in ("warn", "fail"):
         raise BadInput(f"limits.joints is {rule!r}", valid="'warn' or 'fail'")
-    asked = placed.trajectory
+    asked = placed.asked
     found = [excess for course in joint_courses(placed) for excess in _excesses(course, asked)]
     far = [excess for excess in found if _is_far(excess)]
     near = [excess for excess in found if not _is_far(excess)]

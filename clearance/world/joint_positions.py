@@ -32,7 +32,7 @@ class JointCourse(NamedTuple):
 
 def joint_courses(placed: PlacedRobot) -> Iterator[JointCourse]:
     """Where each joint goes; those that nobody gives a value stay at 0."""
-    asked = placed.trajectory
+    asked = placed.asked
     columns = {name: i for i, name in enumerate(asked.joint_names)}
     for joint, master, factor, offset in followers(placed.robot):
         i = columns.get(master)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 from clearance.errors import BadInput, UnknownJoint, at, nearest_name
 from clearance.world.notice import listed
-from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.robot import Joint, JointKind, Mimic, Robot
 
 
 class Follower(NamedTuple):
@@ -44,24 +44,24 @@ def masters_of(joints: Sequence[Joint]) -> dict[str, Follower]:
     by_name = {joint.name: joint for joint in joints}
     known: dict[str, Follower] = {}
     for joint in joints:
-        chain: dict[str, Joint] = {}
+        chain: dict[str, tuple[Joint, Mimic]] = {}
         while joint.name not in known and joint.mimic is not None:
-            chain[joint.name] = joint
-            joint = _followed(joint, chain, by_name)
+            chain[joint.name] = joint, joint.mimic
+            joint = _followed(joint.name, joint.mimic.joint, chain, by_name)
         _, master, factor, offset = known.setdefault(
             joint.name, Follower(joint, joint.name, 1.0, 0.0)
         )
-        for follower in reversed(chain.values()):
-            mimic = follower.mimic
+        for follower, mimic in reversed(chain.values()):
             factor, offset = mimic.multiplier * factor, mimic.multiplier * offset + mimic.offset
             known[follower.name] = Follower(follower, master, factor, offset)
     return known
 
 
-def _followed(joint: Joint, chain: Mapping[str, Joint], by_name: Mapping[str, Joint]) -> Joint:
-    """The joint that the last of a chain follows."""
-    name = joint.mimic.joint
-    with at(f"joint {joint.name!r} mimic"):
+def _followed(
+    follower: str, name: str, chain: Collection[str], by_name: Mapping[str, Joint]
+) -> Joint:
+    """The joint of a name, which the last of a chain follows."""
+    with at(f"joint {follower!r} mimic"):
         if name not in by_name:
             raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, by_name))
         if name in chain:

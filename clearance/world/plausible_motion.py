@@ -39,7 +39,8 @@ def notices_on_motion(placed: PlacedRobot) -> list[Notice]:
 
 
 def _large_positions(placed: PlacedRobot) -> list[str]:
-    angles, lengths = [], []
+    angles: list[tuple[float, str]] = []
+    lengths: list[tuple[float, str]] = []
     for course in joint_courses(placed):
         greatest = float(np.abs(course.at_samples).max(initial=0.0))
         large, most = (angles, LARGE_TURN) if turns(course.joint) else (lengths, LARGE_SLIDE)
@@ -58,7 +59,7 @@ def _large_positions(placed: PlacedRobot) -> list[str]:
 
 def _odd_velocities(placed: PlacedRobot) -> list[str]:
     """Velocities that mean a way that is many times what the positions go."""
-    asked = placed.trajectory
+    asked = placed.asked
     if asked.velocities is None:
         return []
     joints = _moving(placed)
@@ -82,7 +83,7 @@ def _odd_velocities(placed: PlacedRobot) -> list[str]:
 
 def _creeping(placed: PlacedRobot) -> list[str]:
     """A motion that gets somewhere, but never faster than creeping."""
-    asked, joints = placed.trajectory, _moving(placed)
+    asked, joints = placed.asked, _moving(placed)
     if asked.n_steps < 2:
         return []
     moves = False

@@ -70,7 +70,7 @@ def _chain(placed: PlacedRobot) -> float:
     way = {placed.robot.link_names[0]: 0.0}
     for joint in placed.robot.joints:
         step = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
-        if joint.kind is JointKind.PRISMATIC and joint.name in columns:
+        if asked is not None and joint.kind is JointKind.PRISMATIC and joint.name in columns:
             step += float(np.abs(asked.positions[:, columns[joint.name]]).max(initial=0.0))
         way[joint.child] = way[joint.parent] + step
     return max(way.values())
