@@ -86,5 +86,5 @@ def peer_name() -> str:
 
 def _fcl() -> ModuleType:
     with importing("crosscheck", "the cross-check"):
-        import fcl  # type: ignore[import-untyped]  # it brings no types
+        import fcl
     return fcl

@@ -52,15 +52,8 @@ class OnePair:
         """The answer at one pose of each, (4, 4) or None for the identity."""
         pose_a, pose_b = _pose(given_a), _pose(given_b)
         self._poses[0][0], self._poses[1][0] = pose_a, pose_b
-<<<<<<< HEAD
         how = self._how
-        if call(nearest_at_poses, self.held, *self._poses, how, *self._rows) >= 0:
-=======
-        if (
-            call(nearest_at_poses, self.held, *self._poses, False, not self._goes_on, *self._rows)
-            != -1
-        ):
->>>>>>> typesa
+        if call(nearest_at_poses, self.held, *self._poses, how, *self._rows) != -1:
             validated_pose(pose_a), validated_pose(pose_b)
             how |= POSES_ARE_RIGID
             call(nearest_at_poses, self.held, *self._poses, how, *self._rows)
