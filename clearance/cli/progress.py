@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-Progress = Callable[[int, int], None]
+from clearance.progress import Progress
 
 
 @contextmanager

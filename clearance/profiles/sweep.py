@@ -7,7 +7,7 @@ velocities. Not for: measuring clearances.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +27,7 @@ from clearance.profiles.swept_bodies import (
     motions_of,
     standing_obstacles,
 )
+from clearance.progress import Progress
 from clearance.simulate.record import Samples
 from clearance.world.case import Case
 
@@ -50,8 +51,6 @@ TWIST = 0.08
 
 CUT_SHARE = 0.15
 """The same for sections, where it counts three times."""
-
-Progress = Callable[[int, int], None]
 
 
 def swept_profile(

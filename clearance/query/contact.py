@@ -22,7 +22,7 @@ from clearance.geometry.pose import inverse, validated_pose
 from clearance.query.distance import distance
 from clearance.query.intersection import Intersection, intersect
 from clearance.query.penetration import ConvexCorners, Penetration, depths_at_most, penetration
-from clearance.query.region_bounds import ball_depth, thickness, ways_through
+from clearance.query.region_bounds import ball_depth, thickness, volume_of_facets, ways_through
 from clearance.query.retreat import Ray, shortened, shortened_through, ways_out
 from clearance.query.solid_near import SolidNear, solid_for, solid_near
 
@@ -372,19 +372,7 @@ class _PlacedPair:
         if region.is_empty:
             return 0.0
         shells = ((self.pair.a, self.b_from_a), (self.pair.b, np.eye(4)))
-        return sum(_shell_of(body, pose, region) for body, pose in shells)
-
-
-def _shell_of(body: Polyhedron, pose: np.ndarray, region: ClosedMesh) -> float:
-    if body.excess == 0.0:
-        return 0.0
-    corners = body.vertices[body.triangles()] @ pose[:3, :3].T + pose[:3, 3]
-    low, high = region.vertices.min(axis=0), region.vertices.max(axis=0)
-    reach = 2.0 * body.excess
-    near = (corners.min(axis=1) <= high + reach).all(axis=1)
-    near &= (corners.max(axis=1) >= low - reach).all(axis=1)
-    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return float(0.5 * np.linalg.norm(sides[near], axis=1).sum() * body.excess)
+        return sum(volume_of_facets(body, pose, region) for body, pose in shells)
 
 
 def _hull_of(parts: ConvexParts) -> Polytope:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.geometry.boolean import ClosedMesh
+from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.retreat import Ray
 
 MOST_WAYS = 16
@@ -71,6 +72,19 @@ def ball_depth(region: ClosedMesh, bodies: list[np.ndarray], lost: float) -> flo
     far = float(np.abs(region.vertices).max())
     total = sum(_distance(best, triangles) for triangles in bodies)
     return max(0.0, SURE * total - lost - 1e-12 * far)
+
+
+def volume_of_facets(body: Polyhedron, pose: np.ndarray, region: ClosedMesh) -> float:
+    """[m^3] what facets of a body at a pose that stand out can add to a region."""
+    if body.excess == 0.0:
+        return 0.0
+    corners = body.vertices[body.triangles()] @ pose[:3, :3].T + pose[:3, 3]
+    low, high = region.vertices.min(axis=0), region.vertices.max(axis=0)
+    reach = 2.0 * body.excess
+    near = (corners.min(axis=1) <= high + reach).all(axis=1)
+    near &= (corners.max(axis=1) >= low - reach).all(axis=1)
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(0.5 * np.linalg.norm(sides[near], axis=1).sum() * body.excess)
 
 
 def _middles_of_chords(corners: np.ndarray) -> np.ndarray:

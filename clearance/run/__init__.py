@@ -9,8 +9,9 @@ from os import PathLike
 
 from clearance.errors import BadInput
 from clearance.run.answers import answered
-from clearance.run.question import DEFAULT_RESOURCES, Question, Resources, limited
+from clearance.run.question import Question, limited
 from clearance.run.result import Run
+from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.world.case import Case, Limits
 
 __all__ = ["Question", "Resources", "Run", "answer", "check"]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from clearance.run.question import Question, Resources
+from clearance.run.question import Question
 from clearance.simulate import inside
 from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.kinematic import kinematic_motion
@@ -22,6 +22,7 @@ from clearance.simulate.record import (
     Record,
     Samples,
 )
+from clearance.simulate.resources import Resources
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
 from clearance.world.case import Omission
 from clearance.world.motion import Motion
@@ -115,13 +116,7 @@ def _measurement(plan: MeasurementPlan, resources: Resources) -> Measurement:
     question = plan.question
     what = question.case, plan.motions, plan.pairs
     if question.method == "exact":
-        return measure(
-            *what,
-            question.need,
-            jobs=resources.jobs,
-            progress=resources.progress,
-            kept=resources.rows,
-        )
+        return measure(*what, question.need, resources)
     from clearance.query.paper import NO_TOLERANCE
     from clearance.simulate.measure_paper import measure_paper
 
@@ -133,9 +128,14 @@ def _certificate(plan: MeasurementPlan, found: Measurement, resources: Resources
 
     question = plan.question
     return certify_motion(
-        question.case, plan.motions, plan.pairs, found, question.certify_gap,
-        need=question.need, jobs=resources.jobs, progress=resources.progress, kept=resources.rows,
-    )  # fmt: skip
+        question.case,
+        plan.motions,
+        plan.pairs,
+        found,
+        question.certify_gap,
+        question.need,
+        resources,
+    )
 
 
 def _samples(

@@ -1,4 +1,4 @@
-"""What is asked of a case, checked once; and what a run may use, which decides nothing about the answer.
+"""What is asked of a case, checked once.
 
 Not for: answering (`answers`).
 """
@@ -8,8 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput
-from clearance.simulate.measure import NEEDS, Progress
-from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
+from clearance.simulate.measure import NEEDS
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.plausibility import notices_of
@@ -93,33 +92,6 @@ class Question:
             self.certify_gap,
             self.paper_tolerance,
         )
-
-
-@dataclass(frozen=True, eq=False)
-class Resources:
-    """What a run may use.
-
-    Attributes:
-        jobs: threads; as many as the machine has to offer if None. The answer does not depend on it.
-        progress: called with steps done and all steps.
-        rows: where they are kept; in memory by default. In `open_resumable_rows` memory does not grow with the
-            steps, and the same question asked again goes on where an interrupted run was.
-
-    Raises:
-        BadInput: fewer than one thread.
-    """
-
-    jobs: int | None = None
-    progress: Progress | None = None
-    rows: MeasuredRows = IN_MEMORY
-
-    def __post_init__(self) -> None:
-        if self.jobs is not None and (not isinstance(self.jobs, int) or self.jobs < 1):
-            raise BadInput(f"{self.jobs} jobs", valid="1 or more")
-
-
-DEFAULT_RESOURCES = Resources()
-"""All threads, nobody told, rows in memory."""
 
 
 def limited(case: Case, limits: Limits | None) -> Case:

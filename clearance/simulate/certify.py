@@ -25,10 +25,11 @@ from clearance.kernels.motion.certify import (
 from clearance.kernels.motion.joint_motion_bound import KinematicTree
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.simulate.layout import lay_out
-from clearance.simulate.measure import COUNTERS, HELD, Measurement, Progress
+from clearance.simulate.measure import COUNTERS, HELD, Measurement
 from clearance.simulate.moment import Moment, Moments
-from clearance.simulate.parts import blocks, in_order, parts, usable_cores
+from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.record import Certificate
+from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
@@ -52,19 +53,15 @@ def certify_motion(
     pairs: Sequence[Pair],
     found: Measurement,
     gap: float,
-    *,
     need: str = "steps",
-    jobs: int | None = None,
-    progress: Progress | None = None,
-    kept: MeasuredRows | None = None,
+    resources: Resources = DEFAULT_RESOURCES,
 ) -> Certificate:
     """Lower bounds that are within `gap` [m] of a distance that really occurs.
 
     Args:
         need: what was measured. Where it leaves clearances unknown, it is only asked whether the motion stays
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
-        jobs: threads; as many as the machine has to offer by default.
-        kept: where the bounds are kept; in memory by default.
+        resources: threads, progress, and where the bounds are kept.
 
     Raises:
         BadDimension: `gap` is not a positive length.
@@ -73,15 +70,15 @@ def certify_motion(
         raise BadDimension(f"a gap of {gap!r:.60} m", where="certify", valid="a length above 0")
     gap = float(gap)
     gap, notices = _no_finer_than_rounding(case, motions, gap)
-    kept, tally, bounds = kept or MeasuredRows(), _no_counts(), []
+    progress, tally, bounds = resources.progress, _no_counts(), []
     question = _Question.of(found, case.limits, need, gap)
     for i_robot in sorted(
         {pair.i_robot for pair in pairs}
     ):  # a robot may have nothing that is measured
         motion = motions[i_robot]
         work = _Work.of(case, motion, pairs, i_robot, question)
-        log = _Log(kept, f"certify{i_robot}", motion.n_steps, question)
-        results = in_order(work.certify(log.bounds), log.spans[log.done :], jobs or usable_cores())
+        log = _Log(resources.rows, f"certify{i_robot}", motion.n_steps, question)
+        results = in_order(work.certify(log.bounds), log.spans[log.done :], resources.n_threads)
         for i_part, (done, counts) in enumerate(results, start=log.done + 1):
             log.note(i_part, counts, last=i_part == len(log.spans))
             if progress:
@@ -89,7 +86,7 @@ def certify_motion(
         tally += log.tally
         bounds.append(log.bounds)
     joined = _joined(bounds)
-    kept.let_go()
+    resources.rows.let_go()
     return Certificate(
         *joined,
         gap,

@@ -16,6 +16,7 @@ from clearance.errors import ClearanceError
 from clearance.geometry.convex_parts import ConvexParts, convex_parts
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import inverse
+from clearance.progress import Progress
 from clearance.query.contact import BodyPair, Contact
 from clearance.query.contact_bounds import bounded_contact
 from clearance.query.distance import distance
@@ -27,7 +28,7 @@ from clearance.simulate.contact_events import (
     events_of,
     hull_depths,
 )
-from clearance.simulate.contact_rows import ContactRows, Progress
+from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.parts import blocks
 from clearance.simulate.steps import pair_names

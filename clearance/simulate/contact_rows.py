@@ -7,7 +7,7 @@ moment of every event, of all, or of none. Any other row is worked out when it i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Protocol, overload
@@ -15,13 +15,12 @@ from typing import Protocol, overload
 import numpy as np
 
 from clearance.geometry.boolean import ClosedMesh
+from clearance.progress import Progress
 from clearance.query.contact import Contact
 from clearance.simulate.record import Contacts, StepContact
 
 MOST_REGIONS = 2000
 """Regions that are kept; one takes some 2 to 10 kB."""
-
-Progress = Callable[[int, int], None]
 
 _NUMBERS = (
     "penetration",

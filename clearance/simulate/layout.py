@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.geometry.tree import join
 from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.sweep import World
+from clearance.kernels.motion.world import World
 from clearance.world.case import Case
 from clearance.world.kinematics import joined_links
 from clearance.world.motion import Motion

@@ -15,17 +15,15 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.kernels.motion.sweep import NOT_LESS, FirstLook, Goal, SweptSteps, sweep
+from clearance.kernels.motion.sweep import NOT_LESS, sweep
+from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.simulate.layout import Layout, lay_out, positions_at
-from clearance.simulate.parts import blocks, in_order, parts, usable_cores
-from clearance.simulate.resumable_rows import MeasuredRows
+from clearance.simulate.parts import blocks, in_order, parts
+from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
-
-Progress = Callable[[int, int], None]
-"""Called with the number of steps done and of all steps."""
 
 NEEDS = ("steps", "pairs", "limit", "minimum")
 """What can be asked: the clearance of every step; of every pair as well; of the steps below the warn limit,
@@ -90,9 +88,7 @@ class _Sweep:
 
     layout: Layout
     motions: Sequence[Motion]
-    jobs: int
-    kept: MeasuredRows
-    progress: Progress | None = None
+    resources: Resources
     tally: np.ndarray = field(default_factory=lambda: np.zeros(len(SWEEP_COUNTERS), dtype=np.int64))
 
     @property
@@ -106,12 +102,12 @@ class _Sweep:
     @property
     def quiet(self) -> _Sweep:
         """The same without progress, for passes beside the one that is counted."""
-        return replace(self, progress=None)
+        return replace(self, resources=replace(self.resources, progress=None))
 
     @property
     def aside(self) -> _Sweep:
         """The same for a few steps, whose rows need no keeping."""
-        return replace(self, progress=None, kept=MeasuredRows())
+        return replace(self, resources=Resources(self.resources.jobs))
 
     def step_rows(
         self, name: str, steps: Steps, within: float = np.inf, *, lasting: bool = False
@@ -124,7 +120,7 @@ class _Sweep:
     def every_row(self, name: str, steps: Steps) -> tuple[KeptRows, np.ndarray, Minima]:
         """The nearest pair of each step, every pair at every step, and the least of each."""
         rows = self._rows(name, len(steps))
-        every = self.kept.array(f"{name}.every", (len(steps), self.n_pairs))
+        every = self.resources.rows.array(f"{name}.every", (len(steps), self.n_pairs))
         goal = Goal(np.full(self.n_pairs, np.inf), True, False)
         return rows, every, self._run(name, steps, goal, rows=rows, every=every)
 
@@ -133,7 +129,7 @@ class _Sweep:
         return self._run(name, steps, Goal(within, True, True))
 
     def _rows(self, name: str, n_rows: int) -> KeptRows:
-        array = self.kept.array
+        array = self.resources.rows.array
         return KeptRows(
             array(f"{name}.clearance", (n_rows,)),
             array(f"{name}.lower_bound", (n_rows,)),
@@ -171,7 +167,7 @@ class _Sweep:
     ) -> Minima:
         """Fills what rows are given, from the part on that an interrupted run had not reached."""
         spans = parts(len(steps), sparse=goal.lasting or bool(goal.within[0] < np.inf))
-        log = self.kept.log(name, spans)
+        log = self.resources.rows.log(name, spans)
         n_minima = self.n_pairs if goal.each else 0
         least, tally = _gathered(log.gathered, n_minima)
 
@@ -180,16 +176,16 @@ class _Sweep:
             counts = self.sweep_steps(steps[span], goal, _rows_of(rows, span), found)
             return span.stop, found, counts
 
-        results = in_order(run_part, spans[log.done :], self.jobs)
+        results = in_order(run_part, spans[log.done :], self.resources.n_threads)
         for i_part, (done, found, counts) in enumerate(results, start=log.done + 1):
             if goal.each:
                 _take_lesser(least, found)
             tally += counts
             log.note(i_part, {**least._asdict(), "tally": tally}, last=i_part == len(spans))
             if i_part % HELD == 0:
-                self.kept.let_go()
-            if self.progress:
-                self.progress(done, len(steps))
+                self.resources.rows.let_go()
+            if self.resources.progress:
+                self.resources.progress(done, len(steps))
         self.tally[:] += tally
         return least
 
@@ -227,21 +223,15 @@ def measure(
     motions: Sequence[Motion],
     pairs: Sequence[Pair],
     need: str = "steps",
-    *,
-    jobs: int | None = None,
-    progress: Progress | None = None,
-    kept: MeasuredRows | None = None,
+    resources: Resources = DEFAULT_RESOURCES,
 ) -> Measurement:
     """The exact clearances of `pairs` over `motions` (one for each robot, with the same steps).
 
     Args:
         need: one of `NEEDS`.
-        jobs: threads; as many as the machine has to offer by default.
-        kept: where the rows are kept; in memory by default.
+        resources: threads, progress, and where the rows are kept.
     """
-    work = _Sweep(
-        lay_out(case, pairs), motions, jobs or usable_cores(), kept or MeasuredRows(), progress
-    )
+    work = _Sweep(lay_out(case, pairs), motions, resources)
     if need == "pairs":
         return _every_pair(work)
     if need == "minimum":
@@ -256,7 +246,7 @@ def pairs_in_contact(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], steps: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
-    work = _Sweep(lay_out(case, pairs), motions, 1, MeasuredRows())
+    work = _Sweep(lay_out(case, pairs), motions, Resources(jobs=1))
     goal = Goal(np.zeros(work.n_pairs), True, False)
     found = []
     for span in parts(len(steps), sparse=True):
@@ -340,7 +330,7 @@ def _measurement(
         unknown = rows.pair[block] < 0
         rows.clearance[block][unknown] = np.nan
         rows.points[block][unknown] = np.nan
-    work.kept.let_go()
+    work.resources.rows.let_go()
     return Measurement(
         rows.clearance,
         rows.floor,

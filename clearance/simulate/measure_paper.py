@@ -12,9 +12,10 @@ import numpy as np
 
 from clearance.errors import NothingToMeasure
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.progress import Progress
 from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
-from clearance.simulate.measure import Measurement, Minima, Progress
+from clearance.simulate.measure import Measurement, Minima
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair

@@ -5,16 +5,13 @@ Not for: one pair (`pair_audit`), nor how it is told (`report.srdf`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
+from clearance.progress import Progress
 from clearance.simulate.pair_audit import PairFinding, PairStatus, audit_pair
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
 from clearance.world.robot import Robot
 from clearance.world.self_pairs import RIGID, SelfPair, self_pairs
-
-Progress = Callable[[int, int], None]
-"""Called with the number of pairs done and of all."""
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import Surface
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import measure
+from clearance.simulate.resources import Resources
 from tests.made_cases import arm_among_obstacles
 
 COLUMNS = ("what", "triangles", "steps", "threads", "ms_per_step", "ratio", "counters")
@@ -96,7 +97,7 @@ def thread_rows(scene: Scene, passes: int) -> list[dict]:
 
 def run(scene: Scene, jobs: int) -> dict[str, int]:
     """Every step, and its counters."""
-    return measure(scene.case, scene.motions, scene.pairs, jobs=jobs).tally
+    return measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=jobs)).tally
 
 
 def row_of(what: str, scene: Scene, threads: int, ms: float, ratio: float, tally: dict) -> dict:

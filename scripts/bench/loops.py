@@ -15,6 +15,7 @@ from peers import Coal, CoalShapes, Fcl, FclShapes, Klampt, PairPeer, available,
 
 from clearance.crosscheck.bounds import greatest_displacements
 from clearance.simulate.measure import measure
+from clearance.simulate.resources import Resources
 
 SLACK = 0.02
 """[m] How far beyond the best the carried loop still asks, so that an aborted query leaves a bound that
@@ -51,7 +52,7 @@ class OurSteps:
     def run(self, steps: np.ndarray) -> np.ndarray:
         """All steps."""
         scene = self._scene
-        found = measure(scene.case, scene.motions, scene.pairs, jobs=1)
+        found = measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=1))
         self.counters = found.tally
         return found.clearance[steps]
 
@@ -64,7 +65,7 @@ class OurPairs(OurSteps):
     def run(self, steps: np.ndarray) -> np.ndarray:
         """All steps."""
         scene = self._scene
-        found = measure(scene.case, scene.motions, scene.pairs, jobs=1)
+        found = measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=1))
         minima = found.measure_pair_minima(None)
         self.counters = {**found.tally, "pairs": len(minima.clearance)}
         return found.clearance[steps]

@@ -27,6 +27,7 @@ from peers import Fcl, available
 
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.measure import NEEDS, measure
+from clearance.simulate.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
 
 COLUMNS = ("scene", "what", "seconds", "ratio_to_steps", "queries", "node_tests", "polygon_tests")
@@ -100,12 +101,16 @@ def works_of(scene: Scene) -> dict[str, Callable[[], dict]]:
     """What is measured, by name; each answers its counters."""
 
     def ours(need: str, jobs: int) -> Callable[[], dict]:
-        return lambda: measure(scene.case, scene.motions, scene.pairs, need, jobs=jobs).tally
+        return lambda: (
+            measure(scene.case, scene.motions, scene.pairs, need, Resources(jobs=jobs)).tally
+        )
 
-    found = measure(scene.case, scene.motions, scene.pairs, jobs=1)
+    found = measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=1))
 
     def certified() -> dict:
-        certify_motion(scene.case, scene.motions, scene.pairs, found, CERTIFY_GAP, jobs=1)
+        certify_motion(
+            scene.case, scene.motions, scene.pairs, found, CERTIFY_GAP, resources=Resources(jobs=1)
+        )
         return {}
 
     works = {need: ours(need, 1) for need in NEEDS}

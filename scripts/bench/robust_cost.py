@@ -18,8 +18,7 @@ import numpy as np
 from clearance.compile.jit import kernel
 from clearance.kernels.arithmetic.double_double import FRAMES_AT_REST
 from clearance.kernels.features.bounds import SLACK
-from clearance.kernels.features.face_pair import nearest_of_faces
-from clearance.kernels.search.descent import nothing_yet
+from clearance.kernels.features.face_pair import nearest_of_faces, nothing_yet
 from clearance.kernels.search.polygon_pair import (
     PolygonPairAnswers,
     _comes_first,

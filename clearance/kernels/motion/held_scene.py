@@ -16,15 +16,15 @@ from clearance.kernels.motion.pair_order import fill_order, sort_all
 from clearance.kernels.motion.placed import bring, put_all
 from clearance.kernels.motion.schedule import all_due
 from clearance.kernels.motion.sweep import (
-    Goal,
     RowLook,
-    box_bound,
     carried,
     nearest_by_boxes,
     nearest_of,
     nothing_known,
 )
+from clearance.kernels.motion.sweep_goal import Goal
 from clearance.kernels.motion.sweep_rows import write_step
+from clearance.kernels.motion.world import box_bound
 from clearance.kernels.search.body_pair import TO_THE_END
 
 LOOK, WINNER = 0, 1

@@ -11,8 +11,6 @@ import numpy as np
 
 from clearance.compile.jit import inline, kernel, shared
 from clearance.compile.kernel_table import borrow, lend
-from clearance.kernels.arithmetic.double_double import frames_of
-from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.face_pair import Hit, nothing_yet
 from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.motion.answer_cache import (
@@ -25,12 +23,9 @@ from clearance.kernels.motion.answer_cache import (
 )
 from clearance.kernels.motion.body_boxes import (
     BodyBoxes,
-    bound_of_bodies,
     new_body_boxes,
-    place_box,
 )
 from clearance.kernels.motion.interval_motion_bound import fill_motion_radii
-from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.pair_order import (
     PairOrder,
     fill_order,
@@ -41,7 +36,9 @@ from clearance.kernels.motion.pair_order import (
 )
 from clearance.kernels.motion.placed import PlacedBodies, bring, new_placed_bodies, put_all
 from clearance.kernels.motion.schedule import Schedule, all_due, find_due, new_schedule, note_look
+from clearance.kernels.motion.sweep_goal import SweptSteps
 from clearance.kernels.motion.sweep_rows import pass_over, write_pair, write_step
+from clearance.kernels.motion.world import box_bound, pair_frames
 from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
 from clearance.kernels.search.front import (
     KEPT_DOWN,
@@ -63,77 +60,6 @@ LITTLE = 0.03
 
 NOT_LESS = 1.0 + 2.0**-50
 """Makes room for what is equally near after its square was rounded."""
-
-
-class World(NamedTuple):
-    """What moves where.
-
-    Attributes:
-        frames: (bodies,) link that carries the body, or -1 for one that stands.
-        standing: (bodies, 4, 4) poses of the bodies that stand [m].
-        pairs: (p, 2) bodies to measure against each other: first one that a link carries, then one that stands.
-        links: what moves the links.
-    """
-
-    frames: np.ndarray
-    standing: np.ndarray
-    pairs: np.ndarray
-    links: Links
-
-
-class Goal(NamedTuple):
-    """What is asked of a sweep.
-
-    Attributes:
-        within: (p,) [m] each pair is measured only where it is not farther apart; the same for all pairs
-            unless `each`.
-        each: every pair has a best of its own; else all pairs of a step share one.
-        lasting: a best holds for the later steps too: only what is nearer than all before is measured.
-    """
-
-    within: np.ndarray
-    each: bool
-    lasting: bool
-
-
-class SweptSteps(NamedTuple):
-    """What is swept.
-
-    Attributes:
-        positions: (k, columns) of the joints at the steps [rad or m]. steps: (k,) their numbers.
-    """
-
-    positions: np.ndarray
-    steps: np.ndarray
-
-
-class FirstLook(NamedTuple):
-    """A rough look at a few rows before all others: how near those come, no later one need be farther.
-
-    Attributes:
-        rows: (m,) in their order; none if there is to be no such look.
-        effort: of `PairQuestion`; what is found with less than `TO_THE_END` is an upper bound.
-    """
-
-    rows: np.ndarray
-    effort: int
-
-
-@inline(force=True)
-def pair_frames(world, pair, poses):
-    """Where both bodies of a pair are, of `poses` (bodies, 4, 4)."""
-    return frames_of(rigid(poses[world.pairs[pair, 0]]), rigid(poses[world.pairs[pair, 1]]))
-
-
-@inline(force=True)
-def box_bound(surface, world, pair, placed, boxes, enough):
-    """[m] a lower bound on the distance of a pair by the boxes of both bodies; one above `enough` will do."""
-    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    for body in (body_a, body_b):
-        if boxes.moves[body] != placed.moves[body]:
-            place_box(surface, body, rigid(placed.poses[body]), boxes)
-            boxes.moves[body] = placed.moves[body]
-    return bound_of_bodies(boxes, body_a, body_b, enough)
 
 
 class SweepState(NamedTuple):

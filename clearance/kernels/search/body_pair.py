@@ -33,7 +33,8 @@ from clearance.kernels.features.refine import error_of
 from clearance.kernels.features.rounding_guard import PASSED_OVER
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.search.containment import contained
-from clearance.kernels.search.descent import SearchLimits, Tally, descend
+from clearance.kernels.search.descent import Tally, descend
+from clearance.kernels.search.face_search import SearchLimits
 from clearance.kernels.search.front import (
     HULLS_NEARER,
     HULLS_TOUCH,

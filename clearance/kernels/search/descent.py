@@ -20,39 +20,34 @@ from clearance.kernels.arithmetic.lanes import (
 )
 from clearance.kernels.features.bounds import (
     lower_bound_boxes,
-    lower_bound_faces_along_direction,
     margin_of,
 )
 from clearance.kernels.features.every_feature import FeatureCutoff
 from clearance.kernels.features.face_pair import (
-    FacePairState,
     Hit,
-    limit_of,
-    may_own_nearest,
-    nearest_of_faces,
 )
-from clearance.kernels.features.meeting import NO_MEETING, Meeting, meeting_of
+from clearance.kernels.features.meeting import NO_MEETING, Meeting
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.features.refine import (
-    N_WAITING,
     NOTHING_REFINED,
     Outlook,
     RefinedDistance,
-    put,
     settle,
-    shed,
 )
-from clearance.kernels.features.rounding_guard import sure_gap, told_apart
 from clearance.kernels.mesh.surface import box_of, is_leaf
+from clearance.kernels.search.face_search import (
+    FaceSearch,
+    RefineProgress,
+    look_at_faces,
+    nearest_so_far,
+)
 from clearance.kernels.search.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.search.node_pairs import (
     NodeGroup,
-    Views,
     bounds_of_group,
     opened,
     pair_in_group,
     turned_away,
-    views_of,
 )
 from clearance.kernels.search.scratch import STACK_DEPTH, swap, wait
 from clearance.kernels.search.warm_start import warm_start
@@ -83,64 +78,6 @@ class DescentResult(NamedTuple):
     tally: Tally
 
 
-class SearchLimits(NamedTuple):
-    """How far a search goes.
-
-    Attributes:
-        limit: [m] node pairs farther than this, or than the best, are not opened.
-        wanted: [m] face pairs farther apart are not refined.
-        slack: [m] of `rounding_slack`.
-        effort: node pairs after which it stops with what is within its limit so far, and proves nothing.
-    """
-
-    limit: float
-    wanted: float
-    slack: float
-    effort: int
-
-
-class NearestSoFar(NamedTuple):
-    """The best pair of points so far, and what follows from it.
-
-    Attributes:
-        gap: [m] theirs, or the limit if that is less. cut: [m] what is farther than this is left.
-        views: the bodies seen in the direction from one point to the other.
-    """
-
-    hit: Hit
-    gap: float
-    cut: float
-    views: Views
-
-
-class RefineProgress(NamedTuple):
-    """The face pairs that could be the minimum.
-
-    Attributes:
-        n_waiting: so many wait. refined: the best of those that waited before.
-        hides: True if rounding may hide nearer points of one that waits than were seen.
-    """
-
-    n_waiting: int
-    refined: RefinedDistance
-    hides: bool
-
-
-class FaceSearch(NamedTuple):
-    """What is known from the face pairs that were looked at.
-
-    Attributes:
-        lower_bound: [m] of those that are left.
-        n_measured: how many were measured.
-    """
-
-    near: NearestSoFar
-    progress: RefineProgress
-    meeting: Meeting
-    lower_bound: float
-    n_measured: int
-
-
 class NodeQueue(NamedTuple):
     """Node pairs that wait, in `Scratch`, when a search begins.
 
@@ -153,12 +90,6 @@ class NodeQueue(NamedTuple):
     n_waiting: int
     n_bounded: int
     lower_bound: float
-
-
-@inline(force=True)
-def _nearest_so_far(hit, limits, m):
-    gap = min(limits.limit, math.sqrt(hit.gap_sq))
-    return NearestSoFar(hit, gap, gap + margin_of(limits.slack), views_of(hit, m))
 
 
 @inline(force=True)
@@ -206,17 +137,6 @@ def _leave_pair(scratch, n_left, node_a, node_b, lower_bound):
     """The same of one node pair."""
     nodes = NodeGroup(False, node_a // WIDTH, node_b)
     return _leave(scratch, n_left, nodes, 1 << node_a % WIDTH, lower_bound)
-
-
-@inline(force=True)
-def _nearest_last(scratch, n_waiting):
-    """Puts the nearest of all node pairs that wait last."""
-    bounds = scratch.bounds
-    nearest = n_waiting - 1
-    for k in range(n_waiting - 1):
-        if max(0.0, bounds[k]) < max(0.0, bounds[nearest]):
-            nearest = k
-    swap(scratch, nearest, n_waiting - 1)
 
 
 @inline(one_caller=True)
@@ -277,78 +197,6 @@ def _begin(a, b, roots, near, slack, planes, front, scratch):
     return NodeQueue(0, n_waiting, n_nodes, math.inf)
 
 
-@inline(force=True)
-def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch, table):
-    """Lets a face pair wait to be refined; where too many wait, those are refined that can still win."""
-    near, progress = search.near, search.progress
-    margin = margin_of(limits.slack)
-    n_waiting, refined = progress.n_waiting, progress.refined
-    if n_waiting == N_WAITING:
-        n_waiting = shed(a, b, near.gap, margin, scratch.waiting, n_waiting)
-        if n_waiting > N_WAITING // 2:
-            outlook = Outlook(near.views.a.direction, limits.slack, 0.0)
-            cutoff = FeatureCutoff(min(near.gap, limits.wanted), margin)
-            refined = settle(table, faces, scratch.waiting, n_waiting, cutoff, outlook, refined)
-            n_waiting = 0
-    put(scratch.waiting, n_waiting, faces.a, faces.b, seen, least_sq)
-    return RefineProgress(n_waiting + 1, refined, progress.hides)
-
-
-@inline(one_caller=True)
-def _look_at_faces(a, b, faces, bound, first, search, limits, n_waiting, scratch, table):
-    """What is known after a pair of leaves, `bound` [m] apart at least, while so many node pairs wait."""
-    before, slack, margin = search.near, limits.slack, margin_of(limits.slack)
-    face_a, face_b, m = faces.a, faces.b, faces.frames.m
-    near, lower_bound, met = before, search.lower_bound, search.meeting
-    progress, n_measured = search.progress, search.n_measured
-    direction = before.views.a.direction
-    apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
-    if apart > before.cut:
-        lower_bound = min(lower_bound, apart)
-    elif before.hit.gap_sq > limits.limit * limits.limit or may_own_nearest(
-        a, face_a, b, face_b, direction, apart, before.gap, margin
-    ):
-        n_measured += 1
-        if face_a == first.best.face_a and face_b == first.best.face_b:
-            measured = FacePairState(before.hit, first.seen)
-        else:
-            measured = nearest_of_faces(a, face_a, b, face_b, m, margin, before.hit)
-        near = NearestSoFar(measured.best, before.gap, before.cut, before.views)
-        if measured.best.gap_sq < before.hit.gap_sq:
-            near = _nearest_so_far(measured.best, limits, m)
-            direction = near.views.a.direction
-            apart = lower_bound_faces_along_direction(a, face_a, b, face_b, direction) - slack
-        gap = sure_gap(a, face_a, b, face_b, m, margin, apart)
-        if bound <= 0.0 and gap <= 0.0:
-            met = meeting_of(table, faces, scratch.exact)
-        if met.found:
-            touching = Hit(0.0, face_a, face_b, m.t, m.t)
-            near = NearestSoFar(touching, near.gap, near.cut, near.views)
-        else:
-            if n_waiting > 1 and near.gap < before.gap:
-                _nearest_last(scratch, n_waiting)
-            least_sq = measured.seen.near_sq
-            is_told = told_apart(a, face_a, b, face_b, gap, margin)
-            if not is_told:  # nearer ones may be hidden
-                least_sq = min(least_sq, max(0.0, gap) * max(0.0, gap))
-            reach = limit_of(a, face_a, b, face_b, before.gap, margin)
-            may_win = least_sq < math.inf and least_sq <= reach * reach
-            if may_win:
-                known = FaceSearch(near, progress, met, lower_bound, n_measured)
-                progress = _let_wait(
-                    a, b, faces, measured.seen, least_sq, known, limits, scratch, table
-                )
-            if may_win and not is_told:
-                progress = RefineProgress(progress.n_waiting, progress.refined, True)
-            elif least_sq < math.inf:
-                seen = math.sqrt(least_sq)
-                left = 2.0 * seen - limit_of(a, face_a, b, face_b, seen, margin)
-                lower_bound = min(lower_bound, left)
-            else:
-                lower_bound = min(lower_bound, math.sqrt(near.hit.gap_sq) + margin)
-    return FaceSearch(near, progress, met, lower_bound, n_measured)
-
-
 @inline(one_caller=True)
 def descend(roots, best, first, limits, planes, front, scratch, table):
     """All face pairs of two bodies that can be nearest within a limit, near node pairs first.
@@ -370,7 +218,7 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
     """
     a, b = borrow(roots.surface_a), borrow(roots.surface_b)
     slack, n_exact = limits.slack, scratch.exact.count[0]
-    near = _nearest_so_far(best, limits, roots.frames.m)
+    near = nearest_so_far(best, limits, roots.frames.m)
     queue = _begin(a, b, roots, near, slack, planes, front, scratch)
     n_waiting, n_nodes, n_left = queue.n_waiting, queue.n_bounded, 0
     nothing_waits = RefineProgress(0, NOTHING_REFINED, False)
@@ -393,7 +241,7 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
                 n_left = _leave_pair(scratch, n_left, node_a, node_b, bound + front.moved)
         elif is_leaf(a, node_a) and is_leaf(b, node_b):
             faces = parts(roots, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
-            search = _look_at_faces(
+            search = look_at_faces(
                 a, b, faces, bound, first, search, limits, n_waiting, scratch, table
             )
             if not is_kept:  # the roots

@@ -1,0 +1,44 @@
+"""The bodies of a sweep: what carries each, which pairs of them are measured, and where they are."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.motion.body_boxes import bound_of_bodies, place_box
+from clearance.kernels.motion.kinematics import Links
+
+
+class World(NamedTuple):
+    """What moves where.
+
+    Attributes:
+        frames: (bodies,) link that carries the body, or -1 for one that stands.
+        standing: (bodies, 4, 4) poses of the bodies that stand [m].
+        pairs: (p, 2) bodies to measure against each other: first one that a link carries, then one that stands.
+        links: what moves the links.
+    """
+
+    frames: np.ndarray
+    standing: np.ndarray
+    pairs: np.ndarray
+    links: Links
+
+
+@inline(force=True)
+def pair_frames(world, pair, poses):
+    """Where both bodies of a pair are, of `poses` (bodies, 4, 4)."""
+    return frames_of(rigid(poses[world.pairs[pair, 0]]), rigid(poses[world.pairs[pair, 1]]))
+
+
+@inline(force=True)
+def box_bound(surface, world, pair, placed, boxes, enough):
+    """[m] a lower bound on the distance of a pair by the boxes of both bodies; one above `enough` will do."""
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    for body in (body_a, body_b):
+        if boxes.moves[body] != placed.moves[body]:
+            place_box(surface, body, rigid(placed.poses[body]), boxes)
+            boxes.moves[body] = placed.moves[body]
+    return bound_of_bodies(boxes, body_a, body_b, enough)
