@@ -20,9 +20,7 @@ from clearance.kernels.arithmetic.lanes import (
 )
 from clearance.kernels.features.bounds import (
     lower_bound_boxes,
-    margin_of,
 )
-from clearance.kernels.features.every_feature import FeatureCutoff
 from clearance.kernels.features.face_pair import (
     Hit,
 )
@@ -30,9 +28,7 @@ from clearance.kernels.features.meeting import NO_MEETING, Meeting
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.features.refine import (
     NOTHING_REFINED,
-    Outlook,
     RefinedDistance,
-    settle,
 )
 from clearance.kernels.mesh.surface import box_of, is_leaf
 from clearance.kernels.search.face_search import (
@@ -40,6 +36,7 @@ from clearance.kernels.search.face_search import (
     RefineProgress,
     look_at_faces,
     nearest_so_far,
+    settle_waiting,
 )
 from clearance.kernels.search.front import KEPT_DOWN, LONGEST, OF_B, forget, keep
 from clearance.kernels.search.node_pairs import (
@@ -241,9 +238,7 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
                 n_left = _leave_pair(scratch, n_left, node_a, node_b, bound + front.moved)
         elif is_leaf(a, node_a) and is_leaf(b, node_b):
             faces = parts(roots, np.int64(a.children[node_a, 0]), np.int64(b.children[node_b, 0]))
-            search = look_at_faces(
-                a, b, faces, bound, first, search, limits, n_waiting, scratch, table
-            )
+            search = look_at_faces(table, faces, bound, first, search, limits, n_waiting, scratch)
             if not is_kept:  # the roots
                 n_left = _leave_pair(scratch, n_left, node_a, node_b, bound + front.moved)
         else:
@@ -259,20 +254,15 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
             if marks > 0:
                 n_left = _leave(scratch, n_left, nodes, marks, low + front.moved)
     lower_bound = min(lower_bound, search.lower_bound)
-    near, progress, met = search.near, search.progress, search.meeting
-    enough = min(near.gap, limits.wanted)
-    refined = progress.refined
+    met = search.meeting
+    refined = search.progress.refined
     if not met.found:
-        outlook = Outlook(near.views.a.direction, slack, near.gap)
-        cutoff = FeatureCutoff(enough, margin_of(slack))
-        refined = settle(
-            table, roots, scratch.waiting, progress.n_waiting, cutoff, outlook, refined
-        )
+        refined = settle_waiting(table, roots, search, limits, search.near.gap, scratch)
     if met.found or lower_bound == -math.inf:
         forget(front.fronts, front.pair)
     elif planes.n_waiting == 0:
         keep(front.fronts, front.pair, queue.n_kept, scratch.left, scratch.lower_bounds, n_left)
-    if progress.hides:  # they are no nearer than what is wanted, or refined
-        lower_bound = min(lower_bound, enough)
+    if search.progress.hides:  # they are no nearer than what is wanted, or refined
+        lower_bound = min(lower_bound, min(search.near.gap, limits.wanted))
     tally = Tally(n_nodes, search.n_measured, scratch.exact.count[0] - n_exact)
-    return DescentResult(met, near.hit, lower_bound, refined, tally)
+    return DescentResult(met, search.near.hit, lower_bound, refined, tally)

@@ -7,6 +7,7 @@ import math
 from typing import NamedTuple
 
 from clearance.compile.jit import inline
+from clearance.compile.kernel_table import borrow
 from clearance.kernels.features.bounds import lower_bound_faces_along_direction, margin_of
 from clearance.kernels.features.every_feature import FeatureCutoff
 from clearance.kernels.features.face_pair import (
@@ -107,6 +108,17 @@ def _nearest_last(scratch, n_waiting):
 
 
 @inline(force=True)
+def settle_waiting(table, bodies, search, limits, least, scratch):
+    """The best after all face pairs that wait; no two are nearer than `least` [m] but for rounding."""
+    near, progress = search.near, search.progress
+    outlook = Outlook(near.views.a.direction, limits.slack, least)
+    cutoff = FeatureCutoff(min(near.gap, limits.wanted), margin_of(limits.slack))
+    return settle(
+        table, bodies, scratch.waiting, progress.n_waiting, cutoff, outlook, progress.refined
+    )
+
+
+@inline(force=True)
 def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch, table):
     """Lets a face pair wait to be refined; where too many wait, those are refined that can still win."""
     near, progress = search.near, search.progress
@@ -115,17 +127,18 @@ def _let_wait(a, b, faces, seen, least_sq, search, limits, scratch, table):
     if n_waiting == N_WAITING:
         n_waiting = shed(a, b, near.gap, margin, scratch.waiting, n_waiting)
         if n_waiting > N_WAITING // 2:
-            outlook = Outlook(near.views.a.direction, limits.slack, 0.0)
-            cutoff = FeatureCutoff(min(near.gap, limits.wanted), margin)
-            refined = settle(table, faces, scratch.waiting, n_waiting, cutoff, outlook, refined)
+            few = RefineProgress(n_waiting, refined, progress.hides)
+            left = FaceSearch(near, few, search.meeting, search.lower_bound, search.n_measured)
+            refined = settle_waiting(table, faces, left, limits, 0.0, scratch)
             n_waiting = 0
     put(scratch.waiting, n_waiting, faces.a, faces.b, seen, least_sq)
     return RefineProgress(n_waiting + 1, refined, progress.hides)
 
 
 @inline(one_caller=True)
-def look_at_faces(a, b, faces, bound, first, search, limits, n_waiting, scratch, table):
+def look_at_faces(table, faces, bound, first, search, limits, n_waiting, scratch):
     """What is known after a pair of leaves, `bound` [m] apart at least, while so many node pairs wait."""
+    a, b = borrow(faces.surface_a), borrow(faces.surface_b)
     before, slack, margin = search.near, limits.slack, margin_of(limits.slack)
     face_a, face_b, m = faces.a, faces.b, faces.frames.m
     near, lower_bound, met = before, search.lower_bound, search.meeting

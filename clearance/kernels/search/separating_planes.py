@@ -220,8 +220,7 @@ def separate(roots, best, limit, slack, scratch):
     m, margin = roots.frames.m, margin_of(slack)
     origin, near = Vec3(0.0, 0.0, 0.0), sub(best.p, best.q)
     simplex = HullSimplex(0, near, near, near, near)
-    face_a, face_b = np.int64(-1), np.int64(-1)
-    n_nodes, expected = 0, 0.0
+    face_a, face_b, n_nodes, expected = np.int64(-1), np.int64(-1), 0, 0.0
     if best.face_a < 2**62:
         face_a, face_b = np.int64(best.face_a), np.int64(best.face_b)
         simplex = HullSimplex(1, near, near, near, near)
