@@ -54,7 +54,7 @@ class HeldPair(NamedTuple):
 
     Attributes:
         a, b: their surfaces, one body each.
-        scratch, fronts: room for the search, and where the last one ended.
+        scratch, fronts: arrays for the search, and where the last one ended.
         poses: (2, 4, 4) of both bodies at the last search [m].
         witness_faces: (2,) the faces that were nearest, or NO_FACE.
         carried: (3,) [m] what both bodies have moved in all; a lower bound on their distance, plus that; how
