@@ -1,4 +1,4 @@
-"""Where the last search of each body pair ended: node pairs that were left, with how far apart they are.
+"""BVTT fronts: where the last search of each body pair ended, node pairs left with how far apart they are.
 
 A search that goes on from its front instead of the roots retests only what the motion since then could have
 brought near (front tracking: Ehmann & Lin 2001, Li & Chen 1998; the bounds carried with it are ours). All
