@@ -23,6 +23,7 @@ FOREIGN = {
     "scripts/docs/tutorials/python.md": {"run.steps", "run.events", "run.summary"},
     "scripts/docs/contributing.md": {"out/guide"},
     "scripts/docs/adding_a_shape.md": {"cone.py"},
+    "scripts/docs/walks.md": {"cone.py", "trajectory_parquet.py", "ball_bound.py"},
 }
 """Names of other packages and robots, what a walk or a build makes, and what a variable of a page has."""
 
