@@ -1,4 +1,4 @@
-"""How far a long piece of work is: whoever starts it may be told."""
+"""How far a long piece of work is, for whoever started it."""
 
 from __future__ import annotations
 

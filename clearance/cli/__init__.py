@@ -16,7 +16,7 @@ from clearance.cli.streams import leave, make_streams_safe
 
 
 class ExitCode(IntEnum):
-    """What the shell is told."""
+    """The exit codes, which the shell reads."""
 
     CLEAR = 0
     VIOLATED = 1

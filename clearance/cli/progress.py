@@ -13,7 +13,7 @@ from clearance.progress import Progress
 def shown_progress(silent: bool, passes: Sequence[str]) -> Iterator[Progress | None]:
     """A callback that draws one bar for each of `passes` in turn; None where silent.
 
-    Each pass counts from its start again: that is how they are told apart.
+    Each pass counts from its start again: that distinguishes them.
     """
     if silent or not sys.stderr.isatty():
         yield None

@@ -19,8 +19,8 @@ def make_streams_safe() -> None:
     """Makes sure that nothing else is taken for one of the three, and that no character stops a line.
 
     A file opened later would get the number of one that is closed, and what libraries print would go into it.
-    Output that is closed still cannot be written, and says so; where errors cannot be told, they are not. A
-    warning is told in one line, like an error.
+    Output that is closed still cannot be written, and says so; where errors cannot be written, they are not. A
+    warning is one line, like an error.
     """
     for number in range(3):
         try:

@@ -2,7 +2,7 @@
 pair.
 
 Nothing here calls our own distance code: the peer measures, numpy bounds what the peer may skip,
-and a winding number tells what lies inside a closed body. Not for: measuring (room `simulate`).
+and a winding number says what lies inside a closed body. Not for: measuring (room `simulate`).
 """
 
 from clearance.crosscheck.compare import cross_check

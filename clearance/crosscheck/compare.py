@@ -26,7 +26,7 @@ def cross_check(record: Samples, progress: Callable[[int, int], None] | None = N
 
     Args:
         record: what we measured.
-        progress: is told (steps done, all steps) now and then.
+        progress: called with (steps done, all steps) now and then.
 
     Raises:
         Unavailable: python-fcl cannot be imported.

@@ -1,4 +1,4 @@
-"""What lies inside a closed surface, by the winding number: FCL cannot tell, it measures surfaces
+"""What lies inside a closed surface, by the winding number: FCL does not know, it measures surfaces
 only.
 
 Two surfaces that do not touch either stand apart or one part of one lies wholly inside the other;

@@ -55,7 +55,7 @@ class PeerRun:
         self._n_queries = 0
 
     def measure(self, progress: Callable[[int, int], None] | None = None) -> PeerAnswers:
-        """The peer's answers to all steps; `progress(done, total)` is told after each chunk of
+        """The peer's answers to all steps; `progress(done, total)` is called after each chunk of
         steps.
         """
         n_steps = self.record.motions[0].n_steps

@@ -1,7 +1,7 @@
 """Normal cones of a tree's nodes: which way the faces look that could hold the nearest point to another body.
 
 What a cone must hold, and why, is said in `kernels.mesh.normal_cones`.
-Not for: how two cones are told apart (there).
+Not for: how two cones are compared (there).
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """A body as convex parts from both sides: `outer` ones that together hold it, `inner` ones that it holds.
 
-What parts the outer ones from something parts the body from it; what goes deep into an inner one goes deep
+What separates the outer ones from something separates the body from it; what goes deep into an inner one goes deep
 into the body. A convex body is its own only part on both sides; then every depth is exact. Otherwise the two
 bound it, and `note` says in one line what they are. Not for: measuring distance, which never uses parts.
 """
@@ -59,7 +59,7 @@ class ConvexParts:
         tight: the one outer part stands out of the body by no more than `tolerance.TESSELLATION`.
         solid: manifold3d's solid of the body; None where it has none or is not needed.
         closed: the body has an inside.
-        rough: it was not cut: the region with another body tells more of a depth than the outer part.
+        rough: it was not cut: the region with another body bounds a depth better than the outer part.
         note: how the parts stand for the body; empty where it is convex and not faceted.
     """
 

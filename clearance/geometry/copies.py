@@ -92,7 +92,7 @@ def each_once(
 def _same_corners(
     corners: np.ndarray, starts: np.ndarray, asked: np.ndarray
 ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
-    """The faces that are `asked` (f,) for, those of one length at a time, told apart by their corners.
+    """The faces that are `asked` (f,) for, those of one length at a time, distinguished by their corners.
 
     Yields: (the faces, the least of each kind among them, either way round, the kind of each, which are turned).
     """

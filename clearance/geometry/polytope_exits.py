@@ -1,6 +1,6 @@
 """A convex body packed for the kernels: planes, neighbours and the map of directions in two flat arrays.
 
-Made once a body; the layout is told in `kernels.polytope.body`. Not for: users.
+Made once a body; the layout is described in `kernels.polytope.body`. Not for: users.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Polyhedra in the form that kernels search: owned features, plane data and the bounding tree.
+"""Polyhedra in the form that kernels search: owned features, plane data and the bounding volume tree.
 
 Built once a polyhedron and kept with it; `join` lays several behind one another so that one compiled call
 can serve a whole robot and scene. Not for: the search itself (`kernels.search.descent`).

@@ -1,7 +1,7 @@
 """COLLADA files in a URDF that lie otherwise than all else says: a sign of which way their axis tag was meant.
 
 RViz and MoveIt ignore `<up_axis>`, some robots are drawn for programs that obey it, and both look right alone.
-Where a link has a visual and a collision shape, their boxes tell; where both turn together, the link's joints do,
+Where a link has a visual and a collision shape, their boxes decide; if both turn together, the link's joints do,
 which are at its shape one way and away from it the other. Not for: files whose tag is `Z_UP`.
 """
 

@@ -35,7 +35,7 @@ _READERS: dict[str, Callable[[bytes, UpAxis], Triangles]] = {
 }
 
 OPEN = "the surface is open: it has no inside"
-"""The note on a mesh of which no part is closed; the same text for all, so that they can be told in one line."""
+"""The note on a mesh of which no part is closed; the same text for all, so that one line can name them all."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
-"""What only a file tells of values that look like a wrong unit: angles as they are written, scales, radii.
+"""What only a file shows of values that look like a wrong unit: angles as they are written, scales, radii.
 
-Not for: what the case itself tells (`world.plausibility`), and values that cannot be right (`schema`,
+Not for: what the case itself shows (`world.plausibility`), and values that cannot be right (`schema`,
 `trajectory_csv`).
 """
 

@@ -111,7 +111,7 @@ def without_copies(triangles: Triangles) -> tuple[Triangles, int]:
 
 
 def _may_hold_copies(triangles: Triangles) -> bool:
-    """False if no two triangles have the same corners, in any order; told by a hash, to save time."""
+    """False if no two triangles have the same corners, in any order; decided by a hash, to save time."""
     bits = np.ascontiguousarray(triangles.vertices + 0.0).view(np.uint64)
     mixed = (bits * _ODD).sum(axis=1, dtype=np.uint64)
     mixed = (mixed ^ (mixed >> np.uint64(29))) * _ODD[0]

@@ -46,7 +46,7 @@ class UrdfRequest:
 
 
 class ShapeReader:
-    """Makes shapes from elements, and keeps what is to be told of their files."""
+    """Makes shapes from elements, and keeps what is to be reported of their files."""
 
     def __init__(self, request: UrdfRequest, meshes: MeshStore) -> None:
         self.request = request

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class CurveFacts:
-    """The pieces of a curve, and what follows from them; attributes as `Curve` tells them."""
+    """The pieces of a curve, and what follows from them; attributes as in `Curve`."""
 
     pieces: Pieces
     origin: np.ndarray

@@ -22,7 +22,7 @@ HALVINGS = 12
 
 @dataclass(frozen=True, eq=False)
 class SteadyCurve(Curve):
-    """A curve with even weights; parameters are told as those of the curve it stands for.
+    """A curve with even weights; parameters are reported as those of the curve it stands for.
 
     Attributes:
         given: that curve.

@@ -45,7 +45,7 @@ def _ways(a: Curve, b: Curve) -> tuple[_Way, _Way]:
 def untrimmed(a: Curve, b: Curve) -> tuple[DirectedDistance, DirectedDistance]:
     """Both directed distances of `a` and `b`, each the greatest distance over all roots of the systems.
 
-    On overlapping curves, whose systems have no end of solutions, the budget ends the search; the bounds tell.
+    On overlapping curves, whose systems have no end of solutions, the budget ends the search; the bounds show it.
     """
     forth, back = (_untrimmed(way) for way in _ways(a, b))
     return forth, back

@@ -12,7 +12,7 @@ from clearance.profiles.fit_shape import SketchShape
 from clearance.profiles.fit_target import FitCandidate, Target
 
 MOST_TOLD = 32
-"""Touching points that are told."""
+"""Touching points that are reported."""
 
 
 def tight_rows(

@@ -106,7 +106,7 @@ class Target:
         return proven_gap(shape, self.closed, around=self.mode == "outside", room=self.room)
 
     def better(self, one: FitCandidate, two: FitCandidate) -> bool:
-        """True if `one` beats `two` by more than rounding; equal areas are told apart by distance."""
+        """True if `one` beats `two` by more than rounding; distance decides between equal areas."""
         if abs(one.score - two.score) > 1e-9 * max(abs(two.score), 1e-300):
             return one.score < two.score
         if self.mode == "nearest":

@@ -18,7 +18,7 @@ from clearance.profiles.pieces import FINE, ContourPieces, contours_of
 from clearance.profiles.region import Region, holds, region_of
 
 CHORD = 1e-7
-"""[-] How far chords may stray from arcs where sides are told, relative to the size."""
+"""[-] How far chords may stray from arcs where sides are decided, relative to the size."""
 
 
 @dataclass(frozen=True, eq=False)

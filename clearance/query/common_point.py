@@ -1,7 +1,7 @@
 """A point strictly inside several polytopes, or a certificate that there is none.
 
 `common_point` asks for the deepest point: the x with the greatest t such that x keeps t times each face's
-distance from its own centroid. Not for: the paper's way (`common_point_paper`), the shared region
+distance from its own centroid. Not for: the paper's way (`common_point_paper`), the common region
 (`intersection`).
 """
 

@@ -26,7 +26,7 @@ def bounded_contact(
     """The overlap of two bodies in the frame of b, from above: 26 ways out, and the boxes of both.
 
     Args:
-        witness: (3,) a common point. why: no more is told; a note.
+        witness: (3,) a common point. why: a note says why no more is known.
 
     Exactness: moved by `penetration * direction` no corner of a is below one of b along that direction, so the
         bodies are parted whether they are closed or not. What both fill lies in both boxes.

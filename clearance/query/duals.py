@@ -1,4 +1,4 @@
-"""The paper's way to a shared region: the hull of the dual points of all half-spaces, and back.
+"""The paper's way to a common region: the hull of the dual points of all half-spaces, and back.
 
 Not for: everyday use; cutting is faster at every size measured (`POLYTOPES.md`).
 """

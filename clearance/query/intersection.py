@@ -1,4 +1,4 @@
-"""The region that convex polytopes share, with its volume and where each of its faces comes from.
+"""The common region of convex polytopes, with its volume and where each of its faces comes from.
 
 Two ways: cutting the smallest body by the faces of the others ("cut", two threads take the halves on either
 side of a plane), and the paper's duals about the common point with one hull over all half-spaces by Qhull

@@ -1,4 +1,4 @@
-"""Room for questions about one pair of solids, which takes longer to make than many an answer."""
+"""Arrays for questions about one pair of solids, which takes longer to make than many an answer."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class OnePair:
 
 
 def answer_rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Room for n answers, as `nearest_at_poses` fills it."""
+    """Arrays for n answers, as `nearest_at_poses` fills it."""
     return np.empty((n, 2)), np.empty((n, 2, 3)), np.empty((n, 5), dtype=np.int64)
 
 
@@ -104,7 +104,7 @@ _thread = _Thread()
 
 
 def room_for(a: Polyhedron, b: Polyhedron) -> OnePair:
-    """Room for a pair: that of an earlier question of this thread, if there is one."""
+    """Arrays for a pair: those of an earlier question of this thread, if there is one."""
     asked = _thread.asked.get((id(a), id(b)))
     # a solid that is gone may have had the same address
     if asked is not None and asked.room is not None and asked.is_of(a, b):

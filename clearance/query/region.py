@@ -1,4 +1,4 @@
-"""The surface of a shared region: its moments at once, its corners, faces and their origin when asked for.
+"""The surface of a common region: its moments at once, its corners, faces and their origin when asked for.
 
 A region cut in two halves is sewn together here. Not for: finding the region (`cutting`, `duals`).
 """

@@ -1,4 +1,4 @@
-"""What the shared region of two bodies tells of their depth: directions worth trying, and balls inside it.
+"""What the common region of two bodies says of their depth: directions worth trying, and balls inside it.
 
 Both from above and from below without cutting a body into convex parts. Not for: making the region (`contact`), or
 confirming a way out (`retreat`).

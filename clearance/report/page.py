@@ -31,7 +31,7 @@ from clearance.simulate.steps import STATUSES
 _HERE = Path(__file__).parent
 
 FINEST = 2000
-"""Parts of the time axis that can be told apart on a screen."""
+"""Parts of the time axis that a screen can resolve."""
 
 
 def page_of(
@@ -130,7 +130,7 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
 
 
 def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:
-    """Start and end [s] of each interval; those that no screen can tell apart are one."""
+    """Start and end [s] of each interval; those that no screen can resolve are one."""
     bands: list[list[float]] = []
     for item in intervals:
         if bands and item["start"] - bands[-1][1] < apart:

@@ -114,7 +114,7 @@ def _require_finite(times: np.ndarray, positions: np.ndarray) -> None:
 @dataclass(frozen=True)
 class _Follower:
     """A mimic joint: engine index, column of its master, factor and offset along the whole
-    chain.
+    chain of masters.
     """
 
     index: int

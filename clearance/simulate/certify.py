@@ -238,7 +238,7 @@ def _no_counts() -> np.ndarray:
 
 
 def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, KinematicTree, CertifiedPairs]:
-    """The surface with whole faces, the robot's chain, and the pairs; all of one robot."""
+    """The surface with whole faces, the robot's kinematic tree, and the pairs; all of one robot."""
     layout = lay_out(case, pairs)
     placed = case.robots[pairs[0].i_robot]
     robot = placed.robot

@@ -95,7 +95,7 @@ class ContactRows(Contacts):
         return self._touching[1]
 
     def work_out(self, progress: Progress | None = None) -> None:
-        """Works out what the run asks for, once; `progress` is told how many of how many."""
+        """Works out what the run asks for, once; `progress` is called with how many of how many."""
         if not self._is_worked_out:
             self._slots = np.full(len(self), -1, dtype=np.int64)
             for i, found in self.finder.chosen(*self._touching, progress):

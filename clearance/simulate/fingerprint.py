@@ -27,10 +27,10 @@ _BEFORE_AND_AFTER = ("load", "profiles", "crosscheck", "report", "view")
 def fingerprint(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], options: tuple[object, ...]
 ) -> str:
-    """sha256 of the bodies and where they stand, the chains and their motion, limits, options, and the program.
+    """sha256 of bodies and where they stand, kinematic trees and their motion, limits, options, and the program.
 
     Args:
-        options: what else was asked for; told apart by their `repr`.
+        options: what else was asked for; distinguished by their `repr`.
     """
     digest = hashlib.sha256()
     digest.update(_program().encode())

@@ -70,7 +70,7 @@ class Contacts(Sequence[StepContact]):
 
     @abstractmethod
     def work_out(self, progress: Callable[[int, int], None] | None = None) -> None:
-        """Works out what the run asks for, once; `progress` is told how many of how many."""
+        """Works out what the run asks for, once; `progress` is called with how many of how many."""
 
     @property
     @abstractmethod
@@ -305,7 +305,7 @@ class Record(Samples):
     profiles: tuple[ProfileAnswer, ...] = ()
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
-        """Works out now what the run asks for of its contacts; `progress` is told how many of how many."""
+        """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
         if isinstance(self.contacts, Contacts) and len(self.contacts):
             self.contacts.work_out(progress)
 

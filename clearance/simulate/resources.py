@@ -1,4 +1,4 @@
-"""What a long run may use: threads, somebody who is told how far it is, and a place for its rows."""
+"""What a long run may use: threads, a call that reports progress, and a place for its rows."""
 
 from __future__ import annotations
 
@@ -39,4 +39,4 @@ class Resources:
 
 
 DEFAULT_RESOURCES = Resources()
-"""All threads, nobody told, rows in memory."""
+"""All threads, no progress reported, rows in memory."""

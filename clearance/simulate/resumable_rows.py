@@ -71,11 +71,11 @@ class MeasuredRows:
         return None
 
     def ask(self, fingerprint: str) -> None:
-        """Tells what decides every row; rows of another fingerprint are thrown away."""
+        """Says what decides every row; rows of another fingerprint are thrown away."""
 
 
 IN_MEMORY = MeasuredRows()
-"""Rows that nothing else is told of."""
+"""Rows in memory only."""
 
 
 @dataclass(eq=False)
@@ -83,7 +83,7 @@ class ResumableRows(MeasuredRows):
     """Rows in a folder; made by `open_resumable_rows`.
 
     Attributes:
-        say: told, in one line, if a run goes on or starts anew.
+        say: called with one line if a run goes on or starts anew.
     """
 
     place: Path

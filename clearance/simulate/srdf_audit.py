@@ -1,6 +1,6 @@
 """All excused pairs of a robot held against its geometry, and a proposal of which to excuse.
 
-Not for: one pair (`pair_audit`), nor how it is told (`report.srdf`).
+Not for: one pair (`pair_audit`), nor how it is reported (`report.srdf`).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Pairs that touch all the time because neither of them moves, as an arm's foot and its table: one hint for all.
+"""Standing pairs touch all the time, since neither body moves, as an arm's foot and its table: one hint for all.
 
 Not for: pairs that touch for a while, which are what a run looks for.
 """

@@ -68,7 +68,7 @@ def swept_pieces(
     Exactness: an upper bound. Over one interval, of length 1, a point leaves its chord by at most
         1/8 max |x''| <= 1/8 (sum_k rho_k (w_k^2 + v_k + 2 w_k sum_{j above k} w_j) + sum_{k sliding} (v_k + 2 w_k
         sum_{j above k} w_j)), k turning in the first sum and j in both, with w_k and v_k bounds of the first two
-        derivatives of joint k (`_Rates`), rho_k how far the link reaches from joint k in any pose.
+        derivatives of joint k (`_Rates`), rho_k the motion radius of the link about joint k.
         Source: as `certify` (Schwarzer, Saha & Latombe 2005), second derivatives of the chain.
     """
     placed = motion.placed

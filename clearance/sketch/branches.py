@@ -91,7 +91,7 @@ def _by_roots(problem: Problem, sides: Sides, outcome) -> list:
 def exhausted(problem: Problem, before: np.ndarray, sides: Sides) -> bool:
     """Whether the problem is a ruler-and-compass construction of which no branch is a solution.
 
-    False when that cannot be told: freedom is left, a cluster is numeric, or there are too many branches.
+    False when that cannot be decided: freedom is left, a cluster is numeric, or there are too many branches.
     """
     steps = choices(problem)
     circles = (problem.system.kind[problem.plan.vertex] == POINT) & (problem.plan.partner >= 0)

@@ -1,6 +1,6 @@
 """Ways out of a minimum of the errors: flat triangles folded over, which the drawing may have the wrong way.
 
-A sliver's height is less than the drawing is off, so the sketch cannot tell its side; a descent from the
+A sliver's height is less than the drawing is off, so the sketch does not determine its side; a descent from the
 wrong side ends where the last errors pull against each other, a stress. A fold moves a point to its mirror
 image in the line through two points that it has distances from. To the first order all of the part gives
 way except along the stress, so what a fold would leave is the stress's share of the errors behind it. Folds

@@ -23,7 +23,7 @@ FACTORED = 1500
 evidence."""
 
 WALKED = 400
-"""Freedoms of a part up to which contacts beyond the first order are told apart: half a second."""
+"""Freedoms of a part up to which contacts beyond the first order are examined: half a second."""
 
 CLEAR = 1e-6
 """[-] Share of a motion below which it does not move an entity: a walk comes back to 1e-8."""

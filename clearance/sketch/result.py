@@ -120,7 +120,7 @@ class SketchResult:
         """A minimal set of constraints that cannot hold together; empty when all hold.
 
         Of an "unsolved" sketch it is the least set that the search could not solve, and empty where a
-        cluster is too large to tell: then `searched` lists the cluster's constraints.
+        cluster is too large to decide: then `searched` lists the cluster's constraints.
         """
         return [] if self.solved else self._diagnosis.names
 

@@ -86,7 +86,7 @@ class Trials:
         return good and bool((x[self.tables.role == RADIUS] > 0.0).all())
 
     def everything(self, broken: int) -> list[int]:
-        """All constraints of the broken part of the sketch (of the whole when it cannot be told)."""
+        """All constraints of the broken part of the sketch (of the whole when it cannot be found)."""
         owner = self.tables.owner
         part = self.problem.row_part[broken] if broken >= 0 else -1
         if part < 0 or not (self.problem.fate == IN_GRAPH).any():

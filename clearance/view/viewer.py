@@ -1,6 +1,6 @@
 """The adapter of meshcat: a scene in its language, and its viewer, served to any browser that opens the address.
 
-Everything is told once, before a browser is there; each browser that comes is given all of it, in the same order.
+Everything is sent once, before a browser is there; each browser that comes is given all of it, in the same order.
 Playing and scrubbing are meshcat's own animation; what jumps to a step is a control of meshcat's viewer. meshcat's
 own server is left out: it listens on every address (`server`). Not for: shapes, poses and colours (`playback`).
 """

@@ -180,7 +180,7 @@ class Case:
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
-        notices: suspect input and warnings that only loading can tell; `plausibility.notices_of` adds the rest.
+        notices: suspect input and warnings that only loading can find; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
         profiles: outlines that the sweep must keep to.
         sign_off: for the report; None where it has no such fields.

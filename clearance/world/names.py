@@ -34,7 +34,7 @@ def checked_name(name: str) -> str:
 
 
 def require_own_names(kind: str, names: Sequence[str]) -> None:
-    """Nothing, if no two of one kind have one name, which no table could tell apart, and each is text on one line.
+    """Nothing, if no two of one kind have one name, which no table could keep apart, and each is text on one line.
 
     Args:
         kind: "link", "joint", "obstacle" or the like, for the message.

@@ -20,7 +20,7 @@ class Severity(StrEnum):
 
 KINDS = ("units", "limits", "axis", "inside")
 """Kinds of suspect input that a case can accept by name: lengths or angles in another unit, joints beyond their
-limits, meshes turned by their file's axis tag, and solids of which inside and outside cannot be told."""
+limits, meshes turned by their file's axis tag, and solids of which inside and outside cannot be decided."""
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 their limits.
 
 Works on the case itself, so that one that was made in memory is looked at as one from files is. Not for: what
-only a file tells (`load.plausibility`), and values that cannot be right.
+only a file shows (`load.plausibility`), and values that cannot be right.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ is usual.
 
 
 def notices_of(case: Case) -> tuple[Notice, ...]:
-    """All that is suspect about a case, and all warnings, worst first: what loading told and what is seen here.
+    """All that is suspect about a case, and all warnings, worst first: what loading found and what is seen here.
 
     Raises:
         BadInput: `limits.joints` is neither "warn" nor "fail".

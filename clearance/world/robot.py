@@ -1,4 +1,4 @@
-"""A robot as links and joints: what moves with what. Not for: URDF (room `load`), poses (`kinematics`)."""
+"""A robot as its kinematic tree: what moves with what. Not for: URDF (room `load`), poses (`kinematics`)."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class Robot:
         joints: `len(link_names) - 1` joints, in the order of their child links.
         bodies: the links that have a shape (in the link frame), in the order of `link_names`.
         notes: what loading had to mend or leave out, one line each, for the report.
-        notices: suspect input and warnings that only loading can tell.
+        notices: suspect input and warnings that only loading can find.
     """
 
     name: str

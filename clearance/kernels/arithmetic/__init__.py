@@ -1,1 +1,1 @@
-"""Exact and vectorised numbers: points, lanes, wide numbers, expansions, exact signs, union-find."""
+"""Exact and vectorised numbers: points, lanes, double-double numbers, expansions, exact signs, union-find."""

@@ -27,7 +27,7 @@ class Wide(NamedTuple):
 
 
 class Wide3(NamedTuple):
-    """A point or vector [m] of wide numbers."""
+    """A point or vector [m] of double-double numbers."""
 
     x: Wide
     y: Wide
@@ -76,7 +76,7 @@ def _renormal(hi, lo):
 
 @inline
 def wide(x):
-    """The wide number equal to a double."""
+    """The double-double number equal to a double."""
     return Wide(x, 0.0)
 
 

@@ -1,7 +1,7 @@
 """Exact signs, and whether segments and triangles have a point in common, for float vertices under float poses.
 
 A posed point is R v + t without rounding. A determinant is first computed in doubles with its error bound;
-where that does not tell the sign, in expansions, which are exact. Not for: faces (`meeting`).
+where that does not decide the sign, in expansions, which are exact. Not for: faces (`meeting`).
 
 Source: Shewchuk 1997 for expansions; Guigue & Devillers 2003 for triangles by orientations.
 """
@@ -24,7 +24,7 @@ roundings, with room."""
 
 
 class ExactScratch(NamedTuple):
-    """Room for exact arithmetic.
+    """Scratch of exact arithmetic.
 
     Attributes:
         sides: (9, ROOM), lengths: (9,): three difference vectors as expansions.
@@ -51,7 +51,7 @@ class PosedVertex(NamedTuple):
 
 @shared
 def new_exact_scratch():
-    """Room for one exact decision at a time."""
+    """Scratch of one exact decision at a time."""
     return ExactScratch(
         np.empty((9, ROOM)),
         np.zeros(9, dtype=np.int64),

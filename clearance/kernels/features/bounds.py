@@ -1,4 +1,4 @@
-"""Lower bounds: each pruning rule is a function that never exceeds the distance it bounds.
+"""Lower bounds: each pruning bound is a function that never exceeds the distance it bounds.
 
 Where a box is taken, four boxes in lanes may stand in its place (`surface.group_at`); the bound is then of each.
 """

@@ -1,4 +1,4 @@
-"""Where two faces that have a point in common come nearest to coinciding in wide numbers: witness points.
+"""Where two faces that have a point in common come nearest to coinciding in double-double: witness points.
 
 Not for: whether they meet (`predicates`).
 """

@@ -1,4 +1,4 @@
-"""All feature pairs of two faces that could be the nearest, in wide numbers: where the first guess is not proven.
+"""All feature pairs of two faces that could be the nearest, in double-double: where the first is not proven.
 
 Doubles leave out what is farther than a limit or has its feet clearly outside; the rest is measured. Not for:
 the usual case, in which one feature pair and its lower bound suffice (`refine`).

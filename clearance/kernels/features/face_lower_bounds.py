@@ -39,7 +39,7 @@ SURE = 2.0**-60
 """Share of a distance that its lower bound may be below it for the points to count as proven the nearest."""
 
 UNSURE = 2.0**-48
-"""Share of the rounding in doubles that its lower bound may be below it: twice that of wide numbers."""
+"""Share of the rounding in doubles that its lower bound may be below it: twice that of double-double."""
 
 
 class CornerRange(NamedTuple):
@@ -81,7 +81,7 @@ def corners_of(surface, face, part):
 def _greatest_share(corners, frames, is_a, pair):
     """(share, reach): the greatest of w . (x - o), for b of w . (o - x), and what its rounding is relative to.
 
-    Only corners that are greatest within rounding are measured in wide numbers.
+    Only corners that are greatest within rounding are measured in double-double.
     """
     pose = frames.a if is_a else frames.b
     w = turn_back(pose, rounded(pair.w))

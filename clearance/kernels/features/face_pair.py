@@ -202,8 +202,8 @@ def face_to_vertices(a, face_a, b, face_b, m, limit_sq, margin, near):
 def edges_to_edges(a, face_a, b, face_b, m, limit_sq, margin, near):
     """`near` with the owned vertices and edges of `face_a` against owned edges of `face_b`.
 
-    Edges that the direction `d` of the best points so far tells apart are not measured: of faces with many corners
-    most. Without such points it is zero, which tells nothing.
+    Edges that the direction `d` of the best points so far separates are not measured: of faces with many corners
+    most. Without such points it is zero, which separates nothing.
     """
     d = sub(near.best.q, near.best.p)
     reach = (math.sqrt(min(limit_sq, near.seen.near_sq)) + margin) * math.sqrt(dot(d, d))

@@ -77,7 +77,7 @@ def _crosses_beyond(surface, face, x, h_x, y, h_y, tolerance):
 
 @inline
 def _clearly_misses(surface, face, p, q, frames, is_a):
-    """True if a segment p q of the other body clearly misses a face, told in doubles.
+    """True if a segment p q of the other body clearly misses a face, decided in doubles.
 
     It lies on one side of the face's plane, or goes through it beyond an edge.
 

@@ -1,9 +1,9 @@
-"""The face pairs that could be the minimum, measured again in wide numbers.
+"""The face pairs that could be the minimum, measured again in double-double.
 
 Vertices and poses are taken exactly as given. The search (`descent`) names the face pairs; here the feature
 pair that doubles found the nearest is measured to some 30 digits, and a lower bound along its direction
 mostly proves that it is. Only where it does not are all features within the limit measured. The least
-wins, ties go to the least faces, and the lower bound tells how far the answer can be above the truth.
+wins, ties go to the least faces, and the lower bound says how far the answer can be above the truth.
 """
 
 import math
@@ -173,7 +173,7 @@ class RefineQueue(NamedTuple):
 
 @shared
 def new_refine_queue():
-    """Room for `N_WAITING` face pairs."""
+    """Arrays for `N_WAITING` face pairs."""
     return RefineQueue(
         np.empty((N_WAITING, 2), dtype=np.int64),
         np.empty(N_WAITING),

@@ -63,7 +63,7 @@ def _corner_near(one, face_one, two, face_two, two_from_one, limit):
 def may_hide(a, face_a, b, face_b, m, margin, limit, least):
     """True if rounding can hide features of two faces within a limit, whatever was seen.
 
-    Nothing is hidden where faces are `told_apart`; if only their own shape leaves them untold, corners are.
+    Nothing is hidden where faces are `told_apart`; if only their own shape leaves them undecided, corners are.
 
     Args:
         least: [m] no two faces are nearer but for what is hidden.

@@ -1,4 +1,4 @@
-"""Nearest points of two features in wide numbers: what the answer is made of.
+"""Nearest points of two features in double-double: what the answer is made of.
 
 A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: which features to ask
 (`face_pair`, `every_feature`) and whether the answer is the minimum (`refine`).
@@ -237,7 +237,7 @@ def _features_like():
 
 @apart(FEATURES, _features_like)
 def size_features(frames, one, two):
-    """A feature pair in wide numbers; infinitely far where a corner's foot is not in the triangle."""
+    """A feature pair in double-double; infinitely far where a corner's foot is not in the triangle."""
     pair = wide_feature(frames, one, two)
     if pair.gap_sq.hi == math.inf:
         return PointDistance(pair, pair.gap_sq, wide(0.0))

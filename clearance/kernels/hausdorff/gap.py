@@ -134,7 +134,7 @@ def _push_quarters(cells, top, part, other, long_a, long_b):
 def _search_leaves(curves, part, other, gap, best, scratch):
     """Lowers `best` by the least distance of the parts of two leaves.
 
-    Where cells run alongside each other their arcs tell what directions do not, to rounding.
+    Where cells run alongside each other their arcs decide what directions do not, to rounding.
     """
     p, q, cells = scratch.planes[OF_A], scratch.planes[OF_B], scratch.planes[CELLS]
     shift_x, shift_y, i, j = curves.shift_x, curves.shift_y, part.piece, other.piece

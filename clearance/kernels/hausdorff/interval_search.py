@@ -27,7 +27,7 @@ SMALLEST = 4e-16  # an interval that floats cannot cut
 
 
 class SearchScratch(NamedTuple):
-    """Scratch of a search: the planes of `curve.scratch`, and room for composed maps (`curve.follow`)."""
+    """Scratch of a search: the planes of `curve.scratch`, and arrays for composed maps (`curve.follow`)."""
 
     planes: np.ndarray
     composed: np.ndarray
@@ -199,7 +199,7 @@ def examine(pair, aim, interval, state, work, heap, n_open):
     seen = consider(pair, i, t, foot.leaf, state, work.planes)
     is_open = not is_settled(bound, aim, state)
     if is_open and may_follow and seen.piece == foot.piece:
-        # near an inflection of the feet's map the middle does not tell how far the two drift apart
+        # near an inflection of the feet's map the middle does not show how far the two drift apart
         order, enough = _highest_order(curves, i, feet.piece), settled_below(aim, state)
         bound = _follow(curves, interval, feet, bound, order, enough, work)
         is_open = not is_settled(bound, aim, state)

@@ -1,4 +1,4 @@
-"""Which polygons are convex at first sight: what most are, told without planes and tolerances.
+"""Which polygons are clearly convex: most are, and it is decided without planes and tolerances.
 
 Not for: refusing a polygon (`geometry.faces` looks at those again that are not).
 """

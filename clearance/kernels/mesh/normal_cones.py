@@ -77,7 +77,7 @@ class NormalCones(NamedTuple):
 
 @inline(force=True)
 def normal_cones_of(cones_p, group, cones_q, other, m, slack):
-    """How a group and a node of the other body face each other.
+    """The normal cones of a group and of a node of the other body.
 
     Args:
         cones_p, cones_q: `Surface.cones` of the group's body and the other. m: from the frame of q to that of p.

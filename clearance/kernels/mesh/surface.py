@@ -14,7 +14,7 @@ from clearance.kernels.arithmetic.lanes import WIDTH, lanes_at, number_at
 from clearance.kernels.arithmetic.vec3 import Vec3, along
 
 LISTED = 8
-"""Corners that a face may have for `Surface.owns` to tell them from one another."""
+"""Corners that a face may have for `Surface.owns` to have a bit for each."""
 
 ANYTHING = (1 << 2 * LISTED) - 1
 """All bits of `Surface.owns`."""

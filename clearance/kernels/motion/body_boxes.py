@@ -1,6 +1,6 @@
 """How far apart whole bodies are by their boxes alone: what is known of a pair before any search.
 
-The box of a body is placed in the world once for all its pairs, and a ball about it tells most of them apart for a
+The box of a body is placed in the world once for all its pairs, and a ball about it separates most of them for a
 third of what two boxes take. Not for: nodes of trees (`bounds`, `node_pairs`).
 """
 

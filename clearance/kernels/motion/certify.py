@@ -44,7 +44,7 @@ from clearance.kernels.search.front import KEPT_DOWN
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 DEPTH = 64
-"""Parts of an interval that can wait, one a halving; after 52 the ends cannot be told apart."""
+"""Parts of an interval that can wait, one a halving; after 52 the ends are one number."""
 
 WIDER = 4.0
 """Times as wide is the gap of a pair in an interval that has come to its most parts."""
@@ -142,7 +142,7 @@ class IntervalMiddle(NamedTuple):
 
 
 class CertifyState(NamedTuple):
-    """What is carried from interval to interval, and room.
+    """What is carried from interval to interval, and scratch.
 
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
@@ -280,7 +280,7 @@ def _like():
 
 @apart(CERTIFY, _like)
 def _certify(lent, motion, steps, aim, bounds, tally, state, table):
-    """`certify`, with room for what is known."""
+    """`certify`, with the arrays of its state."""
     surface = borrow(lent)
     pairs, order, clearance = motion.pairs, steps.order, steps.clearance
     n_pairs = len(pairs.bodies)

@@ -168,7 +168,7 @@ def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, tabl
     if bound < target:
         beside = direction_beside(a, face_a, b, face_b, m, views.b.m)
         apart = _face_lower_bound(a, b, faces, beside, moving)
-        if apart > 0.0:  # what may touch is told by exact signs below
+        if apart > 0.0:  # exact signs below decide what may touch
             bound = max(bound, apart)
     if bound < target:
         tally[3] += 1

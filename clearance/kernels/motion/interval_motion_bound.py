@@ -1,11 +1,12 @@
-"""Which steps need not be looked at: how far bodies can have moved, by the positions of their joints alone.
+"""The interval motion bound: how far bodies can have moved, by their joints alone, so that steps are passed over.
 
 A joint that turns by an angle w moves no point farther than w times its distance from the axis, one that slides by
 w no farther than w; a change of several joints is made one after another. So between any two steps
 
-    |x' - x| <= sum over the joints k above the link of |q_k' - q_k| reach_k,
+    |x' - x| <= sum over the joints k above the link of |q_k' - q_k| radius_k,
 
-with reach_k the farthest that a point of the body gets from joint k in any pose. No pose needs to be made for it.
+with radius_k, the motion radius, the farthest that a point of the body gets from joint k in any pose. No pose
+needs to be made for it.
 Not for: the motion between the steps (`joint_motion_bound`).
 """
 

@@ -1,4 +1,4 @@
-"""How far the points of a link can move while its joints move: first order exactly, the rest bounded.
+"""The joint motion bound: how far the points of a link can move while its joints move; first order exactly.
 
 About the middle of an interval, where joint k moves by s swing_k + b_k with |s| <= 1 and |b_k| <= bend_k, a point
 x moves by s v(x) + r: v is the link's twist by the swings, an affine map of x. |r| is at most half the greatest

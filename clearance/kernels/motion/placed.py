@@ -22,7 +22,7 @@ class PlacedBodies(NamedTuple):
         links: (links, 4, 4) `world_from_link` [m] of those that were wanted at the last look.
         wanted: (links,) the last look at which each was wanted, or -1.
         poses: (bodies, 4, 4) `world_from_body` [m].
-        displacements: (bodies,) [m] no less than what each has moved in all, from look to look.
+        displacements: (bodies,) [m] accumulated: no less than what each has moved in all, from look to look.
         moves: (bodies,) how often it was found elsewhere than before.
         looks: (bodies,) how often it was looked at after the first time.
     """

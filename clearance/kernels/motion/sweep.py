@@ -63,7 +63,7 @@ NOT_LESS = 1.0 + 2.0**-50
 
 
 class SweepState(NamedTuple):
-    """What is carried from step to step, and room for the search.
+    """What is carried from step to step, and scratch for the search.
 
     Attributes:
         within: (p,) [m] as in `Goal`, less where that is found.
@@ -317,7 +317,7 @@ def sweep(surface, world, path, goal, first, found, tally, table):
 
 @kernel(reference_counts=False)
 def _sweep(surface, world, path, goal, effort, state, found, tally, table):
-    """`sweep`, with room for what is known. The rows after a first look are overwritten."""
+    """`sweep`, with the arrays of its state. The rows after a first look are overwritten."""
     positions, steps, rows = path.positions, path.steps, found.rows
     within, lower_bounds, order = state.within, state.lower_bounds, state.order
     placed, due = state.placed, state.due

@@ -222,7 +222,9 @@ def search(bodies, asked, front, scratch, table):
         if is_all:
             break
         best, planes = found.hit, NOT_SEPARATED  # the hulls are nearer than the bodies
-    if found.meeting.found:  # which of several is told must not depend on where the search began
+    if (
+        found.meeting.found
+    ):  # which of several is the answer must not depend on where the search began
         over = overlap_of(table, roots, slack, scratch)
         tally = Tally(n_nodes + over.n_nodes, n_faces + over.n_faces, n_exact)
         if not over.meeting.found:

@@ -90,7 +90,7 @@ def _crossing(a, b, c, x, exact):
 
 @inline
 def _beside(exact, a, b, c, x):
-    """True if the triangle is clearly beside or below the ray: told by the boxes of rounded coordinates."""
+    """True if the triangle is clearly beside or below the ray: decided by the boxes of rounded coordinates."""
     for axis in range(3):
         turn_x, turn_a = row(exact.poses[x.body], axis), row(exact.poses[a.body], axis)
         at = dot(turn_x, x.v) + (x.body - a.body) * exact.shift[0, axis]
@@ -204,7 +204,7 @@ def winding_number(surface, body, is_b, probe, frames, exact, nodes):
     Args:
         is_b: True if the body is b.
         probe: the point, a `Probe`.
-        nodes: (k, 2) room for nodes that wait.
+        nodes: (k, 2) scratch for nodes that wait.
     """
     set_poses(frames, exact)
     side = 1 if is_b else 0

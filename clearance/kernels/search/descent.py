@@ -65,7 +65,7 @@ class DescentResult(NamedTuple):
         meeting: whether and where the bodies have a common point, in the faces of `hit`.
         hit: the best pair of points in doubles, within the limit or not, no worse than what was given.
         lower_bound: [m] a lower bound on the distance of the face pairs that were not refined.
-        refined: the answer in wide numbers, if there is one within the limit.
+        refined: the answer in double-double, if there is one within the limit.
     """
 
     meeting: Meeting

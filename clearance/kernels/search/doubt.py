@@ -44,7 +44,7 @@ def generalized_windings(surface, points, poses, poses_of_points, least, most, t
         surface: of one body.
         points: (m, 3) [m] in a frame of their own.
         poses, poses_of_points: (n, 4, 4) [m] of the body and of the points.
-        least, most: (n,) room for them.
+        least, most: (n,) where they are written.
     """
     scratch = new_scratch()
     for i in range(len(poses)):

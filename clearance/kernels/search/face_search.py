@@ -51,7 +51,7 @@ class NearestSoFar(NamedTuple):
     """The best pair of points so far, and what follows from it.
 
     Attributes:
-        gap: [m] theirs, or the limit if that is less. cut: [m] what is farther than this is left.
+        gap: [m] theirs, or the limit if that is less. cut: [m] the cut-off distance: what is farther is left.
         views: the bodies seen in the direction from one point to the other.
     """
 

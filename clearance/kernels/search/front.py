@@ -1,4 +1,4 @@
-"""Where the last search of each body pair ended: node pairs that were left, with how far apart they are.
+"""BVTT fronts: where the last search of each body pair ended, node pairs left with how far apart they are.
 
 A search that goes on from its front instead of the roots retests only what the motion since then could have
 brought near (front tracking: Ehmann & Lin 2001, Li & Chen 1998; the bounds carried with it are ours). All
@@ -83,7 +83,7 @@ def no_fronts(n_pairs, pool):
 
 @inline
 def is_worth_separating(fronts, pair):
-    """True if it may take less to seek planes that part the bodies of a pair than to go on from its front.
+    """True if it may take less to seek planes that separate the bodies of a pair than to go on from its front.
 
     Not if they were not found lately, which counts down.
     """
@@ -95,7 +95,7 @@ def is_worth_separating(fronts, pair):
 
 @inline
 def note_separating_planes(fronts, pair, found, pause):
-    """Notes whether planes part the bodies; if not, they are not sought for a while, each time a longer one.
+    """Notes whether planes separate the bodies; if not, they are not sought for a while, each time a longer one.
 
     Args:
         pause: searches that it is longer by than twice the last one.

@@ -33,7 +33,7 @@ class RelativeView(NamedTuple):
 
     Attributes:
         m: the motion from the frame of the other to its own.
-        direction: the direction that best parts them so far.
+        direction: the direction that best separates them so far.
     """
 
     m: RigidMotion
@@ -55,7 +55,7 @@ def views_along(direction, m):
 
 @inline(force=True)
 def views_of(best, m):
-    """The views in which the best points so far part the bodies."""
+    """The views in which the best points so far separate the bodies."""
     return views_along(direction_between(best.p, best.q, m), m)
 
 
@@ -104,7 +104,7 @@ def between_centres(a, b, views, nodes):
 
 @inline(force=True)
 def _facing(a, b, views, nodes, slack):
-    """How a group and a node of the other body face each other, and what is from centre to centre."""
+    """The normal cones of a group and of a node of the other body, and what is from centre to centre."""
     p, q, view = _seen(a, b, views, nodes)
     cones, cones_across = a.cones, b.cones
     if nodes.is_of_b:

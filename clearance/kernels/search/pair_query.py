@@ -54,9 +54,9 @@ class HeldPair(NamedTuple):
 
     Attributes:
         a, b: their surfaces, one body each.
-        scratch, fronts: room for the search, and where the last one ended.
+        scratch, fronts: arrays for the search, and where the last one ended.
         poses: (2, 4, 4) of both bodies at the last search [m].
-        witness_faces: (2,) the faces that were nearest, or NO_FACE.
+        witness_faces: (2,) the witness cache: the faces that were nearest, or NO_FACE.
         carried: (3,) [m] what both bodies have moved in all; a lower bound on their distance, plus that; how
             far they may move at once before a search from the roots is better.
     """

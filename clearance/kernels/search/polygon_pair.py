@@ -56,7 +56,7 @@ class PolygonPairAnswers(NamedTuple):
 
 @inline
 def _empty_surface(n):
-    """Room for one polygon of n vertices that owns all its features."""
+    """Arrays for one polygon of n vertices that owns all its features."""
     nodes, singles = np.empty((0, 3)), np.empty((0, 4), dtype=np.float32)
     none = np.empty(0, dtype=np.int64)
     ends = np.array([0, n])
@@ -198,7 +198,7 @@ def _like():
 
 @apart(POLYGONS, _like)
 def nearest_each(ps, qs, lent_p, lent_q, exact, answers, table):
-    """Fills `answers`, with room for one polygon of each side."""
+    """Fills `answers`, with arrays for one polygon of each side."""
     a_p, b_q = borrow(lent_p), borrow(lent_q)
     for k in range(ps.shape[0]):
         first_p, first_q = _first_corner(ps[k]), _first_corner(qs[k])

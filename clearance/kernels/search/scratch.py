@@ -1,4 +1,4 @@
-"""Room for one search at a time, and how node pairs wait in it."""
+"""Scratch of one search at a time, and how node pairs wait in it."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ those of a million faces split at the mean are below 100 deep, and `descend` che
 
 
 class Scratch(NamedTuple):
-    """Room for waiting node pairs and face pairs and for exact arithmetic, reused between queries."""
+    """Arrays for waiting node pairs and face pairs and for exact arithmetic, reused between queries."""
 
     nodes: np.ndarray  # (STACK_DEPTH, 2) int32
     bounds: np.ndarray  # (STACK_DEPTH,)
@@ -28,7 +28,7 @@ class Scratch(NamedTuple):
 
 @shared
 def new_scratch():
-    """Room for one search at a time."""
+    """Scratch of one search at a time."""
     return Scratch(
         np.empty((STACK_DEPTH, 2), dtype=np.int32),
         np.empty(STACK_DEPTH),

@@ -1,4 +1,4 @@
-"""Two planes that part the bodies: a proof of how far apart they are where their convex hulls are as far apart.
+"""Separating planes of two bodies: a proof of how far apart they are where their convex hulls are as far apart.
 
 Along a unit vector u no points of the bodies are nearer than the least height of b less the greatest of a. Each
 is found in one tree by itself, not in pairs of nodes. Where the planes are as far apart as the nearest points of
@@ -207,7 +207,7 @@ def _with_corners(simplex, a, b, corner_a, corner_b, m):
 
 @apart(SEPARATING_PLANES, _like)
 def separate(roots, best, limit, slack, scratch):
-    """Seeks planes that part the bodies by the distance of their nearest points, or by more than the limit [m].
+    """Seeks planes that separate the bodies by the distance of their nearest points, or by more than a limit [m].
 
     Pairs of leaves that touch the planes wait, as those do that a front has.
 

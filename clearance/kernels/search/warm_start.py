@@ -1,4 +1,4 @@
-"""Where a search that knows nothing yet looks first: pairs of faces that are probably near."""
+"""Warm start: where a search that knows nothing yet looks first, pairs of faces that are probably near."""
 
 import numpy as np
 
