@@ -45,7 +45,10 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     measured[:, 0] = [place_of_link[pair.i_robot, pair.i_body] for pair in pairs]
     measured[:, 1] = [place_of_obstacle[pair.i_obstacle] for pair in pairs]
     frames = _frames(case, links)
+    n_bodies = len(links) + len(obstacles)
     world = World(
+        solids=np.arange(n_bodies),
+        groups=np.arange(n_bodies),
         frames=np.array([*frames, *[-1] * len(obstacles)], dtype=np.int64),
         standing=_standing(case, len(links), obstacles),
         pairs=measured,

@@ -135,6 +135,25 @@ def moving_velocities(
     return moving_positions(replace(placed, fixed_positions={}), joint_names, given)
 
 
+def values_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
+    """(n, links) the position of the joint above each link, of (n, columns); 0 for roots and fixed joints."""
+    return rates_by_link(links, positions) + np.where(
+        links.columns == NO_COLUMN, 0.0, links.offsets
+    )
+
+
+def rates_by_link(links: Links, rates: np.ndarray) -> np.ndarray:
+    """(n, links) the same of velocities (n, columns), of which offsets are no part."""
+    moving = np.where(links.columns == NO_COLUMN, 0.0, links.factors)
+    if rates.shape[1] == 0:
+        return np.zeros((len(rates), len(moving)))
+    return (
+        rates[:, np.maximum(links.columns, 0)] * moving
+        if rates.shape[1]
+        else np.zeros((len(rates), len(moving)))
+    )
+
+
 def _column(columns: dict[str, int], name: str) -> int:
     if name not in columns:
         raise UnknownJoint(f"unknown joint {name!r}", valid=nearest_name(name, columns))
