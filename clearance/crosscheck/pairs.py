@@ -67,7 +67,11 @@ def peer_pairs(record: Samples) -> tuple[list[Mover], list[PeerPair]]:
     Links are named as in the record: with their robot's name where there are several.
     """
     left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
-    measured = {(p.i_robot, p.i_body, p.i_obstacle) for p in measured_pairs(record.case)[0]}
+    measured = {
+        (p.a.i_robot, p.a.i_body, p.b.i_body)
+        for p in measured_pairs(record.case)[0]
+        if p.b.is_obstacle
+    }
     obstacles = [(o, peer_side(o.body)) for o in record.case.obstacles]
     movers: list[Mover] = []
     pairs: list[PeerPair] = []

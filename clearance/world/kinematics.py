@@ -17,6 +17,7 @@ from clearance.kernels.motion.kinematics import (
     TURNING,
     Links,
     forward,
+    place_each,
 )
 from clearance.world.case import PlacedRobot
 from clearance.world.mimics import followers
@@ -77,6 +78,54 @@ def joined_links(placed: Sequence[PlacedRobot]) -> Links:
     parent_from_joint = links.parent_from_joint.copy()
     parent_from_joint[roots] = [one.world_from_base for one in placed]
     return links._replace(parent_from_joint=parent_from_joint)
+
+
+def seen_from(
+    links: Links, wanted: Sequence[tuple[int, int]]
+) -> tuple[Links, dict[tuple[int, int], int]]:
+    """The links and, behind them, links as they are seen from others above them.
+
+    A link that is looked from stands at the origin there, so that only the joints between move what is seen.
+
+    Args:
+        wanted: (the link that is looked from, the link that is seen) each.
+
+    Returns:
+        all links, and the place of each that is wanted.
+    """
+    origins: list[int] = []  # of each link that is added: which it is
+    parents: list[int] = []
+    places: dict[tuple[int, int], int] = {}
+    for reference, link in wanted:
+        path = [link]
+        while path[-1] != reference:
+            path.append(int(links.parents[path[-1]]))
+        for here in reversed(path):
+            if (reference, here) not in places:
+                above = (
+                    NO_PARENT if here == reference else places[reference, int(links.parents[here])]
+                )
+                places[reference, here] = len(links.parents) + len(origins)
+                origins.append(here)
+                parents.append(above)
+    if not origins:
+        return links, places
+    added = Links(*(column[origins] for column in links))
+    roots = np.array(parents) == NO_PARENT
+    fixed = added.parent_from_joint.copy()
+    fixed[roots] = np.eye(4)
+    kinds, columns = np.where(roots, FIXED, added.kinds), np.where(roots, NO_COLUMN, added.columns)
+    added = added._replace(
+        parents=np.array(parents), parent_from_joint=fixed, kinds=kinds, columns=columns
+    )
+    return Links(*(np.concatenate(both) for both in zip(links, added, strict=True))), places
+
+
+def poses_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
+    """(n, links, 4, 4) `world_from_link` [m] of all links, of positions (n, columns)."""
+    poses = np.empty((len(positions), len(links.parents), 4, 4))
+    place_each(links, np.ascontiguousarray(values_by_link(links, positions)), poses)
+    return poses
 
 
 @lru_cache(maxsize=8)

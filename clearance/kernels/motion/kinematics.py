@@ -132,6 +132,13 @@ def place_by_link(links, positions, poses):
 
 
 @kernel
+def place_each(links, positions, poses):
+    """`place_by_link` for positions (n, links) and poses (n, links, 4, 4)."""
+    for step in range(len(positions)):
+        place_by_link(links, positions[step], poses[step])
+
+
+@kernel
 def forward(world_from_base, parents, kinds, parent_from_joint, axes, positions, poses):
     """Fills `poses` (n, n_links, 4, 4) from joint `positions` (n, n_links) in link order.
 
