@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
 from clearance.kernels.mesh.surface import ANYTHING, Surface
 from clearance.kernels.motion.certify import (
@@ -62,13 +61,7 @@ def certify_motion(
         need: what was measured. Where it leaves clearances unknown, it is only asked whether the motion stays
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
         resources: threads, progress, and where the bounds are kept.
-
-    Raises:
-        BadDimension: `gap` is not a positive length.
     """
-    if not (isinstance(gap, int | float | np.number) and 0.0 < gap < np.inf):
-        raise BadDimension(f"a gap of {gap!r:.60} m", where="certify", valid="a length above 0")
-    gap = float(gap)
     gap, notices = _no_finer_than_rounding(case, motions, gap)
     work = _Work.of(case, motions, pairs, _Question.of(found, case.limits, need, gap))
     n_steps = motions[0].n_steps

@@ -38,11 +38,11 @@ class BodyIndex:
 
     def shape_in(self, case: Case) -> Polyhedron:
         """Its shape, in its own frame."""
-        return self._body_in(case).shape
+        return self.body_in(case).shape
 
     def own_name_in(self, case: Case) -> str:
         """Its name without its robot's."""
-        return self._body_in(case).name
+        return self.body_in(case).name
 
     def name_in(self, case: Case) -> str:
         """Its name; that of a link has its robot's before it where there are several."""
@@ -53,7 +53,7 @@ class BodyIndex:
 
     def link_in(self, case: Case) -> int:
         """Which of its robot's links it is of."""
-        return case.robots[self.i_robot].robot.link_names.index(self._body_in(case).name)
+        return case.robots[self.i_robot].robot.link_names.index(self.body_in(case).name)
 
     def poses_in(self, case: Case, link_poses: Sequence[np.ndarray]) -> np.ndarray:
         """(n, 4, 4) `world_from_body` [m], from (n, n_links, 4, 4) of each robot."""
@@ -62,7 +62,8 @@ class BodyIndex:
             return np.broadcast_to(standing, (len(link_poses[0]), 4, 4)).copy()
         return np.ascontiguousarray(link_poses[self.i_robot][:, self.link_in(case)])
 
-    def _body_in(self, case: Case) -> Body:
+    def body_in(self, case: Case) -> Body:
+        """Its name and shape."""
         if self.is_obstacle:
             return case.obstacles[self.i_body].body
         return case.robots[self.i_robot].robot.bodies[self.i_body]
