@@ -28,7 +28,7 @@ from .simulate.record import CrossCheck, Record
 from .simulate.workspace import Workspace, shared_workspace
 from .sketch import Sketch, SketchResult
 from .world.body import Body, Obstacle
-from .world.case import Case, Limits, PlacedRobot
+from .world.case import Case, Limits, PlacedRobot, SelfClearance
 from .world.robot import Robot
 from .world.trajectory import Trajectory
 
@@ -56,6 +56,7 @@ __all__ = [
     "Resources",
     "Robot",
     "Run",
+    "SelfClearance",
     "Sketch",
     "SketchResult",
     "Trajectory",

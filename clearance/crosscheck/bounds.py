@@ -23,9 +23,9 @@ def world_boxes(bounds: np.ndarray, poses: np.ndarray) -> np.ndarray:
     return np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1)
 
 
-def lower_bound_boxes(boxes: np.ndarray, fixed_box: np.ndarray) -> np.ndarray:
-    """(n,) [m] the distance of boxes (n, 2, 3) from one box (2, 3), all along the world axes."""
-    gap = np.maximum(fixed_box[0] - boxes[:, 1], boxes[:, 0] - fixed_box[1]).clip(min=0.0)
+def lower_bound_boxes(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """(n,) [m] the distance of boxes (n, 2, 3) from as many others, or from one (2, 3), along the world axes."""
+    gap = np.maximum(others[..., 0, :] - boxes[:, 1], boxes[:, 0] - others[..., 1, :]).clip(min=0.0)
     return np.sqrt((gap * gap).sum(axis=1))
 
 

@@ -84,7 +84,7 @@ def _disagreement(
         reason = _reason(row["clearance"], peer_clearance, run.collides(step, i_pair))
     return Disagreement(
         step=step, peer_clearance=peer_clearance, peer_link=pair.link.name,
-        peer_obstacle=pair.obstacle.name, reason=reason, **row,
+        peer_obstacle=pair.other.name, reason=reason, **row,
     )  # fmt: skip
 
 
@@ -110,7 +110,7 @@ class _Witnesses:
         self._names = list(
             zip(steps["link"].to_pylist(), steps["obstacle"].to_pylist(), strict=True)
         )
-        self._pairs = {(pair.link.name, pair.obstacle.name): pair for pair in run.pairs}
+        self._pairs = {(pair.link.name, pair.other.name): pair for pair in run.pairs}
 
     def errors(self) -> np.ndarray:
         """(n,) [m] for each step the greatest of: error of the realised distance, distance of each
@@ -137,7 +137,7 @@ class _Witnesses:
         return max(
             self._realised(step),
             off_body(link, pair.link, poses[pair.i_mover]),
-            off_body(obstacle, pair.obstacle, pair.world_from_obstacle),
+            off_body(obstacle, pair.other, poses[pair.i_other]),
         )
 
     def _realised(self, step: int) -> float:
@@ -163,7 +163,7 @@ class _Witnesses:
             return np.inf
         sides = (
             (pair.link, poses[pair.i_mover], self._points["link"][step]),
-            (pair.obstacle, pair.world_from_obstacle, self._points["obstacle"][step]),
+            (pair.other, poses[pair.i_other], self._points["obstacle"][step]),
         )
         return max(
             side.distance(pose[:3, :3].T @ (point - pose[:3, 3]), solid=contact)

@@ -14,7 +14,8 @@ from clearance.crosscheck.triangles import TriangleSoup, triangle_soup
 from clearance.crosscheck.witness import PointLocator
 from clearance.simulate.record import Samples
 from clearance.world.body import Body
-from clearance.world.pairs import measured_pairs
+from clearance.world.case import Case
+from clearance.world.pairs import BodyIndex, measured_pairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,53 +41,50 @@ class PeerPair:
     """A measured pair.
 
     Attributes:
-        i_mover: index into the movers of the run.
-        world_from_obstacle: (4, 4) pose [m].
+        i_mover, i_other: index into the movers of the run, and that of the second body.
     """
 
     i_mover: int
     link: PeerSide
-    obstacle: PeerSide
-    world_from_obstacle: np.ndarray
+    i_other: int
+    other: PeerSide
 
 
 @dataclass(frozen=True)
 class Mover:
-    """A link that is measured against something: its robot, its column in `Motion.poses`, its
-    name.
-    """
+    """A body that is measured against something, and its side; one that stands is a mover as well."""
 
-    i_robot: int
-    i_link: int
-    name: str
+    body: BodyIndex
+    side: PeerSide
 
 
 def peer_pairs(record: Samples) -> tuple[list[Mover], list[PeerPair]]:
-    """The links that take part and every pair that the record does not list as unmeasured.
+    """The bodies that take part and every pair that the record does not list as unmeasured.
 
     Links are named as in the record: with their robot's name where there are several.
     """
+    case = record.case
     left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
-    measured = {(p.i_robot, p.i_body, p.i_obstacle) for p in measured_pairs(record.case)[0]}
-    obstacles = [(o, peer_side(o.body)) for o in record.case.obstacles]
+    places: dict[BodyIndex, int] = {}
     movers: list[Mover] = []
+
+    def place_of(body: BodyIndex) -> int:
+        if body not in places:
+            places[body] = len(movers)
+            movers.append(Mover(body, _side_of(case, body)))
+        return places[body]
+
     pairs: list[PeerPair] = []
-    several = len(record.motions) > 1
-    for i_robot, motion in enumerate(record.motions):
-        robot = motion.placed.robot
-        prefix = f"{robot.name}/" if several else ""
-        for i_body, body in enumerate(robot.bodies):
-            name = prefix + body.name
-            facing = [
-                (o, side) for k, (o, side) in enumerate(obstacles)
-                if (i_robot, i_body, k) in measured and (name, o.name) not in left_out
-            ]  # fmt: skip
-            if (name, "*") in left_out or not facing:
-                continue
-            link = replace(peer_side(body), name=name)
-            pairs += [PeerPair(len(movers), link, side, o.world_from_body) for o, side in facing]
-            movers.append(Mover(i_robot, robot.link_names.index(body.name), name))
+    for pair in measured_pairs(case)[0]:
+        if (pair.a.name_in(case), pair.b.name_in(case)) in left_out:
+            continue
+        a, b = place_of(pair.a), place_of(pair.b)
+        pairs.append(PeerPair(a, movers[a].side, b, movers[b].side))
     return movers, pairs
+
+
+def _side_of(case: Case, body: BodyIndex) -> PeerSide:
+    return replace(peer_side(body.body_in(case)), name=body.name_in(case))
 
 
 def peer_side(body: Body) -> PeerSide:

@@ -44,13 +44,9 @@ class PeerRun:
     def __init__(self, record: Samples) -> None:
         self.record = record
         self.movers, self.pairs = peer_pairs(record)
-        for pair in self.pairs:
-            pair.obstacle.peer.place(pair.world_from_obstacle)
         self._i_movers = np.array([pair.i_mover for pair in self.pairs])
-        self._fixed_boxes = np.array([_fixed_box(pair) for pair in self.pairs])
-        self._links = {pair.i_mover: pair.link for pair in self.pairs}
-        self._low = self._fixed_boxes[:, 0].min(axis=0)
-        self._high = self._fixed_boxes[:, 1].max(axis=0)
+        self._i_others = np.array([pair.i_other for pair in self.pairs])
+        self._low, self._high = np.full(3, np.inf), np.full(3, -np.inf)
         self._carried = np.zeros(len(self.pairs))  # [m] lower bounds from the step before
         self._n_queries = 0
 
@@ -72,34 +68,44 @@ class PeerRun:
     def poses(self, start: int, stop: int) -> np.ndarray:
         """(movers, steps, 4, 4) `world_from_link` [m] of the steps `start` to `stop`."""
         by_robot = [motion.poses(start, stop) for motion in self.record.motions]
-        return np.array([by_robot[mover.i_robot][:, mover.i_link] for mover in self.movers])
+        return np.array([m.body.poses_in(self.record.case, by_robot) for m in self.movers])
 
     def collides(self, step: int, i_pair: int) -> bool:
         """True if FCL's collision test or the winding number finds contact of one pair at one
         step.
         """
         pair = self.pairs[i_pair]
-        pair.link.peer.place(self.poses(step, step + 1)[pair.i_mover][0])
-        return pair.link.peer.collides(pair.obstacle.peer) or self.is_nested(step, i_pair)
+        poses = self.poses(step, step + 1)
+        pair.link.peer.place(poses[pair.i_mover][0])
+        pair.other.peer.place(poses[pair.i_other][0])
+        return pair.link.peer.collides(pair.other.peer) or self.is_nested(step, i_pair)
 
     def is_nested(self, step: int, i_pair: int) -> bool:
         """True if the winding number finds one body of a pair inside the other at one step."""
         pair = self.pairs[i_pair]
-        return bool(nested_steps(pair, self.poses(step, step + 1)[pair.i_mover])[0])
+        poses = self.poses(step, step + 1)
+        return bool(nested_steps(pair, poses[pair.i_mover], poses[pair.i_other])[0])
 
     def _measure_chunk(self, poses: np.ndarray, n_new: int) -> tuple[np.ndarray, np.ndarray]:
         moved = self._displacements(poses)[-n_new:]
         poses = poses[:, -n_new:]
-        boxes = np.array([world_boxes(self._links[m].soup.bounds, p) for m, p in enumerate(poses)])
+        boxes = np.array(
+            [
+                world_boxes(mover.side.soup.bounds, p)
+                for mover, p in zip(self.movers, poses, strict=True)
+            ]
+        )
         self._low = np.minimum(self._low, boxes[:, :, 0].min(axis=(0, 1)))
         self._high = np.maximum(self._high, boxes[:, :, 1].max(axis=(0, 1)))
         apart = np.array(
             [
-                lower_bound_boxes(boxes[m], box)
-                for m, box in zip(self._i_movers, self._fixed_boxes, strict=True)
+                lower_bound_boxes(boxes[m], boxes[other])
+                for m, other in zip(self._i_movers, self._i_others, strict=True)
             ]
         ).T
-        within = np.array([nested_steps(pair, poses[pair.i_mover]) for pair in self.pairs]).T
+        within = np.array(
+            [nested_steps(pair, poses[pair.i_mover], poses[pair.i_other]) for pair in self.pairs]
+        ).T
         found = [
             self._measure_step(poses[:, k], moved[k], apart[k], within[k]) for k in range(n_new)
         ]
@@ -110,7 +116,10 @@ class PeerRun:
         the first.
         """
         moved = np.array(
-            [greatest_displacements(self._links[m].soup.bounds, p) for m, p in enumerate(poses)]
+            [
+                greatest_displacements(mover.side.soup.bounds, p)
+                for mover, p in zip(self.movers, poses, strict=True)
+            ]
         ).reshape(len(self.movers), -1)
         return np.vstack([np.full(len(self.movers), np.inf), moved.T])
 
@@ -118,39 +127,36 @@ class PeerRun:
         self, poses: np.ndarray, moved: np.ndarray, apart: np.ndarray, within: np.ndarray
     ) -> tuple[float, int]:
         """The least clearance [m] and its pair, nearest lower bound first."""
-        bounds = np.maximum(self._carried - moved[self._i_movers], apart) - _ROUNDING
+        way = moved[self._i_movers] + moved[self._i_others]
+        bounds = np.maximum(self._carried - way, apart) - _ROUNDING
         self._carried = np.maximum(bounds, 0.0)
         if within.any():
             return 0.0, int(np.argmax(within))
-        for link, pose in zip(self._links.values(), poses, strict=True):
-            link.peer.place(pose)
+        for mover, pose in zip(self.movers, poses, strict=True):
+            mover.side.peer.place(pose)
         best, i_best = np.inf, -1
         for i_pair in np.argsort(bounds, kind="stable"):
             if bounds[i_pair] >= best or best == 0.0:
                 break
             pair = self.pairs[i_pair]
-            self._carried[i_pair] = distance = pair.link.peer.distance(pair.obstacle.peer)
+            self._carried[i_pair] = distance = pair.link.peer.distance(pair.other.peer)
             self._n_queries += 1
             if distance < best:
                 best, i_best = distance, int(i_pair)
         return best, i_best
 
 
-def nested_steps(pair: PeerPair, world_from_link: np.ndarray) -> np.ndarray:
+def nested_steps(
+    pair: PeerPair, world_from_link: np.ndarray, world_from_other: np.ndarray
+) -> np.ndarray:
     """(n,) True at the poses (n, 4, 4) where a part of one body of the pair is inside the other."""
-    obstacle_from_link = np.linalg.inv(pair.world_from_obstacle) @ world_from_link
+    other_from_link = np.linalg.inv(world_from_other) @ world_from_link
     nested = np.zeros(len(world_from_link), dtype=bool)
     for outer, inner, relative in (
-        (pair.obstacle.soup, pair.link.soup, obstacle_from_link),
-        (pair.link.soup, pair.obstacle.soup, np.linalg.inv(obstacle_from_link)),
+        (pair.other.soup, pair.link.soup, other_from_link),
+        (pair.link.soup, pair.other.soup, np.linalg.inv(other_from_link)),
     ):
         turned = inner.part_points @ relative[:, :3, :3].transpose(0, 2, 1)
         points = turned + relative[:, None, :3, 3]
         nested |= is_inside(outer, points.reshape(-1, 3)).reshape(points.shape[:2]).any(axis=1)
     return nested
-
-
-def _fixed_box(pair: PeerPair) -> np.ndarray:
-    pose = pair.world_from_obstacle
-    corners = pair.obstacle.soup.vertices @ pose[:3, :3].T + pose[:3, 3]
-    return np.array([corners.min(axis=0), corners.max(axis=0)])

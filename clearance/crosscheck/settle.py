@@ -81,7 +81,7 @@ def _distance_sq(pair: PeerPair, poses: np.ndarray, faces: tuple[int, int]) -> F
 
 
 def _placed_sides(pair: PeerPair, poses: np.ndarray) -> tuple[tuple[PeerSide, np.ndarray], ...]:
-    return (pair.link, poses[pair.i_mover]), (pair.obstacle, pair.world_from_obstacle)
+    return (pair.link, poses[pair.i_mover]), (pair.other, poses[pair.i_other])
 
 
 def _nearest_triangles(side: PeerSide, pose: np.ndarray, point: np.ndarray) -> list[int]:
@@ -92,4 +92,5 @@ def _nearest_triangles(side: PeerSide, pose: np.ndarray, point: np.ndarray) -> l
 def _named_by_the_peer(pair: PeerPair, poses: np.ndarray) -> tuple[int, int] | None:
     """The triangles of the link and the obstacle that the peer takes for the nearest."""
     pair.link.peer.place(poses[pair.i_mover])
-    return pair.link.peer.nearest_triangles(pair.obstacle.peer)
+    pair.other.peer.place(poses[pair.i_other])
+    return pair.link.peer.nearest_triangles(pair.other.peer)

@@ -22,10 +22,11 @@ from clearance.load.plausibility import angle_notices, obstacle_notices, odd_ang
 from clearance.load.reserved import reserved_spaces
 from clearance.load.scene_file import make_obstacles
 from clearance.load.schema_errors import validated
+from clearance.load.srdf import read_srdf
 from clearance.load.trajectory_file import read_trajectory
 from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
-from clearance.world.case import Case, Limits, PlacedRobot, SignOff
+from clearance.world.case import Case, Limits, PlacedRobot, SelfClearance, SignOff
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name
 from clearance.world.notice import Notice
@@ -54,7 +55,10 @@ def load_case(path: str | PathLike[str]) -> Case:
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
         robot = placed.robot
-        allow = checked_pairs(given.allow, robot.link_names, [o.name for o in obstacles])
+        others = [obstacle.name for obstacle in obstacles]
+        if placed.self_clearance:
+            others += robot.link_names
+        allow = checked_pairs(given.allow, robot.link_names, others)
         profiles = reserved_spaces(given.profiles, path.parent, files, robot.link_names)
     given_joints = [*placed.asked.joint_names, *placed.fixed_positions]
     case = Case(
@@ -65,7 +69,7 @@ def load_case(path: str | PathLike[str]) -> Case:
         allow=allow,
         contact_response=given.contact_response,
         sources=files.sources,
-        notes=(*note_on_joints_at_zero(robot, given_joints), *scene_notes),
+        notes=(*note_on_joints_at_zero(robot, given_joints), *_srdf_notes(placed), *scene_notes),
         profiles=profiles,
         notices=tuple(_notices(given)),
         accept=tuple(given.accept),
@@ -141,7 +145,39 @@ def _placed_robot(given: schema.Case, folder: Path, meshes: MeshStore) -> Placed
         exclude_links=exclude_links,
         urdf_path=str(urdf_path),
         package_dirs=tuple(str(path) for path in package_dirs),
+        self_clearance=_self_clearance(given.robot, robot, folder, meshes.files),
     )
+
+
+def _self_clearance(
+    given: schema.Robot, robot: Robot, folder: Path, files: InputFiles
+) -> SelfClearance | None:
+    """Whether the robot's links are measured against one another, and which pairs an SRDF file excuses."""
+    if not given.self_clearance:
+        for field in ("srdf", "trust_never"):
+            if getattr(given, field):
+                raise BadInput(
+                    "it excuses pairs of links, which are not measured",
+                    where=f"robot.{field}",
+                    valid="self_clearance: true, or no such field",
+                )
+        return None
+    if given.srdf is None:
+        if given.trust_never:
+            raise BadInput(
+                "it speaks of the pairs that an SRDF file calls Never",
+                where="robot.trust_never",
+                valid="robot.srdf: the file",
+            )
+        return SelfClearance()
+    with at("robot.srdf"):
+        matrix = read_srdf(resolved(given.srdf, folder), robot, files)
+    return SelfClearance(matrix, given.trust_never)
+
+
+def _srdf_notes(placed: PlacedRobot) -> tuple[str, ...]:
+    asked = placed.self_clearance
+    return () if asked is None or asked.matrix is None else asked.matrix.notes
 
 
 def _refuse_missing_folders(given: list[str], package_dirs: tuple[Path, ...]) -> None:

@@ -165,6 +165,9 @@ class Robot(StrictModel):
     joints: dict[str, float] = {}
     geometry: Literal["collision", "visual", "collision_or_visual"] = "collision"
     collada_up_axis: Literal["ros", "file"] = "ros"
+    self_clearance: bool = False
+    srdf: Name | None = None
+    trust_never: bool = False
 
 
 class TrajectoryFile(StrictModel):

@@ -112,10 +112,16 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
 
 def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -> dict[str, Any]:
     """The least clearance of each pair with its line, and its curve if there is one."""
-    index = {(body.kind, body.name): i for i, body in enumerate(replay.bodies)}
+    links, others = (
+        {body.name: i for i, body in enumerate(replay.bodies) if body.kind == kind}
+        for kind in ("link", "obstacle")
+    )
+    others = (
+        links | others
+    )  # the second body may be a link as well; where a name is both, it is an obstacle
     pairs = [
         {
-            "bodies": [index["link", pair["link"]], index["obstacle", pair["obstacle"]]],
+            "bodies": [links[pair["link"]], others[pair["obstacle"]]],
             "step": pair["step"],
             "time": pair["time"],
             "clearance": pair["clearance"],

@@ -259,9 +259,11 @@ def matrix(summary: dict[str, Any]) -> Markup:
     if not summary["pairs"]:
         return Markup("")
     cells = {(pair["link"], pair["obstacle"]): (i, pair) for i, pair in enumerate(summary["pairs"])}
-    links = [body["name"] for robot in summary["robots"] for body in robot["links"]]
-    links = [name for name in dict.fromkeys(links) if any(name == link for link, _ in cells)]
-    obstacles = [body["name"] for body in summary["obstacles"]]
+    all_links = dict.fromkeys(
+        body["name"] for robot in summary["robots"] for body in robot["links"]
+    )
+    links = [name for name in all_links if any(name == link for link, _ in cells)]
+    obstacles = [*(body["name"] for body in summary["obstacles"]), *all_links]
     obstacles = [name for name in obstacles if any(name == other for _, other in cells)]
     head = element(
         "tr",

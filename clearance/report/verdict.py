@@ -5,13 +5,14 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from clearance.report.wording import count, gap_text, limit_mm, mm, moment_text, span_text
 from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay_frames import codes_of
 from clearance.simulate.steps import STATUSES, Status
+from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 
 SUSPECT = "suspect"
@@ -20,11 +21,8 @@ SUSPECT = "suspect"
 MOTION, SAMPLES = "motion", "samples"
 """What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
 
-NOT_CHECKED = ("self-collision",)
-"""What no run measures yet."""
-
-BETWEEN_ROBOTS = ("robot against robot",)
-"""What is not measured either where a case has several."""
+SELF_COLLISION = "self-collision"
+"""What is not measured unless the case asks for it."""
 
 _PASSING = (Status.CLEAR, Status.NEAR)
 
@@ -54,7 +52,7 @@ class Verdict:
     suspects: tuple[Notice, ...] = ()
     warnings: tuple[str, ...] = ()
     disputed_by: str | None = None
-    not_checked: tuple[str, ...] = NOT_CHECKED
+    not_checked: tuple[str, ...] = ()
     broken: tuple[str, ...] = ()
 
     @property
@@ -118,9 +116,18 @@ def verdict_of(record: Record) -> Verdict:
         suspects=open_suspects,
         warnings=tuple(_warnings(record, notices)),
         disputed_by=None if disputing is None else disputing.peer,
-        not_checked=NOT_CHECKED + (BETWEEN_ROBOTS if len(record.case.robots) > 1 else ()),
+        not_checked=tuple(_not_checked(record.case)),
         broken=tuple(broken),
     )
+
+
+def _not_checked(case: Case) -> Iterator[str]:
+    """The robots whose links are not measured against one another."""
+    left_out = [placed.robot.name for placed in case.robots if not placed.self_clearance]
+    if len(left_out) == len(case.robots):
+        yield SELF_COLLISION
+    else:
+        yield from (f"{SELF_COLLISION} of {name}" for name in left_out)
 
 
 def _measured(record: Record) -> str:

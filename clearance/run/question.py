@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from clearance.errors import BadInput
+import numpy as np
+
+from clearance.errors import BadDimension, BadInput
 from clearance.simulate.measure import NEEDS
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
@@ -42,7 +44,8 @@ class Question:
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
 
     Raises:
-        BadInput: an option that is unknown, or some that do not go together.
+        BadInput: an option that is unknown, or some that do not go together. BadDimension: a gap that is no
+            positive length.
     """
 
     case: Case
@@ -69,6 +72,7 @@ class Question:
                 given = getattr(self, what)
                 raise BadInput(f"unknown {what} {given!r}", valid=f"one of {', '.join(valid)}")
         _require_tolerance(self.paper_tolerance, self.method)
+        object.__setattr__(self, "certify_gap", _checked_gap(self.certify_gap))
         if self.need != "steps" and self.method != "exact":
             raise BadInput(
                 f"method {self.method!r} measures every step",
@@ -107,6 +111,12 @@ def limited(case: Case, limits: Limits | None) -> Case:
             f"limits are {limits!r:.60}", valid="a Limits, as Limits(fail=0.005, warn=0.02)"
         )
     return replace(case, limits=limits)
+
+
+def _checked_gap(gap: float) -> float:
+    if not (isinstance(gap, int | float | np.number) and 0.0 < gap < np.inf):
+        raise BadDimension(f"a gap of {gap!r:.60} m", where="certify", valid="a length above 0")
+    return float(gap)
 
 
 def _require_tolerance(tolerance: float | None, method: str) -> None:

@@ -11,19 +11,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.errors import BadDimension
 from clearance.geometry.edges import rings_of
 from clearance.kernels.mesh.surface import ANYTHING, Surface
 from clearance.kernels.motion.certify import (
     CertificateGoal,
     CertifiedMotion,
-    CertifiedPairs,
     CertifiedSteps,
     IntervalBounds,
     certify,
 )
-from clearance.kernels.motion.joint_motion_bound import KinematicTree
 from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.kinematics import Links
+from clearance.kernels.motion.world import World
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
 from clearance.simulate.moment import Moment, Moments
@@ -33,7 +32,7 @@ from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
-from clearance.world.kinematics import kinematic_tree_arrays, positions_by_link, velocities_by_link
+from clearance.world.kinematics import rates_by_link, values_by_link
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import Pair
@@ -62,36 +61,22 @@ def certify_motion(
         need: what was measured. Where it leaves clearances unknown, it is only asked whether the motion stays
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
         resources: threads, progress, and where the bounds are kept.
-
-    Raises:
-        BadDimension: `gap` is not a positive length.
     """
-    if not (isinstance(gap, int | float | np.number) and 0.0 < gap < np.inf):
-        raise BadDimension(f"a gap of {gap!r:.60} m", where="certify", valid="a length above 0")
-    gap = float(gap)
     gap, notices = _no_finer_than_rounding(case, motions, gap)
-    progress, tally, bounds = resources.progress, _no_counts(), []
-    question = _Question.of(found, case.limits, need, gap)
-    for i_robot in sorted(
-        {pair.i_robot for pair in pairs}
-    ):  # a robot may have nothing that is measured
-        motion = motions[i_robot]
-        work = _Work.of(case, motion, pairs, i_robot, question)
-        log = _Log(resources.rows, f"certify{i_robot}", motion.n_steps, question)
-        results = in_order(work.certify(log.bounds), log.spans[log.done :], resources.n_threads)
-        for i_part, (done, counts) in enumerate(results, start=log.done + 1):
-            log.note(i_part, counts, last=i_part == len(log.spans))
-            if progress:
-                progress(done + 1, motion.n_steps)
-        tally += log.tally
-        bounds.append(log.bounds)
-    joined = _joined(bounds)
+    work = _Work.of(case, motions, pairs, _Question.of(found, case.limits, need, gap))
+    n_steps = motions[0].n_steps
+    log = _Log(resources.rows, "certify", n_steps, work.question)
+    results = in_order(work.certify(log.bounds), log.spans[log.done :], resources.n_threads)
+    for i_part, (done, counts) in enumerate(results, start=log.done + 1):
+        log.note(i_part, counts, last=i_part == len(log.spans))
+        if resources.progress:
+            resources.progress(done + 1, n_steps)
     resources.rows.let_go()
     return Certificate(
-        *joined,
+        *log.bounds,
         gap,
-        dict(zip(COUNTERS, tally.tolist(), strict=True)),
-        _moment_of(Moments(case, motions, pairs), joined, found),
+        dict(zip(COUNTERS, log.tally.tolist(), strict=True)),
+        _moment_of(Moments(case, motions, pairs), log.bounds, found),
         notices,
     )
 
@@ -109,17 +94,6 @@ def _no_finer_than_rounding(
         f"2^-32 of the scene's size ({size:.3g} m from the origin), which is above rounding"
     )
     return finest, (Notice(Severity.WARNING, "certificate", text),)
-
-
-def _joined(bounds: Sequence[IntervalBounds]) -> IntervalBounds:
-    """The bounds of all robots together, in the arrays of the first."""
-    first = bounds[0]
-    for other in bounds[1:]:
-        np.minimum(first.lower, other.lower, out=first.lower)
-        nearer = other.upper < first.upper
-        for mine, theirs in zip(first[1:], other[1:], strict=True):
-            mine[nearer] = theirs[nearer]
-    return first
 
 
 def _moment_of(
@@ -171,7 +145,7 @@ def _or_far(clearance: np.ndarray, far: float) -> np.ndarray:
 
 
 class _Log:
-    """The bounds of one robot, (n,) each, and how many parts of them are proven."""
+    """The bounds, (n,) each, and how many parts of them are proven."""
 
     def __init__(self, kept: MeasuredRows, name: str, n_steps: int, question: _Question) -> None:
         self._kept = kept
@@ -197,22 +171,19 @@ class _Log:
 
 @dataclass(frozen=True, eq=False)
 class _Work:
-    """What all parts of one robot's certificate share; `chosen` are its pairs among all."""
+    """What all parts of a certificate share."""
 
     surface: Surface
-    tree: KinematicTree
-    asked: CertifiedPairs
-    motion: Motion
-    chosen: np.ndarray
+    world: World
+    motions: Sequence[Motion]
     question: _Question
 
     @staticmethod
     def of(
-        case: Case, motion: Motion, pairs: Sequence[Pair], i_robot: int, question: _Question
+        case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], question: _Question
     ) -> _Work:
-        chosen = [i for i, pair in enumerate(pairs) if pair.i_robot == i_robot]
-        laid = _lay_out(case, [pairs[i] for i in chosen])
-        return _Work(*laid, motion, np.array(chosen), question)
+        layout = lay_out(case, pairs)
+        return _Work(_with_whole_faces(layout.surface), layout.world, motions, question)
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
@@ -220,14 +191,11 @@ class _Work:
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
-            nearest = np.searchsorted(self.chosen, self.question.found.pair[span])
             own = IntervalBounds(*(column[span] for column in bounds))
-            motion = CertifiedMotion(self.tree, _joint_path(self.motion, ends), self.asked)
-            order = np.maximum(nearest, 0) % len(self.chosen)
+            motion = CertifiedMotion(self.world, _joint_path(self.world.links, self.motions, ends))
+            order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
             call(certify, self.surface, motion, steps, self.question.aim, own, counts)
-            seen = own.pair >= 0
-            own.pair[seen] = self.chosen[own.pair[seen]]
             return span.stop, counts
 
         return run_part
@@ -235,19 +203,6 @@ class _Work:
 
 def _no_counts() -> np.ndarray:
     return np.zeros(len(COUNTERS), dtype=np.int64)
-
-
-def _lay_out(case: Case, pairs: Sequence[Pair]) -> tuple[Surface, KinematicTree, CertifiedPairs]:
-    """The surface with whole faces, the robot's kinematic tree, and the pairs; all of one robot."""
-    layout = lay_out(case, pairs)
-    placed = case.robots[pairs[0].i_robot]
-    robot = placed.robot
-    links = [robot.link_names.index(robot.bodies[pair.i_body].name) for pair in pairs]
-    return (
-        _with_whole_faces(layout.surface),
-        KinematicTree(_writable(placed.world_from_base), *kinematic_tree_arrays(robot)),
-        CertifiedPairs(layout.world.pairs, np.array(links, dtype=np.int64), layout.world.standing),
-    )
 
 
 def _with_whole_faces(surface: Surface) -> Surface:
@@ -262,14 +217,27 @@ def _with_whole_faces(surface: Surface) -> Surface:
     )
 
 
-def _joint_path(motion: Motion, steps: slice) -> JointPath:
+def _joint_path(links: Links, motions: Sequence[Motion], steps: slice) -> JointPath:
     """The motion of the joints above all links at `steps`."""
-    robot = motion.placed.robot
-    positions = positions_by_link(robot, motion.positions[steps])
-    velocities = np.empty((0, positions.shape[1]))
-    if motion.velocities is not None:
-        velocities = velocities_by_link(robot, motion.velocities[steps])
-    return JointPath(_writable(motion.times[steps]), _writable(positions), _writable(velocities))
+    positions = np.concatenate([motion.positions[steps] for motion in motions], axis=1)
+    cubic = np.concatenate(
+        [np.full(motion.positions.shape[1], motion.velocities is not None) for motion in motions]
+    )
+    velocities = np.empty((0, len(links.parents)))
+    if cubic.any():
+        velocities = rates_by_link(links, np.concatenate([_rates(m, steps) for m in motions], 1))
+    return JointPath(
+        _writable(motions[0].times[steps]),
+        _writable(values_by_link(links, positions)),
+        _writable(velocities),
+        np.append(cubic, False)[links.columns],  # the last stands for no column
+    )
+
+
+def _rates(motion: Motion, steps: slice) -> np.ndarray:
+    if motion.velocities is None:
+        return np.zeros_like(motion.positions[steps])
+    return motion.velocities[steps]
 
 
 def _writable(numbers: np.ndarray) -> np.ndarray:

@@ -105,11 +105,13 @@ class Checker:
         self._names = [placed.joints_given for placed in case.robots]
         self.joint_names = tuple(name for names in self._names for name in names)
         self._placing = _placing(case.robots, self._names)
-        laid = lay_out(case, pairs)
+        self._layout = lay_out(case, pairs)
         no_rows = PairRows(
             np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
         )
-        self._held = hold_scene(laid.surface, laid.world, no_rows, len(self._placing[0]))
+        self._held = hold_scene(
+            self._layout.surface, self._layout.world, no_rows, len(self._placing[0])
+        )
         self._lock = threading.Lock()
         self._counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         self._row = _rows(1)
@@ -128,6 +130,7 @@ class Checker:
         positions = self._positions(self._given(configuration)[None])
         with self._lock:
             call(nearest_at_positions, self._held, positions, self._row, self._counts)
+            self._layout.to_world(positions, self._row.pair, self._row.points)
             link, obstacle = self.pairs[self._row.pair[0]]
             distance, points = float(self._row.clearance[0]), self._row.points[0].copy()
         undecided = tuple(self.pairs[i] for i, open_at in self._in_doubt(positions) if open_at[0])
@@ -143,6 +146,7 @@ class Checker:
         rows = _rows(len(positions))
         with self._lock:
             call(nearest_at_positions, self._held, positions, rows, self._counts)
+        self._layout.to_world(positions, rows.pair, rows.points)
         undecided = np.zeros(len(positions), dtype=bool)
         for _, open_at in self._in_doubt(positions):
             undecided |= open_at
@@ -156,7 +160,7 @@ class Checker:
         columns = np.split(positions, np.cumsum(counts)[:-1], axis=1)
         poses = [link_poses(*each) for each in zip(self.case.robots, columns, strict=True)]
         for pair, i_pair, doubt in self._doubts:
-            yield i_pair, is_in_doubt(self.case, pair, doubt, poses[pair.i_robot])
+            yield i_pair, is_in_doubt(self.case, pair, doubt, poses)
 
     def _given(self, configuration: Configuration, n_dimensions: int = 1) -> np.ndarray:
         """The configuration, (k,) or (n, k), as the joints are named."""

@@ -32,7 +32,6 @@ from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.parts import blocks
 from clearance.simulate.steps import pair_names
-from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import Motion
@@ -125,7 +124,7 @@ class _OverlapFinder:
             if len(self._known) >= MOST_KNOWN:
                 del self._known[next(iter(self._known))]
             self._known[key] = self._asked(i_pair, b_from_a)
-        return self._known[key].placed(self._obstacle(i_pair).world_from_body)
+        return self._known[key].placed(self._world_from_b(i_pair, step))
 
     def _deepest(
         self, event: ContactEvent, steps: np.ndarray, budget: Budget
@@ -167,12 +166,11 @@ class _OverlapFinder:
         b_from_a = self._poses(i_pair, np.array([step]))[0]
         near = distance(a, b, pose_a=b_from_a)
         self._tell(i_pair, why)
-        return bounded_contact(a, b, b_from_a, near.point_b, why).placed(
-            self._obstacle(i_pair).world_from_body
-        )
+        bounded = bounded_contact(a, b, b_from_a, near.point_b, why)
+        return bounded.placed(self._world_from_b(i_pair, step))
 
     def _asked(self, i_pair: int, b_from_a: np.ndarray) -> Contact:
-        """The overlap in the obstacle's frame, from where rounding may part bodies that touch in the world."""
+        """The overlap in the second body's frame, where rounding may part bodies that touch in the world."""
         a, b = self._shapes(i_pair)
         near, pair = distance(a, b, pose_a=b_from_a), self._pair(i_pair)
         if isinstance(pair, str):
@@ -205,23 +203,20 @@ class _OverlapFinder:
     def _budget(self, i_pair: int) -> Budget:
         return Budget(sum(body.n_triangles for body in self._shapes(i_pair)))
 
+    def _world_from_b(self, i_pair: int, step: int) -> np.ndarray:
+        b = self.pairs[i_pair].b
+        poses = [link_poses(motion.placed, motion.positions[step][None]) for motion in self.motions]
+        return b.poses_in(self.case, poses)[0]
+
     def _poses(self, i_pair: int, steps: np.ndarray) -> np.ndarray:
-        """(k, 4, 4) the link of a pair as its obstacle sees it."""
+        """(k, 4, 4) the first body of a pair as the second sees it."""
         pair = self.pairs[i_pair]
-        motion, robot = self.motions[pair.i_robot], self.case.robots[pair.i_robot].robot
-        i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
-        from_world = inverse(self._obstacle(i_pair).world_from_body)
-        return from_world @ link_poses(motion.placed, motion.positions[steps])[:, i_link]
+        poses = [link_poses(motion.placed, motion.positions[steps]) for motion in self.motions]
+        return inverse(pair.b.poses_in(self.case, poses)) @ pair.a.poses_in(self.case, poses)
 
     def _shapes(self, i_pair: int) -> tuple[Polyhedron, Polyhedron]:
-        return self._link(i_pair).shape, self._obstacle(i_pair).body.shape
-
-    def _link(self, i_pair: int) -> Body:
         pair = self.pairs[i_pair]
-        return self.case.robots[pair.i_robot].robot.bodies[pair.i_body]
-
-    def _obstacle(self, i_pair: int) -> Obstacle:
-        return self.case.obstacles[self.pairs[i_pair].i_obstacle]
+        return pair.a.shape_in(self.case), pair.b.shape_in(self.case)
 
     @property
     def _names(self) -> tuple[list[str], list[str]]:

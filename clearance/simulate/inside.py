@@ -31,9 +31,9 @@ def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tup
     waiting = doubts_of(case, pairs)
     found: dict[int, int] = {}
     for start in range(0, motions[0].n_steps if waiting else 0, AT_ONCE):
-        poses = _poses(motions, {pairs[i].i_robot for i in waiting}, start)
+        poses = [m.poses(start, min(start + AT_ONCE, m.n_steps)) for m in motions]
         for i, doubt in list(waiting.items()):
-            step = _first_in_doubt(case, pairs[i], doubt, poses[pairs[i].i_robot])
+            step = _first_in_doubt(case, pairs[i], doubt, poses)
             if step is not None:
                 found[i] = start + step
                 del waiting[i]
@@ -53,17 +53,12 @@ def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
     return {i: doubt for i, doubt in doubts.items() if doubt is not None}
 
 
-def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> np.ndarray:
-    """(n,) whether a pair is in doubt and not in contact with its robot at `poses` (n, n_links, 4, 4) [m]."""
-    found = np.zeros(len(poses), dtype=bool)
+def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: Sequence[np.ndarray]) -> np.ndarray:
+    """(n,) whether a pair is in doubt and not in contact, at `poses` of the robots, (n, n_links, 4, 4) each."""
+    found = np.zeros(len(poses[0]), dtype=bool)
     for k in _in_doubt(case, pair, doubt, poses):
         found[k] = True
     return found
-
-
-def _poses(motions: Sequence[Motion], robots: set[int], start: int) -> dict[int, np.ndarray]:
-    """(steps, n_links, 4, 4) [m] of each of the robots, from a step on."""
-    return {i: motions[i].poses(start, min(start + AT_ONCE, motions[i].n_steps)) for i in robots}
 
 
 def _text(link: str, obstacle: str, step: int, time: float) -> str:
@@ -75,23 +70,21 @@ def _text(link: str, obstacle: str, step: int, time: float) -> str:
 
 
 def _shapes(case: Case, pair: Pair) -> tuple[Polyhedron, Polyhedron]:
-    body = case.robots[pair.i_robot].robot.bodies[pair.i_body]
-    return body.shape, case.obstacles[pair.i_obstacle].body.shape
+    return pair.a.shape_in(case), pair.b.shape_in(case)
 
 
-def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> int | None:
-    """The first of the steps with `poses` (n, n_links, 4, 4) at which a pair is in doubt and not in contact."""
+def _first_in_doubt(
+    case: Case, pair: Pair, doubt: Doubt, poses: Sequence[np.ndarray]
+) -> int | None:
+    """The first of the steps, of which `poses` are given, at which a pair is in doubt and not in contact."""
     return next(_in_doubt(case, pair, doubt, poses, along_a_way=True), None)
 
 
 def _in_doubt(
-    case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray, along_a_way: bool = False
+    case: Case, pair: Pair, doubt: Doubt, poses: Sequence[np.ndarray], along_a_way: bool = False
 ) -> Iterator[int]:
-    link, obstacle = _shapes(case, pair)
-    world_from_obstacle = case.obstacles[pair.i_obstacle].world_from_body
-    robot = case.robots[pair.i_robot].robot
-    mine = np.ascontiguousarray(poses[:, robot.link_names.index(robot.bodies[pair.i_body].name)])
-    standing = np.broadcast_to(world_from_obstacle, mine.shape).copy()
-    for k in np.flatnonzero(doubt.at(mine, standing, along_a_way)):
-        if not distance(link, obstacle, pose_a=mine[k], pose_b=world_from_obstacle).contact:
+    one, other = _shapes(case, pair)
+    of_one, of_other = pair.a.poses_in(case, poses), pair.b.poses_in(case, poses)
+    for k in np.flatnonzero(doubt.at(of_one, of_other, along_a_way)):
+        if not distance(one, other, pose_a=of_one[k], pose_b=of_other[k]).contact:
             yield int(k)

@@ -154,6 +154,11 @@ class _Sweep:
             SweepRows(rows, found),
             counts,
         )
+        if not self.layout.is_in_world:
+            self.layout.to_world(positions, rows.pair, rows.points)
+            met = np.where(found.step >= 0, np.arange(len(found.step)), -1)
+            where = positions_at(self.motions, np.maximum(found.step, 0))
+            self.layout.to_world(where, met, found.points)
         return counts
 
     def _run(

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.errors import NothingToMeasure
-from clearance.geometry.polyhedron import Polyhedron
 from clearance.progress import Progress
 from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
@@ -52,7 +51,7 @@ def measure_paper(
         if step % CHUNK == 0:
             poses = [motion.poses(step, min(step + CHUNK, n_steps)) for motion in motions]
         for i_pair, pair in enumerate(pairs):
-            near = _measured(case, pair, poses[pair.i_robot][step % CHUNK], tolerance)
+            near = _measured(case, pair, [each[step % CHUNK][None] for each in poses], tolerance)
             tally.update(near.tally)
             witnesses = (near.point_a, near.point_b)
             if near.distance < clearance[step]:
@@ -84,15 +83,12 @@ def _require_measured(clearance: np.ndarray, step: int, tolerance: float) -> Non
         )
 
 
-def _measured(case: Case, pair: Pair, world_from_link: np.ndarray, tolerance: float) -> Nearest:
-    robot = case.robots[pair.i_robot].robot
-    link: Polyhedron = robot.bodies[pair.i_body].shape
-    obstacle = case.obstacles[pair.i_obstacle]
-    i_link = robot.link_names.index(robot.bodies[pair.i_body].name)
+def _measured(case: Case, pair: Pair, poses: Sequence[np.ndarray], tolerance: float) -> Nearest:
+    """The paper's distance of a pair, of the poses (1, n_links, 4, 4) of each robot."""
     return distance_paper(
-        link,
-        obstacle.body.shape,
-        world_from_link[i_link],
-        obstacle.world_from_body,
+        pair.a.shape_in(case),
+        pair.b.shape_in(case),
+        pair.a.poses_in(case, poses)[0],
+        pair.b.poses_in(case, poses)[0],
         tolerance=tolerance,
     )

@@ -57,14 +57,16 @@ class Moments:
         """
         pair = self.pairs[i_pair]
         positions = tuple(motion.positions_after(step, share) for motion in self.motions)
-        placed = self.case.robots[pair.i_robot]
-        body, obstacle = placed.robot.bodies[pair.i_body], self.case.obstacles[pair.i_obstacle]
-        poses = link_poses(placed, positions[pair.i_robot][None])[0]
+        poses = [
+            link_poses(placed, at[None])
+            for placed, at in zip(self.case.robots, positions, strict=True)
+        ]
+        a, b = pair.a, pair.b
         found = distance(
-            body.shape,
-            obstacle.body.shape,
-            pose_a=poses[placed.robot.link_names.index(body.name)],
-            pose_b=obstacle.world_from_body,
+            a.shape_in(self.case),
+            b.shape_in(self.case),
+            pose_a=a.poses_in(self.case, poses)[0],
+            pose_b=b.poses_in(self.case, poses)[0],
         )
         links, obstacles = pair_names(self.case, [pair])
         times = self.motions[0].times

@@ -9,11 +9,5 @@ from clearance.world.pairs import Pair
 
 
 def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]:
-    """The link and the obstacle of each pair; links carry their robot's name where there are several."""
-    several = len(case.robots) > 1
-    links = []
-    for pair in pairs:
-        robot = case.robots[pair.i_robot].robot
-        name = robot.bodies[pair.i_body].name
-        links.append(f"{robot.name}/{name}" if several else name)
-    return links, [case.obstacles[pair.i_obstacle].name for pair in pairs]
+    """The two bodies of each pair; links carry their robot's name where there are several."""
+    return [pair.a.name_in(case) for pair in pairs], [pair.b.name_in(case) for pair in pairs]

@@ -13,9 +13,10 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
 from clearance.simulate.record import Record
+from clearance.world.case import Case
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
-from clearance.world.pairs import measured_pairs
+from clearance.world.pairs import BodyIndex, measured_pairs
 
 
 def standing_contacts(record: Record) -> list[tuple[str, str]]:
@@ -26,17 +27,22 @@ def standing_contacts(record: Record) -> list[tuple[str, str]]:
         return []
     case = record.case
     standing = [_standing_links(motion) for motion in record.motions]
-    poses = [motion.poses(0, 1)[0] for motion in record.motions]
+    poses = [motion.poses(0, 1) for motion in record.motions]
     touching = []
     for pair in measured_pairs(case)[0]:
-        robot = case.robots[pair.i_robot].robot
-        body, obstacle = robot.bodies[pair.i_body], case.obstacles[pair.i_obstacle]
-        if body.name not in standing[pair.i_robot]:
+        if not all(_stands(case, body, standing) for body in (pair.a, pair.b)):
             continue
-        world_from_link = poses[pair.i_robot][robot.link_names.index(body.name)]
-        if _touch(body.shape, world_from_link, obstacle.body.shape, obstacle.world_from_body):
-            touching.append((body.name, obstacle.name))
+        pose_a, pose_b = (body.poses_in(case, poses)[0] for body in (pair.a, pair.b))
+        if _touch(pair.a.shape_in(case), pose_a, pair.b.shape_in(case), pose_b):
+            touching.append((pair.a.name_in(case), pair.b.name_in(case)))
     return touching
+
+
+def _stands(case: Case, body: BodyIndex, standing: list[set[str]]) -> bool:
+    """True for an obstacle, and for a link that no joint moves."""
+    if body.is_obstacle:
+        return True
+    return case.robots[body.i_robot].robot.bodies[body.i_body].name in standing[body.i_robot]
 
 
 def standing_hint(record: Record) -> list[str]:

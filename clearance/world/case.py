@@ -10,6 +10,7 @@ import numpy as np
 
 from clearance.errors import (
     BadDimension,
+    BadInput,
     BadTime,
     NothingToMeasure,
     NoTrajectory,
@@ -18,6 +19,7 @@ from clearance.errors import (
 )
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
+from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice
@@ -90,6 +92,19 @@ class Omission:
     reason: str
 
 
+@dataclass(frozen=True)
+class SelfClearance:
+    """The links of a robot are measured against one another.
+
+    Attributes:
+        matrix: which pairs are excused, and why; without one, neighbours are.
+        trust_never: excuse also what was not seen to meet in random poses.
+    """
+
+    matrix: CollisionMatrix | None = None
+    trust_never: bool = False
+
+
 @dataclass(frozen=True, eq=False)
 class PlacedRobot:
     """A robot in the world.
@@ -99,6 +114,7 @@ class PlacedRobot:
         world_from_base: (4, 4) pose of the root link [m].
         fixed_positions: values [rad] or [m] of moving joints that the trajectory does not name.
         exclude_links: links that are not measured.
+        self_clearance: whether its links are measured against one another, and which pairs are excused.
     """
 
     robot: Robot
@@ -108,6 +124,7 @@ class PlacedRobot:
     exclude_links: tuple[str, ...] = ()
     urdf_path: str = ""
     package_dirs: tuple[str, ...] = ()
+    self_clearance: SelfClearance | None = None
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
@@ -207,6 +224,8 @@ class Case:
         require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
         for placed in self.robots:
             require_own_names("link", list(placed.robot.link_names))
+        if len(self.robots) == 1 and self.robots[0].self_clearance:
+            _require_other_names(self.robots[0].robot, self.obstacles)
         _require_same_times(self.robots)
 
     def with_trajectory(
@@ -242,6 +261,16 @@ def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
     if name is None or names.count(name) != 1:
         raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
     return names.index(name)
+
+
+def _require_other_names(robot: Robot, obstacles: Sequence[Obstacle]) -> None:
+    """Refuses an obstacle with a link's name where a pair of it could be either."""
+    for obstacle in obstacles:
+        if obstacle.name in robot.link_names:
+            raise BadInput(
+                f"an obstacle and a link of robot {robot.name!r} are both called {obstacle.name!r}",
+                valid="another name for the obstacle, since links are measured against one another too",
+            )
 
 
 def _require_same_times(robots: Sequence[PlacedRobot]) -> None:

@@ -17,6 +17,7 @@ from clearance.kernels.motion.kinematics import (
     TURNING,
     Links,
     forward,
+    place_each,
 )
 from clearance.world.case import PlacedRobot
 from clearance.world.mimics import followers
@@ -79,6 +80,54 @@ def joined_links(placed: Sequence[PlacedRobot]) -> Links:
     return links._replace(parent_from_joint=parent_from_joint)
 
 
+def seen_from(
+    links: Links, wanted: Sequence[tuple[int, int]]
+) -> tuple[Links, dict[tuple[int, int], int]]:
+    """The links and, behind them, links as they are seen from others above them.
+
+    A link that is looked from stands at the origin there, so that only the joints between move what is seen.
+
+    Args:
+        wanted: (the link that is looked from, the link that is seen) each.
+
+    Returns:
+        all links, and the place of each that is wanted.
+    """
+    origins: list[int] = []  # of each link that is added: which it is
+    parents: list[int] = []
+    places: dict[tuple[int, int], int] = {}
+    for reference, link in wanted:
+        path = [link]
+        while path[-1] != reference:
+            path.append(int(links.parents[path[-1]]))
+        for here in reversed(path):
+            if (reference, here) not in places:
+                above = (
+                    NO_PARENT if here == reference else places[reference, int(links.parents[here])]
+                )
+                places[reference, here] = len(links.parents) + len(origins)
+                origins.append(here)
+                parents.append(above)
+    if not origins:
+        return links, places
+    added = Links(*(column[origins] for column in links))
+    roots = np.array(parents) == NO_PARENT
+    fixed = added.parent_from_joint.copy()
+    fixed[roots] = np.eye(4)
+    kinds, columns = np.where(roots, FIXED, added.kinds), np.where(roots, NO_COLUMN, added.columns)
+    added = added._replace(
+        parents=np.array(parents), parent_from_joint=fixed, kinds=kinds, columns=columns
+    )
+    return Links(*(np.concatenate(both) for both in zip(links, added, strict=True))), places
+
+
+def poses_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
+    """(n, links, 4, 4) `world_from_link` [m] of all links, of positions (n, columns)."""
+    poses = np.empty((len(positions), len(links.parents), 4, 4))
+    place_each(links, np.ascontiguousarray(values_by_link(links, positions)), poses)
+    return poses
+
+
 @lru_cache(maxsize=8)
 def _links_of(robot: Robot) -> Links:
     """The links of one robot, standing at the origin."""
@@ -133,6 +182,25 @@ def moving_velocities(
 ) -> np.ndarray:
     """(n, k) velocities of all moving joints from those given by name; joints that are not named rest."""
     return moving_positions(replace(placed, fixed_positions={}), joint_names, given)
+
+
+def values_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
+    """(n, links) the position of the joint above each link, of (n, columns); 0 for roots and fixed joints."""
+    return rates_by_link(links, positions) + np.where(
+        links.columns == NO_COLUMN, 0.0, links.offsets
+    )
+
+
+def rates_by_link(links: Links, rates: np.ndarray) -> np.ndarray:
+    """(n, links) the same of velocities (n, columns), of which offsets are no part."""
+    moving = np.where(links.columns == NO_COLUMN, 0.0, links.factors)
+    if rates.shape[1] == 0:
+        return np.zeros((len(rates), len(moving)))
+    return (
+        rates[:, np.maximum(links.columns, 0)] * moving
+        if rates.shape[1]
+        else np.zeros((len(rates), len(moving)))
+    )
 
 
 def _column(columns: dict[str, int], name: str) -> int:

@@ -42,7 +42,7 @@ def pushed(name: str) -> Case:
     worst = int(np.nanargmin(found.clearance))
     on_link, on_obstacle = found.points[worst]
     way = (on_link - on_obstacle) / np.linalg.norm(on_link - on_obstacle)
-    return _moved(case, pairs[found.pair[worst]].i_obstacle, on_link - on_obstacle + depth * way)
+    return _moved(case, pairs[found.pair[worst]].b.i_body, on_link - on_obstacle + depth * way)
 
 
 def _moved(case: Case, i_obstacle: int, shift: np.ndarray) -> Case:

@@ -145,8 +145,8 @@ def scene_from(
     """A case with its motion followed and its bodies triangulated."""
     motions = tuple(kinematic_motion(placed) for placed in case.robots)
     pairs, _ = measured_pairs(case)
-    movers = sorted({(pair.i_robot, pair.i_body) for pair in pairs})
-    fixed = sorted({pair.i_obstacle for pair in pairs})
+    movers = sorted({(pair.a.i_robot, pair.a.i_body) for pair in pairs})
+    fixed = sorted({pair.b.i_body for pair in pairs if pair.b.is_obstacle})
     standing = [case.obstacles[k] for k in fixed]
     links = [solid(case.robots[i].robot.bodies[j]) for i, j in movers]
     obstacles = [solid(o.body, stands=True) for o in standing]
@@ -160,7 +160,7 @@ def scene_from(
         poses=_poses(case, motions, movers),
         standing=np.array([o.world_from_body for o in standing]),
         index=np.array(
-            [(movers.index((p.i_robot, p.i_body)), fixed.index(p.i_obstacle)) for p in pairs]
+            [(movers.index((p.a.i_robot, p.a.i_body)), fixed.index(p.b.i_body)) for p in pairs]
         ),
         reference=reference,
     )

@@ -138,8 +138,11 @@ class SortedPairs(AllPairs):
         for i_pair in np.argsort(bounds).tolist():
             if bounds[i_pair] >= best or best <= 0.0:
                 break
-            best = min(best, self._ask(i_pair))
+            best = min(best, self._ask_below(i_pair, best))
         return best
+
+    def _ask_below(self, i_pair: int, best: float) -> float:
+        return self._ask(i_pair)
 
 
 class BestSoFar(SortedPairs):
@@ -147,14 +150,8 @@ class BestSoFar(SortedPairs):
 
     style = "sorted, best so far"
 
-    def _step(self, step: int) -> float:
-        self._place(step)
-        bounds, best = self._bounds(step) - ROUNDING, np.inf
-        for i_pair in np.argsort(bounds).tolist():
-            if bounds[i_pair] >= best or best <= 0.0:
-                break
-            best = min(best, self._ask(i_pair, upper_bound=best))
-        return best
+    def _ask_below(self, i_pair: int, best: float) -> float:
+        return self._ask(i_pair, upper_bound=best)
 
 
 class CarriedBounds(SortedPairs):

@@ -118,6 +118,6 @@ def test_skipping_changes_no_answer():
     poses = run.poses(0, 60)
     for step in range(60):
         run.pairs[0].link.peer.place(poses[0, step])
-        every = [pair.link.peer.distance(pair.obstacle.peer) for pair in run.pairs]
+        every = [pair.link.peer.distance(pair.other.peer) for pair in run.pairs]
         assert answers.clearances[step] == min(every)
     assert answers.n_queries < 60 * 12 / 2

@@ -94,14 +94,13 @@ def test_the_point_of_a_contact_is_that_of_a_single_question():
     case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
     motion = kinematic_motion(case.robots[0])
     found, pairs = measured(case, motion, np.arange(motion.n_steps)), measured_pairs(case)[0]
-    robot = case.robots[0].robot
     for step in np.flatnonzero(found.clearance == 0.0):
         pair = pairs[found.pair[step]]
-        body, obstacle = robot.bodies[pair.i_body], case.obstacles[pair.i_obstacle]
-        pose = motion.poses(step, step + 1)[0, robot.link_names.index(body.name)]
-        alone = cl.distance(
-            body.shape, obstacle.body.shape, pose_a=pose, pose_b=obstacle.world_from_body
+        poses = [motion.poses(step, step + 1)]
+        (a, pose_a), (b, pose_b) = (
+            (body.shape_in(case), body.poses_in(case, poses)[0]) for body in (pair.a, pair.b)
         )
+        alone = cl.distance(a, b, pose_a=pose_a, pose_b=pose_b)
         assert alone.contact
         assert np.allclose(found.points[step], [alone.point_a, alone.point_b], rtol=0.0, atol=1e-12)
 

@@ -11,19 +11,22 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import Vec3, rigid
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.joint_motion_bound import (
-    KinematicTree,
     motion_bound_of,
     motion_bound_of_box,
     motion_bound_of_box_along,
 )
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematics import kinematic_tree_arrays, link_poses, positions_by_link
+from clearance.world.kinematics import joined_links, link_poses, positions_by_link
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.made_cases import random_robot
 
 SHAPE = box((0.3, 0.1, 0.2))
+
+
+def standing(robot):
+    return PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
 
 
 @kernel
@@ -47,14 +50,14 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
     rng = np.random.default_rng(seed)
     robot = random_robot(rng, n_joints)
     n_moving = len(robot.moving_joints)
-    placed = PlacedRobot(robot, Trajectory(np.zeros(1), (), np.zeros((1, 0))))
+    placed = standing(robot)
     middle, half = rng.uniform(-2, 2, n_moving), size * rng.uniform(-1, 1, n_moving)
     shares = np.concatenate([[0.0], np.linspace(-1.0, 1.0, 41)])
     bend = bent * size * rng.uniform(0, 1, n_moving)
     aside = bend * rng.choice([-1.0, 0.3, 1.0], (len(shares), n_moving))
     aside[0] = 0.0
     poses = link_poses(placed, middle + shares[:, None] * half + aside)
-    chain = KinematicTree(np.eye(4), *kinematic_tree_arrays(robot))
+    chain = joined_links([standing(robot)])
     swing = positions_by_link(robot, half[None])[0]
     direction = rng.normal(size=3)
     direction /= np.linalg.norm(direction)  # in the frame of the link
@@ -73,7 +76,7 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
 
 def test_the_bound_of_a_slide_is_exact():
     robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = KinematicTree(np.eye(4), *kinematic_tree_arrays(robot))
+    chain = joined_links([standing(robot)])
     poses = np.tile(np.eye(4), (2, 1, 1))
     bound, along = drifts(
         surface_of(SHAPE),
@@ -90,7 +93,7 @@ def test_the_bound_of_a_slide_is_exact():
 
 def test_a_bend_is_added_to_the_slide_in_every_direction():
     robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = KinematicTree(np.eye(4), *kinematic_tree_arrays(robot))
+    chain = joined_links([standing(robot)])
     poses, bend = np.tile(np.eye(4), (2, 1, 1)), np.array([0.0, 0.125])
     sideways = np.array([0.0, 1.0, 0.0])
     bound, along = drifts(surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), bend, sideways)

@@ -23,7 +23,7 @@ def path_of(positions, velocities, times):
     columns = [
         np.reshape(np.array(values, dtype=float), (-1, 1)) for values in (positions, velocities)
     ]
-    return JointPath(np.array(times, dtype=float), *columns)
+    return JointPath(np.array(times, dtype=float), *columns, np.ones(1, dtype=bool))
 
 
 def hermite(path, at):
@@ -70,7 +70,12 @@ def test_the_bend_of_a_parabola_is_no_larger_than_it_must_be():
 @given(st.floats(-10, 10), st.floats(-10, 10), st.integers(0, 15))
 @example(0.1, 0.7, 3)
 def test_without_velocities_the_motion_is_linear(before, after, i):
-    path = JointPath(np.array([0.0, 1.0]), np.array([[before], [after]]), np.empty((0, 1)))
+    path = JointPath(
+        np.array([0.0, 1.0]),
+        np.array([[before], [after]]),
+        np.empty((0, 1)),
+        np.ones(1, dtype=bool),
+    )
     found = part(path, 0, 0, i / 16, (i + 1) / 16)
     assert found.middle == before + 0.5 * (i / 16 + (i + 1) / 16) * (after - before)
     assert found.swing == pytest.approx((after - before) / 32, rel=1e-11, abs=1e-300)
@@ -82,4 +87,5 @@ def test_velocities_of_the_linear_motion_change_nothing_but_rounding():
     linear = path._replace(velocities=np.empty((0, 1)))
     found, straight = part(path, 0, 0, 0.25, 0.5), part(linear, 0, 0, 0.25, 0.5)
     assert (found.middle, found.swing) == (straight.middle, straight.swing)
+    assert part(path._replace(is_cubic=np.zeros(1, dtype=bool)), 0, 0, 0.25, 0.5) == straight
     assert 0.0 < found.bend < 1e-14

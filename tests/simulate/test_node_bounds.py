@@ -125,6 +125,13 @@ NO_LINKS = Links(
     np.empty(0, dtype=np.int64), np.empty(0), np.empty(0),
 )  # fmt: skip
 
+
+def standing_world(poses):
+    """Two solids that stand, and their pair."""
+    bodies = np.arange(2)
+    return World(bodies, np.array([-1, -1]), bodies, poses, np.array([[0, 1]]), NO_LINKS)
+
+
 KINDS = ("any", "needles", "no area", "flat", "lattice", "far", "tiny")
 
 
@@ -206,7 +213,7 @@ def test_no_bound_of_two_bodies_is_above_the_exact_distance(seed, kind_a, kind_b
     a, b = triangles(random, 3, kind_a), triangles(random, 3, kind_b)
     poses = np.array([pose(random, reach, True), pose(random, reach, True)])
     poses[:, :3, :3] += off / 3.0 * random.uniform(-1.0, 1.0, size=(2, 3, 3))
-    surface, world = join([a, b]), World(np.array([-1, -1]), poses, np.array([[0, 1]]), NO_LINKS)
+    surface, world = join([a, b]), standing_world(poses)
     truth = min(map(min, exact_distances_sq(a, b, *poses)))
     by_balls, by_boxes = (body_bound_of(surface, world, enough) for enough in (-np.inf, np.inf))
     assert is_at_most(by_balls, truth)
@@ -222,7 +229,7 @@ def test_balls_are_enough_over_a_board():
     poses = np.array([np.eye(4), over])
     surface, world = (
         join([board, small]),
-        World(np.array([-1, -1]), poses, np.array([[0, 1]]), NO_LINKS),
+        standing_world(poses),
     )
     assert body_bound_of(surface, world, 1.8) == pytest.approx(2.1 - 0.1 * 3**0.5, abs=1e-4)
     assert body_bound_of(surface, world, 1.95) == pytest.approx(2.0, abs=1e-4)

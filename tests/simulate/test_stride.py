@@ -16,6 +16,7 @@ from clearance.kernels.motion.interval_motion_bound import (
     fill_motion_radii,
     interval_motion_bound_of,
 )
+from clearance.kernels.motion.world import World
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import joined_links, link_poses
 from clearance.world.robot import Joint, JointKind, Robot
@@ -31,15 +32,21 @@ ASIDE = np.block(
 
 
 @kernel
-def ways(surface, frames, links, positions):
-    """(k,) [m] the bound on the motion of the body from the first step to each."""
-    reach = np.empty((len(frames), positions.shape[1]))
-    noise = np.empty(len(frames))
-    fill_motion_radii(surface, frames, links, positions, reach, noise)
+def ways_in(surface, world, positions):
+    reach = np.empty((1, positions.shape[1]))
+    noise = np.empty(1)
+    fill_motion_radii(surface, world, positions, reach, noise)
     bounds = np.empty(len(positions))
     for step in range(len(positions)):
         bounds[step] = interval_motion_bound_of(positions, 0, step, reach[0], noise[0])
     return bounds
+
+
+def ways(surface, frames, links, positions):
+    """(k,) [m] the bound on the motion of the body from the first step to each."""
+    body, no_pairs = np.zeros(1, dtype=np.int64), np.empty((0, 2), dtype=np.int64)
+    world = World(body, frames, body, np.empty((0, 4, 4)), no_pairs, links)
+    return ways_in(surface, world, positions)
 
 
 def placed_at(rng: np.random.Generator, robot: Robot) -> PlacedRobot:

@@ -157,9 +157,17 @@ def test_a_trajectory_is_held_against_its_robot():
         cl.Trajectory(np.zeros(1), ("a", "a"), np.zeros((1, 2)))
 
 
-def test_two_robots_are_not_measured_against_each_other_and_the_verdict_says_so():
-    run = cl.check(cl.Case("two", (still("left"), still("right")), posts("post")))
-    assert run.verdict.not_checked == ("self-collision", "robot against robot")
+def test_two_robots_are_measured_against_each_other_and_each_against_itself_where_that_is_asked():
+    left, right = still("left"), still("right")
+    run = cl.check(cl.Case("two", (left, right), posts("post")))
+    assert run.verdict.not_checked == ("self-collision",)
+    between = {
+        (row.link.split("/")[0], row.obstacle.split("/")[0]) for row in run.record.pair_minima
+    }
+    assert between == {("left", "post"), ("right", "post"), ("left", "right")}
+    alone = dataclasses.replace(left, self_clearance=cl.SelfClearance())
+    run = cl.check(cl.Case("two", (alone, right), posts("post")))
+    assert run.verdict.not_checked == ("self-collision of right",)
 
 
 def test_limits_are_numbers_of_metres():

@@ -47,9 +47,9 @@ def new_body_boxes(n_bodies):
 
 
 @inline
-def place_box(surface, body, pose, boxes):
-    """Puts the box of a body to where the body is, at a `Rigid`."""
-    box = box_of(surface, surface.roots[body])
+def place_box(surface, root, body, pose, boxes):
+    """Puts the box of a body, that of the root of its tree, to where the body is, at a `RigidMotion`."""
+    box = box_of(surface, root)
     centre, x, y, z = (
         move(pose, box.centre),
         turn(pose, box.x),

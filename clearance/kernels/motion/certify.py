@@ -1,12 +1,12 @@
 """A proven lower bound on the clearance of the continuous motion between two steps.
 
 In the middle of an interval the trees are descended as for a distance, but each bound is lowered by how far
-the link can move in the interval: along the direction of the nearest points where two faces or boxes are
+the bodies can move in the interval: along the direction of the nearest points where two faces or boxes are
 seen apart, so that sliding past costs nothing in the first order. Nodes that are turned away in all of the
 interval are passed over (`normal_cones`): at its first instant the distance is above 0, or nothing is asked.
 What does not stay above the target is halved, the earlier half first; after `most_parts` of them the target of a
 pair is lowered until it can be proven, so that all ends. A bound on a pair holds for later intervals less what
-its link moves in them: pairs that it keeps above the target are not asked.
+its bodies move in them: pairs that it keeps above the target are not asked.
 
 Not for: one pair over one interval (`hold`), the steps themselves (`sweep`).
 """
@@ -32,14 +32,16 @@ from clearance.kernels.features.posed_pair import PosedPair
 from clearance.kernels.mesh.surface import box_of, surface_like
 from clearance.kernels.motion.certify_pair import allowed_gap, hold
 from clearance.kernels.motion.joint_motion_bound import (
-    KinematicTree,
+    AT_REST,
     MotionBound,
+    PairMotion,
     motion_bound_of,
     motion_bound_of_box,
 )
 from clearance.kernels.motion.joint_path import JointPath, part_of
-from clearance.kernels.motion.kinematics import forward
+from clearance.kernels.motion.kinematics import Links, place_by_link
 from clearance.kernels.motion.placed import GROWTH
+from clearance.kernels.motion.world import World
 from clearance.kernels.search.front import KEPT_DOWN
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
@@ -53,30 +55,16 @@ ROUNDED_DOWN = 1.0 - 2.0**-50
 """Covers the rounding of the steps' clearances, which are right to the last place."""
 
 
-class CertifiedPairs(NamedTuple):
-    """Which pairs are certified: their bodies in the surface, the links of the first, poses of the second.
-
-    Attributes:
-        bodies: (p, 2) moving body, standing body.
-        links: (p,) link of the moving body.
-        standing: (bodies, 4, 4) poses of the standing bodies [m].
-    """
-
-    bodies: np.ndarray
-    links: np.ndarray
-    standing: np.ndarray
-
-
 class CertifiedMotion(NamedTuple):
     """What moves and how.
 
     Attributes:
-        path: how the joint of each link moves from step to step.
+        world: the bodies and their pairs.
+        path: how the joint above each link moves from step to step.
     """
 
-    tree: KinematicTree
+    world: World
     path: JointPath
-    pairs: CertifiedPairs
 
 
 class CertifiedSteps(NamedTuple):
@@ -135,10 +123,10 @@ class PairInterval(NamedTuple):
 class IntervalMiddle(NamedTuple):
     """The state in the middle of an interval or of a part of it."""
 
-    positions: np.ndarray  # (1, n_links)
-    swing: np.ndarray  # (n_links,)
-    bend: np.ndarray  # (n_links,)
-    poses: np.ndarray  # (1, n_links, 4, 4)
+    positions: np.ndarray  # (links,)
+    swing: np.ndarray  # (links,)
+    bend: np.ndarray  # (links,)
+    poses: np.ndarray  # (links, 4, 4)
 
 
 class CertifyState(NamedTuple):
@@ -146,7 +134,6 @@ class CertifyState(NamedTuple):
 
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
-        links: (bodies,) the link of each body that moves, else -1.
         motion_bounds: (bodies, 8) numbers of the `MotionBound` of each in the interval.
         displacements: (bodies,) [m] how far each can have moved in all.
         lower_bounds: (p,) [m] a bound on each pair's distance over an interval, plus the displacement at its end.
@@ -156,7 +143,6 @@ class CertifyState(NamedTuple):
 
     whole: IntervalMiddle
     part: IntervalMiddle
-    links: np.ndarray
     motion_bounds: np.ndarray
     displacements: np.ndarray
     lower_bounds: np.ndarray
@@ -166,33 +152,33 @@ class CertifyState(NamedTuple):
 
 
 @inline
-def _go_to(tree, path, step, low, high, middle):
+def _go_to(links, path, step, low, high, middle):
     """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
     for link in range(path.positions.shape[1]):
         part = part_of(path, step, link, low, high)
-        middle.positions[0, link] = part.middle
+        middle.positions[link] = part.middle
         middle.swing[link] = part.swing
         middle.bend[link] = part.bend
-    forward(
-        tree.world_from_base, tree.parents, tree.kinds, tree.parent_from_joint, tree.axes,
-        middle.positions, middle.poses,
-    )  # fmt: skip
+    place_by_link(links, middle.positions, middle.poses)
 
 
 @inline
 def _new_middle(n_links):
     return IntervalMiddle(
-        np.empty((1, n_links)), np.empty(n_links), np.empty(n_links), np.empty((1, n_links, 4, 4))
+        np.empty(n_links), np.empty(n_links), np.empty(n_links), np.empty((n_links, 4, 4))
     )
 
 
 @inline
-def _motion_bound_in(surface, tree, body, link, middle):
+def _motion_bound_in(surface, world, body, middle):
     """The motion bound of a body about `middle`."""
-    pose = rigid(middle.poses[0, link])
-    root = surface.roots[body]
+    link = world.frames[body]
+    if link < 0:
+        return AT_REST
+    root = surface.roots[world.solids[body]]
+    pose = rigid(middle.poses[link])
     return motion_bound_of(
-        surface, root, tree, link, middle.poses[0], middle.swing, middle.bend, pose
+        surface, root, world.links, link, middle.poses, middle.swing, middle.bend, pose
     )
 
 
@@ -203,14 +189,11 @@ def _motion_bound_at(motion_bounds, body):
 
 
 @inline
-def _go_on(surface, tree, path, step, state):
+def _go_on(surface, world, path, step, state):
     """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
-    _go_to(tree, path, step, 0.0, 1.0, state.whole)
-    for body in range(len(state.links)):
-        link = state.links[body]
-        if link < 0:
-            continue
-        motion_bound = _motion_bound_in(surface, tree, body, link, state.whole)
+    _go_to(world.links, path, step, 0.0, 1.0, state.whole)
+    for body in range(len(world.frames)):
+        motion_bound = _motion_bound_in(surface, world, body, state.whole)
         numbers = state.motion_bounds[body]
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,
@@ -223,20 +206,27 @@ def _go_on(surface, tree, path, step, state):
             motion_bound.spin.z,
         )
         numbers[6], numbers[7] = motion_bound.rest, motion_bound.turn
-        state.displacements[body] += (
-            2.0 * GROWTH * motion_bound_of_box(box_of(surface, surface.roots[body]), motion_bound)
-        )
+        if world.frames[body] >= 0:
+            box = box_of(surface, surface.roots[world.solids[body]])
+            state.displacements[body] += 2.0 * GROWTH * motion_bound_of_box(box, motion_bound)
 
 
 @inline
-def _hold_pair(lent, pairs, pair, middle, motion_bound, least, aim, state, tally, table):
+def _pose_of(world, body, middle):
+    """Where a body is in `middle`."""
+    frame = world.frames[body]
+    return rigid(middle.poses[frame] if frame >= 0 else world.standing[body])
+
+
+@inline
+def _hold_pair(lent, world, pair, middle, motion, least, aim, state, tally, table):
     """`hold` of a pair at the state in `middle`."""
-    body_a, body_b = pairs.bodies[pair, 0], pairs.bodies[pair, 1]
-    frames = frames_of(rigid(middle.poses[0, pairs.links[pair]]), rigid(pairs.standing[body_b]))
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    frames = frames_of(_pose_of(world, body_a, middle), _pose_of(world, body_b, middle))
     tally[1] += 1
     witness_faces = state.witness_faces[pair]
-    bodies = PosedPair(lent, body_a, lent, body_b, frames)
-    held = hold(bodies, witness_faces, motion_bound, least, aim, state.scratch, tally, table)
+    bodies = PosedPair(lent, world.solids[body_a], lent, world.solids[body_b], frames)
+    held = hold(bodies, witness_faces, motion, least, aim, state.scratch, tally, table)
     witness_faces[0], witness_faces[1] = held.face_a, held.face_b
     return held
 
@@ -250,27 +240,24 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
         motion: a `CertifiedMotion`. steps: `CertifiedSteps`. aim: a `CertificateGoal`.
         tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
     """
-    n_links, n_bodies = motion.path.positions.shape[1], len(surface.roots)
-    n_pairs = len(motion.pairs.bodies)
+    world = motion.world
+    n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
-        _new_middle(n_links), _new_middle(n_links), np.full(n_bodies, -1), np.empty((n_bodies, 8)),
+        _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
-    for pair in range(n_pairs):
-        state.links[motion.pairs.bodies[pair, 0]] = motion.pairs.links[pair]
     at_address(table, CERTIFY, 0, (lend(surface), motion, steps, aim, bounds, tally, state, table))
 
 
 def _like():
     numbers, places, rows = np.empty(0), np.empty(0, dtype=np.int64), np.empty((0, 0))
     pairs, poses = np.empty((0, 2), dtype=np.int64), np.empty((0, 0, 0))
-    tree = KinematicTree(rows, places, places, poses, rows)
-    middle = IntervalMiddle(rows, numbers, numbers, np.empty((0, 0, 0, 0)))
-    state = CertifyState(middle, middle, places, rows, numbers, numbers, pairs, rows, new_scratch())
-    motion = CertifiedMotion(
-        tree, JointPath(numbers, rows, rows), CertifiedPairs(pairs, places, poses)
-    )
+    links = Links(places, places, rows, poses, places, numbers, numbers)
+    middle = IntervalMiddle(numbers, numbers, numbers, poses)
+    state = CertifyState(middle, middle, rows, numbers, numbers, pairs, rows, new_scratch())
+    world = World(places, places, places, poses, pairs, links)
+    motion = CertifiedMotion(world, JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_)))
     steps = CertifiedSteps(0, 0, places, numbers)
     aim, bounds = CertificateGoal(0.0, 0.0, 0), IntervalBounds(numbers, numbers, numbers, places)
     return (
@@ -282,8 +269,8 @@ def _like():
 def _certify(lent, motion, steps, aim, bounds, tally, state, table):
     """`certify`, with the arrays of its state."""
     surface = borrow(lent)
-    pairs, order, clearance = motion.pairs, steps.order, steps.clearance
-    n_pairs = len(pairs.bodies)
+    world, order, clearance = motion.world, steps.order, steps.clearance
+    n_pairs = len(world.pairs)
     displacements, lower_bounds = state.displacements, state.lower_bounds
     for i in range(len(tally)):
         tally[i] = 0
@@ -291,12 +278,12 @@ def _certify(lent, motion, steps, aim, bounds, tally, state, table):
         least = min(clearance[step], clearance[step + 1])
         lower_bound = least  # 0 for a contact: then nothing is left to prove
         share, seen = -1.0, np.int64(-1)
-        _go_on(surface, motion.tree, motion.path, step, state)
+        _go_on(surface, world, motion.path, step, state)
         for turn in range(-1, n_pairs):
             pair = order[step] if turn < 0 else turn
             if turn == order[step] or least <= 0.0:
                 continue
-            moved = displacements[pairs.bodies[pair, 0]]
+            moved = displacements[world.pairs[pair, 0]] + displacements[world.pairs[pair, 1]]
             carried = lower_bounds[pair] - moved
             if carried >= least - allowed_gap(least, aim.gap, aim.fail):
                 lower_bound = min(lower_bound, carried)
@@ -319,10 +306,15 @@ def _certify(lent, motion, steps, aim, bounds, tally, state, table):
 @inline
 def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, table):
     """`hold` of a pair over the whole interval after `step`, halved until that is done."""
-    tree, path, pairs = motion.tree, motion.path, motion.pairs
-    body = pairs.bodies[pair, 0]
-    motion_bound = _motion_bound_at(state.motion_bounds, body)
-    held = _hold_pair(lent, pairs, pair, state.whole, motion_bound, least, aim, state, tally, table)
+    world, path = motion.world, motion.path
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    b_moves = world.frames[body_b] >= 0
+    moving = PairMotion(
+        _motion_bound_at(state.motion_bounds, body_a),
+        _motion_bound_at(state.motion_bounds, body_b),
+        b_moves,
+    )
+    held = _hold_pair(lent, world, pair, state.whole, moving, least, aim, state, tally, table)
     share = 0.5 if held.least < least else -1.0
     if held.completed or held.least <= 0.0:
         return PairInterval(held.lower_bound, held.least, share)
@@ -339,11 +331,13 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
         low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
         if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
             aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
-        _go_to(tree, path, step, low, high, state.part)
-        motion_bound = _motion_bound_in(surface, tree, body, pairs.links[pair], state.part)
-        held = _hold_pair(
-            lent, pairs, pair, state.part, motion_bound, least, aim, state, tally, table
+        _go_to(world.links, path, step, low, high, state.part)
+        moving = PairMotion(
+            _motion_bound_in(surface, world, body_a, state.part),
+            _motion_bound_in(surface, world, body_b, state.part),
+            b_moves,
         )
+        held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)
         if held.least < least:
             least, share = held.least, 0.5 * (low + high)
         if least <= 0.0:

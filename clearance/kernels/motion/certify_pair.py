@@ -1,4 +1,4 @@
-"""A proven lower bound on the distance of one pair while its link moves about the middle of an interval.
+"""A proven lower bound on the distance of one pair while its bodies move about the middle of an interval.
 
 Not for: which pairs and intervals are asked, and halving them (`certify`).
 """
@@ -25,7 +25,7 @@ from clearance.kernels.features.meeting import meeting_of
 from clearance.kernels.features.posed_pair import parts
 from clearance.kernels.mesh.surface import box_of, group_of, is_leaf
 from clearance.kernels.motion.joint_motion_bound import (
-    MotionBound,
+    PairMotion,
     motion_bound_of_box,
     motion_bound_of_box_along,
     motion_bound_of_face_along,
@@ -87,29 +87,52 @@ class IntervalSearch(NamedTuple):
 
 
 class MovingPair(NamedTuple):
-    """A pair of bodies of which the first moves.
+    """A pair of bodies that move.
 
     Attributes:
-        motion_bound: of the first, about the middle. slack: [m] what rounding can raise a bound by.
+        motion: of both about the middle. slack: [m] what rounding can raise a bound by.
     """
 
-    motion_bound: MotionBound
+    motion: PairMotion
     slack: float
+
+
+@inline
+def _moved(p, q, motion):
+    """[m] how far two boxes move at most, added up."""
+    moved = motion_bound_of_box(p, motion.a)
+    if motion.b_moves:
+        moved += motion_bound_of_box(q, motion.b)
+    return moved
+
+
+@inline
+def _faces_moved_along(a, b, faces, direction, motion):
+    """[m] how far two faces come towards one another along a direction at most."""
+    moved = motion_bound_of_face_along(a, faces.a, direction.u, motion.a)
+    if motion.b_moves:
+        return moved + motion_bound_of_face_along(b, faces.b, direction.v, motion.b)
+    return moved
 
 
 @inline
 def _node_lower_bounds(p, q, view, moving, target):
     """[m] lower bounds on the distances of boxes in lanes over the interval."""
-    motion_bound, slack = moving.motion_bound, moving.slack
+    motion, slack = moving.motion, moving.slack
+    direction = view.direction
     along_direction = (
-        lower_bound_boxes_along_direction(p, q, view.direction)
+        lower_bound_boxes_along_direction(p, q, direction)
         - slack
-        - motion_bound_of_box_along(p, view.direction.u, motion_bound)
+        - motion_bound_of_box_along(p, direction.u, motion.a)
     )
+    if motion.b_moves:
+        along_direction = along_direction - motion_bound_of_box_along(q, direction.v, motion.b)
     if marks_within(along_direction, target) == 0:
         return along_direction
-    apart = lower_bound_boxes(p, q, view.m, slack) - slack
-    return larger(along_direction, apart - motion_bound_of_box(p, motion_bound))
+    apart = lower_bound_boxes(p, q, view.m, slack) - slack - motion_bound_of_box(p, motion.a)
+    if motion.b_moves:
+        apart = apart - motion_bound_of_box(q, motion.b)
+    return larger(along_direction, apart)
 
 
 @inline
@@ -154,7 +177,7 @@ def _meet(a, b, faces, margin, scratch, table):
 def _face_lower_bound(a, b, faces, direction, moving):
     """[m] a lower bound on the distance of two faces over the interval, seen along one direction."""
     apart = lower_bound_faces_along_direction(a, faces.a, b, faces.b, direction) - moving.slack
-    return apart - motion_bound_of_face_along(a, faces.a, direction.u, moving.motion_bound)
+    return apart - _faces_moved_along(a, b, faces, direction, moving.motion)
 
 
 @inline(one_caller=True)
@@ -178,8 +201,7 @@ def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, tabl
         if apart <= 0.0 and _meet(a, b, faces, margin, scratch, table):
             touches = True
         else:
-            of_face = motion_bound_of_face_along(a, face_a, own.u, moving.motion_bound)
-            bound = max(bound, apart - of_face)
+            bound = max(bound, apart - _faces_moved_along(a, b, faces, own, moving.motion))
             least, allowed, seen = search.least, search.allowed, math.sqrt(near.gap_sq)
             if seen + margin < least:
                 least = seen + margin
@@ -194,22 +216,23 @@ def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, tabl
 
 
 @inline
-def hold(bodies, witness_faces, motion_bound, least, aim, scratch, tally, table):
+def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
     """A lower bound over the interval for one pair, within the allowed gap below `least` or what is found.
 
-    The search is given up where that cannot be proven, unless the body stands still.
+    The search is given up where that cannot be proven, unless the bodies stand still.
 
     Args:
         bodies: of surfaces in which every face owns all its features, so that a face pair is seen whole.
         witness_faces: (2,) the faces that were nearest before, or -1.
-        motion_bound: of the first body. least: [m] asked about. aim: a `CertificateGoal`.
+        motion: a `PairMotion`. least: [m] asked about. aim: a `CertificateGoal`.
     """
     a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
     roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
     slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, bodies.frames)
-    moving = MovingPair(motion_bound, slack)
-    moved = motion_bound_of_box(box_of(a, roots.a), motion_bound)
-    cos_turn, sin_turn = math.cos(motion_bound.turn), math.sin(motion_bound.turn)
+    moving = MovingPair(motion, slack)
+    moved = _moved(box_of(a, roots.a), box_of(b, roots.b), motion)
+    turn = max(motion.a.turn, motion.b.turn)  # by which the normals of either turn at most
+    cos_turn, sin_turn = math.cos(turn), math.sin(turn)
     near = parts(bodies, witness_faces[0], witness_faces[1])
     search = _begin(a, b, near, least, aim, margin_of(slack))
     lower_bound = math.inf
@@ -239,7 +262,7 @@ def hold(bodies, witness_faces, motion_bound, least, aim, scratch, tally, table)
         bounds = _lower_bounds_of_group(a, b, nodes, search.views.a, moving, target)
         tally[2] += count
         away = 0
-        if motion_bound.turn < MOST_TURNED and marks_within(bounds, target):
+        if turn < MOST_TURNED and marks_within(bounds, target):
             away = turned_away_while(a, b, search.views, nodes, slack, cos_turn, sin_turn, moved)
         assert n_waiting + WIDTH <= STACK_DEPTH
         first = n_waiting

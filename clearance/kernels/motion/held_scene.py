@@ -104,7 +104,7 @@ def _look(surface, world, goal, pair_rows, state, at, positions, row, rows, tall
                 surface, world, pair, state.placed, state.boxes, np.inf
             )
         at[WINNER] = np.argmin(state.lower_bounds)
-        fill_order(world.pairs, state.order)
+        fill_order(world.pairs, world.frames, state.order)
         sort_all(state.lower_bounds, state.order)
     else:
         bring(surface, world, bodies, positions, look, state.placed)

@@ -95,22 +95,23 @@ def _motion_radii_of_body(box, links, link, positions, motion_radii):
 
 
 @inline
-def fill_motion_radii(surface, frames, links, positions, motion_radii, noise):
+def fill_motion_radii(surface, world, positions, motion_radii, noise):
     """Fills, for each body, how far the unit of each column of `positions` can move it, and what rounding can.
 
     Args:
-        frames: (bodies,) the link that carries each, or -1.
+        world: a `World`.
         positions: (k, columns) of all steps that are spoken of [rad or m].
         motion_radii: (bodies, columns) [m per rad or m]. noise: (bodies,) [m].
     """
+    frames = world.frames
     for body in range(len(frames)):
         noise[body] = 0.0
         for column in range(motion_radii.shape[1]):
             motion_radii[body, column] = 0.0
         if frames[body] >= 0:
-            box = box_of(surface, surface.roots[body])
+            box = box_of(surface, surface.roots[world.solids[body]])
             noise[body] = _motion_radii_of_body(
-                box, links, frames[body], positions, motion_radii[body]
+                box, world.links, frames[body], positions, motion_radii[body]
             )
 
 

@@ -10,24 +10,12 @@ move the link about an axis.
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import square_root
 from clearance.kernels.arithmetic.vec3 import Vec3, add, along, cross, dot, row, sub, turn_back
 from clearance.kernels.features.bounds import LEAN, box_reach
 from clearance.kernels.mesh.surface import box_of, corner_of
-from clearance.kernels.motion.kinematics import SLIDING, TURNING
-
-
-class KinematicTree(NamedTuple):
-    """A robot's tree of links as `kinematics.forward` takes it."""
-
-    world_from_base: np.ndarray
-    parents: np.ndarray
-    kinds: np.ndarray
-    parent_from_joint: np.ndarray
-    axes: np.ndarray
+from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
 
 
 class MotionBound(NamedTuple):
@@ -43,6 +31,22 @@ class MotionBound(NamedTuple):
     spin: Vec3
     rest: float
     turn: float
+
+
+AT_REST = MotionBound(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0), 0.0, 0.0)
+"""Of a body that stands."""
+
+
+class PairMotion(NamedTuple):
+    """The motion bounds of both bodies of a pair.
+
+    Attributes:
+        b_moves: False if b stands, which saves half of the work.
+    """
+
+    a: MotionBound
+    b: MotionBound
+    b_moves: bool
 
 
 @inline
@@ -63,9 +67,9 @@ def _farthest_from_axis(surface, root, pose, origin, axis):
 
 
 @inline
-def _world_axis(tree, poses, link):
+def _world_axis(links, poses, link):
     pose = poses[link]
-    x, y, z = tree.axes[link, 0], tree.axes[link, 1], tree.axes[link, 2]
+    x, y, z = links.axes[link, 0], links.axes[link, 1], links.axes[link, 2]
     return Vec3(
         pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z,
         pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z,
@@ -74,7 +78,7 @@ def _world_axis(tree, poses, link):
 
 
 @inline
-def motion_bound_of(surface, root, tree, link, poses, swing, bend, world_from_body):
+def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_body):
     """The motion bound of a body that is fixed to `link`.
 
     Args:
@@ -85,31 +89,31 @@ def motion_bound_of(surface, root, tree, link, poses, swing, bend, world_from_bo
     """
     shallower = 0.0  # sum of the motions of the turning joints between here and the base
     i = link
-    while i != 0:
-        if tree.kinds[i] == TURNING:
+    while links.parents[i] != NO_PARENT:
+        if links.kinds[i] == TURNING:
             shallower += abs(swing[i]) + bend[i]
-        i = tree.parents[i]
+        i = links.parents[i]
     turn = shallower
     spin, velocity = Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0)
     rest = 0.0
     moved = 0.0  # how far the joints up to here move any point of the body
     i = link
-    while i != 0:
+    while links.parents[i] != NO_PARENT:
         size = abs(swing[i]) + bend[i]
-        if size > 0.0 and tree.kinds[i] == TURNING:
+        if size > 0.0 and links.kinds[i] == TURNING:
             shallower = max(0.0, shallower - size)
-            axis = _world_axis(tree, poses, i)
+            axis = _world_axis(links, poses, i)
             origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
             arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
             rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * arm
             moved += size * arm
             spin = along(spin, swing[i], axis)
             velocity = along(velocity, swing[i], cross(origin, axis))
-        elif size > 0.0 and tree.kinds[i] == SLIDING:
+        elif size > 0.0 and links.kinds[i] == SLIDING:
             rest += size * shallower + bend[i]
             moved += size
-            velocity = along(velocity, swing[i], _world_axis(tree, poses, i))
-        i = tree.parents[i]
+            velocity = along(velocity, swing[i], _world_axis(links, poses, i))
+        i = links.parents[i]
     at_origin = add(velocity, cross(spin, world_from_body.t))
     return MotionBound(
         turn_back(world_from_body, at_origin),

@@ -28,12 +28,14 @@ class JointPath(NamedTuple):
     Attributes:
         times: (n,) [s].
         positions: (n, n_links) [rad or m].
-        velocities: (n, n_links) [rad/s or m/s], or (0, n_links) where the joints move linearly.
+        velocities: (n, n_links) [rad/s or m/s], or (0, n_links) where all joints move linearly.
+        is_cubic: (n_links,) False for a joint that moves linearly all the same.
     """
 
     times: np.ndarray
     positions: np.ndarray
     velocities: np.ndarray
+    is_cubic: np.ndarray
 
 
 class JointInterval(NamedTuple):
@@ -76,7 +78,7 @@ def cubic_part(before, after, slope_before, slope_after, low, high):
 def part_of(path, step, link, low, high):
     """The part `low` to `high` of the motion of a link's joint from `step` to the next."""
     before, after = path.positions[step, link], path.positions[step + 1, link]
-    if len(path.velocities) == 0:
+    if len(path.velocities) == 0 or not path.is_cubic[link]:
         return linear_part(before, after, low, high)
     length = path.times[step + 1] - path.times[step]
     return cubic_part(

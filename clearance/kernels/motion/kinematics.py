@@ -117,6 +117,27 @@ def place_links(links, positions, poses, wanted, look):
         )  # fmt: skip
 
 
+@inline
+def place_by_link(links, positions, poses):
+    """Fills `poses` (links, 4, 4) [m] of all links, the joint above each at `positions` (links,) [rad or m]."""
+    for link in range(len(links.parents)):
+        parent = links.parents[link]
+        if parent == NO_PARENT:
+            _write(rigid(links.parent_from_joint[link]), poses[link])
+        else:
+            _place_link(
+                poses[parent], links.parent_from_joint[link], links.kinds[link], links.axes[link],
+                positions[link], poses[link],
+            )  # fmt: skip
+
+
+@kernel
+def place_each(links, positions, poses):
+    """`place_by_link` for positions (n, links) and poses (n, links, 4, 4)."""
+    for step in range(len(positions)):
+        place_by_link(links, positions[step], poses[step])
+
+
 @kernel
 def forward(world_from_base, parents, kinds, parent_from_joint, axes, positions, poses):
     """Fills `poses` (n, n_links, 4, 4) from joint `positions` (n, n_links) in link order.

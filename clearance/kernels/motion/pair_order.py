@@ -1,7 +1,9 @@
 """The pairs of each body, that with the least bound first, so that most need no look to be passed over.
 
-Only one body of a pair moves (`sweep.World`), so what it moves takes the same from the bounds of all its pairs:
-their order lasts until one of them is measured. The first whose bound is beyond the best ends the look at a body.
+Where only the first body of a pair moves, what it moves takes the same from the bounds of all its pairs: their
+order lasts until one of them is measured, and the first whose bound is beyond the best ends the look at them.
+Pairs of which both bodies move (`world`) come behind those in the list of the first, in no order: each is looked
+at.
 """
 
 from typing import NamedTuple
@@ -12,27 +14,32 @@ from clearance.compile.jit import inline, shared
 
 
 class PairOrder(NamedTuple):
-    """The pairs of body k are `pairs[starts[k]:starts[k + 1]]`.
+    """The pairs of body k are `pairs[starts[k]:starts[k + 1]]`; in order are those before `ends[k]`.
 
     Attributes:
         starts: (bodies + 2,). After all bodies' there is a list of one: the pair that is asked first.
+        ends: (bodies + 1,).
         pairs: (p + 1,).
     """
 
     starts: np.ndarray
+    ends: np.ndarray
     pairs: np.ndarray
 
 
 @shared
 def new_pair_order(n_bodies, n_pairs):
     """No pair is in a list yet."""
-    return PairOrder(np.zeros(n_bodies + 2, dtype=np.int64), np.empty(n_pairs + 1, dtype=np.int64))
+    return PairOrder(
+        np.zeros(n_bodies + 2, dtype=np.int64), np.zeros(n_bodies + 1, dtype=np.int64),
+        np.empty(n_pairs + 1, dtype=np.int64),
+    )  # fmt: skip
 
 
 @inline
-def fill_order(body_pairs, order):
-    """Fills the lists from (p, 2) bodies, the first of which moves; each in the order of the pairs."""
-    starts = order.starts
+def fill_order(body_pairs, frames, order):
+    """Fills the lists from (p, 2) bodies, and the links that carry them; each in the order of the pairs."""
+    starts, ends = order.starts, order.ends
     for pair in range(len(body_pairs)):
         starts[body_pairs[pair, 0]] += 1
     end = 0
@@ -40,10 +47,16 @@ def fill_order(body_pairs, order):
         end += starts[body]
         starts[body] = end
     starts[len(starts) - 1] = end + 1
-    for pair in range(len(body_pairs) - 1, -1, -1):
-        body = body_pairs[pair, 0]
-        starts[body] -= 1
-        order.pairs[starts[body]] = pair
+    for turn in range(2):  # from behind: first those of which both bodies move
+        for pair in range(len(body_pairs) - 1, -1, -1):
+            body = body_pairs[pair, 0]
+            if (frames[body_pairs[pair, 1]] >= 0) == (turn == 0):
+                starts[body] -= 1
+                order.pairs[starts[body]] = pair
+        if turn == 0:
+            for body in range(len(ends)):
+                ends[body] = starts[body]
+    ends[len(ends) - 1] = end + 1
 
 
 @inline
@@ -51,7 +64,7 @@ def sort_all(bounds, order):
     """Puts each list in the order of the pairs' bounds (p,): Shell 1959."""
     pairs = order.pairs
     for body in range(len(order.starts) - 2):
-        start, end = order.starts[body], order.starts[body + 1]
+        start, end = order.starts[body], order.ends[body]
         step = (end - start) // 2
         while step > 0:
             for place in range(start + step, end):
@@ -78,7 +91,7 @@ def _move_on(bounds, pairs, place, end):
 def sort_first(bounds, order, body, stop):
     """The same for a body where only the bounds of pairs before the place `stop` have changed."""
     for place in range(stop - 1, order.starts[body] - 1, -1):
-        _move_on(bounds, order.pairs, place, order.starts[body + 1])
+        _move_on(bounds, order.pairs, place, order.ends[body])
 
 
 @inline(force=True)
@@ -86,10 +99,12 @@ def sort_one(bounds, order, body, pair):
     """The same where only the bound of one pair has changed."""
     pairs = order.pairs
     place = order.starts[body]
-    while pairs[place] != pair:
+    while place < order.ends[body] and pairs[place] != pair:
         place += 1
+    if place == order.ends[body]:  # one of which both bodies move
+        return
     while place > order.starts[body] and bounds[pairs[place - 1]] > bounds[pair]:
         pairs[place] = pairs[place - 1]
         place -= 1
     pairs[place] = pair
-    _move_on(bounds, pairs, place, order.starts[body + 1])
+    _move_on(bounds, pairs, place, order.ends[body])

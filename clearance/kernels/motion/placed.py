@@ -92,6 +92,6 @@ def bring(surface, world, bodies, positions, look, placed):
         if _has_moved(before, after):
             placed.moves[body] += 1
             placed.displacements[body] += (
-                displacement(surface, surface.roots[body], before, after) * GROWTH
+                displacement(surface, surface.roots[world.solids[body]], before, after) * GROWTH
             )
             _put(after, placed, body)

@@ -35,7 +35,15 @@ from clearance.kernels.motion.pair_order import (
     sort_one,
 )
 from clearance.kernels.motion.placed import PlacedBodies, bring, new_placed_bodies, put_all
-from clearance.kernels.motion.schedule import Schedule, all_due, find_due, new_schedule, note_look
+from clearance.kernels.motion.schedule import (
+    Schedule,
+    all_due,
+    find_due,
+    forget_between,
+    new_schedule,
+    note_between,
+    note_look,
+)
 from clearance.kernels.motion.sweep_goal import SweptSteps
 from clearance.kernels.motion.sweep_rows import pass_over, write_pair, write_step
 from clearance.kernels.motion.world import box_bound, pair_frames
@@ -89,9 +97,15 @@ class SweepState(NamedTuple):
 
 
 @inline(force=True)
+def moved_by(world, pair, placed):
+    """[m] no less than what both bodies of a pair have moved in all; `placed.GROWTH` covers the rounding."""
+    return placed.displacements[world.pairs[pair, 0]] + placed.displacements[world.pairs[pair, 1]]
+
+
+@inline(force=True)
 def carried(world, pair, state):
-    """[m] what is left of the bound of a pair: only its first body moves."""
-    return state.lower_bounds[pair] - state.placed.displacements[world.pairs[pair, 0]]
+    """[m] what is left of the bound of a pair after what its bodies have moved."""
+    return state.lower_bounds[pair] - moved_by(world, pair, state.placed)
 
 
 @inline(force=True)
@@ -105,9 +119,7 @@ def _bounded_again(surface, world, pair, state, enough):
     """[m] the better of the carried bound of a pair and that of both bodies' boxes now; it is carried on."""
     by_boxes = box_bound(surface, world, pair, state.placed, state.boxes, enough)
     lower_bound = max(carried(world, pair, state), by_boxes)
-    state.lower_bounds[pair] = (
-        lower_bound + state.placed.displacements[world.pairs[pair, 0]]
-    ) * KEPT_DOWN
+    state.lower_bounds[pair] = (lower_bound + moved_by(world, pair, state.placed)) * KEPT_DOWN
     return lower_bound
 
 
@@ -117,8 +129,8 @@ def nearest_by_boxes(surface, world, bodies, state, winner):
     order = state.order
     nearest = np.inf
     for body in bodies:
-        place = order.starts[body]
-        while place < order.starts[body + 1]:
+        place, end = order.starts[body], order.ends[body]
+        while place < end:
             pair = order.pairs[place]
             if carried(world, pair, state) >= nearest:
                 break
@@ -128,6 +140,13 @@ def nearest_by_boxes(surface, world, bodies, state, winner):
                 winner = pair
             place += 1
         sort_first(state.lower_bounds, order, body, place)
+        for place in range(end, order.starts[body + 1]):
+            pair = order.pairs[place]
+            if carried(world, pair, state) < nearest:
+                lower_bound = _bounded_again(surface, world, pair, state, nearest)
+                if lower_bound < nearest:
+                    nearest = lower_bound
+                    winner = pair
     return winner
 
 
@@ -136,7 +155,7 @@ def _asked(world, pair, lower_bound, gap, effort, lent, state, tally, table):
     """The nearest points of a pair, if within `gap` [m], and a proven bound [m]; it is carried on."""
     placed, answers, witness_faces = state.placed, state.answers, state.witness_faces
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
-    moves, moved = placed.moves[body_a], placed.displacements[body_a]
+    moves, moved = placed.moves[body_a] + placed.moves[body_b], moved_by(world, pair, placed)
     if still_holds(answers, pair, moves, gap):
         return answer_of(answers, pair)
     ahead = moved / max(1, placed.looks[body_a])
@@ -147,7 +166,13 @@ def _asked(world, pair, lower_bound, gap, effort, lent, state, tally, table):
     touches = was_contact(answers, pair)
     measured = measure_pair(
         table,
-        PosedPair(lent, body_a, lent, body_b, pair_frames(world, pair, placed.poses)),
+        PosedPair(
+            lent,
+            world.solids[body_a],
+            lent,
+            world.solids[body_b],
+            pair_frames(world, pair, placed.poses),
+        ),
         PairQuestion(
             limit, gap, witness_faces[pair, 0], witness_faces[pair, 1], apart, effort, touches
         ),
@@ -173,7 +198,7 @@ def _next_look(world, positions, row, look, within, due, rows, tally):
     n_due = 0
     lowest = np.inf
     while n_due == 0 and row < len(positions):
-        n_due, lowest = find_due(world.frames, positions, row, look, within, due)
+        n_due, lowest = find_due(world, positions, row, look, within, due)
         if n_due == 0:
             pass_over(len(world.pairs), row, lowest, rows, tally)
             row += 1
@@ -243,37 +268,44 @@ def nearest_of(lent, world, look, goal, state, pair_rows, tally, table):
     lowest = look.lowest
     order.pairs[len(world.pairs)] = first
     tally[0] += len(world.pairs)
+    forget_between(world.groups, look.bodies, state.due)
     for turn in range(-1 if first >= 0 else 0, len(look.bodies)):
         body = len(world.frames) if turn < 0 else look.bodies[turn]  # the list of one, asked first
-        nearest = np.inf
-        if first >= 0 and body == world.pairs[first, 0]:
-            nearest = _spare(world, first, state, goal)
+        nearest = between = np.inf
         place, end = order.starts[body], order.starts[body + 1]
+        in_order, stop = order.ends[body], order.ends[body]
         while place < end:
             pair = order.pairs[place]
             place += 1
-            if turn >= 0 and pair == first:
-                continue
             lower_bound = carried(world, pair, state)
-            if best.hit.gap_sq == 0.0 and pair > best.pair and not goal.each:
-                nearest = min(nearest, lower_bound)  # no nearer, and not the least pair
-                continue
-            if not goal.each and lower_bound > best.gap:  # and so are those after it
-                lowest, nearest = min(lowest, lower_bound), min(nearest, lower_bound)
-                break
-            best, lower_bound = _with_pair(
-                surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table
-            )
-            lowest = min(lowest, lower_bound)
-            nearest = min(nearest, _spare(world, pair, state, goal))
+            is_beyond = not goal.each and lower_bound > best.gap
+            if turn >= 0 and pair == first:
+                lower_bound = _spare(world, first, state, goal)
+            elif best.hit.gap_sq == 0.0 and pair > best.pair and not goal.each:
+                pass  # no nearer, and not the least pair
+            elif is_beyond:
+                lowest = min(lowest, lower_bound)
+                if place <= in_order:  # and so are those after it
+                    stop, place = place, in_order
+            else:
+                best, lower_bound = _with_pair(
+                    surface, lent, world, pair, look, goal, state, best, pair_rows, tally, table
+                )
+                lowest = min(lowest, lower_bound)
+                lower_bound = _spare(world, pair, state, goal)
+            if place <= in_order:
+                nearest = min(nearest, lower_bound)
+            else:
+                between = min(between, lower_bound)
         if turn >= 0:
             note_look(body, look.row, nearest, state.due)
+            note_between(world.groups[body], between, state.due)
         if goal.each:
             continue
         if turn < 0:
             sort_one(state.lower_bounds, order, world.pairs[first, 0], first)
         else:
-            sort_first(state.lower_bounds, order, body, place)
+            sort_first(state.lower_bounds, order, body, stop)
     return RowNearest(best.hit, best.pair, best.gap, lowest)
 
 
@@ -325,14 +357,12 @@ def _sweep(surface, world, path, goal, effort, state, found, tally, table):
     for pair in range(len(world.pairs)):
         lower_bounds[pair] = box_bound(surface, world, pair, placed, state.boxes, np.inf)
     winner = np.argmin(lower_bounds)
-    fill_order(world.pairs, order)
+    fill_order(world.pairs, world.frames, order)
     if not goal.each:
         sort_all(lower_bounds, order)
     near_only = within[0] < np.inf
     if near_only:
-        fill_motion_radii(
-            surface, world.frames, world.links, positions, due.motion_radii, due.noise
-        )
+        fill_motion_radii(surface, world, positions, due.motion_radii, due.noise)
     n_due = all_due(world.frames, due)
     lent = lend(surface)
     lowest = np.inf

@@ -14,14 +14,22 @@ from clearance.kernels.motion.kinematics import Links
 class World(NamedTuple):
     """What moves where.
 
+    A body is a solid in a place. A solid has several where pairs of it are seen from several links: two links of
+    one robot are measured in the frame of the nearest link above both, so that only the joints between move them.
+
     Attributes:
+        solids: (bodies,) the number of each in the surface.
         frames: (bodies,) link that carries the body, or -1 for one that stands.
+        groups: (bodies,) numbers from 0; bodies of one group are looked at together. Two bodies of a pair that
+            both move are of one group.
         standing: (bodies, 4, 4) poses of the bodies that stand [m].
-        pairs: (p, 2) bodies to measure against each other: first one that a link carries, then one that stands.
+        pairs: (p, 2) bodies to measure against each other; a link carries the first, and perhaps the second.
         links: what moves the links.
     """
 
+    solids: np.ndarray
     frames: np.ndarray
+    groups: np.ndarray
     standing: np.ndarray
     pairs: np.ndarray
     links: Links
@@ -39,6 +47,7 @@ def box_bound(surface, world, pair, placed, boxes, enough):
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     for body in (body_a, body_b):
         if boxes.moves[body] != placed.moves[body]:
-            place_box(surface, body, rigid(placed.poses[body]), boxes)
+            root = surface.roots[world.solids[body]]
+            place_box(surface, root, body, rigid(placed.poses[body]), boxes)
             boxes.moves[body] = placed.moves[body]
     return bound_of_bodies(boxes, body_a, body_b, enough)
