@@ -51,7 +51,7 @@ def _box(points, n, column):
     return low, high
 
 
-@kernel
+@kernel(reference_counts=False)
 def enclose(pieces, derivatives, i, t0, t1, points, out):
     """Writes boxes (4, 4) of piece `i` on [t0, t1] and of its first three derivatives into `out`.
 
