@@ -199,8 +199,8 @@ def _squares(gap, degree, rational, out):
 def follow_bound(curves, part, feet, enough, work):
     """A proven upper bound of the distance of a part of A to B, where it is largest, and its rounding.
 
-    The largest coefficient itself will do where it is below `enough`; else the squares' coefficients are the bound.
-    Returns (bound, share of the part, rounding), (inf, 0, 0) where the feet span nothing.
+    The largest coefficient itself will do where it is below `enough`; else the squares' coefficients are the
+    bound. Returns (bound, share of the part, rounding), (inf, 0, 0) where the feet span nothing.
 
     Args:
         feet: `MapFeet`. work: `SearchScratch`.

@@ -55,8 +55,8 @@ def _box(points, n, column):
 def enclose(pieces, derivatives, i, t0, t1, points, out):
     """Writes boxes (4, 4) of piece `i` on [t0, t1] and of its first three derivatives into `out`.
 
-    `derivatives` are the pieces `derived` once, twice and three times. A rational derivative follows from Leibniz' rule for
-    (point times weight), in interval arithmetic.
+    `derivatives` are the pieces `derived` once, twice and three times. A rational derivative
+    follows from Leibniz' rule for (point times weight), in interval arithmetic.
     """
     one, two, three = derivatives
     n = cut(pieces, i, t0, t1, points)

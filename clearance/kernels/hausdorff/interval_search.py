@@ -18,10 +18,10 @@ from clearance.kernels.curve.follow import (
     least_order,
     order_for,
 )
+from clearance.kernels.curve.pair import CurvePart
 from clearance.kernels.curve.scratch import FEET
 from clearance.kernels.hausdorff.bounds import chord_bound, consider, line_covered, upper_bound
 from clearance.kernels.hausdorff.cutting import ROOM, BoundPlace, cut_interval
-from clearance.kernels.curve.pair import CurvePart
 from clearance.kernels.hausdorff.queue import BOUND, interval_at, pop, with_room
 from clearance.kernels.hausdorff.roots import common_normal, slide_from
 from clearance.kernels.hausdorff.run import NearestRun, arc_run_bound

@@ -16,6 +16,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import Pieces
 from clearance.kernels.curve.interval import derived, dot, enclose
+from clearance.kernels.curve.pair import CurvePair, CurvePart, Curves
 from clearance.kernels.curve.scratch import SQUARES, new_scratch, widest
 from clearance.kernels.hausdorff.bounds import consider, extent_bound, upper_bound
 from clearance.kernels.hausdorff.cells import (
@@ -25,7 +26,6 @@ from clearance.kernels.hausdorff.cells import (
     new_table,
     put_child_cells,
 )
-from clearance.kernels.curve.pair import CurvePair, CurvePart, Curves
 from clearance.kernels.hausdorff.roots import slide_from
 from clearance.kernels.hausdorff.single_roots import (
     OPEN,
