@@ -199,10 +199,10 @@ def place_about_centroid(cutter, spots, v):
 
 @inline(one_caller=True)
 def cut_from(cut, cutter, start, turn, n_later, limits):
-    """Cuts as long as vertex `start`, or one that a cut from it has made, is above a face; (status, vertices put off).
+    """Cuts from a vertex on, until neither it nor what its cuts have made is above a face; (status, `n_later`).
 
     Args:
-        turn, n_later: the round, and how many vertices it has put off before (`cut_by_body`).
+        turn: the round (`cut_by_body`). n_later: how many vertices were put off before.
     """
     spots, mesh, state, work, rim, table = cut
     body, base, tolerance = cutter.body, cutter.base, limits.on_plane
@@ -253,9 +253,9 @@ def cut_from(cut, cutter, start, turn, n_later, limits):
 def cut_by_body(cut, cutter, limits):
     """The status after cutting the polytope by one body.
 
-    FULL asks for more rows, and the same call may then go on. Vertices more than `limits.noise` above a plane are surely
-    connected to its top and cut at once. Where the best plane is nearer, rounding may have left a false top: these
-    are looked at last, and the top is searched.
+    FULL asks for more rows, and the same call may then go on. Vertices more than `limits.noise` above a plane are
+    surely connected to its top and cut at once. Where the best plane is nearer, rounding may have left a false
+    top: these are looked at last, and the top is searched.
 
     The two rounds share one walk: apart they would be spliced in twice, and the walk is half of what its caller
     takes to compile.
