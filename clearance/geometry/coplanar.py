@@ -36,7 +36,7 @@ class Polygons(NamedTuple):
 
 
 class _Faces(NamedTuple):
-    """Flat faces and, for each, its plane: group, axis and sign as `coplanar.merge_rings` takes them."""
+    """Flat faces and, for each, its plane: group, axis and sign as in `coplanar.FacePlanes`."""
 
     starts: np.ndarray
     flat: np.ndarray
@@ -47,6 +47,12 @@ class _Faces(NamedTuple):
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
         """Tails and heads of all half-edges."""
         return self.flat, self.flat[rings_of(self.starts).ahead]
+
+    def half_edges(self) -> kernels.HalfEdges:
+        """The faces as the kernels take them apart: rings of half-edges, each with its twin."""
+        ring = rings_of(self.starts)
+        twin = twins(self.flat, self.flat[ring.ahead])
+        return kernels.HalfEdges(self.flat, ring.ahead, ring.behind, twin, ring.face)
 
 
 def merge_coplanar(vertices: np.ndarray, triangles: np.ndarray) -> Polygons:
@@ -131,15 +137,9 @@ def _grouped(
 def _with_needles_absorbed(points: np.ndarray, faces: _Faces) -> _Faces:
     if (faces.axes != kernels.DEGENERATE).all():
         return faces
-    ring = rings_of(faces.starts)
-    tails, heads = faces.ends()
-    twin = twins(tails, heads)
-    parents = np.arange(len(faces.axes))
-    kernels.absorb_needles(
-        points, tails, ring.ahead, ring.behind, twin, ring.face, faces.axes, parents
-    )
-    remaining = _read_back(faces, ring.ahead, twin, ring.face, parents)
-    return _without_covered_needles(points, remaining)
+    half_edges, parents = faces.half_edges(), np.arange(len(faces.axes))
+    kernels.absorb_needles(points, half_edges, faces.axes, parents)
+    return _without_covered_needles(points, _read_back(faces, half_edges, parents))
 
 
 def _without_covered_needles(points: np.ndarray, faces: _Faces) -> _Faces:
@@ -170,10 +170,8 @@ def _selected(faces: _Faces, keep: np.ndarray) -> _Faces:
     )
 
 
-def _read_back(
-    faces: _Faces, ahead: np.ndarray, twin: np.ndarray, face: np.ndarray, parents: np.ndarray
-) -> _Faces:
-    starts, flat, label = kernels.rings(faces.flat, ahead, twin, face, parents, len(faces.axes))
+def _read_back(faces: _Faces, half_edges: kernels.HalfEdges, parents: np.ndarray) -> _Faces:
+    starts, flat, label = kernels.rings(half_edges, parents, len(faces.axes))
     return _Faces(starts, flat, faces.group[label], faces.axes[label], faces.signs[label])
 
 
@@ -189,31 +187,18 @@ def _merged(points: np.ndarray, faces: _Faces) -> _Faces:
 def _with_edges_removed(points: np.ndarray, faces: _Faces) -> _Faces:
     if not len(faces.flat):
         return faces
-    ring = rings_of(faces.starts)
-    tails, heads = faces.ends()
-    twin = twins(tails, heads)
+    half_edges = faces.half_edges()
+    tail, ahead, _, twin, face = half_edges
     candidates = np.flatnonzero(twin > np.arange(len(twin)))
-    candidates = candidates[
-        faces.group[ring.face[candidates]] == faces.group[ring.face[twin[candidates]]]
-    ]
-    lengths = points[tails[candidates]] - points[heads[candidates]]
+    of_one_plane = faces.group[face[candidates]] == faces.group[face[twin[candidates]]]
+    candidates = candidates[of_one_plane]
+    lengths = points[tail[candidates]] - points[tail[ahead[candidates]]]
     scale = np.abs(lengths).max(initial=0.0) or 1.0
     order = candidates[np.argsort(-((lengths / scale) ** 2).sum(axis=1), kind="stable")]
     parents = np.arange(len(faces.axes))
-    kernels.merge_rings(
-        points,
-        order,
-        tails,
-        ring.ahead,
-        ring.behind,
-        twin,
-        ring.face,
-        faces.group,
-        faces.axes,
-        faces.signs,
-        parents,
-    )
-    return _read_back(faces, ring.ahead, twin, ring.face, parents)
+    planes = kernels.FacePlanes(faces.group, faces.axes, faces.signs)
+    kernels.merge_rings(points, order, half_edges, planes, parents)
+    return _read_back(faces, half_edges, parents)
 
 
 def _without_straight_corners(points: np.ndarray, faces: _Faces) -> _Faces:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.kernels.hausdorff.pair import CurveArrays
+from clearance.kernels.curve.pair import CurveArrays
 from clearance.planar.curve import Curve
 
 KINDS = ("end", "common_normal", "self_bisector")

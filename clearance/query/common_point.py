@@ -17,12 +17,10 @@ from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope.depth import (
     COLD,
     N_ROWS,
-    ON,
     POINT,
     SHARE,
     WARM,
-    PlacedBody,
-    deepen_two,
+    deepen_all,
 )
 
 ROUNDING = 16 * 2.0**-53
@@ -37,7 +35,7 @@ MARGIN = 1e-13
 MAX_PASSES = 256
 """[-] Rounds over all bodies, each of at most eight faces a pair (sixteen where there are more than two)."""
 
-_STILL = np.eye(4)
+_STILL = np.eye(4)[None]
 
 
 @dataclass(frozen=True)
@@ -94,8 +92,8 @@ def checked_bodies(polytopes: Sequence[Polytope]) -> list[Polytope]:
     return bodies
 
 
-def checked_poses(poses: Sequence[np.ndarray], n_bodies: int) -> list[np.ndarray]:
-    """The poses as (4, 4) float64.
+def checked_poses(poses: Sequence[np.ndarray], n_bodies: int) -> np.ndarray:
+    """The poses as (n_bodies, 4, 4) float64.
 
     Raises:
         BadShape: another number or shape. NotFinite: NaN or infinity.
@@ -105,7 +103,7 @@ def checked_poses(poses: Sequence[np.ndarray], n_bodies: int) -> list[np.ndarray
         raise BadShape(f"the poses have shape {frames.shape}", valid=f"({n_bodies}, 4, 4)")
     if not np.isfinite(frames).all():
         raise NotFinite("a pose is not finite", valid="finite numbers")
-    return list(frames)
+    return frames
 
 
 def common_point(
@@ -129,14 +127,17 @@ def common_point(
         faces on demand is the simplex method (Dantzig 1963) on its dual.
     """
     bodies = checked_bodies(polytopes)
-    frames = [_STILL] * len(bodies) if poses is None else checked_poses(poses, len(bodies))
+    frames = _STILL if poses is None else checked_poses(poses, len(bodies))
     origin = (
         bodies[0].centroid if poses is None else frames[0][:3] @ np.append(bodies[0].centroid, 1.0)
     )
     known = len(bodies) < 3 and len(warm) == 4 and all(_names_a_face(bodies, name) for name in warm)
     basis, names = np.empty((N_ROWS, 4)), np.array(warm if known else (-4, -3, -2, -1))
     begin = WARM if known else COLD
-    settled, n_faces, passes = _deepened(bodies, frames, origin, basis, names, begin)
+    rows = np.array([body.packed_at for body in bodies])
+    settled, n_faces, passes = deepen_all(
+        rows, frames, origin, basis, names, MARGIN, begin, MAX_PASSES
+    )
     if not settled and basis[POINT, 3] > 0.0:
         _keep_what_is_sure(bodies, frames, origin, basis)
     return _judged(bodies, origin, basis, names.tolist(), n_faces, passes)
@@ -146,39 +147,13 @@ def _names_a_face(bodies: list[Polytope], name: int) -> bool:
     return name >= 0 and name >> 32 < len(bodies) and name & 0xFFFFFFFF < bodies[name >> 32].n_faces
 
 
-def _deepened(
-    bodies: list[Polytope],
-    frames: list[np.ndarray],
-    origin: np.ndarray,
-    basis: np.ndarray,
-    names: np.ndarray,
-    begin: int,
-) -> tuple[bool, int, int]:
-    """(settled, faces brought in, passes): two bodies at a time until none has a worse face."""
-    m = len(bodies)
-    placed = [PlacedBody(bodies[k].packed, frames[k], k) for k in range(m)]
-    if m < 3:
-        return deepen_two(placed[0], placed[-1], origin, basis, names, MARGIN, begin, MAX_PASSES)
-    total = 0
-    for passes in range(1, MAX_PASSES + 1):
-        before, settled = total, True
-        for k in range(0, m, 2):
-            a, b = placed[k], placed[min(k + 1, m - 1)]
-            sure, n, _ = deepen_two(a, b, origin, basis, names, MARGIN, begin, 2)
-            begin, total, settled = ON, total + n, settled and sure
-            if basis[POINT, 3] < -1e-6 and names.min() >= 0:
-                return settled, total, passes
-        if total == before:
-            return settled, total, passes
-    return False, total, MAX_PASSES
-
-
 def _keep_what_is_sure(
-    bodies: list[Polytope], frames: list[np.ndarray], origin: np.ndarray, basis: np.ndarray
+    bodies: list[Polytope], frames: np.ndarray, origin: np.ndarray, basis: np.ndarray
 ) -> None:
     """Sets t to what the point really keeps of every face, where the simplex method came to no end."""
     point = basis[POINT, :3] + origin
-    for body, frame in zip(bodies, frames, strict=True):
+    for i, body in enumerate(bodies):
+        frame = frames[min(i, len(frames) - 1)]
         there = frame[:3, :3].T @ (point - frame[:3, 3])
         basis[POINT, 3] = min(basis[POINT, 3], (body.offsets_about(there) / body.face_widths).min())
 

@@ -12,13 +12,14 @@ from functools import cached_property
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.bodies import Cutters
-from clearance.kernels.polytope.clip import CutLimits, cut_by_bodies, rooms_about
+from clearance.kernels.polytope.clip import cut_by_bodies, rooms_about
 from clearance.kernels.polytope.cut import (
     BROKEN,
     CUT,
+    FIRST_BODY,
     FREE,
     FULL,
+    LAID_BODY,
     LOOKED,
     N_FREE,
     N_ROWS,
@@ -26,15 +27,11 @@ from clearance.kernels.polytope.cut import (
     begin,
     cut_by_planes,
 )
-from clearance.kernels.polytope.faces import WholeFaces, face_rings, trivalent_moments
+from clearance.kernels.polytope.faces import face_rings, trivalent_moments
 from clearance.kernels.polytope.patch import lay_patch, mark_patch
 
 ON_PLANE = 8 * 2.0**-53
 """[-] How far from a plane counts as on it, relative to the greatest coordinate about the inner point."""
-
-NOISE = 1e5
-"""[-] How far rounding may make a false top stand out, in tolerances: corners slide along edges nearly parallel
-to a cut; up to 1e-13 has been seen, and level ground of 2 roundings missed a plane (4e-7 of a volume)."""
 
 ACROSS_ALL = np.array([0.53, 0.61, 0.59]) / np.linalg.norm([0.53, 0.61, 0.59])
 """[-] Normal of the plane that parts two halves: no face or edge of bodies as people place them lies in it."""
@@ -80,14 +77,14 @@ class Task:
         rest = [k for k in range(len(bodies)) if k != first]
         rooms = np.zeros(len(bodies))
         if rest[1:]:
-            rooms_about(self.cutters, rooms)
+            rooms_about(self.rows, self.origin, rooms)
         return [first, *sorted(rest, key=lambda k: (rooms[k], bodies[k].volume, k))]
 
     @cached_property
-    def cutters(self) -> Cutters:
-        """Where the bodies' arrays are, for kernels that take them all (`kernels.polytope.bodies`)."""
-        rows = np.array([body.packed_at for body in self.bodies])
-        return Cutters(rows, self.bases, self.origin, self.bodies[0].packed)
+    def rows(self) -> np.ndarray:
+        """(m, 5) where the bodies' arrays are and the first plane of each, as `kernels.polytope.bodies` says."""
+        bases = self.bases.tolist()
+        return np.array([(*body.packed_at, bases[i]) for i, body in enumerate(self.bodies)])
 
     @property
     def seam(self) -> int:
@@ -104,12 +101,9 @@ class Cutting:
         n = len(form.corner)
         self.task = task
         self._room(ROOM * n)
-        begin(
-            self.spots, self.mesh, body.packed, form.corner, form.mesh, task.origin, task.bases[i_first]
-        )  # fmt: skip
-        self.state = np.array([0, 0, n], dtype=np.int64)
+        begin(self.spots, self.mesh, task.rows, i_first, form.corner, form.mesh, task.origin)
+        self.state = np.array([0, 0, n, i_first, i_first], dtype=np.int64)
         self.table = np.zeros((task.seam + 1, 3), dtype=np.int32)
-        self.i_first = self.i_laid = i_first
 
     def _room(self, n_rows: int) -> None:
         """Working space for so many rows, in one block.
@@ -117,7 +111,7 @@ class Cutting:
         The allocator keeps what is freed only up to twice its largest block: in four blocks it gave the memory
         back each time, and the 210 page faults of the next call took 0.5 ms.
         """
-        block = np.empty(12 * n_rows)
+        self.block = block = np.empty(12 * n_rows)
         self.spots = block[: 4 * n_rows].reshape(-1, 4)
         self.mesh = block[4 * n_rows : 8 * n_rows].view(np.int32).reshape(-1, 8)
         self.work = block[8 * n_rows : 10 * n_rows].view(np.int32).reshape(4, -1)
@@ -125,7 +119,7 @@ class Cutting:
 
     @property
     def arrays(self) -> Cut:
-        """The polytope as the kernels take it."""
+        """The polytope as a kernel takes it that is called seldom: 3 us more than its three arrays."""
         return Cut(self.spots, self.mesh, self.state, self.work, self.rim, self.table)
 
     def _grown(self) -> None:
@@ -142,7 +136,7 @@ class Cutting:
             Broken: see there.
         """
         plane = np.append(side * ACROSS_ALL, 0.0)[None, :]
-        if cut_by_planes(self.arrays, plane, self.task.seam, 0.0) != CUT:
+        if cut_by_planes(self.block, self.state, self.table, plane, self.task.seam, 0.0) != CUT:
             raise BrokenRim
 
     def by(self, *i_bodies: int) -> bool:
@@ -152,9 +146,10 @@ class Cutting:
             Broken: see there.
         """
         task, turns = self.task, np.array(i_bodies, dtype=np.int64)
-        limits = CutLimits(task.tolerance, NOISE * task.tolerance, SPARSE)
         while True:
-            status, n_done = cut_by_bodies(self.arrays, task.cutters, turns, limits)
+            status, n_done = cut_by_bodies(
+                self.block, self.state, self.table, task.rows, task.origin, turns, task.tolerance, SPARSE
+            )  # fmt: skip
             if status != FULL:
                 break
             turns = turns[n_done:]
@@ -180,7 +175,7 @@ class Cutting:
         laid = lay_patch(
             self.arrays, other.packed, form.corner, form.mesh, in_patch, rows, task.origin, base
         )
-        self.i_laid = i_body if laid else i_first
+        self.state[LAID_BODY] = i_body if laid else i_first
         return self.by(i_body)
 
     def places(self) -> np.ndarray:
@@ -194,19 +189,19 @@ class Cutting:
 
     def moments(self) -> np.ndarray:
         """(5,) volume [m^3], volume times centroid [m^4], greatest coordinate [m], about the origin."""
-        bases, bodies = self.task.bases, self.task.bodies
-        a, b = (
-            WholeFaces(bases[k], bodies[k].packed.numbers, bodies[k].face_areas)
-            for k in (self.i_first, self.i_laid)
+        task, (*_, first, laid) = self.task, self.state.tolist()
+        first_areas, laid_areas = task.bodies[first].face_areas, task.bodies[laid].face_areas
+        return np.array(
+            trivalent_moments(
+                self.block, self.state, self.table, task.rows, first_areas, laid_areas, task.origin
+            )
         )
-        return np.array(trivalent_moments(self.arrays, a, b, self.task.origin))
 
 
-def by_edges(cut: Cut) -> np.ndarray:
+def by_edges(block: np.ndarray, state: np.ndarray, table: np.ndarray) -> np.ndarray:
     """As `Cutting.moments`, for a polytope that was made of no body."""
-    none = np.empty((0, 4))
-    no_body = WholeFaces(0, none.ravel(), none)
-    return np.array(trivalent_moments(cut, no_body, no_body, none.ravel()))
+    no_body, none = np.zeros((state[FIRST_BODY:].max() + 1, 5), dtype=np.int64), np.empty((0, 4))
+    return np.array(trivalent_moments(block, state, table, no_body, none, none, none.ravel()))
 
 
 def cut_down(task: Task, side: float = 0.0) -> Cutting | None:

@@ -12,7 +12,7 @@ import functools
 import numpy as np
 
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.polytope.cut import CUT, N_ROWS, Cut, cut_by_planes
+from clearance.kernels.polytope.cut import CUT, N_ROWS, cut_by_planes
 from clearance.kernels.polytope.faces import face_rings
 from clearance.kernels.polytope.thin import stretched_planes, supporting_triples
 from clearance.query.cutting import ON_PLANE, Task, by_edges
@@ -102,14 +102,14 @@ def _bound(body: Polytope, triples: np.ndarray) -> np.ndarray:
 def _cut_box(planes: np.ndarray):
     """(places, rings, moments) in the stretched frame, or None."""
     rows = 64 + 4 * len(planes)
-    spots, mesh = np.zeros((rows, 4)), np.zeros((rows, 8), dtype=np.int32)
+    block = np.zeros(12 * rows)  # as `kernels.polytope.cut.cut_in` says
+    spots = block[: 4 * rows].reshape(-1, 4)
+    mesh = block[4 * rows : 8 * rows].view(np.int32).reshape(-1, 8)
     spots[:8, :3], mesh[:8] = _box()
-    state, table = np.array([0, 0, 8]), np.zeros((6 + len(planes), 3), dtype=np.int32)
-    work, rim = np.empty((4, rows), dtype=np.int32), np.empty((rows, 4), dtype=np.int32)
-    cut = Cut(spots, mesh, state, work, rim, table)
-    if cut_by_planes(cut, planes, 6, ON_PLANE) != CUT:
+    state, table = np.array([0, 0, 8, 0, 0]), np.zeros((6 + len(planes), 3), dtype=np.int32)
+    if cut_by_planes(block, state, table, planes, 6, ON_PLANE) != CUT:
         return None
-    moments = by_edges(cut)
+    moments = by_edges(block, state, table)
     return spots[:, :3], face_rings(mesh, state[N_ROWS]), moments[:4]
 
 

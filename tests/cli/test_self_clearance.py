@@ -51,7 +51,7 @@ def check(folder, capsys, robot="", allow=""):
 def test_a_hand_that_folds_onto_the_base_is_found(folder, capsys):
     code, out, _ = check(folder, capsys)
     told = json.loads(out)
-    assert code == 1 and told["status"] in ("contact", "violated")
+    assert code == 1 and told["verdict"] in ("contact", "violated")
     assert (told["worst"]["link"], told["worst"]["obstacle"]) == ("hand", "base")
     assert told["not_checked"] == []
     excused = {(row["link"], row["obstacle"]): row["reason"] for row in told["unmeasured"]}

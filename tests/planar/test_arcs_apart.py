@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
-from clearance.kernels.curve.arc import RADIUS, WIDTH, set_arc, set_segment
+from clearance.kernels.curve.arc import RADIUS, WIDTH, Chord, set_arc, set_segment
 from clearance.kernels.curve.arcs import arcs_apart
 from tests.examples import examples
 from tests.reached import reached
@@ -16,11 +16,11 @@ from tests.reached import reached
 
 def arc(x0, y0, angle, x1, y1):
     """The arc from one point along a direction to another; the segment where that is the chord's."""
-    row = np.zeros(WIDTH)
+    row, chord = np.zeros(WIDTH), Chord(x0, y0, x1, y1)
     if angle is None:
-        reached(set_segment)(row, 0.0, 1.0, x0, y0, x1, y1)
+        reached(set_segment)(row, 0.0, 1.0, chord)
     else:
-        reached(set_arc)(row, 0.0, 1.0, x0, y0, math.cos(angle), math.sin(angle), x1, y1, 1e-15)
+        reached(set_arc)(row, 0.0, 1.0, chord, math.cos(angle), math.sin(angle), 1e-15)
     return row
 
 

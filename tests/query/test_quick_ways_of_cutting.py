@@ -85,7 +85,7 @@ def test_whole_faces_hold_what_their_edges_hold(m, n, spread):
     task = Task.about(bodies, common_point(bodies).point)
     cut = cut_down(task)
     by_faces = cut.moments()
-    by_edges = cutting.by_edges(cut.arrays)
+    by_edges = cutting.by_edges(cut.block, cut.state, cut.table)
     assert by_faces == pytest.approx(by_edges, rel=1e-14, abs=1e-15)
 
 

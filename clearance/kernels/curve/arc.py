@@ -7,6 +7,7 @@ Not for: deciding where to cut a curve (`arc_fit`).
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,31 +19,40 @@ WIDTH = 12
 ROUNDOFF = 2.0**-53
 
 
+class Chord(NamedTuple):
+    """The two ends of an arc or a segment, where it starts first."""
+
+    x0: float
+    y0: float
+    x1: float
+    y1: float
+
+
 @inline
-def set_segment(row, s0, s1, x0, y0, x1, y1):
-    """Makes `row` the straight segment between two points."""
+def set_segment(row, s0, s1, chord):
+    """Makes `row` the straight segment between two points, for the parameters from `s0` to `s1`."""
     row[S0], row[S1] = s0, s1
-    row[X0], row[Y0], row[X1], row[Y1] = x0, y0, x1, y1
+    row[X0], row[Y0], row[X1], row[Y1] = chord
     row[CX], row[CY], row[RADIUS], row[SENSE], row[EPS], row[COSINE] = 0.0, 0.0, 0.0, 1.0, 0.0, 1.0
 
 
 @inline
-def set_arc(row, s0, s1, x0, y0, tx, ty, x1, y1, flat):
-    """Makes `row` the arc from one point along the unit tangent (tx, ty) to another.
+def set_arc(row, s0, s1, chord, tx, ty, flat):
+    """Makes `row` the arc over a chord that starts along the unit tangent (tx, ty).
 
     Where its sagitta would be below `flat`, or it would reach half a turn, it is the segment instead.
     """
-    set_segment(row, s0, s1, x0, y0, x1, y1)
-    cx, cy = x1 - x0, y1 - y0
-    chord = hypotenuse(cx, cy)
-    if chord == 0.0:
+    set_segment(row, s0, s1, chord)
+    cx, cy = chord.x1 - chord.x0, chord.y1 - chord.y0
+    length = hypotenuse(cx, cy)
+    if length == 0.0:
         return
-    sine = (tx * cy - ty * cx) / chord
-    cosine = (tx * cx + ty * cy) / chord
-    if cosine <= 0.02 or abs(sine) * chord <= 4.0 * flat:
+    sine = (tx * cy - ty * cx) / length
+    cosine = (tx * cx + ty * cy) / length
+    if cosine <= 0.02 or abs(sine) * length <= 4.0 * flat:
         return
-    radius = chord / (2.0 * sine)
-    row[CX], row[CY] = x0 - radius * ty, y0 + radius * tx
+    radius = length / (2.0 * sine)
+    row[CX], row[CY] = chord.x0 - radius * ty, chord.y0 + radius * tx
     row[RADIUS], row[SENSE] = abs(radius), 1.0 if radius > 0.0 else -1.0
     row[COSINE] = cosine
 

@@ -17,11 +17,14 @@ from clearance.kernels.curve.arc import (
     CY,
     EPS,
     RADIUS,
+    S0,
+    S1,
     WIDTH,
     X0,
     X1,
     Y0,
     Y1,
+    Chord,
     arc_error,
     set_arc,
     set_segment,
@@ -71,12 +74,16 @@ def _off_joint_circle(pieces, i, s, row, sine, cosine):
 
 
 @inline
-def joint_parameter(pieces, i, row, s0, s1, ax, ay, bx, by, steps):
-    """Where the curve crosses the circle of joints between `s0` and `s1`, or nan.
+def joint_parameter(pieces, i, row, ax, ay, bx, by, steps):
+    """Where piece `i` crosses the circle of joints between the ends of the segment `row`, or nan.
 
     The circle leaves the chord at the mean of the end tangents' angles (one angle taken negative), so that
     the curve starts on one side of it and ends on the other: a crossing exists.
+
+    Args:
+        ax, ay, bx, by: the unit tangents of the curve at both ends. steps: halvings.
     """
+    s0, s1 = row[S0], row[S1]
     cx, cy = row[X1] - row[X0], row[Y1] - row[Y0]
     alpha = math.atan2(cx * ay - cy * ax, cx * ax + cy * ay)
     beta = math.atan2(cx * by - cy * bx, cx * bx + cy * by)
@@ -114,16 +121,16 @@ def fit_biarc(pieces, i, s0, s1, flat, steps, work, pair):
     row = pair[0]
     x0, y0 = points[0, 0] / points[0, 2], points[0, 1] / points[0, 2]
     x1, y1 = points[n, 0] / points[n, 2], points[n, 1] / points[n, 2]
-    set_segment(row, s0, s1, x0, y0, x1, y1)
+    set_segment(row, s0, s1, Chord(x0, y0, x1, y1))
     row[EPS] = arc_error(row, points, n, work[1])
     if n == 1 or row[EPS] <= flat or (x0 == x1 and y0 == y1):
         return 1
-    joint = joint_parameter(pieces, i, row, s0, s1, ax, ay, bx, by, steps)
+    joint = joint_parameter(pieces, i, row, ax, ay, bx, by, steps)
     if math.isnan(joint):
         return 1
     here = jet(pieces, i, joint)
-    set_arc(pair[0], s0, joint, x0, y0, ax, ay, here.x, here.y, flat)
-    set_arc(pair[1], joint, s1, x1, y1, -bx, -by, here.x, here.y, flat)
+    set_arc(pair[0], s0, joint, Chord(x0, y0, here.x, here.y), ax, ay, flat)
+    set_arc(pair[1], joint, s1, Chord(x1, y1, here.x, here.y), -bx, -by, flat)
     _reverse(pair[1])
     for half in range(2):
         row = pair[half]
@@ -164,7 +171,8 @@ def fit_leaves(pieces, tolerance, steps):
             if used + 2 > arcs.shape[0]:
                 arcs, owner = _grown(arcs, owner)
             a, b = pieces.control[start], pieces.control[start + 1]
-            set_segment(arcs[used], 0.0, 1.0, a[0] / a[2], a[1] / a[2], b[0] / b[2], b[1] / b[2])
+            chord = Chord(a[0] / a[2], a[1] / a[2], b[0] / b[2], b[1] / b[2])
+            set_segment(arcs[used], 0.0, 1.0, chord)
             owner[used] = i
             used += 1
             continue

@@ -20,6 +20,7 @@ from clearance.kernels.curve.arc import (
     X1,
     Y0,
     Y1,
+    Chord,
     arc_distance,
     arc_error,
     set_arc,
@@ -128,12 +129,13 @@ def _set_cell_arc(points, n, shift_x, shift_y, work, row):
     """Makes `row` the arc of a cell of a curve by its control points, shifted, with its error."""
     x0, y0 = points[0, 0] / points[0, 2], points[0, 1] / points[0, 2]
     x1, y1 = points[n, 0] / points[n, 2], points[n, 1] / points[n, 2]
+    chord = Chord(x0, y0, x1, y1)
     if n == 1:
-        set_segment(row, 0.0, 1.0, x0, y0, x1, y1)
+        set_segment(row, 0.0, 1.0, chord)
     else:
         tx, ty = end_tangent(points, n, False)
         flat = ROUNDINGS * (abs(x0) + abs(y0) + abs(x1) + abs(y1))
-        set_arc(row, 0.0, 1.0, x0, y0, tx, ty, x1, y1, flat)
+        set_arc(row, 0.0, 1.0, chord, tx, ty, flat)
         row[EPS] = arc_error(row, points, n, work)
     row[X0], row[X1], row[CX] = row[X0] + shift_x, row[X1] + shift_x, row[CX] + shift_x
     row[Y0], row[Y1], row[CY] = row[Y0] + shift_y, row[Y1] + shift_y, row[CY] + shift_y

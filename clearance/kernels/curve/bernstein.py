@@ -8,6 +8,7 @@ the search on overlapping curves. Not for: choosing the parts.
 
 from clearance.compile.jit import inline
 from clearance.kernels.curve.bezier import CHOOSE
+from clearance.kernels.curve.scratch import GAP, PART_A, PART_B, SQUARES
 
 
 @inline
@@ -40,12 +41,13 @@ def match_weights(p, q, n):
 
 
 @inline
-def gap_coefficients(p, n, q, m, rational, shift_x, shift_y, gap, out):
-    """Bernstein coefficients of |p(u) + shift - q(u)|^2 in out[:, 0]; returns their degree.
+def gap_coefficients(n, m, rational, shift_x, shift_y, work):
+    """Bernstein coefficients of |p(u) + shift - q(u)|^2 in work[SQUARES, :, 0]; returns their degree.
 
     Where the pieces are rational they are coefficient ratios: the square still lies between their least and
-    greatest. `p`, `q` (homogeneous, degrees `n`, `m`) are overwritten; `gap` and `out` are work space.
+    greatest. p and q (homogeneous, degrees `n`, `m`) stand in work[PART_A] and work[PART_B] and are overwritten.
     """
+    p, q, gap, out = work[PART_A], work[PART_B], work[GAP], work[SQUARES]
     if n < m:
         raise_degree(p, n, m)
         n = m

@@ -9,6 +9,7 @@ Source: DeRose, Composing Bézier simplexes (1988), for the composition.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,6 +46,18 @@ SHARES = _feet_shares()
 COEFFICIENTS = _interpolations()
 
 
+class MapFeet(NamedTuple):
+    """The feet on piece `piece` of B that a map of degree `order` goes through.
+
+    Attributes:
+        at: (order + 1,) their parameters, for the places SHARES[order] of A's part.
+    """
+
+    piece: int
+    order: int
+    at: np.ndarray
+
+
 @inline
 def order_for(n, m):
     """The highest degree of a map for a part of A of degree `n`, one of B of degree `m`; below 2 none serves."""
@@ -67,16 +80,16 @@ def least_order(bend, length, fine, most):
 
 
 @inline
-def _set_map(feet, order, curve_map):
+def _set_map(feet, curve_map):
     """Writes the map's coefficients into columns 0 (times s) and 1 (times 1 - s) of `curve_map`, scaled.
 
     They are relative to the stretch [low, high] that they span, which is returned.
     """
-    low, high = 1.0, 0.0
+    order, low, high = feet.order, 1.0, 0.0
     for r in range(order + 1):
         value = 0.0
         for c in range(order + 1):
-            value += COEFFICIENTS[order, r, c] * feet[c]
+            value += COEFFICIENTS[order, r, c] * feet.at[c]
         value = min(1.0, max(0.0, value))
         curve_map[r, 0] = value
         low, high = min(low, value), max(high, value)
@@ -183,23 +196,26 @@ def _squares(gap, degree, rational, out):
 
 
 @kernel
-def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, work, composed):
-    """A proven upper bound of the distance of A on [t0, t1] to B, where it is largest, and its rounding.
+def follow_bound(curves, part, feet, enough, work):
+    """A proven upper bound of the distance of a part of A to B, where it is largest, and its rounding.
 
-    `feet` are parameters on piece `j` at the places SHARES[order] of [t0, t1]. The largest coefficient itself
-    will do where it is below `enough`; else the squares' coefficients are the bound. Returns (bound, share of
-    [t0, t1], rounding), (inf, 0, 0) where the feet span nothing. `composed` is (points, 3, coefficients).
+    The largest coefficient itself will do where it is below `enough`; else the squares' coefficients are the
+    bound. Returns (bound, share of the part, rounding), (inf, 0, 0) where the feet span nothing.
+
+    Args:
+        feet: `MapFeet`. work: `SearchScratch`.
     """
-    p, q, curve_map = work[PART_A], work[PART_B], work[MAP]
-    low, high = _set_map(feet, order, curve_map)
+    planes, composed, order = work.planes, work.composed, feet.order
+    p, q, curve_map = planes[PART_A], planes[PART_B], planes[MAP]
+    low, high = _set_map(feet, curve_map)
     if not high > low:
         return np.inf, 0.0, 0.0
-    n = cut(pa, i, t0, t1, p)
-    m = cut(pb, j, low, high, q)
+    n = cut(curves.a, part.piece, part.t0, part.t1, p)
+    m = cut(curves.b, feet.piece, low, high, q)
     x, y = q[0, 0] / q[0, 2], q[0, 1] / q[0, 2]
     reach = _relative(q, m, x, y)
-    reach = max(reach, _relative(p, n, x - shift_x, y - shift_y))
-    rational = pa.rational[i] or pb.rational[j]
+    reach = max(reach, _relative(p, n, x - curves.shift_x, y - curves.shift_y))
+    rational = curves.a.rational[part.piece] or curves.b.rational[feet.piece]
     columns = 3 if rational else 2
     gap, own = composed[m + 2], composed[m + 1]
     for c in range(columns):
@@ -215,8 +231,8 @@ def follow_bound(pa, pb, i, t0, t1, j, feet, order, shift_x, shift_y, enough, wo
     largest_sq, which = _largest_sq(gap, degree, rational)
     if largest_sq <= enough * enough:
         return math.sqrt(largest_sq), which / degree, rounding
-    degree = _squares(gap, degree, rational, work[SQUARES])
-    most, which = greatest(work[SQUARES], degree)
+    degree = _squares(gap, degree, rational, planes[SQUARES])
+    most, which = greatest(planes[SQUARES], degree)
     bound = math.sqrt(most)
     # half as many terms as the gap's degree in each sum, as many in the weights', and a few operations more
     rounding += math.sqrt(most + ROUNDOFF * (degree // 2 + 12) * largest_sq) - bound

@@ -51,13 +51,14 @@ def _box(points, n, column):
     return low, high
 
 
-@kernel
-def enclose(pieces, one, two, three, i, t0, t1, points, out):
+@kernel(reference_counts=False)
+def enclose(pieces, derivatives, i, t0, t1, points, out):
     """Writes boxes (4, 4) of piece `i` on [t0, t1] and of its first three derivatives into `out`.
 
-    `one`, `two`, `three` are the `derived` pieces. A rational derivative follows from Leibniz' rule for
-    (point times weight), in interval arithmetic.
+    `derivatives` are the pieces `derived` once, twice and three times. A rational derivative
+    follows from Leibniz' rule for (point times weight), in interval arithmetic.
     """
+    one, two, three = derivatives
     n = cut(pieces, i, t0, t1, points)
     rational = pieces.rational[i]
     w0, w1 = _box(points, n, 2)

@@ -19,9 +19,8 @@ from clearance.kernels.curve.bezier import CHOOSE, cut, hypotenuse, jet
 from clearance.kernels.curve.scratch import MAP
 
 DEEPEST = 60
-SETTLED = (
-    1e-9  # a Newton step so short that the next, of the order of its square, would be rounding
-)
+SETTLED = 1e-9
+"""A Newton step so short that the next, of the order of its square, would be rounding."""
 
 
 class Foot(NamedTuple):
@@ -178,6 +177,39 @@ def _foot_between(pieces, i, x, y, t, low, high):
     return t
 
 
+@inline
+def _cut_about(pieces, i, a, b, x, y, points):
+    """Writes the control points of piece `i` on [a, b] about (x, y); returns their degree."""
+    n = cut(pieces, i, a, b, points)
+    for k in range(n + 1):
+        points[k, 0] -= x * points[k, 2]
+        points[k, 1] -= y * points[k, 2]
+    return n
+
+
+@inline
+def _distance_at(pieces, i, x, y, t):
+    """The distance from (x, y) to the point of piece `i` at `t`."""
+    here = jet(pieces, i, t)
+    return hypotenuse(here.x - x, here.y - y)
+
+
+@inline(one_caller=True)
+def _foot_where_rising(pieces, i, x, y, a, b, slope, points, n):
+    """Where the distance is least on [a, b], if its square's slope rises there: (t, distance, lower bound).
+
+    `slope` is what `rising_slope` gives for `points`, the control points about (x, y).
+    """
+    at_a, at_b, _, _, rise = slope
+    t = a if at_a >= 0.0 else b
+    if at_a < 0.0 < at_b:
+        t = _foot_between(pieces, i, x, y, a + (b - a) * at_a / (at_a - at_b), a, b)
+    here = jet(pieces, i, t)
+    distance = hypotenuse(here.x - x, here.y - y)
+    defect = _newton_defect_sq(here, x, y, t, a, b, rise, points, n)
+    return t, distance, math.sqrt(max(0.0, distance * distance - defect))
+
+
 @kernel
 def closest_on(pieces, i, s0, s1, x, y, best, work):
     """The nearest point of piece `i` on [s0, s1]: (distance, lower bound, parameter), if below `best`.
@@ -197,40 +229,30 @@ def closest_on(pieces, i, s0, s1, x, y, best, work):
     while top > 0:
         top -= 1
         a, b = stack[top, 0], stack[top, 1]
-        n = cut(pieces, i, a, b, points)
-        for k in range(n + 1):
-            points[k, 0] -= x * points[k, 2]
-            points[k, 1] -= y * points[k, 2]
+        n = _cut_about(pieces, i, a, b, x, y, points)
         least, reach = least_square(points, n, rational, work[2])
         fine = math.sqrt(reach) if fine < 0.0 else fine
         slack = (n + 8.0) * ROUNDOFF * reach  # of 2 n + 1 sums of products, each term below `reach`
         if least - slack > found * found:
             continue
-        at_a, at_b, falling, climbing, rise = rising_slope(points, n, rational, work[2:5])
+        slope = rising_slope(points, n, rational, work[2:5])
+        _, _, falling, climbing, rise = slope
         if falling >= 0.0 or climbing <= 0.0:
             t = a if falling >= 0.0 else b
-            here = jet(pieces, i, t)
-            distance = hypotenuse(here.x - x, here.y - y)
+            distance = _distance_at(pieces, i, x, y, t)
             lower = min(lower, distance)
             if distance < found:
                 found, where = distance, t
             continue
         if rise > 0.0:
-            t = a if at_a >= 0.0 else b
-            if at_a < 0.0 < at_b:
-                t = _foot_between(pieces, i, x, y, a + (b - a) * at_a / (at_a - at_b), a, b)
-            here = jet(pieces, i, t)
-            distance = hypotenuse(here.x - x, here.y - y)
-            defect = _newton_defect_sq(here, x, y, t, a, b, rise, points, n)
-            below = math.sqrt(max(0.0, distance * distance - defect))
+            t, distance, below = _foot_where_rising(pieces, i, x, y, a, b, slope, points, n)
             if distance < found:
                 found, where = distance, t
             if distance - below <= 4.0 * ROUNDOFF * fine or b - a < 1e-14:
                 lower = min(lower, below)
                 continue
         middle = 0.5 * (a + b)
-        here = jet(pieces, i, middle)
-        distance = hypotenuse(here.x - x, here.y - y)
+        distance = _distance_at(pieces, i, x, y, middle)
         if distance < found:
             found, where = distance, middle
         if least >= found * found - slack or top + 2 >= DEEPEST or b - a < 1e-14:

@@ -5,6 +5,8 @@ uses the planes below `MAP`, with the stack of its tree in `MAP`; bounds over pa
 Not for: what a search knows (`hausdorff.state`).
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from clearance.compile.jit import inline
@@ -16,6 +18,18 @@ MAP, PART_A, PART_B, GAP, SQUARES, FEET = range(N_NEAREST, 11)
 N_PLANES = 11
 LARGEST_DEGREE = 48  # of B(s(t)) and A together; binomials are at hand up to twice that
 FEWEST_ROWS = 2 * LARGEST_DEGREE + 2
+
+
+class SearchScratch(NamedTuple):
+    """Scratch of a search.
+
+    Attributes:
+        planes: of `new_scratch`.
+        composed: (points, 3, LARGEST_DEGREE + 1) room for composed maps (`curve.follow`).
+    """
+
+    planes: np.ndarray
+    composed: np.ndarray
 
 
 @inline

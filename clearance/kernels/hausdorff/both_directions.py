@@ -12,10 +12,15 @@ from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import S0, S1, X0, X1, Y0, Y1
 from clearance.kernels.curve.bezier import hypotenuse
 from clearance.kernels.curve.distance_map import draw, lower_bound_of_map
-from clearance.kernels.curve.scratch import LARGEST_DEGREE, new_scratch, widest
+from clearance.kernels.curve.pair import CurvePair, Curves
+from clearance.kernels.curve.scratch import (
+    LARGEST_DEGREE,
+    SearchScratch,
+    new_scratch,
+    widest,
+)
 from clearance.kernels.hausdorff.cutting import ROOM
-from clearance.kernels.hausdorff.interval_search import MANY, SearchScratch, close, examine
-from clearance.kernels.hausdorff.pair import CurvePair, Curves
+from clearance.kernels.hausdorff.interval_search import MANY, close, examine
 from clearance.kernels.hausdorff.queue import WIDTH, OpenInterval, with_room
 from clearance.kernels.hausdorff.state import SEARCH_STATE
 from clearance.kernels.hausdorff.trim import trim, trim_nodes

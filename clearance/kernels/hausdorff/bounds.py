@@ -13,7 +13,7 @@ from clearance.kernels.curve.arc import EPS, arc_distance, segment_distance
 from clearance.kernels.curve.bernstein import gap_coefficients, greatest, reverse_rows
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet
 from clearance.kernels.curve.nearest import nearest
-from clearance.kernels.curve.scratch import GAP, PART_A, PART_B, SQUARES
+from clearance.kernels.curve.scratch import PART_A, PART_B, SQUARES
 
 
 @inline
@@ -47,9 +47,7 @@ def upper_bound(curves, part, other, work):
     if other.t0 > other.t1:
         reverse_rows(q, m)
     rational = curves.a.rational[part.piece] or curves.b.rational[other.piece]
-    degree = gap_coefficients(
-        p, n, q, m, rational, curves.shift_x, curves.shift_y, work[GAP], work[SQUARES]
-    )
+    degree = gap_coefficients(n, m, rational, curves.shift_x, curves.shift_y, work)
     most, which = greatest(work[SQUARES], degree)
     return math.sqrt(most), which / degree
 

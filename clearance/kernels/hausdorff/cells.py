@@ -101,8 +101,8 @@ def put_child_cells(systems, table, level, split, a_box, points, gap):
 
     Returns their number, -1 where there are too many.
     """
-    curves, (first, second, third) = systems.pair.curves, systems.db
-    old, new, boxes, n = table.cells[level - 1], table.cells[level], table.boxes, 0
+    curves, old, new = systems.pair.curves, table.cells[level - 1], table.cells[level]
+    boxes, n = table.boxes, 0
     for k in range(table.n_cells[level - 1]):
         table.child[k, 0], table.child[k, 1] = -1, -1
         halved = split and old[k, S0] != old[k, S1]
@@ -113,7 +113,7 @@ def put_child_cells(systems, table, level, split, a_box, points, gap):
                 s0, s1 = (s0, middle) if half == 0 else (middle, s1)
             if n >= new.shape[0]:
                 return -1
-            enclose(curves.b, first, second, third, int(old[k, PIECE]), s0, s1, points, boxes[n])
+            enclose(curves.b, systems.db, int(old[k, PIECE]), s0, s1, points, boxes[n])
             gap_box(a_box[0], boxes[n, 0], curves, gap)
             if s0 != s1:
                 slopes = foot_slopes(gap, boxes[n])

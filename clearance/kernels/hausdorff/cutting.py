@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from clearance.compile.jit import inline
 from clearance.kernels.curve.bezier import hypotenuse, jet
-from clearance.kernels.curve.nearest import slide_to_foot
+from clearance.kernels.curve.nearest import Foot, slide_to_foot
 from clearance.kernels.hausdorff.bounds import consider
 from clearance.kernels.hausdorff.queue import OpenInterval, push
 from clearance.kernels.hausdorff.roots import self_bisector, slide_from
@@ -22,21 +22,30 @@ ROOM = MOST_PARTS + 2  # what the queue must have left
 
 
 class BoundPlace(NamedTuple):
-    """Where an interval's bound is largest: on A, its foot on the piece nearest to the middle, as a share."""
+    """The place on A where an interval's bound is largest.
+
+    Attributes:
+        t: its local parameter. share: the same as a share of the interval.
+        s: that of its foot on the piece of B nearest to the interval's middle.
+        seen: its foot on the whole of B. bound: how large the bound is there.
+    """
 
     t: float
     s: float
     share: float
+    seen: Foot
+    bound: float
 
 
 @inline
-def _cut_beside_joints(pair, interval, foot, seen, t, bound, heap, n_open):
-    """Cuts an interval next to B's joints between the piece nearest to its middle and that nearest to `t`.
+def _cut_beside_joints(pair, interval, foot, place, heap, n_open):
+    """Cuts an interval next to B's joints between the piece nearest to its middle and that nearest to `place`.
 
     Only where A passes them closely: elsewhere the branches cross at another place. Returns the number of open
     intervals, the same where no cut was made.
     """
-    i, t0, t1, j, other = interval.piece, interval.t0, interval.t1, foot.piece, seen.piece
+    i, t0, t1, t, bound = interval.piece, interval.t0, interval.t1, place.t, place.bound
+    j, other = foot.piece, place.seen.piece
     curves, middle = pair.curves, 0.5 * (t0 + t1)
     forward, count = t > middle, abs(other - j)
     stride = (count + MOST_PARTS - 1) // MOST_PARTS
@@ -64,9 +73,9 @@ def _cut_beside_joints(pair, interval, foot, seen, t, bound, heap, n_open):
 
 
 @inline
-def _root_to_cut_at(pair, interval, foot, seen, place, state, work):
+def _root_to_cut_at(pair, interval, foot, place, state, work):
     """The root between the interval's middle and the place of its bound: a bisector, a normal, or nan."""
-    curves, i = pair.curves, interval.piece
+    curves, i, seen = pair.curves, interval.piece, place.seen
     _, reached = slide_from(curves, i, place.t, foot.piece, place.s)
     if not seen.distance < reached * (1.0 - 1e-12):
         return place.t if 0.0 < place.share < 1.0 else math.nan
@@ -81,21 +90,22 @@ def _root_to_cut_at(pair, interval, foot, seen, place, state, work):
 
 
 @inline
-def cut_interval(pair, interval, foot, seen, place, bound, state, work, heap, n_open):
+def cut_interval(pair, interval, foot, place, state, work, heap, n_open):
     """Puts the parts of an interval into the queue; returns the number of open intervals.
 
-    `foot` is that of the interval's middle, `seen` that of the place of its bound.
+    `foot` is that of the interval's middle, `place` where its bound is largest.
     """
+    seen, bound = place.seen, place.bound
     if seen.piece != foot.piece:
         before = n_open
-        n_open = _cut_beside_joints(pair, interval, foot, seen, place.t, bound, heap, n_open)
+        n_open = _cut_beside_joints(pair, interval, foot, place, heap, n_open)
         if n_open > before:
             return n_open
     i, t0, t1, chosen = interval.piece, interval.t0, interval.t1, math.nan
     # next to each other the two branches cross where B's pieces meet: there, or halving creeps up on it
     beside = abs(seen.leaf - foot.leaf) <= 1
     if interval.was_cut == 0.0 and (beside or bound < 2.0 * state.distance):
-        chosen = _root_to_cut_at(pair, interval, foot, seen, place, state, work)
+        chosen = _root_to_cut_at(pair, interval, foot, place, state, work)
     is_root = 1.0
     if not t0 < chosen < t1:
         chosen, is_root = 0.5 * (t0 + t1), 0.0

@@ -14,8 +14,8 @@ from clearance.kernels.curve.arc_fit import BUCKET
 from clearance.kernels.curve.arcs import cells_apart
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet
 from clearance.kernels.curve.nearest import nearest, slide_to_foot
+from clearance.kernels.curve.pair import CurvePart, Curves
 from clearance.kernels.curve.scratch import new_scratch, widest
-from clearance.kernels.hausdorff.pair import CurvePart, Curves
 from clearance.kernels.hausdorff.roots import common_normal
 
 MOST_OPEN = 4000  # pairs of nodes that may be open at once

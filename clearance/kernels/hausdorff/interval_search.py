@@ -8,15 +8,20 @@ budget leaves open is never above the greatest bound in the queue, which the ans
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import hypotenuse, jet
-from clearance.kernels.curve.follow import SHARES, drift, follow_bound, least_order, order_for
+from clearance.kernels.curve.follow import (
+    SHARES,
+    MapFeet,
+    drift,
+    follow_bound,
+    least_order,
+    order_for,
+)
+from clearance.kernels.curve.pair import CurvePart
 from clearance.kernels.curve.scratch import FEET
 from clearance.kernels.hausdorff.bounds import chord_bound, consider, line_covered, upper_bound
 from clearance.kernels.hausdorff.cutting import ROOM, BoundPlace, cut_interval
-from clearance.kernels.hausdorff.pair import CurvePart
 from clearance.kernels.hausdorff.queue import BOUND, interval_at, pop, with_room
 from clearance.kernels.hausdorff.roots import common_normal, slide_from
 from clearance.kernels.hausdorff.run import NearestRun, arc_run_bound
@@ -26,6 +31,7 @@ WORTH = 0.25  # the drift's share of what a bound is too large, from which on a 
 SMALLEST = 4e-16  # an interval that floats cannot cut
 
 
+<<<<<<< HEAD
 class SearchScratch(NamedTuple):
     """Scratch of a search: the planes of `curve.scratch`, and arrays for composed maps (`curve.follow`)."""
 
@@ -33,6 +39,8 @@ class SearchScratch(NamedTuple):
     composed: np.ndarray
 
 
+=======
+>>>>>>> curvek
 class Feet(NamedTuple):
     """The feet of an interval's start, middle and end on one piece of B, and how far they are."""
 
@@ -83,7 +91,7 @@ def _follow(curves, interval, feet, bound, order, enough, work):
     """The given bound, or `follow_bound` where less: through more feet on the same piece of B."""
     if order < 2:
         return Bound(bound.value, bound.share, 0.0)
-    i, t0, t1, s0, s1 = interval.piece, interval.t0, interval.t1, feet.start, feet.end
+    t0, t1, s0, s1 = interval.t0, interval.t1, feet.start, feet.end
     more = work.planes[FEET, :, 0]
     more[0], more[order] = s0, s1
     for r in range(1, order):
@@ -94,11 +102,9 @@ def _follow(curves, interval, feet, bound, order, enough, work):
             if place <= 0.5
             else s1 + (2.0 - near) * (feet.middle - s1)
         )
-        more[r], _ = slide_from(curves, i, t0 + place * (t1 - t0), feet.piece, s)
-    closer, where, rounding = follow_bound(
-        curves.a, curves.b, i, t0, t1, feet.piece, more, order, curves.shift_x, curves.shift_y, enough,
-        work.planes, work.composed,
-    )  # fmt: skip
+        more[r], _ = slide_from(curves, interval.piece, t0 + place * (t1 - t0), feet.piece, s)
+    part, through = CurvePart(interval.piece, t0, t1), MapFeet(feet.piece, order, more)
+    closer, where, rounding = follow_bound(curves, part, through, enough, work)
     if closer < bound.value:
         return Bound(closer, where, rounding)
     return Bound(bound.value, bound.share, 0.0)
@@ -207,10 +213,8 @@ def examine(pair, aim, interval, state, work, heap, n_open):
         state.n_given_up += is_open
         state.upper = max(state.upper, bound.value + bound.lost)
         return foot.leaf, n_open
-    place, value = BoundPlace(t, s, bound.share), bound.value + bound.lost
-    n_open = cut_interval(
-        pair, interval, foot, seen, place, value, state, work.planes, heap, n_open
-    )
+    place = BoundPlace(t, s, bound.share, seen, bound.value + bound.lost)
+    n_open = cut_interval(pair, interval, foot, place, state, work.planes, heap, n_open)
     return foot.leaf, n_open
 
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.curve.arc import Chord
 from clearance.kernels.hausdorff.bounds import keep_best
 from clearance.kernels.hausdorff.bracket import (
     MOST_STEPS,
@@ -137,8 +138,8 @@ def _bound_of(lines, i, span, enough):
         x0, y0 = point_at(lines.control, i, span.t0)
         x1, y1 = point_at(lines.control, i, span.t1)
         run = NearestRun(span.near0, span.near1, span.d0, span.d1)
-        shift_x, shift_y = lines.shift_x, lines.shift_y
-        by_run = segment_run_bound(x0, y0, x1, y1, shift_x, shift_y, control, run, enough)
+        chord = Chord(x0, y0, x1, y1)
+        by_run = segment_run_bound(chord, lines.shift_x, lines.shift_y, control, run, enough)
         bound = min(bound, by_run)
     return bound
 

@@ -63,12 +63,13 @@ def arc_run_bound(curves, part, arcs, run, enough):
 
 
 @inline
-def segment_run_bound(x0, y0, x1, y1, shift_x, shift_y, control, run, enough):
-    """The bound of the segment from (x0, y0) to (x1, y1) for a run of B's segments; inf beyond `enough`."""
-    dx, dy, serves = _direction(x1 - x0, y1 - y0, run, enough)
+def segment_run_bound(chord, shift_x, shift_y, control, run, enough):
+    """The bound of a segment of A, given by its ends, for a run of B's segments; inf beyond `enough`."""
+    dx, dy, serves = _direction(chord.x1 - chord.x0, chord.y1 - chord.y0, run, enough)
     if not serves:
         return np.inf
-    x0, y0, most = x0 + shift_x, y0 + shift_y, max(run.off_first, run.off_last)
+    x0, y0 = chord.x0 + shift_x, chord.y0 + shift_y
+    most = max(run.off_first, run.off_last)
     low, high = 2 * min(run.first, run.last), 2 * max(run.first, run.last) + 1
     for r in range(low, high + 1):
         starts = r > low and r % 2 == 0

@@ -89,8 +89,8 @@ def _single_in(systems, j, s0, s1, a_box, points, room, rising_only):
     """Whether piece `j` on [s0, s1] has one nearest point at most to every point of A's part."""
     if s0 == s1:
         return True
-    curves, (first, second, third), union, gap = systems.pair.curves, systems.db, room[:4], room[4]
-    enclose(curves.b, first, second, third, j, s0, s1, points, union)
+    curves, union, gap = systems.pair.curves, room[:4], room[4]
+    enclose(curves.b, systems.db, j, s0, s1, points, union)
     gap_box(a_box[0], union[0], curves, gap)
     slopes = foot_slopes(gap, union)
     bends = slopes.bend_low > 0.0 or slopes.bend_high < 0.0

@@ -16,6 +16,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import Pieces
 from clearance.kernels.curve.interval import derived, dot, enclose
+from clearance.kernels.curve.pair import CurvePair, CurvePart, Curves
 from clearance.kernels.curve.scratch import SQUARES, new_scratch, widest
 from clearance.kernels.hausdorff.bounds import consider, extent_bound, upper_bound
 from clearance.kernels.hausdorff.cells import (
@@ -25,7 +26,6 @@ from clearance.kernels.hausdorff.cells import (
     new_table,
     put_child_cells,
 )
-from clearance.kernels.hausdorff.pair import CurvePair, CurvePart, Curves
 from clearance.kernels.hausdorff.roots import slide_from
 from clearance.kernels.hausdorff.single_roots import (
     OPEN,
@@ -138,10 +138,8 @@ def _settle_pairs(systems, part, table, level, boxes, state, work):
 @inline
 def _settle_level(systems, da, part, table, level, boxes, state, work):
     """Settles what can be of an interval's systems: whether any stays open, whether all fit, and the cost."""
-    (first, second, third), points = da, work[SQUARES]
-    enclose(
-        systems.pair.curves.a, first, second, third, part.piece, part.t0, part.t1, points, boxes.a
-    )
+    points = work[SQUARES]
+    enclose(systems.pair.curves.a, da, part.piece, part.t0, part.t1, points, boxes.a)
     n = put_child_cells(systems, table, level, level > 1, boxes.a, points, boxes.gap)
     cost = 2.0 * table.n_cells[level - 1]
     cost += _settle_normals(systems, part, table, level, n, boxes, state, work)

@@ -4,7 +4,7 @@ import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.bezier import hypotenuse, jet
-from clearance.kernels.hausdorff.pair import Curves
+from clearance.kernels.curve.pair import Curves
 from clearance.kernels.hausdorff.state import COMMON_NORMAL, END, SELF_BISECTOR
 
 AT_THE_END = 1e-12  # a local parameter this near to 0 or 1 is that end

@@ -7,6 +7,8 @@ Not for: what is merged into what, in which order, and what is kept (room `geome
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
@@ -14,6 +16,29 @@ from clearance.kernels.arithmetic.expansion import N_TERMS, orient2d, orient3d
 from clearance.kernels.arithmetic.union_find import find_root
 
 DEGENERATE = -1
+
+
+class HalfEdges(NamedTuple):
+    """The surface as rings of half-edges, (n,) each, see above; `face` is the face of each."""
+
+    tail: np.ndarray
+    ahead: np.ndarray
+    behind: np.ndarray
+    twin: np.ndarray
+    face: np.ndarray
+
+
+class FacePlanes(NamedTuple):
+    """The plane of each face, (m,) each.
+
+    Attributes:
+        group: equal for faces of one plane, below 0 for those that stay as they are.
+        axes, signs: of `triangle_axes`.
+    """
+
+    group: np.ndarray
+    axes: np.ndarray
+    signs: np.ndarray
 
 
 @inline
@@ -122,12 +147,13 @@ def _stays_convex(vertices, u, v, w, axis, sign, terms):
 
 
 @kernel
-def absorb_needles(vertices, tail, ahead, behind, twin, face, axes, parents):
+def absorb_needles(vertices, half_edges, axes, parents):
     """Gives the corner of each zero-area triangle to the proper face across its longest edge.
 
     Changes `ahead`, `behind`, `parents` (face joined into face) and `twin` (-2 for an edge taken away) in
     place. The face keeps its points: the corner lies exactly on its edge.
     """
+    tail, ahead, behind, twin, face = half_edges
     changed = True
     while changed:
         changed = False
@@ -147,16 +173,17 @@ def absorb_needles(vertices, tail, ahead, behind, twin, face, axes, parents):
 
 
 @kernel
-def merge_rings(vertices, order, tail, ahead, behind, twin, face, group, axes, signs, parents):
+def merge_rings(vertices, order, half_edges, planes, parents):
     """Takes away, in `order`, each edge between two faces of one plane whose union is convex.
 
     Args:
-        order: (k,) half-edges, one of each pair.
-        face: (n,) face of each half-edge; group, axes, signs: of each face.
+        order: (k,) half-edges, one of each pair. planes: `FacePlanes`.
         parents: (m,) union-find over faces, changed in place as are `ahead`, `behind` and `twin`.
 
     Source: Hertel and Mehlhorn, Fast triangulation of simple polygons, 1983 (their test at each end).
     """
+    tail, ahead, behind, twin, face = half_edges
+    group, axes, signs = planes
     terms = np.empty(N_TERMS)
     for h in order:
         g = twin[h]
@@ -180,8 +207,9 @@ def merge_rings(vertices, order, tail, ahead, behind, twin, face, group, axes, s
 
 
 @kernel
-def rings(tail, ahead, twin, face, parents, n_faces):
+def rings(half_edges, parents, n_faces):
     """The faces that are left, as (starts, flat vertices, index of the first face that went into each)."""
+    tail, ahead, _, twin, face = half_edges
     starts = np.zeros(n_faces + 1, dtype=np.int64)
     flat = np.empty(len(tail), dtype=np.int64)
     label = np.empty(n_faces, dtype=np.int64)

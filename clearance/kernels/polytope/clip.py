@@ -11,11 +11,14 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.polytope.bodies import body_at
+from clearance.kernels.polytope.bodies import FIRST_PLANE, body_at
 from clearance.kernels.polytope.body import (
     GREATEST_WIDTH,
     WIDTH,
+    PackedBody,
     centroid_of,
     face_edges,
     face_number,
@@ -39,9 +42,14 @@ from clearance.kernels.polytope.cut import (
     USED,
     close_up,
     cut_by_plane,
+    cut_in,
     over,
 )
 from clearance.kernels.polytope.exits import cell_of, exit_in, is_in_ball
+
+NOISE = 1e5
+"""[-] How far rounding may make a false top stand out, in tolerances: corners slide along edges nearly parallel
+to a cut; up to 1e-13 has been seen, and level ground of 2 roundings missed a plane (4e-7 of a volume)."""
 
 
 class CutLimits(NamedTuple):
@@ -49,16 +57,28 @@ class CutLimits(NamedTuple):
 
     Attributes:
         on_plane: [m] no farther above a plane is on it; noise: [m] how far rounding may make false tops stand out.
-        sparse: the part of the rows that may be free before those in use are moved together.
     """
 
     on_plane: float
     noise: float
-    sparse: float
+
+
+class Cutter(NamedTuple):
+    """A body that cuts.
+
+    Attributes:
+        base: the number of its first plane.
+        origin: (3,) what the places of the polytope that is cut are about; shift: from the centroid to it.
+    """
+
+    body: PackedBody
+    base: int
+    origin: np.ndarray
+    shift: tuple[float, float, float]
 
 
 @inline(one_caller=True)
-def other_face(cut, body, face, origin, v, tolerance, base):
+def other_face(cut, cutter, face, v, tolerance):
     """A face that has not cut yet and that `v` is above by more than `tolerance`, near `face`, or -1.
 
     In a flat body a face may be little violated in metres and most in parts of its distance. All faces that
@@ -66,7 +86,8 @@ def other_face(cut, body, face, origin, v, tolerance, base):
     plane.
     """
     spots, work, table, state = cut.spots, cut.work, cut.table, cut.state
-    numbers, indices = body.numbers, body.indices
+    numbers, indices = cutter.body.numbers, cutter.body.indices
+    base, origin = cutter.base, cutter.origin
     state[STAMP] += 2
     stamp = state[STAMP]
     work[QUEUE, 0] = face
@@ -142,11 +163,10 @@ def is_copy(spots, mesh, v, base):
 
 
 @kernel(reference_counts=False)
-def rooms_about(cutters, rooms):
+def rooms_about(rows, origin, rooms):
     """Fills `rooms` [m]: how far the plane is through which the ray from each centroid to the origin leaves."""
-    origin = cutters.origin
-    for i in range(len(cutters.rows)):
-        body = body_at(cutters, i)
+    for i in range(len(rows)):
+        body = body_at(rows, i)
         cx, cy, cz = centroid_of(body.numbers)
         x, y, z = origin[0] - cx, origin[1] - cy, origin[2] - cz
         cell, _ = cell_of(body, x, y, z)
@@ -155,114 +175,131 @@ def rooms_about(cutters, rooms):
 
 
 @inline(one_caller=True)
-def face_to_cut_by(cut, body, v, place, origin, base, tolerance):
+def face_to_cut_by(cut, cutter, v, place, tolerance):
     """A face of the body that `v`, whose place is given about the centroid, is above, and that may cut; or -1."""
+    body = cutter.body
     cell, bound = cell_of(body, place[0], place[1], place[2])
     if bound < 1.0:
         return -1
     face, gauge = exit_in(body, cell, place[0], place[1], place[2])
     if (gauge - 1.0) * body.numbers[GREATEST_WIDTH] <= tolerance:
         return -1
-    above = over(cut.spots, v, plane_about(body.numbers, face, origin))
-    if cut.table[base + face, USED] % 2 == 1 or above <= tolerance:
-        return other_face(cut, body, face, origin, v, tolerance, base)
+    above = over(cut.spots, v, plane_about(body.numbers, face, cutter.origin))
+    if cut.table[cutter.base + face, USED] % 2 == 1 or above <= tolerance:
+        return other_face(cut, cutter, face, v, tolerance)
     return face
 
 
 @inline(one_caller=True)
-def cut_by_body(cut, body, origin, base, limits):
-    """Cuts the polytope by one body; (status, planes that cut).
+def place_about_centroid(cutter, spots, v):
+    """The place of a vertex about the centroid of the body that cuts."""
+    shift = cutter.shift
+    return spots[v, 0] + shift[0], spots[v, 1] + shift[1], spots[v, 2] + shift[2]
 
-    Vertices more than `limits.noise` above a plane are surely connected to its top and cut at once. Where the best
-    plane is nearer, rounding may have left a false top: these are looked at last, and the top is searched.
 
-    The two rounds share one walk, and so one long function: apart they would be spliced in twice, and the walk is
-    half of what its caller takes to compile.
+@inline(one_caller=True)
+def cut_from(cut, cutter, start, turn, n_later, limits):
+    """Cuts from a vertex on, until neither it nor what its cuts have made is above a face; (status, `n_later`).
 
     Args:
-        base: the number of the body's first plane. FULL asks for more rows; the same call may then go on.
+        turn: the round (`cut_by_body`). n_later: how many vertices were put off before.
     """
     spots, mesh, state, work, rim, table = cut
-    numbers, tolerance = body.numbers, limits.on_plane
-    n_cuts = 0
+    body, base, tolerance = cutter.body, cutter.base, limits.on_plane
+    work[STACK, 0] = start
+    n_stack = 1
+    while n_stack > 0:
+        n_stack -= 1
+        v = work[STACK, n_stack]
+        if mesh[v, 0] < 0 or (turn == 0 and mesh[v, LOOKED] == base + 1):
+            continue
+        mesh[v, LOOKED] = base + 1
+        if turn == 0 and v > 0 and is_copy(spots, mesh, v, base):
+            mesh[v, LOOKED] = mesh[v - 1, LOOKED]
+            continue
+        place = place_about_centroid(cutter, spots, v)
+        face = face_to_cut_by(cut, cutter, v, place, tolerance)
+        if face < 0:
+            continue
+        if table[base + face, USED] == LATENT:
+            mesh[v, LOOKED] = -1
+            continue
+        plane = plane_about(body.numbers, face, cutter.origin)
+        if turn == 0 and over(spots, v, plane) <= limits.noise:
+            work[LATER, n_later] = v
+            n_later += 1
+            if n_later == work.shape[1]:
+                return FULL, n_later
+            continue
+        top = v if turn == 0 else climb(spots, mesh, v, plane, limits.noise, state, work)
+        status, n_new = cut_by_plane(
+            cut, top, plane, base + face, tolerance, body, base, cutter.origin
+        )
+        if status != CUT:
+            return status, n_later
+        table[base + face, USED] = 1
+        if n_stack + n_new + 1 > work.shape[1]:
+            return FULL, n_later
+        if turn == 1:
+            work[STACK, n_stack] = v
+            n_stack += 1
+        for i in range(n_new):
+            work[STACK, n_stack] = rim[i, NEW]
+            n_stack += 1
+    return CUT, n_later
+
+
+@inline(one_caller=True)
+def cut_by_body(cut, cutter, limits):
+    """The status after cutting the polytope by one body.
+
+    FULL asks for more rows, and the same call may then go on. Vertices more than `limits.noise` above a plane are
+    surely connected to its top and cut at once. Where the best plane is nearer, rounding may have left a false
+    top: these are looked at last, and the top is searched.
+
+    The two rounds share one walk: apart they would be spliced in twice, and the walk is half of what its caller
+    takes to compile.
+    """
+    spots, mesh, work, base = cut.spots, cut.mesh, cut.work, cutter.base
     n_later = 0
-    n_rows = state[N_ROWS]
-    cx, cy, cz = centroid_of(numbers)
-    shift_x = origin[0] - cx
-    shift_y = origin[1] - cy
-    shift_z = origin[2] - cz
+    n_rows = cut.state[N_ROWS]
     for turn in range(2):
         row = 0
         while row < (n_rows if turn == 0 else n_later):
             v = row if turn == 0 else work[LATER, row]
             row += 1
-            if turn == 0 and (
-                mesh[v, 0] < 0
-                or mesh[v, LOOKED] == base + 1
-                or is_in_ball(
-                    body, spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
-                )
-            ):
-                continue
-            work[STACK, 0] = v
-            n_stack = 1
-            while n_stack > 0:
-                n_stack -= 1
-                v = work[STACK, n_stack]
-                if mesh[v, 0] < 0 or (turn == 0 and mesh[v, LOOKED] == base + 1):
+            if turn == 0:
+                if mesh[v, 0] < 0 or mesh[v, LOOKED] == base + 1:
                     continue
-                mesh[v, LOOKED] = base + 1
-                if turn == 0 and v > 0 and is_copy(spots, mesh, v, base):
-                    mesh[v, LOOKED] = mesh[v - 1, LOOKED]
+                x, y, z = place_about_centroid(cutter, spots, v)
+                if is_in_ball(cutter.body, x, y, z):
                     continue
-                place = spots[v, 0] + shift_x, spots[v, 1] + shift_y, spots[v, 2] + shift_z
-                face = face_to_cut_by(cut, body, v, place, origin, base, tolerance)
-                if face < 0:
-                    continue
-                if table[base + face, USED] == LATENT:
-                    mesh[v, LOOKED] = -1
-                    continue
-                plane = plane_about(numbers, face, origin)
-                if turn == 0 and over(spots, v, plane) <= limits.noise:
-                    work[LATER, n_later] = v
-                    n_later += 1
-                    if n_later == work.shape[1]:
-                        return FULL, n_cuts
-                    continue
-                top = v if turn == 0 else climb(spots, mesh, v, plane, limits.noise, state, work)
-                status, n_new = cut_by_plane(
-                    cut, top, plane, base + face, tolerance, body, base, origin
-                )
-                if status != CUT:
-                    return status, n_cuts
-                table[base + face, USED] = 1
-                n_cuts += 1
-                if n_stack + n_new + 1 > work.shape[1]:
-                    return FULL, n_cuts
-                if turn == 1:
-                    work[STACK, n_stack] = v
-                    n_stack += 1
-                for i in range(n_new):
-                    work[STACK, n_stack] = rim[i, NEW]
-                    n_stack += 1
-    return CUT, n_cuts
+            status, n_later = cut_from(cut, cutter, v, turn, n_later, limits)
+            if status != CUT:
+                return status
+    return CUT
 
 
 @kernel(reference_counts=False)
-def cut_by_bodies(cut, cutters, turns, limits):
+def cut_by_bodies(block, state, table, rows, origin, turns, tolerance, sparse):
     """Cuts the polytope by bodies in turn; (status, how many of `turns` are done).
 
-    Rows are closed up after a body that leaves more than `limits.sparse` of them free.
-
     Args:
+        block, state, table: of `polytope.cut.cut_in`. rows: (m, 5) all bodies, of `polytope.bodies`.
+        origin: (3,) what the places of the polytope are about.
         turns: which bodies, in order; FULL asks for more rows, and to go on from there.
+        tolerance: [m] no farther above a plane is on it.
+        sparse: rows are closed up after a body that leaves more than this part of them free.
     """
-    state = cut.state
+    cut, limits = cut_in(block, state, table), CutLimits(tolerance, NOISE * tolerance)
     for i in range(len(turns)):
-        body, base = body_at(cutters, turns[i]), cutters.bases[turns[i]]
-        status, _ = cut_by_body(cut, body, cutters.origin, base, limits)
+        body = body_at(rows, turns[i])
+        cx, cy, cz = centroid_of(body.numbers)
+        shift = origin[0] - cx, origin[1] - cy, origin[2] - cz
+        cutter = Cutter(body, rows[turns[i], FIRST_PLANE], origin, shift)
+        status = cut_by_body(cut, cutter, limits)
         if status != CUT:
             return status, i
-        if state[N_FREE] > limits.sparse * state[N_ROWS]:
+        if state[N_FREE] > sparse * state[N_ROWS]:
             close_up(cut.spots, cut.mesh, state, cut.work)
     return CUT, len(turns)

@@ -15,10 +15,11 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.polytope.bodies import FIRST_PLANE, body_at
 from clearance.kernels.polytope.body import N_FACES, PackedBody, face_edges, place_of
 
 CUT, EMPTY, BROKEN, FULL = 0, 1, 2, 3
-N_FREE, STAMP, N_ROWS = 0, 1, 2
+N_FREE, STAMP, N_ROWS, FIRST_BODY, LAID_BODY = range(5)
 ACROSS, PLANES, MARK, LOOKED = 0, 3, 6, 7
 FIRST, SEEN, USED = 0, 1, 2
 LATENT, WHOLE = 2, 3
@@ -34,7 +35,7 @@ class Cut(NamedTuple):
         mesh: (c, 8) int32, a row a vertex: `ACROSS` + k the vertex at the other end of the edge that leaves plane
             k (-1 first: a free row), `PLANES` + k the planes in order, `MARK` a stamp, `LOOKED` the last body it
             was held against.
-        state: (3,) free rows, last stamp, rows used.
+        state: (5,) free rows, last stamp, rows used, the body that is cut, the one whose patch was laid.
         work: (4, c) int32 scratch, but `work[FREE]` holds the free rows.
         rim: (c, 4) int32, the last cut's new vertices: `NEW` itself, `OUTSIDE` its neighbour there, `SLOT` that
             one's slot, `AFTER` the plane that follows.
@@ -48,6 +49,20 @@ class Cut(NamedTuple):
     work: np.ndarray
     rim: np.ndarray
     table: np.ndarray
+
+
+@inline(one_caller=True)
+def cut_in(block, state, table):
+    """The `Cut` of c rows whose arrays lie in `block` (12 c,) float64: `spots`, `mesh`, `work`, `rim`."""
+    c = len(block) // 12
+    return Cut(
+        block[: 4 * c].reshape(c, 4),
+        block[4 * c : 8 * c].view(np.int32).reshape(c, 8),
+        state,
+        block[8 * c : 10 * c].view(np.int32).reshape(4, c),
+        block[10 * c :].view(np.int32).reshape(c, 4),
+        table,
+    )
 
 
 @inline(one_caller=True)
@@ -217,8 +232,13 @@ def cut_by_plane(cut, top, plane, name, tolerance, body, base, origin):
 
 
 @kernel(reference_counts=False)
-def begin(spots, mesh, body, corner, form, origin, base):
-    """Puts a body's trivalent form (`corner`, `form`) into the first rows, about `origin`."""
+def begin(spots, mesh, rows, i_body, corner, form, origin):
+    """Puts a body's trivalent form (`corner`, `form`) into the first rows, about `origin`.
+
+    Args:
+        rows: (m, 5) all bodies, of `polytope.bodies`. i_body: which it is.
+    """
+    body, base = body_at(rows, i_body), rows[i_body, FIRST_PLANE]
     for v in range(len(corner)):
         x, y, z = place_of(body, corner[v])
         spots[v, 0], spots[v, 1], spots[v, 2] = x - origin[0], y - origin[1], z - origin[2]
@@ -249,12 +269,16 @@ def close_up(spots, mesh, state, work):
 
 
 @kernel
-def cut_by_planes(cut, planes, name, tolerance):
+def cut_by_planes(block, state, table, planes, name, tolerance):
     """The status after cutting a small polytope, or a large one a few times, by planes (k, 4) in turn.
 
     A plane is (normal, offset [m]), and plane i is number `name` + i. The top is found by looking at all.
+
+    Args:
+        block, state, table: of `cut_in`.
     """
-    spots, mesh, state = cut.spots, cut.mesh, cut.state
+    cut = cut_in(block, state, table)
+    spots, mesh = cut.spots, cut.mesh
     no_body = PackedBody(planes[0], np.zeros(8, dtype=np.int32))
     for i in range(len(planes)):
         plane = (planes[i, 0], planes[i, 1], planes[i, 2], planes[i, 3])

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.polytope.bodies import body_at
 from clearance.kernels.polytope.body import (
     NORMAL,
     SIZE,
@@ -199,7 +200,7 @@ def recall(placed, origin, basis, names):
             put_face(basis, names, j, placed, away, names[j] & 0xFFFFFFFF)
 
 
-@kernel(reference_counts=False)
+@inline
 def deepen_two(a, b, origin, basis, names, margin, begin, passes):
     """Brings in faces of bodies `a` and `b` by turns until neither has a worse one; (settled, faces, passes).
 
@@ -227,4 +228,36 @@ def deepen_two(a, b, origin, basis, names, margin, begin, passes):
         n_level = 0 if before - basis[POINT, 3] > margin else n_level + 1
         if n_level == LEVEL:
             return False, n_entered, i_pass
+    return False, n_entered, passes
+
+
+@inline(one_caller=True)
+def placed_body(rows, poses, k):
+    """Body `k`; where there is one pose it is that of all."""
+    return PlacedBody(body_at(rows, k), poses[min(k, len(poses) - 1)], k)
+
+
+@kernel(reference_counts=False)
+def deepen_all(rows, poses, origin, basis, names, margin, begin, passes):
+    """Brings in faces of all bodies, two bodies at a time until none has a worse one; (settled, faces, passes).
+
+    Args:
+        rows: (m, 4) the bodies, of `polytope.bodies`. poses: (m, 4, 4) world_from_body, or (1, 4, 4) for all.
+        passes: how many rounds over all bodies at most. Else as `deepen_two`.
+    """
+    m = len(rows)
+    at_once, n_rounds = (passes, 1) if m < 3 else (2, passes)
+    n_entered = 0
+    for i_round in range(1, n_rounds + 1):
+        n_before, settled = n_entered, True
+        for k in range(0, m, 2):
+            a, b = placed_body(rows, poses, k), placed_body(rows, poses, min(k + 1, m - 1))
+            sure, n, n_passes = deepen_two(a, b, origin, basis, names, margin, begin, at_once)
+            if m < 3:
+                return sure, n, n_passes
+            begin, n_entered, settled = ON, n_entered + n, settled and sure
+            if basis[POINT, 3] < -1e-6 and min(names[0], names[1], names[2], names[3]) >= 0:
+                return settled, n_entered, i_round
+        if n_entered == n_before:
+            return settled, n_entered, i_round
     return False, n_entered, passes

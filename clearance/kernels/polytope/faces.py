@@ -5,12 +5,11 @@ Not for: changing the polytope (`polytope.cut`).
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.expansion import two_sum
+from clearance.kernels.polytope.bodies import FIRST_PLANE, body_at
 from clearance.kernels.polytope.body import (
     N_FACES,
     NORMAL,
@@ -19,18 +18,18 @@ from clearance.kernels.polytope.body import (
     place_of,
     plane_about,
 )
-from clearance.kernels.polytope.cut import FIRST, N_ROWS, PLANES, SEEN, STAMP, USED, WHOLE
-
-
-class WholeFaces(NamedTuple):
-    """The faces of a body that were put into a surface: the number of the first, the body's, and `face_areas`.
-
-    No rows in `areas` (0, 4): all faces are taken by their edges.
-    """
-
-    base: int
-    numbers: np.ndarray
-    areas: np.ndarray
+from clearance.kernels.polytope.cut import (
+    FIRST,
+    FIRST_BODY,
+    LAID_BODY,
+    N_ROWS,
+    PLANES,
+    SEEN,
+    STAMP,
+    USED,
+    WHOLE,
+    cut_in,
+)
 
 
 @kernel
@@ -118,9 +117,10 @@ def face_areas(body):
 
 
 @inline(one_caller=True)
-def whole_face(numbers, areas, face, origin):
-    """(volume, volume times centroid about `origin`) of the cone from `origin` over a body's face."""
-    _, _, _, high = plane_about(numbers, face, origin)
+def whole_face(rows, i_body, areas, name, origin):
+    """(volume, volume times centroid about `origin`) of the cone from `origin` over a body's face, by its name."""
+    face = name - rows[i_body, FIRST_PLANE]
+    _, _, _, high = plane_about(body_at(rows, i_body).numbers, face, origin)
     cone = areas[face, 0] * high / 3.0
     x = 0.75 * cone * (areas[face, 1] - origin[0])
     y = 0.75 * cone * (areas[face, 2] - origin[1])
@@ -140,17 +140,21 @@ def cone_over(places, o, u, w):
 
 
 @kernel(reference_counts=False)
-def trivalent_moments(cut, a, b, origin):
+def trivalent_moments(block, state, table, rows, areas, areas_laid, origin):
     """Volume [m^3], volume times centroid (3) [m^4], greatest coordinate, about the origin of a `Cut`.
 
     Each edge of each face makes a tetrahedron with the face's first corner met and the origin; a face that no
     cut has touched is one cone.
 
     Args:
-        a, b: `WholeFaces` of the body that was cut and of the one whose patch was laid; origin: (3,) of the places
-            in the bodies' frame.
+        block, state, table: of `polytope.cut.cut_in`. rows: (m, 5) all bodies, of `polytope.bodies`.
+        areas, areas_laid: `face_areas` of the body that was cut and of the one whose patch was laid; (0, 4): all
+            faces are taken by their edges. origin: (3,) of the places in the bodies' frame.
     """
-    places, mesh, table, state = cut.spots, cut.mesh, cut.table, cut.state
+    cut = cut_in(block, state, table)
+    places, mesh = cut.spots, cut.mesh
+    i_first, i_laid = state[FIRST_BODY], state[LAID_BODY]
+    base = rows[i_first, FIRST_PLANE]
     state[STAMP] += 2
     stamp = state[STAMP]
     most = volume = x = y = z = 0.0
@@ -164,10 +168,10 @@ def trivalent_moments(cut, a, b, origin):
             if table[name, SEEN] != stamp:
                 whole = table[name, SEEN] == 0
                 table[name, SEEN] = stamp
-                if whole and name >= a.base and name < a.base + len(a.areas):
-                    part = whole_face(a.numbers, a.areas, name - a.base, origin)
-                elif whole and table[name, USED] == WHOLE and len(b.areas) > 0:
-                    part = whole_face(b.numbers, b.areas, name - b.base, origin)
+                if whole and name >= base and name < base + len(areas):
+                    part = whole_face(rows, i_first, areas, name, origin)
+                elif whole and table[name, USED] == WHOLE and len(areas_laid) > 0:
+                    part = whole_face(rows, i_laid, areas_laid, name, origin)
                 else:
                     table[name, FIRST] = u
                     continue

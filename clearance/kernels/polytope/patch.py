@@ -157,7 +157,8 @@ def lay_patch(cut, body, corner, form, in_patch, rows, origin, base):
 
     Args:
         corner, form: the body's trivalent form; in_patch: from `mark_patch`;
-        rows: (t,) scratch. Else as `polytope.clip.cut_by_body`.
+        rows: (t,) scratch; origin: (3,) what the places in `cut` are about; base: the number of the body's first
+            plane.
     """
     spots, mesh, state, work, rim, table = cut
     indices = body.indices
