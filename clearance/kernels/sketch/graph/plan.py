@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.sketch.graph.blocks import bodies, with_assumed
+from clearance.kernels.sketch.graph.bodies import bodies, with_assumed
 from clearance.kernels.sketch.graph.core import (
     clusters_of,
     components,
