@@ -105,8 +105,8 @@ def _run_at_unit(
         problem.regular, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
     )
     if turned is not None:
-        active[problem.part[problem.plan.vertex[turned < 0.0]]] = 1
-    fates = np.full(problem.plan.vertex.shape[0], KEPT)
+        active[problem.part[problem.plan.steps.vertex[turned < 0.0]]] = 1
+    fates = np.full(problem.plan.steps.vertex.shape[0], KEPT)
     if active.any():
         fates, x = _solve_parts(problem, x, sketch, active, effort, turned)
     if problem.tables.together:
@@ -147,7 +147,7 @@ def _solve_parts(
     start = x.copy()
     active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
     limits = limits_of(problem, RESTARTS if effort else 4)
-    turned = np.ones(problem.plan.vertex.size) if turned is None else turned
+    turned = np.ones(problem.plan.steps.vertex.size) if turned is None else turned
     fates = execute(problem, x, start, turned, active, limits)
     if effort == 0 and (fates == FAILED).any():
         return fates, x

@@ -9,6 +9,7 @@ from clearance.kernels.sketch.solve.execute import (
     DONE,
     FAILED,
     TOO_LARGE,
+    PlanRun,
     StepTolerances,
     place_closed,
     solve_numeric,
@@ -41,13 +42,14 @@ def execute(
     """Runs the steps of a plan in place on x (n,); the fate (s,) of each.
 
     Numeric steps are compiled apart: most sketches need none. For `turned` and `active` see
-    `clearance.kernels.sketch.solve.execute.place_closed`.
+    `clearance.kernels.sketch.solve.execute.PlanRun`.
     """
     plan = problem.plan if plan is None else plan
-    fate = np.full(plan.vertex.shape[0], DONE)
+    steps, fate = plan.steps, np.full(plan.steps.vertex.shape[0], DONE)
+    run = PlanRun(turned, active, fate)
     s, k = problem.system, 0
     while True:
-        k = place_closed(s, plan, x, sketch, turned, active, limits, k, fate)
+        k = place_closed(s, steps, x, sketch, run, limits.settled, k)
         if k == fate.size:
             return fate
         fate[k] = solve_numeric(s, plan, x, sketch, k, limits)
@@ -59,14 +61,15 @@ def run_after(
 ) -> tuple[np.ndarray, bool]:
     """The numbers after the steps that follow a numeric cluster are run again from x, on the branches
     of `sketch`; and whether every step found its place."""
-    p = problem.plan
-    later = int(np.flatnonzero(p.block == block)[0]) + 1
-    plan = p._replace(
-        vertex=p.vertex[later:], partner=p.partner[later:], edges=p.edges[later:],
-        block=p.block[later:], origin=p.origin[later:],
+    steps = problem.plan.steps
+    later = int(np.flatnonzero(steps.block == block)[0]) + 1
+    steps = steps._replace(
+        vertex=steps.vertex[later:], partner=steps.partner[later:], edges=steps.edges[later:],
+        block=steps.block[later:], origin=steps.origin[later:],
     )  # fmt: skip
     out = x.copy()
     every = np.ones(problem.system.kind.size, np.uint8)
-    turned = np.ones(plan.vertex.size)
+    turned = np.ones(steps.vertex.size)
+    plan = problem.plan._replace(steps=steps)
     fates = execute(problem, out, sketch, turned, every, limits_of(problem), plan)
     return out, not ((fates == FAILED) | (fates == TOO_LARGE)).any()

@@ -13,6 +13,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT
+from clearance.kernels.sketch.graph.plan_steps import block_of
 from clearance.kernels.sketch.solve.motion import freedoms, move, pivots_of
 from clearance.kernels.sketch.solve.place import assign, place
 from clearance.kernels.sketch.solve.search import BANDED, solve_block
@@ -31,6 +32,20 @@ class StepTolerances(NamedTuple):
     tolerance: float
     largest_block: int
     attempts: int
+
+
+class PlanRun(NamedTuple):
+    """How the steps of a plan are run.
+
+    Attributes:
+        turned: (s,) 1 where a closed step takes the sketch's branch, -1 the other.
+        active: (v,) 0 for the vertices of parts that need no work.
+        fate: (s,) of every step; filled as they are run.
+    """
+
+    turned: np.ndarray
+    active: np.ndarray
+    fate: np.ndarray
 
 
 FREED = 4
@@ -170,32 +185,31 @@ def _find_freed(
 
 
 @kernel
-def place_closed(s, plan, x, sketch, turned, active, limits, begin, fate):
-    """Runs the closed steps from `begin` on, in place on x and `fate` (s,), up to a numeric step that has
+def place_closed(s, steps, x, sketch, run, settled, begin):
+    """Runs the closed steps from `begin` on, in place on x and `run.fate`, up to a numeric step that has
     work to do; its index, or the number of steps.
 
-    `turned` (s,) is 1 where a closed step takes the sketch's branch, -1 the other; `active` (v,) leaves
-    out the vertices of parts that need no work.
+    A step whose equations hold to `settled` [m] is left alone.
     """
     gradient = np.empty(8)
-    for k in range(begin, plan.vertex.shape[0]):
-        b, v = plan.block[k], plan.vertex[k]
-        fate[k] = KEPT
+    for k in range(begin, steps.vertex.shape[0]):
+        b, v = steps.block[k], steps.vertex[k]
+        run.fate[k] = KEPT
         if b >= 0:
-            at = plan.block_row_start[b]
-            rows = plan.block_row[at : plan.block_row_start[b + 1]]
-            if not active[plan.block_vertex[plan.block_vertex_start[b]]]:
+            vertices, rows = block_of(steps, b)
+            if not run.active[vertices[0]]:
                 continue
-            if not _holds(s, rows, x, gradient, limits.settled):
+            if not _holds(s, rows, x, gradient, settled):
                 return k
-        elif active[v]:
-            if turned[k] > 0.0 and _holds(s, plan.edges[k], x, gradient, limits.settled):
+        elif run.active[v]:
+            turned, edges, partner = run.turned[k], steps.edges[k], steps.partner[k]
+            if turned > 0.0 and _holds(s, edges, x, gradient, settled):
                 continue
-            if s.kind[v] == POINT and plan.partner[k] >= 0:
+            if s.kind[v] == POINT and partner >= 0:
                 return k
-            done = place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient, turned[k])
-            fate[k] = DONE if done else FAILED
-    return plan.vertex.shape[0]
+            done = place(s, v, partner, edges, x, sketch, gradient, turned)
+            run.fate[k] = DONE if done else FAILED
+    return steps.vertex.shape[0]
 
 
 @kernel
@@ -204,13 +218,12 @@ def solve_numeric(s, plan, x, sketch, k, limits):
     floor, tolerance, attempts = limits.floor, limits.tolerance, limits.attempts
     alone = np.full(s.kind.shape[0], -1, np.int64)
     pivot = pivots_of(s, plan.body_of, plan.held.shape[0], x)
-    b = plan.block[k]
+    steps, b = plan.steps, plan.steps.block[k]
     if b < 0:
-        vertices, rows = np.empty(2, np.int64), plan.edges[k][plan.edges[k] >= 0]
-        vertices[0], vertices[1] = plan.vertex[k], plan.partner[k]
+        vertices, rows = np.empty(2, np.int64), steps.edges[k][steps.edges[k] >= 0]
+        vertices[0], vertices[1] = steps.vertex[k], steps.partner[k]
     else:
-        vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
-        rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
+        vertices, rows = block_of(steps, b)
     if rows.shape[0] > limits.largest_block:
         return TOO_LARGE
     unknowns = freedoms(s, vertices, plan.body_of)
