@@ -15,6 +15,7 @@ from clearance.kernels.sketch.equations import LENGTHS, RATIO
 from clearance.kernels.sketch.graph.graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
 from clearance.kernels.sketch.solve.execute import FAILED, KEPT
 from clearance.kernels.sketch.solve.fit import set_down
+from clearance.kernels.sketch.solve.motion import ClusterPlace, NumericCluster
 from clearance.kernels.sketch.solve.search import BANDED, RESTARTS, solve_block
 from clearance.kernels.sketch.solve.start import unsettled
 from clearance.sketch.contacts import Contacts
@@ -23,7 +24,7 @@ from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import LARGEST_BLOCK, execute, limits_of, residual_of
+from clearance.sketch.steps import LARGEST_BLOCK, execute, limits_of, residual_of, stopping_rule
 
 NEARLY = 1e-5
 """[-] Error of an implied equation, relative to the size, up to which all equations are solved
@@ -213,13 +214,12 @@ def _numeric_part(
     if rows.size > 4 * LARGEST_BLOCK:
         return False
     alone, pivot = np.full(s.kind.shape[0], -1), np.zeros((0, 2))
-    limits = limits_of(problem, 6 if rows.size < 60 and effort == 2 else effort)
+    cluster = NumericCluster(vertices, rows, alone)
+    rule = stopping_rule(problem, 6 if rows.size < 60 and effort == 2 else effort)
     mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
     for origin in (start, x):
         tried = np.where(mine, origin, x)  # other parts stay where they are
-        if solve_block(
-            s, vertices, rows, tried, alone, pivot, limits.floor, limits.tolerance, limits.attempts
-        ):
+        if solve_block(s, cluster, ClusterPlace(tried, pivot), rule):
             x[:] = tried
             return True
     return False

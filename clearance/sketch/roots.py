@@ -12,10 +12,11 @@ import numpy as np
 from clearance.kernels.sketch.graph.graph import POINT
 from clearance.kernels.sketch.graph.plan_steps import block_of
 from clearance.kernels.sketch.solve.execute import DONE
-from clearance.kernels.sketch.solve.roots import cluster_roots
+from clearance.kernels.sketch.solve.motion import NumericCluster
+from clearance.kernels.sketch.solve.roots import RootSearch, cluster_roots
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.start import Sides, sides_hold
-from clearance.sketch.steps import limits_of, residual_of, run_after
+from clearance.sketch.steps import residual_of, run_after, stopping_rule
 
 SMALL = 10
 """Entities up to which a cluster's other roots are searched."""
@@ -47,13 +48,13 @@ def is_small(problem: Problem, b: int) -> bool:
 
 def roots_of(problem: Problem, b: int, x: np.ndarray, starts: int = STARTS) -> np.ndarray:
     """All numbers (k, n) found with the cluster's equations true, all else as in x; x's own first."""
-    plan, limits = problem.plan, limits_of(problem)
+    plan = problem.plan
     vertices, rows = block_of(problem.plan.steps, b)
     reach = max(_extent(problem, vertices, x), 0.1 * problem.size)
-    return cluster_roots(
-        problem.system, vertices, rows, x, plan.body_of, plan.held.size, limits.floor,
-        limits.tolerance, problem.size, reach, starts, MOST,
-    )  # fmt: skip
+    cluster = NumericCluster(vertices, rows, plan.body_of)
+    search = RootSearch(problem.size, reach, starts, MOST)
+    rule = stopping_rule(problem, 1)
+    return cluster_roots(problem.system, cluster, x, plan.held.size, rule, search)
 
 
 def _places(problem: Problem, vertices: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from clearance.kernels.sketch.solve.execute import (
     place_closed,
     solve_numeric,
 )
+from clearance.kernels.sketch.solve.motion import StoppingRule
 from clearance.kernels.sketch.solve.search import RESTARTS
 from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
 
@@ -24,10 +25,15 @@ FLOOR = 2e-16
 """[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
 
 
+def stopping_rule(problem: Problem, attempts: int) -> StoppingRule:
+    """When the search for a cluster's place ends, at the problem's size."""
+    return StoppingRule(FLOOR * problem.size, RESIDUAL * problem.size, attempts)
+
+
 def limits_of(problem: Problem, attempts: int = RESTARTS) -> StepTolerances:
     """The limits of a run at the problem's size."""
     size = problem.size
-    return StepTolerances(SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK, attempts)
+    return StepTolerances(SETTLED * size, LARGEST_BLOCK, stopping_rule(problem, attempts))
 
 
 def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
