@@ -170,7 +170,7 @@ def narrow(unknowns, nodes):
     return half, column
 
 
-@inline
+@inline(force=True)
 def _entries(s, row, unknowns, place, gradient, column, value):
     """The derivative of an equation as (column, value) pairs, from its derivatives by slot; how many."""
     first, body_of, x, pivot = unknowns.first, unknowns.cluster.body_of, place.x, place.pivot
@@ -220,7 +220,7 @@ def _fill_normal(s, unknowns, place, normal, gradient):
                     band[column[p], column[q] - column[p]] += value[p] * value[q]
 
 
-@inline
+@inline(one_caller=True)
 def _damp(normal, damping, unit, damped):
     """Fills the damped equations: `damping` times the unit (n,) of every diagonal number is added to it."""
     damped.band[:, :] = normal.band

@@ -29,7 +29,7 @@ class LinearEquations(NamedTuple):
     gradient: np.ndarray
 
 
-@inline
+@inline(force=True)
 def _spread(s, i, g, unknowns, place, jacobian, row):
     """Adds g times the derivative of variable i to a row of the jacobian."""
     v = s.vertex_of[i]
@@ -106,7 +106,7 @@ def _eliminate(matrix, right):
         right[k] /= matrix[k, k]
 
 
-@inline
+@inline(one_caller=True)
 def _step_of(linear, damping):
     """The step (n,) to where the linear equations hold, or nearly; a square jacobian is spent by it.
 
