@@ -35,12 +35,12 @@ STRAIGHT = (LINEAR, POINT_LINE, LINE_CIRCLE, MIDDLE_ON, ACROSS)
 
 def choices(problem: Problem) -> np.ndarray:
     """The closed steps (indices) that choose one of two places."""
-    plan, s = problem.plan, problem.system
-    two = (plan.block < 0) & (plan.edges[:, 1] >= 0) & (plan.edges[:, 2] < 0)
-    first, second = s.code[plan.edges[:, 0]], s.code[plan.edges[:, 1]]
-    points = two & (s.kind[plan.vertex] == POINT) & (plan.partner < 0)
+    steps, s = problem.plan.steps, problem.system
+    two = (steps.block < 0) & (steps.edges[:, 1] >= 0) & (steps.edges[:, 2] < 0)
+    first, second = s.code[steps.edges[:, 0]], s.code[steps.edges[:, 1]]
+    points = two & (s.kind[steps.vertex] == POINT) & (steps.partner < 0)
     points &= ~(np.isin(first, STRAIGHT) & np.isin(second, STRAIGHT))
-    lines = two & (s.kind[plan.vertex] == TURN) & (first != ACROSS) & (second != ACROSS)
+    lines = two & (s.kind[steps.vertex] == TURN) & (first != ACROSS) & (second != ACROSS)
     return np.flatnonzero(points | lines)
 
 
@@ -61,7 +61,7 @@ def _turned(problem: Problem, before: np.ndarray, sides: Sides, outcome):
     for count in range(1, len(steps) + 1):
         best = []
         for chosen in combinations(steps, count):
-            turned = np.ones(problem.plan.vertex.size)
+            turned = np.ones(problem.plan.steps.vertex.size)
             turned[list(chosen)] = -1.0
             best.append(run(problem, before, sides, turned=turned))
         yield from best
@@ -74,8 +74,10 @@ def _nearest_choices(problem: Problem, sides: Sides) -> list[int]:
     s = problem.system
     concerned = {int(s.vertex_of[problem.alias[i]]) for side in sides for i in side}
     parts = {int(problem.part[v]) for v in concerned if v > 0}
-    steps = [int(k) for k in choices(problem) if int(problem.part[problem.plan.vertex[k]]) in parts]
-    own = [k for k in steps if int(problem.plan.vertex[k]) in concerned]
+    steps = [
+        int(k) for k in choices(problem) if int(problem.part[problem.plan.steps.vertex[k]]) in parts
+    ]
+    own = [k for k in steps if int(problem.plan.steps.vertex[k]) in concerned]
     return (own + [k for k in reversed(steps) if k not in own])[:MOST]
 
 
@@ -94,9 +96,11 @@ def exhausted(problem: Problem, before: np.ndarray, sides: Sides) -> bool:
     False when that cannot be decided: freedom is left, a cluster is numeric, or there are too many branches.
     """
     steps = choices(problem)
-    circles = (problem.system.kind[problem.plan.vertex] == POINT) & (problem.plan.partner >= 0)
+    circles = (problem.system.kind[problem.plan.steps.vertex] == POINT) & (
+        problem.plan.steps.partner >= 0
+    )
     lengths = np.any(problem.system.code == LENGTHS)
-    if steps.size > MOST or (problem.plan.block >= 0).any() or circles.any() or lengths:
+    if steps.size > MOST or (problem.plan.steps.block >= 0).any() or circles.any() or lengths:
         return False
     return bool(problem.is_rigid.all()) and not _any_branch(problem, before, sides, steps)
 
@@ -105,7 +109,7 @@ def _any_branch(problem: Problem, before: np.ndarray, sides: Sides, steps: np.nd
     start, _ = started(problem, before, ())
     every = np.ones(problem.system.kind.size, np.uint8)
     for mask in range(2**steps.size):
-        turned = np.ones(problem.plan.vertex.size)
+        turned = np.ones(problem.plan.steps.vertex.size)
         turned[steps[(mask >> np.arange(steps.size)) & 1 == 1]] = -1.0
         x = start.copy()
         fates = execute(problem, x, start, turned, every, limits_of(problem))

@@ -16,6 +16,7 @@ import numpy as np
 
 from clearance.kernels.sketch.equations import POINT_POINT, residuals
 from clearance.kernels.sketch.graph.graph import CONTRADICTED, MERGED
+from clearance.kernels.sketch.graph.plan_steps import block_of
 from clearance.kernels.sketch.solve.search import BANDED
 from clearance.sketch.branches import exhausted
 from clearance.sketch.problem import DEPENDENT, Problem
@@ -107,17 +108,17 @@ def _proof(trial: Trials, conflict: list[int]) -> str:
 
 def _first_broken(problem: Problem, outcome) -> list[int]:
     """The worst equation, and those of the first closed step that found no place."""
-    failed = np.flatnonzero((outcome.fates == 1) & (problem.plan.block < 0))
-    rows = [int(r) for r in problem.plan.edges[failed[0]] if r >= 0] if failed.size else []
+    steps = problem.plan.steps
+    failed = np.flatnonzero((outcome.fates == 1) & (steps.block < 0))
+    rows = [int(r) for r in steps.edges[failed[0]] if r >= 0] if failed.size else []
     return [r for r in (*rows, outcome.broken) if r >= 0]
 
 
 def _large_failures(problem: Problem, fates: np.ndarray) -> list[int]:
     """The constraints of the large clusters whose search failed: too large to be thinned by trials."""
-    plan, out = problem.plan, set()
-    for k in np.flatnonzero(((fates == 1) | (fates == 2)) & (plan.block >= 0)):
-        b = plan.block[k]
-        rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
+    steps, out = problem.plan.steps, set()
+    for k in np.flatnonzero(((fates == 1) | (fates == 2)) & (steps.block >= 0)):
+        _, rows = block_of(steps, steps.block[k])
         if rows.size >= BANDED:
             out |= {int(o) for o in problem.tables.owner[rows]}
     return sorted(out)

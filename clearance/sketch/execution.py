@@ -15,6 +15,7 @@ from clearance.kernels.sketch.equations import LENGTHS, RATIO
 from clearance.kernels.sketch.graph.graph import CONTRADICTED, DIRECTION, IN_GRAPH, POINT
 from clearance.kernels.sketch.solve.execute import FAILED, KEPT
 from clearance.kernels.sketch.solve.fit import set_down
+from clearance.kernels.sketch.solve.motion import ClusterPlace, NumericCluster
 from clearance.kernels.sketch.solve.search import BANDED, RESTARTS, solve_block
 from clearance.kernels.sketch.solve.start import unsettled
 from clearance.sketch.contacts import Contacts
@@ -23,7 +24,7 @@ from clearance.sketch.movement import closed, least_movement
 from clearance.sketch.problem import DEPENDENT, RESIDUAL, SETTLED, Problem
 from clearance.sketch.roots import nearest_roots
 from clearance.sketch.start import Sides, sides_hold, started
-from clearance.sketch.steps import LARGEST_BLOCK, execute, limits_of, residual_of
+from clearance.sketch.steps import LARGEST_BLOCK, execute, limits_of, residual_of, stopping_rule
 
 NEARLY = 1e-5
 """[-] Error of an implied equation, relative to the size, up to which all equations are solved
@@ -105,8 +106,8 @@ def _run_at_unit(
         problem.regular, loose, problem.n_parts, x, problem.length_scale, SETTLED * size
     )
     if turned is not None:
-        active[problem.part[problem.plan.vertex[turned < 0.0]]] = 1
-    fates = np.full(problem.plan.vertex.shape[0], KEPT)
+        active[problem.part[problem.plan.steps.vertex[turned < 0.0]]] = 1
+    fates = np.full(problem.plan.steps.vertex.shape[0], KEPT)
     if active.any():
         fates, x = _solve_parts(problem, x, sketch, active, effort, turned)
     if problem.tables.together:
@@ -147,7 +148,7 @@ def _solve_parts(
     start = x.copy()
     active = np.where(problem.part >= 0, active_part[problem.part], 0).astype(np.uint8)
     limits = limits_of(problem, RESTARTS if effort else 4)
-    turned = np.ones(problem.plan.vertex.size) if turned is None else turned
+    turned = np.ones(problem.plan.steps.vertex.size) if turned is None else turned
     fates = execute(problem, x, start, turned, active, limits)
     if effort == 0 and (fates == FAILED).any():
         return fates, x
@@ -213,13 +214,12 @@ def _numeric_part(
     if rows.size > 4 * LARGEST_BLOCK:
         return False
     alone, pivot = np.full(s.kind.shape[0], -1), np.zeros((0, 2))
-    limits = limits_of(problem, 6 if rows.size < 60 and effort == 2 else effort)
+    cluster = NumericCluster(vertices, rows, alone)
+    rule = stopping_rule(problem, 6 if rows.size < 60 and effort == 2 else effort)
     mine = (s.vertex_of > 0) & (problem.part[s.vertex_of] == part)
     for origin in (start, x):
         tried = np.where(mine, origin, x)  # other parts stay where they are
-        if solve_block(
-            s, vertices, rows, tried, alone, pivot, limits.floor, limits.tolerance, limits.attempts
-        ):
+        if solve_block(s, cluster, ClusterPlace(tried, pivot), rule):
             x[:] = tried
             return True
     return False

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
+from clearance.kernels.sketch.graph.plan_steps import block_of
 from clearance.kernels.sketch.graph.rank import singular_steps
 from clearance.kernels.sketch.solve.columns import spread
 from clearance.sketch.execution import at_unit
@@ -71,10 +72,10 @@ def freedom_of(problem: Problem, x: np.ndarray) -> int:
 def suspicious_parts(problem: Problem, x: np.ndarray) -> np.ndarray:
     """(parts,) whether the count alone may err: numeric clusters, implied equations, singular steps."""
     plan, out = problem.plan, np.zeros(problem.n_parts, bool)
-    out[problem.part[plan.block_vertex]] = True
+    out[problem.part[plan.steps.block_vertex]] = True
     out[problem.row_part[plan.dependent]] = True
-    singular = singular_steps(problem.system, plan, x, problem.size) > 0
-    out[problem.part[plan.vertex[singular]]] = True
+    singular = singular_steps(problem.system, plan.steps, x, problem.size) > 0
+    out[problem.part[plan.steps.vertex[singular]]] = True
     return out
 
 
@@ -194,7 +195,7 @@ def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> 
     motions = rigid_motions(problem, x, vertices, first)[:, : (3, 2, 0)[problem.hold[part]]]
     inside = set(map(int, vertices))
     columns: list[int] = []
-    steps = range(problem.plan.vertex.size)
+    steps = range(problem.plan.steps.vertex.size)
     placed = [v for k in steps for v in _placed(problem, k) if v in inside]
     for v in dict.fromkeys([*placed, *map(int, vertices)]):
         for c in range(first[v], first[v] + (2 if problem.system.kind[v] == POINT else 1)):
@@ -206,10 +207,8 @@ def _gauge(problem: Problem, part: int, equations: Equations, x: np.ndarray) -> 
 
 
 def _placed(problem: Problem, step: int) -> Iterable[int]:
-    plan = problem.plan
-    b = plan.block[step]
+    steps = problem.plan.steps
+    b = steps.block[step]
     if b >= 0:
-        return map(
-            int, plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
-        )
-    return [int(v) for v in (plan.vertex[step], plan.partner[step]) if v >= 0]
+        return map(int, block_of(steps, b)[0])
+    return [int(v) for v in (steps.vertex[step], steps.partner[step]) if v >= 0]

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from clearance.kernels.sketch.graph.graph import GROUND, POINT, SIZE, SLIDE, TURN
+from clearance.kernels.sketch.graph.plan_steps import IN_BODY, block_of
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ def readable(sketch, problem, fates: np.ndarray) -> list[Step]:
     names = _Names(sketch, problem)
     reading = _ClosedStepReading(names, problem)
     out = _preprocessing(names, problem)
-    for k, b in enumerate(problem.plan.block):
+    for k, b in enumerate(problem.plan.steps.block):
         outcome = OUTCOMES[fates[k]]
         if b >= 0:
             out.append(_block_step(names, problem, int(b), outcome))
@@ -110,11 +111,9 @@ class _ClosedStepReading:
         self.problem = problem
         self.plan = problem.plan
         self.base = {int(b) for b in np.flatnonzero(self.plan.held)}
-        self.placed = {
-            int(v)
-            for v in (*self.plan.vertex, *self.plan.partner, *self.plan.block_vertex)
-            if v >= 0
-        }
+        steps = problem.plan.steps
+        placed = (*steps.vertex, *steps.partner, *steps.block_vertex)
+        self.placed = {int(v) for v in placed if v >= 0}
         self.spare = {p: [3, 2, 0][problem.hold[p]] for p in range(problem.n_parts)}
         for v in np.flatnonzero(np.isin(self.plan.body_of, list(self.base))):
             self.spare[int(problem.part[v])] = 0  # its base places the part
@@ -122,10 +121,10 @@ class _ClosedStepReading:
         self.size: dict[int, int] = {}
 
     def step(self, k: int, outcome: str) -> Step:
-        plan = self.plan
-        vertices = [int(v) for v in (plan.vertex[k], plan.partner[k]) if v >= 0]
-        rows = [int(r) for r in plan.edges[k] if r >= 0]
-        inside, body = plan.origin[k] == 1, int(plan.body_of[vertices[0]])
+        steps = self.plan.steps
+        vertices = [int(v) for v in (steps.vertex[k], steps.partner[k]) if v >= 0]
+        rows = [int(r) for r in steps.edges[k] if r >= 0]
+        inside, body = steps.origin[k] == IN_BODY, int(self.plan.body_of[vertices[0]])
         kind, assumed = self._kind(vertices, rows, inside, body)
         if inside and len(rows) == 1:  # an edge whose other end is held without a step of its own
             ends = [int(v) for v in self.problem.system.ends[rows[0]] if v > 0]
@@ -170,8 +169,7 @@ def _preprocessing(names: _Names, problem) -> list[Step]:
 
 def _block_step(names: _Names, problem, b: int, outcome: str) -> Step:
     plan, s = problem.plan, problem.system
-    vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
-    rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
+    vertices, rows = block_of(plan.steps, b)
     nodes = {
         ("body", int(plan.body_of[v])) if plan.body_of[v] >= 0 else ("vertex", int(v))
         for v in vertices

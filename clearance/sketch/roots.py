@@ -10,11 +10,13 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.kernels.sketch.graph.graph import POINT
+from clearance.kernels.sketch.graph.plan_steps import block_of
 from clearance.kernels.sketch.solve.execute import DONE
-from clearance.kernels.sketch.solve.roots import cluster_roots
+from clearance.kernels.sketch.solve.motion import NumericCluster
+from clearance.kernels.sketch.solve.roots import RootSearch, cluster_roots
 from clearance.sketch.problem import RESIDUAL, Problem
 from clearance.sketch.start import Sides, sides_hold
-from clearance.sketch.steps import limits_of, residual_of, run_after
+from clearance.sketch.steps import residual_of, run_after, stopping_rule
 
 SMALL = 10
 """Entities up to which a cluster's other roots are searched."""
@@ -33,17 +35,10 @@ MOST = 64
 """Roots that are kept: ten entities of two freedoms rarely have more real ones."""
 
 
-def block_of(problem: Problem, b: int) -> tuple[np.ndarray, np.ndarray]:
-    """(vertices, rows) of a numeric cluster."""
-    p = problem.plan
-    vertices = p.block_vertex[p.block_vertex_start[b] : p.block_vertex_start[b + 1]]
-    return vertices, p.block_row[p.block_row_start[b] : p.block_row_start[b + 1]]
-
-
 def is_small(problem: Problem, b: int) -> bool:
     """Whether a cluster has at most `SMALL` nodes (a body counts as one) and as many equations as
     freedoms."""
-    vertices, rows = block_of(problem, b)
+    vertices, rows = block_of(problem.plan.steps, b)
     body, kind = problem.plan.body_of[vertices], problem.system.kind[vertices]
     bodies = np.unique(body[body >= 0]).size
     nodes = bodies + int(np.sum(body < 0))
@@ -53,13 +48,13 @@ def is_small(problem: Problem, b: int) -> bool:
 
 def roots_of(problem: Problem, b: int, x: np.ndarray, starts: int = STARTS) -> np.ndarray:
     """All numbers (k, n) found with the cluster's equations true, all else as in x; x's own first."""
-    plan, limits = problem.plan, limits_of(problem)
-    vertices, rows = block_of(problem, b)
+    plan = problem.plan
+    vertices, rows = block_of(problem.plan.steps, b)
     reach = max(_extent(problem, vertices, x), 0.1 * problem.size)
-    return cluster_roots(
-        problem.system, vertices, rows, x, plan.body_of, plan.held.size, limits.floor,
-        limits.tolerance, problem.size, reach, starts, MOST,
-    )  # fmt: skip
+    cluster = NumericCluster(vertices, rows, plan.body_of)
+    search = RootSearch(problem.size, reach, starts, MOST)
+    rule = stopping_rule(problem, 1)
+    return cluster_roots(problem.system, cluster, x, plan.held.size, rule, search)
 
 
 def _places(problem: Problem, vertices: np.ndarray) -> np.ndarray:
@@ -76,9 +71,9 @@ def _extent(problem: Problem, vertices: np.ndarray, x: np.ndarray) -> float:
 
 def nearest_roots(problem: Problem, x: np.ndarray, sketch: np.ndarray, fates: np.ndarray):
     """x with every small cluster that was moved far at its root nearest to the sketch."""
-    for k in np.flatnonzero((fates == DONE) & (problem.plan.block >= 0)):
-        b = int(problem.plan.block[k])
-        vertices, _ = block_of(problem, b)
+    for k in np.flatnonzero((fates == DONE) & (problem.plan.steps.block >= 0)):
+        b = int(problem.plan.steps.block[k])
+        vertices, _ = block_of(problem.plan.steps, b)
         mine = _places(problem, vertices)
         moved = float(np.abs(x[mine] - sketch[mine]).max(initial=0.0))
         if moved <= FAR * _extent(problem, vertices, sketch) or not is_small(problem, b):
@@ -94,7 +89,7 @@ def nearest_roots(problem: Problem, x: np.ndarray, sketch: np.ndarray, fates: np
 def other_solutions(problem: Problem, x: np.ndarray) -> list[tuple[np.ndarray, float]]:
     """The other solutions (n,), one small cluster changed at a time, and their residuals; nearest first."""
     found = []
-    for b in range(problem.plan.block_row_start.size - 1):
+    for b in range(problem.plan.steps.block_row_start.size - 1):
         if not is_small(problem, b):
             continue
         for root in roots_of(problem, b, x)[1:]:

@@ -9,10 +9,12 @@ from clearance.kernels.sketch.solve.execute import (
     DONE,
     FAILED,
     TOO_LARGE,
+    PlanRun,
     StepTolerances,
     place_closed,
     solve_numeric,
 )
+from clearance.kernels.sketch.solve.motion import StoppingRule
 from clearance.kernels.sketch.solve.search import RESTARTS
 from clearance.sketch.problem import RESIDUAL, SETTLED, Problem
 
@@ -23,10 +25,15 @@ FLOOR = 2e-16
 """[-] What a numeric cluster aims at, relative to the size: about one rounding of a coordinate."""
 
 
+def stopping_rule(problem: Problem, attempts: int) -> StoppingRule:
+    """When the search for a cluster's place ends, at the problem's size."""
+    return StoppingRule(FLOOR * problem.size, RESIDUAL * problem.size, attempts)
+
+
 def limits_of(problem: Problem, attempts: int = RESTARTS) -> StepTolerances:
     """The limits of a run at the problem's size."""
     size = problem.size
-    return StepTolerances(SETTLED * size, FLOOR * size, RESIDUAL * size, LARGEST_BLOCK, attempts)
+    return StepTolerances(SETTLED * size, LARGEST_BLOCK, stopping_rule(problem, attempts))
 
 
 def residual_of(problem: Problem, x: np.ndarray) -> tuple[float, int]:
@@ -41,13 +48,14 @@ def execute(
     """Runs the steps of a plan in place on x (n,); the fate (s,) of each.
 
     Numeric steps are compiled apart: most sketches need none. For `turned` and `active` see
-    `clearance.kernels.sketch.solve.execute.place_closed`.
+    `clearance.kernels.sketch.solve.execute.PlanRun`.
     """
     plan = problem.plan if plan is None else plan
-    fate = np.full(plan.vertex.shape[0], DONE)
+    steps, fate = plan.steps, np.full(plan.steps.vertex.shape[0], DONE)
+    run = PlanRun(turned, active, fate)
     s, k = problem.system, 0
     while True:
-        k = place_closed(s, plan, x, sketch, turned, active, limits, k, fate)
+        k = place_closed(s, steps, x, sketch, run, limits.settled, k)
         if k == fate.size:
             return fate
         fate[k] = solve_numeric(s, plan, x, sketch, k, limits)
@@ -59,14 +67,15 @@ def run_after(
 ) -> tuple[np.ndarray, bool]:
     """The numbers after the steps that follow a numeric cluster are run again from x, on the branches
     of `sketch`; and whether every step found its place."""
-    p = problem.plan
-    later = int(np.flatnonzero(p.block == block)[0]) + 1
-    plan = p._replace(
-        vertex=p.vertex[later:], partner=p.partner[later:], edges=p.edges[later:],
-        block=p.block[later:], origin=p.origin[later:],
+    steps = problem.plan.steps
+    later = int(np.flatnonzero(steps.block == block)[0]) + 1
+    steps = steps._replace(
+        vertex=steps.vertex[later:], partner=steps.partner[later:], edges=steps.edges[later:],
+        block=steps.block[later:], origin=steps.origin[later:],
     )  # fmt: skip
     out = x.copy()
     every = np.ones(problem.system.kind.size, np.uint8)
-    turned = np.ones(plan.vertex.size)
+    turned = np.ones(steps.vertex.size)
+    plan = problem.plan._replace(steps=steps)
     fates = execute(problem, out, sketch, turned, every, limits_of(problem), plan)
     return out, not ((fates == FAILED) | (fates == TOO_LARGE)).any()

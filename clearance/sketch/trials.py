@@ -11,11 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from clearance.kernels.sketch.graph.graph import IN_GRAPH, RADIUS, REPEATED
+from clearance.kernels.sketch.solve.motion import ClusterPlace, NumericCluster
 from clearance.kernels.sketch.solve.search import solve_block
 from clearance.sketch.branches import run_with_sides
-from clearance.sketch.problem import RESIDUAL, Problem, Tables, problem_of
+from clearance.sketch.problem import Problem, Tables, problem_of
 from clearance.sketch.start import sides_hold
-from clearance.sketch.steps import FLOOR
+from clearance.sketch.steps import stopping_rule
 
 AT_ONCE = 64
 """Constraints up to which each is left out in turn before halving: circuits mostly are minimal already."""
@@ -78,11 +79,9 @@ class Trials:
 
     def _descends(self, x: np.ndarray, rows: np.ndarray, vertices: np.ndarray) -> bool:
         """Whether a descent in place on x makes these equations hold, with every radius above 0."""
-        size, flat = self.problem.size, np.zeros((0, 2))
-        system = self.problem.system
-        good = not rows.size or solve_block(
-            system, vertices, rows, x, self.alone, flat, FLOOR * size, RESIDUAL * size, 1
-        )
+        cluster = NumericCluster(vertices, rows, self.alone)
+        place, rule = ClusterPlace(x, np.zeros((0, 2))), stopping_rule(self.problem, 1)
+        good = not rows.size or solve_block(self.problem.system, cluster, place, rule)
         return good and bool((x[self.tables.role == RADIUS] > 0.0).all())
 
     def everything(self, broken: int) -> list[int]:

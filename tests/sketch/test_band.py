@@ -4,6 +4,12 @@ import numpy as np
 import pytest
 
 from clearance.kernels.sketch.solve import damped as sketch_damped
+from clearance.kernels.sketch.solve.motion import (
+    ClusterPlace,
+    NumericCluster,
+    StoppingRule,
+    Unknowns,
+)
 from clearance.kernels.sketch.solve.search import BANDED, solve_block
 from clearance.sketch.problem import problem_of, tables_of
 from tests.reached import reached
@@ -21,18 +27,9 @@ def block(p, x, attempts=60):
     vertices = np.arange(1, p.system.kind.size)
     alone = np.full(p.system.kind.size, -1)
     y = x.copy()
-    done = solve_block(
-        p.system,
-        vertices,
-        rows,
-        y,
-        alone,
-        np.zeros((0, 2)),
-        2e-16 * p.size,
-        1e-12 * p.size,
-        attempts,
-    )
-    return done, y
+    rule = StoppingRule(2e-16 * p.size, 1e-12 * p.size, attempts)
+    place = ClusterPlace(y, np.zeros((0, 2)))
+    return solve_block(p.system, NumericCluster(vertices, rows, alone), place, rule), y
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -61,13 +58,11 @@ def test_a_long_strip_has_a_narrow_band():
     vertices = np.arange(1, s.kind.size)
     first = np.full(s.kind.size, -1)
     first[1:] = 2 * np.arange(vertices.size)
-    n = 2 * vertices.size
-    node_at, width, of_row = reached(sketch_damped.nodes_of)(s, vertices, rows, first, n)
-    start, mine = reached(sketch_damped.incidence)(of_row, width.size)
-    half, column = reached(sketch_damped.narrow)(
-        vertices, first, n, node_at, width, of_row, start, mine
-    )
-    assert sorted(column) == list(range(0, n, 2))  # a permutation of the points
+    cluster = NumericCluster(vertices, rows, np.full(s.kind.size, -1))
+    unknowns = Unknowns(cluster, first, 2 * vertices.size)
+    nodes = reached(sketch_damped.nodes_of)(s, unknowns)
+    half, column = reached(sketch_damped.narrow)(unknowns, nodes)
+    assert sorted(column) == list(range(0, unknowns.n, 2))  # a permutation of the points
     assert half <= 16  # a ring folded twice: four points abreast
     for a, b in edges:
         assert abs(first[a + 1] - first[b + 1]) + 2 <= half

@@ -1,7 +1,7 @@
 """The core's parts and nodes: what is held first, what is joined, which equations place what.
 
 A part is what equations connect; a node is a rigid body or a single vertex. Not for: finding the bodies
-(`sketch.graph.blocks`), nor the order of the rules (`sketch.graph.rules`).
+(`sketch.graph.bodies`), nor the order of the rules (`sketch.graph.rules`).
 """
 
 from typing import NamedTuple
@@ -10,8 +10,8 @@ import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.union_find import find_root
-from clearance.kernels.sketch.graph.blocks import match, ordered_parts
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
+from clearance.kernels.sketch.graph.matching import match, ordered_parts
 from clearance.kernels.sketch.graph.rules import RULED, MergeOrder, merge_order
 
 

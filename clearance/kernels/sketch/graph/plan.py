@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
-from clearance.kernels.sketch.graph.blocks import bodies, with_assumed
+from clearance.kernels.sketch.graph.bodies import bodies, with_assumed
 from clearance.kernels.sketch.graph.core import (
     clusters_of,
     components,
@@ -20,28 +20,21 @@ from clearance.kernels.sketch.graph.core import (
 from clearance.kernels.sketch.graph.graph import SLIDE, TURN, graph_of
 from clearance.kernels.sketch.graph.pebble import no_circuits, play
 from clearance.kernels.sketch.graph.peel import ClosedSteps, peel
-
-PEELED, IN_BODY, IN_CORE = 0, 1, 2
-"""Where a step comes from: peeled off, inside a body, a cluster of the core."""
+from clearance.kernels.sketch.graph.plan_steps import IN_BODY, IN_CORE, PEELED, PlanSteps
 
 
 class Plan(NamedTuple):
-    """Steps (s,) in order: vertex and partner (closed) or block (numeric, else -1), edges (s, 3).
+    """A construction plan: its steps, and what is known of the graph.
 
-    `origin` says where a step comes from: PEELED, IN_BODY or IN_CORE.
-    Blocks list their vertices and rows. `body_of` (v,) is -1 outside bodies; `held` (b,) marks the
-    initial clusters.
+    Attributes:
+        steps: of `PlanSteps`, in the order of placing.
+        body_of: (v,) the body of every vertex, -1 outside bodies.
+        held: (b,) marks the initial clusters.
+        dependent: (k,) the edges that others imply.
+        circuit_start, circuit: the edges of the circuit of each, (k + 1,) starts.
     """
 
-    vertex: np.ndarray
-    partner: np.ndarray
-    edges: np.ndarray
-    block: np.ndarray
-    origin: np.ndarray
-    block_vertex_start: np.ndarray
-    block_vertex: np.ndarray
-    block_row_start: np.ndarray
-    block_row: np.ndarray
+    steps: PlanSteps
     body_of: np.ndarray
     held: np.ndarray
     dependent: np.ndarray
@@ -50,20 +43,9 @@ class Plan(NamedTuple):
 
 
 class PlanDraft(NamedTuple):
-    """A plan while it is written: the room for its steps and blocks, as of `Plan`, and how much is filled.
+    """A plan while it is written: room for its steps and blocks, and (2,) how many of each are there."""
 
-    `filled` (2,) holds the number of steps and of blocks.
-    """
-
-    vertex: np.ndarray
-    partner: np.ndarray
-    edges: np.ndarray
-    block: np.ndarray
-    origin: np.ndarray
-    block_vertex_start: np.ndarray
-    block_vertex: np.ndarray
-    block_row_start: np.ndarray
-    block_row: np.ndarray
+    steps: PlanSteps
     filled: np.ndarray
 
 
@@ -77,7 +59,7 @@ class Core(NamedTuple):
 @inline
 def _new_draft(size, n, m):
     """A draft with room for `size` steps and for the blocks of n vertices and m edges."""
-    return PlanDraft(
+    steps = PlanSteps(
         np.full(size, -1, np.int64),
         np.full(size, -1, np.int64),
         np.full((size, 3), -1, np.int64),
@@ -87,15 +69,15 @@ def _new_draft(size, n, m):
         np.empty(n, np.int64),
         np.zeros(n + 1, np.int64),
         np.empty(m, np.int64),
-        np.zeros(2, np.int64),
     )
+    return PlanDraft(steps, np.zeros(2, np.int64))
 
 
 @inline(force=True)
 def _next_step(draft, origin):
     """The number of a new step of this origin."""
     k = draft.filled[0]
-    draft.origin[k] = origin
+    draft.steps.origin[k] = origin
     draft.filled[0] += 1
     return k
 
@@ -103,34 +85,36 @@ def _next_step(draft, origin):
 @inline
 def _write_bodies(draft, graph, bodies, initial):
     """Writes the steps of the bodies, and the first step of those that only begin with an edge."""
+    steps = draft.steps
     for at in range(bodies.steps.shape[0]):
         k = _next_step(draft, IN_BODY)
-        draft.vertex[k], draft.partner[k] = bodies.steps[at, 0], bodies.steps[at, 1]
-        draft.edges[k, 0], draft.edges[k, 1] = bodies.steps[at, 2], bodies.steps[at, 3]
+        steps.vertex[k], steps.partner[k] = bodies.steps[at, 0], bodies.steps[at, 1]
+        steps.edges[k, 0], steps.edges[k, 1] = bodies.steps[at, 2], bodies.steps[at, 3]
     for b in range(bodies.start.shape[0] - 1, initial.held.shape[0]):
         row = initial.seed[b]
         if row >= 0:
             k = _next_step(draft, IN_BODY)
-            draft.vertex[k], draft.edges[k, 0] = graph.ends[row, 0], row
+            steps.vertex[k], steps.edges[k, 0] = graph.ends[row, 0], row
 
 
 @inline
 def _write_block(draft, k, vertices, rows):
     """Makes step k numeric: a block of these vertices and rows."""
-    b = draft.filled[1]
-    draft.block[k] = b
-    at, end = draft.block_vertex_start[b], draft.block_vertex_start[b] + vertices.shape[0]
-    draft.block_vertex_start[b + 1] = end
-    draft.block_vertex[at:end] = vertices
-    at, end = draft.block_row_start[b], draft.block_row_start[b] + rows.shape[0]
-    draft.block_row_start[b + 1] = end
-    draft.block_row[at:end] = rows
+    steps, b = draft.steps, draft.filled[1]
+    steps.block[k] = b
+    at, end = steps.block_vertex_start[b], steps.block_vertex_start[b] + vertices.shape[0]
+    steps.block_vertex_start[b + 1] = end
+    steps.block_vertex[at:end] = vertices
+    at, end = steps.block_row_start[b], steps.block_row_start[b] + rows.shape[0]
+    steps.block_row_start[b + 1] = end
+    steps.block_row[at:end] = rows
     draft.filled[1] += 1
 
 
 @inline
 def _write_clusters(draft, graph, clusters, body_of):
     """Writes the core's clusters: closed steps for one vertex or one line, blocks for all others."""
+    steps = draft.steps
     for c in range(clusters.count):
         vertices = clusters.vertex[clusters.vertex_start[c] : clusters.vertex_start[c + 1]]
         rows = clusters.row[clusters.row_start[c] : clusters.row_start[c + 1]]
@@ -138,21 +122,22 @@ def _write_clusters(draft, graph, clusters, body_of):
         closed = vertices.shape[0] == 1 and body_of[v] < 0
         if vertices.shape[0] == 2 and graph.kind[v] == TURN and graph.kind[vertices[1]] == SLIDE:
             closed = graph.theta_of[vertices[1]] == v and body_of[v] < 0
-            draft.partner[k] = vertices[1] if closed else -1
+            steps.partner[k] = vertices[1] if closed else -1
         if closed:
-            draft.vertex[k] = v
-            draft.edges[k, : rows.shape[0]] = rows
+            steps.vertex[k] = v
+            steps.edges[k, : rows.shape[0]] = rows
         else:
             _write_block(draft, k, vertices, rows)
 
 
 @inline
-def _write_reversed(draft, steps):
+def _write_reversed(draft, peeled):
     """Writes peeled steps, the last taken off first."""
-    for at in range(steps.vertex.shape[0] - 1, -1, -1):
+    steps = draft.steps
+    for at in range(peeled.vertex.shape[0] - 1, -1, -1):
         k = _next_step(draft, PEELED)
-        draft.vertex[k], draft.partner[k] = steps.vertex[at], steps.partner[at]
-        draft.edges[k] = steps.edges[at]
+        steps.vertex[k], steps.partner[k] = peeled.vertex[at], peeled.partner[at]
+        steps.edges[k] = peeled.edges[at]
 
 
 @inline
@@ -178,14 +163,14 @@ def _plan_core(draft, graph, live, removed):
 @inline
 def _finished(draft, core, circuits):
     """The plan as far as the draft is filled."""
-    steps, blocks = draft.filled[0], draft.filled[1]
-    return Plan(
-        draft.vertex[:steps], draft.partner[:steps], draft.edges[:steps], draft.block[:steps],
-        draft.origin[:steps], draft.block_vertex_start[: blocks + 1],
-        draft.block_vertex[: draft.block_vertex_start[blocks]], draft.block_row_start[: blocks + 1],
-        draft.block_row[: draft.block_row_start[blocks]], core.body_of, core.held,
-        circuits.dependent, circuits.start, circuits.rows,
+    room, n_steps, n_blocks = draft.steps, draft.filled[0], draft.filled[1]
+    steps = PlanSteps(
+        room.vertex[:n_steps], room.partner[:n_steps], room.edges[:n_steps],
+        room.block[:n_steps], room.origin[:n_steps], room.block_vertex_start[: n_blocks + 1],
+        room.block_vertex[: room.block_vertex_start[n_blocks]], room.block_row_start[: n_blocks + 1],
+        room.block_row[: room.block_row_start[n_blocks]],
     )  # fmt: skip
+    return Plan(steps, core.body_of, core.held, circuits.dependent, circuits.start, circuits.rows)
 
 
 @kernel
@@ -194,14 +179,14 @@ def peeled_plan(kind, ends, absolute, theta_of):
     n = kind.shape[0]
     graph = graph_of(kind, ends, absolute, theta_of)
     live, removed = (ends[:, 0] >= 0).astype(np.uint8), np.zeros(n, np.uint8)
-    steps = peel(graph, live, removed)
-    size = steps.vertex.shape[0]
+    peeled = peel(graph, live, removed)
+    size = peeled.vertex.shape[0]
     none, zero = np.empty(0, np.int64), np.zeros(1, np.int64)
-    plan = Plan(
-        steps.vertex[::-1].copy(), steps.partner[::-1].copy(), steps.edges[::-1].copy(),
+    steps = PlanSteps(
+        peeled.vertex[::-1].copy(), peeled.partner[::-1].copy(), peeled.edges[::-1].copy(),
         np.full(size, -1, np.int64), np.zeros(size, np.int64), zero, none, zero, none,
-        np.full(n, -1, np.int64), np.zeros(0, np.uint8), none, zero, none,
     )  # fmt: skip
+    plan = Plan(steps, np.full(n, -1, np.int64), np.zeros(0, np.uint8), none, zero, none)
     return plan, not live.any()
 
 

@@ -37,18 +37,18 @@ def _row(s, row, x, v, partner, size, gradient, out):
 
 
 @kernel
-def singular_steps(s, plan, x, size):
+def singular_steps(s, steps, x, size):
     """Marks (s,) of the closed steps with two or three equations that are not independent at x."""
-    out = np.zeros(plan.vertex.shape[0], np.uint8)
+    out = np.zeros(steps.vertex.shape[0], np.uint8)
     gradient, unit = np.empty(8), np.zeros((3, 3))
     for k in range(out.shape[0]):
-        if plan.block[k] >= 0 or plan.edges[k, 1] < 0:
+        if steps.block[k] >= 0 or steps.edges[k, 1] < 0:
             continue
-        count = 3 if plan.edges[k, 2] >= 0 else 2
+        count = 3 if steps.edges[k, 2] >= 0 else 2
         unit[:, :] = 0.0
         for a in range(count):
-            row = plan.edges[k, a]
-            _row(s, row, x, plan.vertex[k], plan.partner[k], size, gradient, unit[a])
+            row = steps.edges[k, a]
+            _row(s, row, x, steps.vertex[k], steps.partner[k], size, gradient, unit[a])
         g01 = unit[0] @ unit[1]
         g00, g11 = unit[0] @ unit[0], unit[1] @ unit[1]
         volume = g00 * g11 - g01 * g01

@@ -7,18 +7,64 @@ Sources: Cuthill, McKee 1969; Marquardt 1963.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
-from clearance.kernels.sketch.solve.motion import keep, move, room, total_of
+from clearance.kernels.sketch.solve.motion import keep, move, restore, room_for, total_of
+
+
+class ClusterNodes(NamedTuple):
+    """The nodes of a cluster, each a body or a single vertex, and the equations between them.
+
+    Attributes:
+        node_at: (n,) the node that begins at a column, -1 where none does.
+        width: (nodes,) the columns of every node.
+        is_turn: (nodes,) marks the single directions.
+        of_row: (m, 8) the nodes of every equation by slot, -1 pads.
+        start, rows: the equations of every node, (nodes + 1,) starts; one that names it twice is listed twice.
+    """
+
+    node_at: np.ndarray
+    width: np.ndarray
+    is_turn: np.ndarray
+    of_row: np.ndarray
+    start: np.ndarray
+    rows: np.ndarray
+
+
+class NormalEquations(NamedTuple):
+    """The upper half of a normal matrix as a band (n, half width), and minus the gradient (n,)."""
+
+    band: np.ndarray
+    right: np.ndarray
+
+
+class DescentLimits(NamedTuple):
+    """How a damped descent begins and ends.
+
+    Attributes:
+        damping: [-] the first, in units of the diagonal.
+        least: [m^2] the sum of squares that is aimed at. enough: [m^2] below it the first step that gains nothing
+            ends the descent.
+        longest: steps. patience: steps in which the sum must fall by a fifth.
+    """
+
+    damping: float
+    least: float
+    enough: float
+    longest: int
+    patience: int
 
 
 @inline
-def nodes_of(s, vertices, rows, first, n):
-    """Nodes (vertices or bodies) by first column: (ids by column, widths, nodes (m, 8) of every row)."""
+def nodes_of(s, unknowns):
+    """The nodes of a cluster in the order of their first columns."""
+    cluster, first, n = unknowns.cluster, unknowns.first, unknowns.n
+    vertices, rows = cluster.vertices, cluster.rows
     node_at = np.full(n, -1, np.int64)
     for v in vertices:
         node_at[first[v]] = 0
@@ -27,22 +73,25 @@ def nodes_of(s, vertices, rows, first, n):
         if node_at[c] == 0:
             node_at[c] = count
             count += 1
-    width = np.zeros(count, np.int64)
+    width, is_turn = np.zeros(count, np.int64), np.zeros(count, np.uint8)
     last = -1
     for c in range(n):
         last = node_at[c] if node_at[c] >= 0 else last
         width[last] += 1
+    for v in vertices:
+        is_turn[node_at[first[v]]] = cluster.body_of[v] < 0 and s.kind[v] == TURN
     of_row = np.full((rows.shape[0], 8), -1, np.int64)
     for a in range(rows.shape[0]):
         for k in range(8):
             i = s.var[rows[a], k]
             if i >= 0 and s.vertex_of[i] >= 0 and first[s.vertex_of[i]] >= 0:
                 of_row[a, k] = node_at[first[s.vertex_of[i]]]
-    return node_at, width, of_row
+    start, mine = _incidence(of_row, count)
+    return ClusterNodes(node_at, width, is_turn, of_row, start, mine)
 
 
 @inline
-def incidence(of_row, count):
+def _incidence(of_row, count):
     """The rows of every node as (starts, rows); a row that names a node twice is listed twice."""
     start = np.zeros(count + 1, np.int64)
     for a in range(of_row.shape[0]):
@@ -61,8 +110,9 @@ def incidence(of_row, count):
 
 
 @inline
-def _breadth_first(root, of_row, start, mine, order, seen):
+def _breadth_first(root, nodes, order, seen):
     """Fills `order` with all nodes, breadth first from `root`, then from what is left."""
+    start, of_row = nodes.start, nodes.of_row
     count = start.shape[0] - 1
     seen[:] = 0
     head, tail = 0, 1
@@ -80,7 +130,7 @@ def _breadth_first(root, of_row, start, mine, order, seen):
         head += 1
         for at in range(start[u], start[u + 1]):
             for k in range(8):
-                w = of_row[mine[at], k]
+                w = of_row[nodes.rows[at], k]
                 if w >= 0 and not seen[w]:
                     seen[w] = 1
                     order[tail] = w
@@ -88,15 +138,17 @@ def _breadth_first(root, of_row, start, mine, order, seen):
 
 
 @inline
-def narrow(vertices, first, n, node_at, width, of_row, start, mine):
-    """Renumbers the columns in `first` so that the normal matrix is a narrow band; its half width.
+def narrow(unknowns, nodes):
+    """Renumbers the columns in `unknowns.first` so that the normal matrix is a narrow band.
 
-    The nodes come from `nodes_of` and `incidence`; returns also the new first column of each.
+    Returns (its half width, the new first column of every node).
     """
+    vertices, first, n = unknowns.cluster.vertices, unknowns.first, unknowns.n
+    node_at, width, of_row = nodes.node_at, nodes.width, nodes.of_row
     count = width.shape[0]
     order, seen = np.zeros(count, np.int64), np.zeros(count, np.uint8)
     for _ in range(3):
-        _breadth_first(order[count - 1], of_row, start, mine, order, seen)
+        _breadth_first(order[count - 1], nodes, order, seen)
     column = np.zeros(count, np.int64)
     at = 0
     for node in order:
@@ -118,9 +170,10 @@ def narrow(vertices, first, n, node_at, width, of_row, start, mine):
     return half, column
 
 
-@inline
-def _entries(s, row, x, first, body_of, pivot, gradient, column, value):
+@inline(force=True)
+def _entries(s, row, unknowns, place, gradient, column, value):
     """The derivative of an equation as (column, value) pairs, from its derivatives by slot; how many."""
+    first, body_of, x, pivot = unknowns.first, unknowns.cluster.body_of, place.x, place.pivot
     count = 0
     for k in range(8):
         i = s.var[row, k]
@@ -151,19 +204,29 @@ def _entries(s, row, x, first, body_of, pivot, gradient, column, value):
 
 
 @inline
-def _normal(s, rows, x, first, body_of, pivot, band, right, gradient):
-    """Fills the band (n, w) of the normal matrix's upper half and minus the gradient (n,)."""
+def _fill_normal(s, unknowns, place, normal, gradient):
+    """Fills the normal equations at a place."""
+    band, right = normal.band, normal.right
     column, value = np.empty(24, np.int64), np.empty(24)
     band[:, :] = 0.0
     right[:] = 0.0
-    for row in rows:
-        f = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
-        count = _entries(s, row, x, first, body_of, pivot, gradient, column, value)
+    for row in unknowns.cluster.rows:
+        f = evaluate(s.code, s.var, s.coef, s.value, place.x, row, gradient)
+        count = _entries(s, row, unknowns, place, gradient, column, value)
         for p in range(count):
             right[column[p]] -= f * value[p]
             for q in range(count):
                 if column[q] >= column[p]:
                     band[column[p], column[q] - column[p]] += value[p] * value[q]
+
+
+@inline(one_caller=True)
+def _damp(normal, damping, unit, damped):
+    """Fills the damped equations: `damping` times the unit (n,) of every diagonal number is added to it."""
+    damped.band[:, :] = normal.band
+    damped.right[:] = normal.right
+    for c in range(unit.shape[0]):
+        damped.band[c, 0] += damping * unit[c]
 
 
 @inline
@@ -193,63 +256,41 @@ def _solve_band(band, right):
 
 
 @inline
-def descend_damped(
-    s,
-    vertices,
-    rows,
-    x,
-    body_of,
-    pivot,
-    first,
-    n,
-    half,
-    damping,
-    least,
-    enough,
-    longest,
-    patience,
-):
-    """Moves the vertices until the sum of squares is at most `least` or falls too little.
+def descend_damped(s, unknowns, place, half, limits):
+    """Moves the cluster until the sum of squares is at most `limits.least` or falls too little; (sum, steps).
 
-    `first` (v,) holds the columns by vertex, `half` the width of their band; `damping` is the first
-    one, in units of the diagonal. The sum must fall by a fifth in `patience` steps; below `enough` the
-    first step that gains nothing ends it.
-    Returns (sum, steps). Over 60 lines by its arguments, one a line.
+    `half` is the width of the band of `narrow`.
     """
-    band, factor = np.empty((n, half)), np.empty((n, half))
-    right, step, unit = np.empty(n), np.empty(n), np.empty(n)
-    gradient, kept, pivots = np.empty(8), np.empty(room(s, vertices)), pivot.copy()
-    total = total_of(s, rows, x, gradient)
+    vertices, rows, n = unknowns.cluster.vertices, unknowns.cluster.rows, unknowns.n
+    normal = NormalEquations(np.empty((n, half)), np.empty(n))
+    damped = NormalEquations(np.empty((n, half)), np.empty(n))
+    unit, gradient, kept = np.empty(n), np.empty(8), room_for(s, vertices, place)
+    total, damping = total_of(s, rows, place.x, gradient), limits.damping
     past, stale, k = total, True, 0
-    while k < longest and total > least and damping <= 1e6:
+    while k < limits.longest and total > limits.least and damping <= 1e6:
         if stale:
-            _normal(s, rows, x, first, body_of, pivot, band, right, gradient)
+            _fill_normal(s, unknowns, place, normal, gradient)
             stale = False
         if k == 0:
             for c in range(n):
-                unit[c] = band[c, 0] if band[c, 0] > 0.0 else 1.0
-        factor[:, :] = band
-        step[:] = right
-        for c in range(n):
-            factor[c, 0] += damping * unit[c]
-        keep(s, vertices, x, kept, False)
-        pivots[:] = pivot
+                unit[c] = normal.band[c, 0] if normal.band[c, 0] > 0.0 else 1.0
+        _damp(normal, damping, unit, damped)
+        keep(s, vertices, place, kept)
         after = math.inf
-        if _solve_band(factor, step):
-            move(s, vertices, step, 1.0, x, first, body_of, pivot)
-            after = total_of(s, rows, x, gradient)
+        if _solve_band(damped.band, damped.right):
+            move(s, unknowns, damped.right, 1.0, place)
+            after = total_of(s, rows, place.x, gradient)
         if after < total:
             damping *= 0.1 if after < 0.3 * total else (0.4 if after < 0.7 * total else 1.0)
             damping = max(damping, 1e-13)
             total, stale = after, True
         else:
-            keep(s, vertices, x, kept, True)
-            pivot[:] = pivots
-            if total <= enough:
+            restore(s, vertices, kept, place)
+            if total <= limits.enough:
                 break
             damping *= 4.0
         k += 1
-        if k % patience == 0:
+        if k % limits.patience == 0:
             if total > 0.8 * past:
                 break
             past = total

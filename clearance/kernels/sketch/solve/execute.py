@@ -13,7 +13,16 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT
-from clearance.kernels.sketch.solve.motion import freedoms, move, pivots_of
+from clearance.kernels.sketch.graph.plan_steps import block_of
+from clearance.kernels.sketch.solve.motion import (
+    ClusterPlace,
+    NumericCluster,
+    StoppingRule,
+    Unknowns,
+    freedoms,
+    move,
+    pivots_of,
+)
 from clearance.kernels.sketch.solve.place import assign, place
 from clearance.kernels.sketch.solve.search import BANDED, solve_block
 
@@ -22,15 +31,31 @@ DONE, FAILED, TOO_LARGE, KEPT = 0, 1, 2, 3
 
 
 class StepTolerances(NamedTuple):
-    """A step is left alone when its equations hold to `settled`; a numeric one aims at `floor` and
-    counts as done at `tolerance` (all [m]), tries `attempts` times, and not with more equations than
-    `largest_block`."""
+    """When a step is left alone, and when it has found its place.
+
+    Attributes:
+        settled: [m] a step whose equations hold to this is left alone.
+        largest_block: equations up to which a numeric step is tried.
+        rule: for numeric steps.
+    """
 
     settled: float
-    floor: float
-    tolerance: float
     largest_block: int
-    attempts: int
+    rule: StoppingRule
+
+
+class PlanRun(NamedTuple):
+    """How the steps of a plan are run.
+
+    Attributes:
+        turned: (s,) 1 where a closed step takes the sketch's branch, -1 the other.
+        active: (v,) 0 for the vertices of parts that need no work.
+        fate: (s,) of every step; filled as they are run.
+    """
+
+    turned: np.ndarray
+    active: np.ndarray
+    fate: np.ndarray
 
 
 FREED = 4
@@ -65,12 +90,12 @@ def _base_of(s, plan, rows, inside):
 
 
 @inline
-def _freed(s, plan, vertices, rows, base, inside):
-    """A cluster with the points of its bodies, and of the base, as (vertices, rows), inner rows and all.
+def _freed(s, plan, cluster, base, inside):
+    """A cluster with the points of its bodies, and of the base, each by itself; inner rows and all.
 
     `inside` (v,) marks the cluster's vertices on entry; -1 on return.
     """
-    n = plan.body_of.shape[0]
+    n, vertices, rows = plan.body_of.shape[0], cluster.vertices, cluster.rows
     free = np.empty(n, np.int64)
     n_free = vertices.shape[0]
     free[:n_free] = vertices
@@ -100,15 +125,16 @@ def _freed(s, plan, vertices, rows, base, inside):
             count += 1
     for v in free[:n_free]:
         inside[v] = -1
-    return free[:n_free], out[:count]
+    return NumericCluster(free[:n_free], out[:count], np.full(n, -1, np.int64))
 
 
 @inline
-def _put_back(s, plan, base, vertices, x, before, inside):
-    """Moves the vertices rigidly so that the base lies where it was; how far it is off then [m].
+def _put_back(s, plan, base, cluster, x, before, inside):
+    """Moves the cluster rigidly so that the base lies where it was; how far it is off then [m].
 
     A base of a single point hangs on known directions: it is only shifted.
     """
+    vertices = cluster.vertices
     pivot, goal, turn, count = np.zeros((1, 2)), np.zeros(2), np.zeros(2), 0
     for v in vertices:
         inside[v] = 0
@@ -129,7 +155,8 @@ def _put_back(s, plan, base, vertices, x, before, inside):
     step = np.empty(3)
     step[:2] = goal - pivot[0]
     step[2] = math.atan2(turn[1], turn[0])
-    move(s, vertices, step, 1.0, x, inside, np.zeros(inside.shape[0], np.int64), pivot)
+    as_one = NumericCluster(vertices, cluster.rows, np.zeros(inside.shape[0], np.int64))
+    move(s, Unknowns(as_one, inside, 3), step, 1.0, ClusterPlace(x, pivot))
     off = 0.0
     for v in vertices:
         inside[v] = -1
@@ -140,86 +167,77 @@ def _put_back(s, plan, base, vertices, x, before, inside):
 
 
 @inline
-def _find_freed(
-    s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, alone_in_part
-):
+def _find_freed(s, plan, cluster, x, sketch, rule, alone_in_part):
     """Solves a large cluster from the sketch with all its points free; it is set down by its base.
 
     A base that came out mirrored will do only where no other cluster hangs on it already.
     """
-    for v in vertices:
-        first[v] = 1
-    base = _base_of(s, plan, rows, first)
-    vertices, rows = _freed(s, plan, vertices, rows, base, first)
-    alone = np.full(s.kind.shape[0], -1, np.int64)
-    pivot = np.zeros((0, 2))
+    inside = np.full(s.kind.shape[0], -1, np.int64)
+    for v in cluster.vertices:
+        inside[v] = 1
+    base = _base_of(s, plan, cluster.rows, inside)
+    freed = _freed(s, plan, cluster, base, inside)
     before = x.copy()
-    for v in vertices:
+    for v in freed.vertices:
         if s.kind[v] == POINT:
             x[s.root[v]], x[s.root[v] + 1] = sketch[s.root[v]], sketch[s.root[v] + 1]
         else:
             assign(s, v, sketch[s.root[v]], x)
-    if not solve_block(s, vertices, rows, x, alone, pivot, floor, tolerance, attempts):
+    if not solve_block(s, freed, ClusterPlace(x, np.zeros((0, 2))), rule):
         x[:] = before
         return False
-    off = _put_back(s, plan, base, vertices, x, before, first) if base >= 0 else 0.0
-    if off > tolerance and not alone_in_part:
+    off = _put_back(s, plan, base, freed, x, before, inside) if base >= 0 else 0.0
+    if off > rule.tolerance and not alone_in_part:
         x[:] = before
         return False
     return True
 
 
 @kernel
-def place_closed(s, plan, x, sketch, turned, active, limits, begin, fate):
-    """Runs the closed steps from `begin` on, in place on x and `fate` (s,), up to a numeric step that has
+def place_closed(s, steps, x, sketch, run, settled, begin):
+    """Runs the closed steps from `begin` on, in place on x and `run.fate`, up to a numeric step that has
     work to do; its index, or the number of steps.
 
-    `turned` (s,) is 1 where a closed step takes the sketch's branch, -1 the other; `active` (v,) leaves
-    out the vertices of parts that need no work.
+    A step whose equations hold to `settled` [m] is left alone.
     """
     gradient = np.empty(8)
-    for k in range(begin, plan.vertex.shape[0]):
-        b, v = plan.block[k], plan.vertex[k]
-        fate[k] = KEPT
+    for k in range(begin, steps.vertex.shape[0]):
+        b, v = steps.block[k], steps.vertex[k]
+        run.fate[k] = KEPT
         if b >= 0:
-            at = plan.block_row_start[b]
-            rows = plan.block_row[at : plan.block_row_start[b + 1]]
-            if not active[plan.block_vertex[plan.block_vertex_start[b]]]:
+            vertices, rows = block_of(steps, b)
+            if not run.active[vertices[0]]:
                 continue
-            if not _holds(s, rows, x, gradient, limits.settled):
+            if not _holds(s, rows, x, gradient, settled):
                 return k
-        elif active[v]:
-            if turned[k] > 0.0 and _holds(s, plan.edges[k], x, gradient, limits.settled):
+        elif run.active[v]:
+            turned, edges, partner = run.turned[k], steps.edges[k], steps.partner[k]
+            if turned > 0.0 and _holds(s, edges, x, gradient, settled):
                 continue
-            if s.kind[v] == POINT and plan.partner[k] >= 0:
+            if s.kind[v] == POINT and partner >= 0:
                 return k
-            done = place(s, v, plan.partner[k], plan.edges[k], x, sketch, gradient, turned[k])
-            fate[k] = DONE if done else FAILED
-    return plan.vertex.shape[0]
+            done = place(s, v, partner, edges, x, sketch, gradient, turned)
+            run.fate[k] = DONE if done else FAILED
+    return steps.vertex.shape[0]
 
 
 @kernel
 def solve_numeric(s, plan, x, sketch, k, limits):
     """The fate of one numeric step, in place on x: a cluster, or a circle from three conditions."""
-    floor, tolerance, attempts = limits.floor, limits.tolerance, limits.attempts
     alone = np.full(s.kind.shape[0], -1, np.int64)
-    pivot = pivots_of(s, plan.body_of, plan.held.shape[0], x)
-    b = plan.block[k]
+    steps, b = plan.steps, plan.steps.block[k]
     if b < 0:
-        vertices, rows = np.empty(2, np.int64), plan.edges[k][plan.edges[k] >= 0]
-        vertices[0], vertices[1] = plan.vertex[k], plan.partner[k]
+        vertices, rows = np.empty(2, np.int64), steps.edges[k][steps.edges[k] >= 0]
+        vertices[0], vertices[1] = steps.vertex[k], steps.partner[k]
     else:
-        vertices = plan.block_vertex[plan.block_vertex_start[b] : plan.block_vertex_start[b + 1]]
-        rows = plan.block_row[plan.block_row_start[b] : plan.block_row_start[b + 1]]
+        vertices, rows = block_of(steps, b)
     if rows.shape[0] > limits.largest_block:
         return TOO_LARGE
+    cluster = NumericCluster(vertices, rows, plan.body_of if b >= 0 else alone)
+    pivot = pivots_of(s, plan.body_of, plan.held.shape[0], x)
     unknowns = freedoms(s, vertices, plan.body_of)
     if BANDED <= unknowns and freedoms(s, vertices, alone) <= FREED * unknowns:
-        first = np.full(s.kind.shape[0], -1, np.int64)
-        if _find_freed(
-            s, plan, vertices, rows, x, sketch, first, floor, tolerance, attempts, b == 0
-        ):
+        if _find_freed(s, plan, cluster, x, sketch, limits.rule, b == 0):
             return DONE
-    body_of = plan.body_of if b >= 0 else alone
-    done = solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance, attempts)
+    done = solve_block(s, cluster, ClusterPlace(x, pivot), limits.rule)
     return DONE if done else FAILED

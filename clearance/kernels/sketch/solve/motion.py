@@ -5,6 +5,7 @@ members are moved rigidly, so that what is already true inside it stays true.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,13 +15,70 @@ from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
 from clearance.kernels.sketch.solve.place import assign
 
 
-@inline
-def columns(s, vertices, body_of, first):
-    """Fills `first` (v,) with the first column of every vertex (of its body, if it has one); their
-    number.
+class NumericCluster(NamedTuple):
+    """What is moved at once until its equations hold.
 
-    `first` must be -1 for all others.
+    Attributes:
+        vertices: a body's members together.
+        rows: (m,) the equations.
+        body_of: (v,) the body that a vertex is moved with, -1 for none.
     """
+
+    vertices: np.ndarray
+    rows: np.ndarray
+    body_of: np.ndarray
+
+
+class ClusterPlace(NamedTuple):
+    """Where a cluster is; moves change it in place.
+
+    Attributes:
+        x: (n,) [m, rad] all numbers of the sketch.
+        pivot: (bodies, 2) [m] the point that every body turns about.
+    """
+
+    x: np.ndarray
+    pivot: np.ndarray
+
+
+class StoppingRule(NamedTuple):
+    """When a search for a cluster's place ends.
+
+    Attributes:
+        floor: [m] the residual that it aims at. tolerance: [m] the residual at which the equations hold.
+        attempts: how often it is tried.
+    """
+
+    floor: float
+    tolerance: float
+    attempts: int
+
+
+class Unknowns(NamedTuple):
+    """The freedoms of a cluster as columns.
+
+    Attributes:
+        first: (v,) the first column of every vertex (of its body, if it has one), -1 outside the cluster.
+        n: how many columns there are.
+    """
+
+    cluster: NumericCluster
+    first: np.ndarray
+    n: int
+
+
+class KeptPlace(NamedTuple):
+    """A cluster's place as it was: the numbers of its vertices one after another, and the pivots."""
+
+    numbers: np.ndarray
+    pivot: np.ndarray
+
+
+@inline
+def unknowns_of(s, cluster):
+    """The columns of a cluster: single vertices first, then its bodies."""
+    vertices, body_of = cluster.vertices, cluster.body_of
+    first = np.full(s.kind.shape[0], -1, np.int64)
     count = 0
     for v in vertices:
         if body_of[v] >= 0:
@@ -35,7 +93,7 @@ def columns(s, vertices, body_of, first):
             if body_of[u] == b:
                 first[u] = count
         count += 3
-    return count
+    return Unknowns(cluster, first, count)
 
 
 @inline
@@ -63,8 +121,10 @@ def total_of(s, rows, x, gradient):
 
 
 @inline
-def move(s, vertices, step, size, x, first, body_of, pivot):
-    """Adds `size` times `step` to the vertices; bodies turn and shift exactly."""
+def move(s, unknowns, step, size, place):
+    """Adds `size` times `step` (n,) to the unknowns; bodies turn and shift exactly."""
+    vertices, body_of = unknowns.cluster.vertices, unknowns.cluster.body_of
+    first, x, pivot = unknowns.first, place.x, place.pivot
     for v in vertices:  # offsets first: they need the directions before the turn
         i, at, b = s.root[v], first[v], body_of[v]
         if b >= 0 and s.kind[v] == SLIDE:
@@ -99,35 +159,42 @@ def move(s, vertices, step, size, x, first, body_of, pivot):
 
 
 @inline
-def keep(s, vertices, x, kept, back):
-    """Copies the vertices' numbers into `kept`, or back from it; returns how many there are."""
-    at = 0
-    for v in vertices:
-        if s.kind[v] == POINT:
-            for i in range(s.root[v], s.root[v] + 2):
-                if back:
-                    x[i] = kept[at]
-                else:
-                    kept[at] = x[i]
-                at += 1
-        else:
-            for where in range(s.member_start[v], s.member_start[v + 1]):
-                i = s.member[where]
-                if back:
-                    x[i] = kept[at]
-                else:
-                    kept[at] = x[i]
-                at += 1
-    return at
-
-
-@inline
-def room(s, vertices):
-    """How many numbers `keep` needs."""
+def room_for(s, vertices, place):
+    """Room in which `keep` keeps the place of these vertices."""
     count = 0
     for v in vertices:
         count += 2 if s.kind[v] == POINT else s.member_start[v + 1] - s.member_start[v]
-    return count
+    return KeptPlace(np.empty(count), np.empty(place.pivot.shape))
+
+
+@inline
+def keep(s, vertices, place, kept):
+    """Copies the vertices' numbers and the pivots into `kept`."""
+    numbers, x, at = kept.numbers, place.x, 0
+    for v in vertices:
+        if s.kind[v] == POINT:
+            numbers[at], numbers[at + 1] = x[s.root[v]], x[s.root[v] + 1]
+            at += 2
+        else:
+            for where in range(s.member_start[v], s.member_start[v + 1]):
+                numbers[at] = x[s.member[where]]
+                at += 1
+    kept.pivot[:] = place.pivot
+
+
+@inline
+def restore(s, vertices, kept, place):
+    """Copies the vertices' numbers and the pivots back from `kept`."""
+    numbers, x, at = kept.numbers, place.x, 0
+    for v in vertices:
+        if s.kind[v] == POINT:
+            x[s.root[v]], x[s.root[v] + 1] = numbers[at], numbers[at + 1]
+            at += 2
+        else:
+            for where in range(s.member_start[v], s.member_start[v + 1]):
+                x[s.member[where]] = numbers[at]
+                at += 1
+    place.pivot[:] = kept.pivot
 
 
 @inline

@@ -6,21 +6,35 @@ step control (the residual must fall), and Levenberg and Marquardt's damping whe
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
-from clearance.kernels.sketch.solve.motion import columns, keep, move, room, total_of
+from clearance.kernels.sketch.solve.motion import keep, move, restore, room_for, total_of
 from clearance.kernels.sketch.solve.place import assign
 
 
-@inline
-def _spread(s, i, g, x, pivot, body, at, jacobian, row):
-    """Adds g times the derivative of variable i by the columns from `at` on."""
+class LinearEquations(NamedTuple):
+    """The equations of a cluster, linear about a place.
+
+    Attributes:
+        residual: (m,) [m]. jacobian: (m, n). gradient: (8,) room for one equation's derivatives by slot.
+    """
+
+    residual: np.ndarray
+    jacobian: np.ndarray
+    gradient: np.ndarray
+
+
+@inline(force=True)
+def _spread(s, i, g, unknowns, place, jacobian, row):
+    """Adds g times the derivative of variable i to a row of the jacobian."""
     v = s.vertex_of[i]
-    kind = s.kind[v]
+    body, at, kind = unknowns.cluster.body_of[v], unknowns.first[v], s.kind[v]
+    x, pivot = place.x, place.pivot
     if body < 0:
         if kind == POINT:
             jacobian[row, at + (i - s.root[v])] += g
@@ -43,20 +57,20 @@ def _spread(s, i, g, x, pivot, body, at, jacobian, row):
 
 
 @inline
-def assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient):
-    """Fills residual (m,) and jacobian (m, n) of the equations; the sum of squares."""
+def assemble(s, unknowns, place, linear):
+    """Fills residuals and jacobian of the equations; the sum of squares."""
+    rows, first, gradient = unknowns.cluster.rows, unknowns.first, linear.gradient
     total = 0.0
-    jacobian[:, :] = 0.0
+    linear.jacobian[:, :] = 0.0
     for a in range(rows.shape[0]):
         row = rows[a]
-        f = evaluate(s.code, s.var, s.coef, s.value, x, row, gradient)
-        residual[a] = f
+        f = evaluate(s.code, s.var, s.coef, s.value, place.x, row, gradient)
+        linear.residual[a] = f
         total += f * f
         for k in range(8):
             i = s.var[row, k]
             if i >= 0 and s.vertex_of[i] >= 0 and first[s.vertex_of[i]] >= 0 and gradient[k] != 0.0:
-                v = s.vertex_of[i]
-                _spread(s, i, gradient[k], x, pivot, body_of[v], first[v], jacobian, a)
+                _spread(s, i, gradient[k], unknowns, place, linear.jacobian, a)
     return total
 
 
@@ -92,62 +106,69 @@ def _eliminate(matrix, right):
         right[k] /= matrix[k, k]
 
 
-@inline
-def descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
-    """Moves the vertices until |residual| <= floor or nothing is gained; True when <= tolerance.
+@inline(one_caller=True)
+def _step_of(linear, damping):
+    """The step (n,) to where the linear equations hold, or nearly; a square jacobian is spent by it.
 
-    `first` (v,) is scratch: -1 on entry and on return. `vertices` lists a body's members together.
+    `damping` is in units of the normal matrix's diagonal.
     """
-    n = columns(s, vertices, body_of, first)
-    m = rows.shape[0]
-    residual, jacobian = np.empty(m), np.empty((m, n))
-    gradient = np.empty(8)
-    kept = np.empty(room(s, vertices))
-    pivots = pivot.copy()
+    residual, jacobian = linear.residual, linear.jacobian
+    m, n = jacobian.shape
+    if damping == 0.0 and m == n:
+        step = -residual
+        _eliminate(jacobian, step)
+        return step
+    normal = jacobian.T @ jacobian
+    mean = np.trace(normal) / n
+    for k in range(n):
+        normal[k, k] += damping * (normal[k, k] + 1e-3 * mean) + 1e-14 * mean + 1e-300
+    step = -(jacobian.T @ residual)
+    _eliminate(normal, step)
+    return step
+
+
+@inline
+def descend(s, unknowns, place, rule, longest):
+    """Moves the cluster by up to `longest` steps until |residual| is at most `rule.floor` or nothing is gained.
+
+    True when it is at most `rule.tolerance`.
+    """
+    vertices, rows = unknowns.cluster.vertices, unknowns.cluster.rows
+    m, n = rows.shape[0], unknowns.n
+    linear = LinearEquations(np.empty(m), np.empty((m, n)), np.empty(8))
+    kept = room_for(s, vertices, place)
     damping = 0.0
-    total = assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient)
+    total = assemble(s, unknowns, place, linear)
     for _ in range(longest):
-        if not total > floor * floor:
+        if not total > rule.floor * rule.floor:
             break
-        if damping == 0.0 and m == n:
-            step = -residual
-            _eliminate(jacobian, step)
-        else:
-            normal = jacobian.T @ jacobian
-            mean = np.trace(normal) / n
-            for k in range(n):
-                normal[k, k] += damping * (normal[k, k] + 1e-3 * mean) + 1e-14 * mean + 1e-300
-            step = -(jacobian.T @ residual)
-            _eliminate(normal, step)
-        keep(s, vertices, x, kept, False)
-        pivots[:] = pivot
+        step = _step_of(linear, damping)
+        keep(s, vertices, place, kept)
         size, fell = 1.0, False
         for _ in range(7 if damping == 0.0 else 1):
-            move(s, vertices, step, size, x, first, body_of, pivot)
-            after = total_of(s, rows, x, gradient)
+            move(s, unknowns, step, size, place)
+            after = total_of(s, rows, place.x, linear.gradient)
             if after < (1.0 - 1e-3 * size) * total:
                 fell = True
                 break
-            keep(s, vertices, x, kept, True)
-            pivot[:] = pivots
+            restore(s, vertices, kept, place)
             size *= 0.5
         if fell:
             damping = damping * 0.1 if damping > 1e-7 else 0.0
-        elif damping > 1e8 or total <= tolerance * tolerance:
+        elif damping > 1e8 or total <= rule.tolerance * rule.tolerance:
             break
         else:
             damping = max(1e-3, 8.0 * damping)
         if fell or damping > 0.0:
-            total = assemble(s, rows, x, first, body_of, pivot, residual, jacobian, gradient)
-    for v in vertices:
-        first[v] = -1
-    return total <= tolerance * tolerance
+            total = assemble(s, unknowns, place, linear)
+    return total <= rule.tolerance * rule.tolerance
 
 
 @inline
-def _shake(s, vertices, x, body_of, pivot, spread, state):
+def _shake(s, cluster, place, spread, state):
     """Moves every vertex (bodies as a whole) by up to `spread`, by a fixed sequence; its next
     state."""
+    vertices, body_of, x, pivot = cluster.vertices, cluster.body_of, place.x, place.pivot
     last = -1
     shift = np.zeros(3)
     for v in vertices:
@@ -172,27 +193,25 @@ def _shake(s, vertices, x, body_of, pivot, spread, state):
 
 
 @inline
-def newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts):
-    """Moves the vertices until their equations hold; True when they do to `tolerance`.
+def newton(s, unknowns, place, rule):
+    """Moves the cluster until its equations hold; True when they do to `rule.tolerance`.
 
     Where the descent ends in a local minimum it starts again from the sketch, shaken by a fixed
-    sequence of growing shifts in units of the first residual. On failure x is as it was. `first` (v,) is
-    scratch: -1 on entry and on return. `vertices` lists a body's members together.
+    sequence of growing shifts in units of the first residual. On failure the place is as it was.
     """
-    kept = np.empty(room(s, vertices))
-    keep(s, vertices, x, kept, False)
-    pivots = pivot.copy()
-    spread = math.sqrt(total_of(s, rows, x, np.empty(8)) / rows.shape[0])
+    cluster, attempts = unknowns.cluster, rule.attempts
+    vertices, rows = cluster.vertices, cluster.rows
+    kept = room_for(s, vertices, place)
+    keep(s, vertices, place, kept)
+    spread = math.sqrt(total_of(s, rows, place.x, np.empty(8)) / rows.shape[0])
     state = 12345
     for attempt in range(attempts):
         if attempt > 0:
-            keep(s, vertices, x, kept, True)
-            pivot[:] = pivots
+            restore(s, vertices, kept, place)
             strength = 0.2 + 1.8 * attempt / attempts
-            state = _shake(s, vertices, x, body_of, pivot, strength * spread, state)
+            state = _shake(s, cluster, place, strength * spread, state)
         longest = 40 if attempt == 0 else 20
-        if descend(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, longest):
+        if descend(s, unknowns, place, rule, longest):
             return True
-    keep(s, vertices, x, kept, True)
-    pivot[:] = pivots
+    restore(s, vertices, kept, place)
     return False

@@ -4,19 +4,35 @@ Not for: choosing among them. The starts are a fixed sequence, so that the answe
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.graph.graph import POINT, SIZE, TURN
-from clearance.kernels.sketch.solve.motion import columns, move, pivots_of
+from clearance.kernels.sketch.solve.motion import ClusterPlace, move, pivots_of, unknowns_of
 from clearance.kernels.sketch.solve.search import next_share, solve_block
 
 
+class RootSearch(NamedTuple):
+    """How the roots of a cluster are searched.
+
+    Attributes:
+        size: [m] of the sketch. reach: [m] how far the starts are scattered.
+        starts: how many there are. most: how many roots are kept.
+    """
+
+    size: float
+    reach: float
+    starts: int
+    most: int
+
+
 @inline
-def _scatter(s, vertices, body_of, first, reach, step, state):
+def _scatter(s, unknowns, reach, step, state):
     """Fills `step` with any turn and a shift of up to `reach` for every body and vertex; the new state."""
-    for v in vertices:
+    body_of, first = unknowns.cluster.body_of, unknowns.first
+    for v in unknowns.cluster.vertices:
         at = first[v]
         if body_of[v] >= 0 or s.kind[v] == POINT:
             for k in range(2):
@@ -59,24 +75,22 @@ def _positive(s, vertices, x):
 
 
 @kernel
-def cluster_roots(
-    s, vertices, rows, x, body_of, n_bodies, floor, tolerance, size, reach, starts, most
-):
-    """Up to `most` different roots (k, n), the cluster's place in x first, which must be one.
+def cluster_roots(s, cluster, x, n_bodies, rule, search):
+    """Different roots (k, n), the cluster's place in x first, which must be one.
 
-    Two roots are different when they are more than 1e-6 of `size` apart.
+    Two roots are different when they are more than 1e-6 of `search.size` apart.
     """
-    first = np.full(s.kind.shape[0], -1, np.int64)
-    n = columns(s, vertices, body_of, first)
-    step, found = np.zeros(n), np.empty((most, x.shape[0]))
+    vertices, size, most = cluster.vertices, search.size, search.most
+    unknowns = unknowns_of(s, cluster)
+    step, found = np.zeros(unknowns.n), np.empty((most, x.shape[0]))
     found[0] = x
     count, state = 1, 12345
-    for _ in range(starts):
+    for _ in range(search.starts):
         y = x.copy()
-        pivot = pivots_of(s, body_of, n_bodies, y)
-        state = _scatter(s, vertices, body_of, first, reach, step, state)
-        move(s, vertices, step, 1.0, y, first, body_of, pivot)
-        if not solve_block(s, vertices, rows, y, body_of, pivot, floor, tolerance, 1):
+        place = ClusterPlace(y, pivots_of(s, cluster.body_of, n_bodies, y))
+        state = _scatter(s, unknowns, search.reach, step, state)
+        move(s, unknowns, step, 1.0, place)
+        if not solve_block(s, cluster, place, rule):
             continue
         fresh = _positive(s, vertices, y)
         for k in range(count):

@@ -9,14 +9,15 @@ Source: basin hopping, Wales and Doye 1997, with moves in one place.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
-from clearance.kernels.sketch.graph.graph import POINT, TURN
-from clearance.kernels.sketch.solve.damped import descend_damped, incidence, narrow, nodes_of
-from clearance.kernels.sketch.solve.motion import columns, freedoms, keep, move, room
+from clearance.kernels.sketch.graph.graph import POINT
+from clearance.kernels.sketch.solve.damped import DescentLimits, descend_damped, narrow, nodes_of
+from clearance.kernels.sketch.solve.motion import keep, move, restore, room_for, unknowns_of
 from clearance.kernels.sketch.solve.newton import newton
 
 RESTARTS = 60
@@ -42,6 +43,20 @@ WORSE = 1.5
 """[-] How much larger the sum of squares may be after a kick that is kept."""
 
 
+class Kick(NamedTuple):
+    """A random move in one place.
+
+    Attributes:
+        node: where. ring: its neighbours up to so many equations away are moved as well.
+        reach: [m] the length there. amount: [-] of it, or [rad] of turns, that the move is at most.
+    """
+
+    node: int
+    ring: int
+    reach: float
+    amount: float
+
+
 @inline
 def next_share(state):
     """(state, uniform number in [0, 1)) of a linear congruential sequence."""
@@ -50,8 +65,9 @@ def next_share(state):
 
 
 @inline
-def _violated(s, rows, x, of_row, state, gradient):
+def _violated(s, rows, x, nodes, state, gradient):
     """A node of an equation that does not hold, chosen with the error as weight; (state, node)."""
+    of_row = nodes.of_row
     whole = 0.0
     for row in rows:
         whole += abs(evaluate(s.code, s.var, s.coef, s.value, x, row, gradient))
@@ -76,11 +92,11 @@ def _violated(s, rows, x, of_row, state, gradient):
 
 
 @inline
-def _reach(s, rows, x, node, of_row, start, mine, otherwise):
+def _reach(s, rows, x, nodes, node, otherwise):
     """The mean distance between the points of a node's equations; `otherwise` where there are none."""
     total, count = 0.0, 0
-    for at in range(start[node], start[node + 1]):
-        row = rows[mine[at]]
+    for at in range(nodes.start[node], nodes.start[node + 1]):
+        row = rows[nodes.rows[at]]
         last = -1
         for k in range(8):
             i = s.var[row, k]
@@ -95,25 +111,40 @@ def _reach(s, rows, x, node, of_row, start, mine, otherwise):
 
 
 @inline
-def _kick(node, ring, of_row, start, mine, reach, amount, column, width, is_turn, step, state):
-    """Fills `step` with random moves of a node and of its neighbours up to `ring` equations away."""
-    count = width.shape[0]
+def _next_kick(s, rows, x, nodes, otherwise, state, gradient):
+    """(state, the next kick); `otherwise` [m] is its reach where no equation says one."""
+    state, node = _violated(s, rows, x, nodes, state, gradient)
+    state, which = next_share(state)
+    state, share = next_share(state)
+    ring = int(3.0 * which)
+    amount = (2.0 if ring == 0 else (1.0 if ring == 1 else 0.5)) * (0.3 + 0.7 * share)
+    reach = _reach(s, rows, x, nodes, node, otherwise)
+    return state, Kick(node, ring, reach, amount)
+
+
+@inline
+def _fill_kick(kick, nodes, column, step, state):
+    """Fills `step` with random moves of a node and of its neighbours; the new state.
+
+    `column` (nodes,) holds the first column of every node.
+    """
+    count = nodes.width.shape[0]
     step[:] = 0.0
     queue, depth = np.empty(count, np.int64), np.full(count, -1, np.int64)
-    queue[0], depth[node] = node, 0
+    queue[0], depth[kick.node] = kick.node, 0
     head, tail = 0, 1
     while head < tail:
         u = queue[head]
         head += 1
-        for k in range(width[u]):
+        for k in range(nodes.width[u]):
             state, share = next_share(state)
-            turning = k == 2 or is_turn[u]
-            step[column[u] + k] = amount * (2.0 * share - 1.0) * (1.0 if turning else reach)
-        if depth[u] == ring:
+            reach = 1.0 if k == 2 or nodes.is_turn[u] else kick.reach
+            step[column[u] + k] = kick.amount * (2.0 * share - 1.0) * reach
+        if depth[u] == kick.ring:
             continue
-        for at in range(start[u], start[u + 1]):
+        for at in range(nodes.start[u], nodes.start[u + 1]):
             for k in range(8):
-                w = of_row[mine[at], k]
+                w = nodes.of_row[nodes.rows[at], k]
                 if w >= 0 and depth[w] < 0:
                     depth[w] = depth[u] + 1
                     queue[tail] = w
@@ -134,89 +165,52 @@ def _spacing(s, vertices, x):
 
 
 @inline
-def search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks):
-    """Moves the vertices of a large cluster until their equations hold; True when they do.
+def search(s, unknowns, place, rule):
+    """Moves a large cluster until its equations hold to `rule.tolerance`; True when they do.
 
-    On failure x is as it was. `first` (v,) is scratch: -1 on entry and on return. Over 60 lines: kicks and
-    descents share the numbering, the random state and what is kept; a phase apart would take all of it.
+    On failure the place is as it was; `unknowns` are renumbered.
     """
-    n = columns(s, vertices, body_of, first)
-    node_at, width, of_row = nodes_of(s, vertices, rows, first, n)
-    start, mine = incidence(of_row, width.shape[0])
-    is_turn = np.zeros(width.shape[0], np.uint8)
-    for v in vertices:
-        is_turn[node_at[first[v]]] = body_of[v] < 0 and s.kind[v] == TURN
-    half, column = narrow(vertices, first, n, node_at, width, of_row, start, mine)
-    original, kept = np.empty(room(s, vertices)), np.empty(room(s, vertices))
-    keep(s, vertices, x, original, False)
-    pivots, kept_pivots = pivot.copy(), pivot.copy()
+    vertices, rows, n = unknowns.cluster.vertices, unknowns.cluster.rows, unknowns.n
+    nodes = nodes_of(s, unknowns)
+    half, column = narrow(unknowns, nodes)
+    original, kept = room_for(s, vertices, place), room_for(s, vertices, place)
+    keep(s, vertices, place, original)
     gradient, step = np.empty(8), np.empty(n)
-    spacing, state = _spacing(s, vertices, x), np.int64(12345)
-    enough, least = tolerance * tolerance, floor * floor
-    total, steps, damping = math.inf, 0, FROM_SKETCH
-    longest, patience = np.int64(120), np.int64(8)
-    for turn in range(kicks + 1):
+    spacing, state = _spacing(s, vertices, place.x), np.int64(12345)
+    enough, least = rule.tolerance * rule.tolerance, rule.floor * rule.floor
+    limits = DescentLimits(FROM_SKETCH, least, enough, np.int64(120), np.int64(8))
+    total, steps = math.inf, 0
+    for turn in range(KICKS * rule.attempts + 1):
         if turn > 0:
             if total <= enough or float(steps) * n * half * half > WORK:
                 break
-            damping, longest, patience = FROM_KICK, np.int64(60), np.int64(4)
-            keep(s, vertices, x, kept, False)
-            kept_pivots[:] = pivot
-            state, node = _violated(s, rows, x, of_row, state, gradient)
-            state, which = next_share(state)
-            state, share = next_share(state)
-            ring = int(3.0 * which)
-            amount = (2.0 if ring == 0 else (1.0 if ring == 1 else 0.5)) * (0.3 + 0.7 * share)
-            reach = _reach(s, rows, x, node, of_row, start, mine, spacing)
-            state = _kick(
-                node, ring, of_row, start, mine, reach, amount, column, width, is_turn, step, state
-            )
-            move(s, vertices, step, 1.0, x, first, body_of, pivot)
-        after, more = descend_damped(
-            s, vertices, rows, x, body_of, pivot, first, n, half, damping, least, enough, longest,
-            patience,
-        )  # fmt: skip
+            limits = DescentLimits(FROM_KICK, least, enough, np.int64(60), np.int64(4))
+            keep(s, vertices, place, kept)
+            state, kick = _next_kick(s, rows, place.x, nodes, spacing, state, gradient)
+            state = _fill_kick(kick, nodes, column, step, state)
+            move(s, unknowns, step, 1.0, place)
+        after, more = descend_damped(s, unknowns, place, half, limits)
         steps += more
         if after < WORSE * total:
             total = after
         else:
-            keep(s, vertices, x, kept, True)
-            pivot[:] = kept_pivots
+            restore(s, vertices, kept, place)
     if DIGITS * enough < total <= NEAR * enough:
-        longest = np.int64(40)
-        total, _ = descend_damped(
-            s,
-            vertices,
-            rows,
-            x,
-            body_of,
-            pivot,
-            first,
-            n,
-            half,
-            1e-12,
-            least,
-            0.0,
-            longest,
-            longest,
-        )
-    for v in vertices:
-        first[v] = -1
+        limits = DescentLimits(1e-12, least, 0.0, np.int64(40), np.int64(40))
+        total, _ = descend_damped(s, unknowns, place, half, limits)
     if total > enough:
-        keep(s, vertices, x, original, True)
-        pivot[:] = pivots
+        restore(s, vertices, original, place)
         return False
     return True
 
 
 @kernel
-def solve_block(s, vertices, rows, x, body_of, pivot, floor, tolerance, attempts):
-    """Moves the vertices until their equations hold, by the method for their number; True when they do.
+def solve_block(s, cluster, place, rule):
+    """Moves a cluster until its equations hold, by the method for its number of unknowns; True when they do.
 
-    `vertices` lists a body's members together; on failure x is as it was.
+    On failure the place is as it was.
     """
-    first = np.full(s.kind.shape[0], -1, np.int64)
-    if freedoms(s, vertices, body_of) < BANDED:
-        return newton(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, attempts)
-    kicks = KICKS * attempts
-    return search(s, vertices, rows, x, body_of, pivot, first, floor, tolerance, kicks)
+    unknowns = unknowns_of(s, cluster)
+    if unknowns.n < BANDED:
+        return newton(s, unknowns, place, rule)
+    return search(s, unknowns, place, rule)
