@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from fractions import Fraction
 
@@ -16,12 +17,18 @@ def corners(shape: Polyhedron, i_face: int) -> list[Vector]:
     return [tuple(Fraction(float(x)) for x in row) for row in shape.face(i_face)]
 
 
+def on_grid(points: list[Vector]) -> list[tuple[int, int, int]]:
+    """The points times their least common denominator: integers, many times as quick as Fractions."""
+    scale = math.lcm(*(x.denominator for point in points for x in point))
+    return [tuple(x.numerator * (scale // x.denominator) for x in point) for point in points]
+
+
 def minus(a: Vector, b: Vector) -> Vector:
-    return tuple(x - y for x, y in zip(a, b, strict=True))
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def dot(a: Vector, b: Vector) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
@@ -30,7 +37,7 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 def area_vector(face: list[Vector]) -> Vector:
     """Twice the area vector."""
-    total = (Fraction(0),) * 3
+    total = (0, 0, 0)
     for a, b in zip(face[1:], face[2:], strict=False):
         total = tuple(
             t + c for t, c in zip(total, cross(minus(a, face[0]), minus(b, face[0])), strict=True)
@@ -40,13 +47,14 @@ def area_vector(face: list[Vector]) -> Vector:
 
 def is_flat_and_convex(face: list[Vector]) -> bool:
     """True if all corners are in one plane, no corner bends inward, and it runs round once."""
+    face = on_grid(face)
     normal = area_vector(face)
     if any(dot(normal, minus(p, face[0])) for p in face):
         return False
-    n = len(face)
-    for i in range(n):
-        edge = minus(face[(i + 1) % n], face[i])
-        if any(dot(cross(edge, minus(p, face[i])), normal) < 0 for p in face):
+    for start, end in zip(face, face[1:] + face[:1], strict=True):
+        inward = cross(normal, minus(end, start))
+        least = dot(inward, start)
+        if any(dot(inward, p) < least for p in face):
             return False
     return True
 

@@ -83,11 +83,8 @@ def test_both_sides_of_a_thin_wall_share_a_cone() -> None:
     shell = Polyhedron.merged([BALL, ball(0.99, 3).flipped()])
     surface = surface_of(shell)
     sines = surface.cones.reshape(-1, CONE_ROWS, WIDTH)[:, 4].reshape(-1)
-    few = [node for node, below in enumerate(faces_below(surface)) if 1 < len(below) <= 40]
-    both = [
-        node
-        for node in few
-        if len({face < BALL.n_faces for face in faces_below(surface)[node]}) == 2
-    ]
+    below = faces_below(surface)
+    few = [node for node, faces in enumerate(below) if 1 < len(faces) <= 40]
+    both = [node for node in few if len({face < BALL.n_faces for face in below[node]}) == 2]
     assert len(both) > 0.5 * len(few)
     assert (sines[both] < NO_CONE).mean() > 0.95

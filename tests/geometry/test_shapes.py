@@ -13,7 +13,14 @@ from clearance.errors import BadDimension
 from clearance.geometry.shapes import box, capsule, cylinder, pipe, sphere
 from clearance.geometry.shapes.dimension import sections_for
 from tests.examples import examples
-from tests.geometry.exact_faces import area_vector, corners, dot, is_flat_and_convex, minus
+from tests.geometry.exact_faces import (
+    area_vector,
+    corners,
+    dot,
+    is_flat_and_convex,
+    minus,
+    on_grid,
+)
 
 radii = st.floats(1e-3, 10.0)
 tolerances = st.sampled_from([1e-1, 1e-2, 3e-3])  # of the radius: few faces, quick rationals
@@ -29,6 +36,7 @@ def is_sound(shape) -> bool:
 
 def lies_before(face, point, radius: Fraction) -> bool:
     """True if the face's plane is at least `radius` before the point, exactly."""
+    *face, point, (radius, _, _) = on_grid([*face, point, (radius,) * 3])
     normal = area_vector(face)
     height = dot(normal, minus(face[0], point))
     return height >= 0 and height * height >= radius * radius * dot(normal, normal)

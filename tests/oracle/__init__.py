@@ -13,6 +13,7 @@ Nothing here has a tolerance, so that scale, distance from the origin and degene
     oracle.polygons_touch(p, q)                         True if they share a point
     oracle.polyhedron_distance_sq(                      of the two surfaces
         verts_a, faces_a, verts_b, faces_b, pose_a, pose_b)
+    oracle.nearest_faces(...the same...)                that, and the pairs of faces so near
     oracle.solid_distance_sq(...the same...)            0 also where one holds the other
     oracle.contains(point, verts, faces, pose)          boundary included; closed surfaces
     oracle.winding_number(point, verts, faces, pose)    for a point off the surface
@@ -34,6 +35,7 @@ edges, within the warp of any other.
 from tests.oracle.polygons import point_polygon_distance_sq, polygon_distance_sq, polygons_touch
 from tests.oracle.polyhedra import (
     contains,
+    nearest_faces,
     polyhedron_distance_sq,
     solid_distance_sq,
     winding_number,
@@ -44,6 +46,7 @@ from tests.oracle.simplices import segment_distance_sq
 __all__ = [
     "contains",
     "error",
+    "nearest_faces",
     "point_polygon_distance_sq",
     "polygon_distance_sq",
     "polygons_touch",

@@ -38,6 +38,30 @@ def polyhedron_distance_sq(
     return _surfaces_sq(_fans(grid_a, faces_a), _fans(grid_b, faces_b), scale) / scale**2
 
 
+def nearest_faces(
+    verts_a: Iterable[Iterable],
+    faces_a: Faces,
+    verts_b: Iterable[Iterable],
+    faces_b: Faces,
+    pose_a: Iterable[Iterable] | None = None,
+    pose_b: Iterable[Iterable] | None = None,
+) -> tuple[Fraction, list[tuple[int, int]]]:
+    """The exact squared distance of two surfaces and the pairs of faces that are so near, in order.
+
+    Where the surfaces touch, one pair that does.
+    """
+    scale, (grid_a, grid_b) = on_grid(posed(verts_a, pose_a), posed(verts_b, pose_b))
+    fans_a, fans_b = _fans(grid_a, faces_a), _fans(grid_b, faces_b)
+    found: dict[tuple[int, int], Fraction] = {}
+    least = None
+    for i, j, bound in _by_lower_bound(fans_a, fans_b, scale):
+        if least is not None and (bound > least or least == 0):
+            break
+        found[i, j] = fans_sq(fans_a[i], fans_b[j])
+        least = found[i, j] if least is None else min(least, found[i, j])
+    return least / scale**2, sorted(pair for pair, sq in found.items() if sq == least)
+
+
 def solid_distance_sq(
     verts_a: Iterable[Iterable],
     faces_a: Faces,
@@ -125,16 +149,24 @@ def _directions() -> Iterable[Point]:
 
 
 def _surfaces_sq(fans_a: list[Fan], fans_b: list[Fan], scale: int) -> Fraction:
-    bounds = _lower_bounds(fans_a, fans_b, scale)
     best = None
-    for flat in np.argsort(bounds, axis=None, kind="stable"):
-        i, j = divmod(int(flat), len(fans_b))
-        if best is not None and Fraction(float(bounds[i, j])) ** 2 * scale**2 > best:
+    for i, j, bound in _by_lower_bound(fans_a, fans_b, scale):
+        if best is not None and bound > best:
             break
         best = fans_sq(fans_a[i], fans_b[j], best)
         if best == 0:
             break
     return best
+
+
+def _by_lower_bound(
+    fans_a: list[Fan], fans_b: list[Fan], scale: int
+) -> Iterable[tuple[int, int, Fraction]]:
+    """All pairs of faces and what their squared distance is not below, least first."""
+    bounds = _lower_bounds(fans_a, fans_b, scale)
+    for flat in np.argsort(bounds, axis=None, kind="stable"):
+        i, j = divmod(int(flat), len(fans_b))
+        yield i, j, Fraction(float(bounds[i, j])) ** 2 * scale**2
 
 
 def _lower_bounds(fans_a: list[Fan], fans_b: list[Fan], scale: int) -> np.ndarray:

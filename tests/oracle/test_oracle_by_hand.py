@@ -208,6 +208,28 @@ def test_cubes():
     assert measure(shifted(3, 0, 0), oracle.solid_distance_sq) == 4
 
 
+def test_the_nearest_faces_of_two_cubes_are_those_that_hold_nearest_points():
+    """Side by side 2 apart: all nearest points are on x = 1 and x = 3, and on the rims of four faces beside."""
+    faced = {f for f, face in enumerate(CUBE_FACES) if all(CUBE_VERTS[v][0] == 1 for v in face)}
+    beside = {f for f, face in enumerate(CUBE_FACES) if any(CUBE_VERTS[v][0] == 1 for v in face)}
+    opposite = {f for f, face in enumerate(CUBE_FACES) if any(CUBE_VERTS[v][0] == 0 for v in face)}
+    cube = (CUBE_VERTS, CUBE_FACES)
+    sq, pairs = oracle.nearest_faces(*cube, *cube, pose_b=shifted(3, 0, 0))
+    assert sq == 4 and {f for f, _ in pairs} == beside and {g for _, g in pairs} == opposite
+    assert faced < beside and pairs == sorted(pairs)
+    for f, g in itertools.product(range(6), range(6)):
+        p = [CUBE_VERTS[v] for v in CUBE_FACES[f]]
+        q = moved([CUBE_VERTS[v] for v in CUBE_FACES[g]], (3, 0, 0))
+        assert ((f, g) in pairs) == (oracle.polygon_distance_sq(p, q) == sq)
+
+
+def test_cubes_that_touch_have_one_pair_of_faces_that_do():
+    cube = (CUBE_VERTS, CUBE_FACES)
+    sq, ((f, g),) = oracle.nearest_faces(*cube, *cube, pose_b=shifted(1, 1, 1))
+    assert sq == 0 and {(1, 1, 1)} <= {CUBE_VERTS[v] for v in CUBE_FACES[f]}
+    assert {(0, 0, 0)} <= {CUBE_VERTS[v] for v in CUBE_FACES[g]}
+
+
 def test_a_rotated_pose_is_taken_as_given():
     # the cube turned by a 3-4-5 rotation about z, as exact rationals, its corner (1, 0, 0) at
     # (0.6, 0.8, 0)

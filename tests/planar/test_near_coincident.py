@@ -110,9 +110,12 @@ def extended(curve):
 
 
 def evaluated(rows, t):
-    """Point and first derivative at the parameters `t` (k,), by de Casteljau."""
-    row = np.repeat(rows[None], len(t), axis=0)
-    n = rows.shape[0] - 1
+    """Point and first derivative at the parameters `t` (k,), by de Casteljau.
+
+    `rows` is one piece (degree + 1, 3), or as many as there are parameters (k, degree + 1, 3).
+    """
+    row = np.broadcast_to(rows, (len(t), *rows.shape[-2:]))
+    n = rows.shape[-2] - 1
     t = t[:, None, None]
     for _ in range(n - 1):
         row = row[:, :-1] + t * (row[:, 1:] - row[:, :-1])
@@ -138,15 +141,18 @@ def feet(parts, points):
     step = max(8, 4000 // len(parts))
     t = np.arange(step + 1) / oracle.REAL(step)
     gaps = np.stack([_gaps_sq(points, evaluated(rows, t)[0]) for rows in parts])
-    best = np.full(len(points), oracle.REAL(np.inf))
+    best, n_rows = np.full(len(points), oracle.REAL(np.inf)), np.array([len(rows) for rows in parts])
     around = np.pad(gaps, ((0, 0), (0, 0), (1, 1)), constant_values=np.inf)
     dips = np.where((gaps <= around[:, :, :-2]) & (gaps <= around[:, :, 2:]), gaps, np.inf)
     flat = dips.transpose(1, 0, 2).reshape(len(points), -1)
     for k in np.argsort(flat, axis=1)[:, :4].T:
-        for i in np.unique(k // (step + 1)):
-            mine = k // (step + 1) == i
-            start = t[k[mine] % (step + 1)]
-            best[mine] = np.minimum(best[mine], slid(parts[i], points[mine], start, 1.0 / step))
+        part, start = k // (step + 1), t[k % (step + 1)]
+        for degree in set(n_rows):
+            mine = n_rows[part] == degree
+            rows = np.array([parts[i] for i in part[mine]])
+            if len(rows):
+                found = slid(rows, points[mine], start[mine], 1.0 / step)
+                best[mine] = np.minimum(best[mine], found)
     return np.sqrt(best)
 
 

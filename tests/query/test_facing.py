@@ -40,7 +40,6 @@ from tests.made_cases import (
     torus,
     without_cones,
 )
-from tests.oracle.rationals import posed
 from tests.strategies import rotations
 
 
@@ -146,19 +145,12 @@ KINDS = {
 }
 
 
-def corners_of(shape, pose):
-    """The corners of each face where it is, as Fractions."""
-    points = posed(shape.vertices, pose)
-    return [[points[v] for v in face] for face in faces_of(shape)]
-
-
 def owners_of_the_nearest(a, b, pose_a, pose_b):
     """The faces of least index that hold the nearest points; None where the bodies touch."""
-    ours, theirs = corners_of(a, pose_a), corners_of(b, pose_b)
-    near = [[oracle.polygon_distance_sq(p, q) for q in theirs] for p in ours]
-    least = min(map(min, near))
-    attained = [(f, g) for f, row in enumerate(near) for g, sq in enumerate(row) if sq == least]
-    return None if least == 0 else (min(f for f, _ in attained), min(g for _, g in attained))
+    sq, attained = oracle.nearest_faces(
+        a.vertices, faces_of(a), b.vertices, faces_of(b), pose_a, pose_b
+    )
+    return None if sq == 0 else (min(f for f, _ in attained), min(g for _, g in attained))
 
 
 def nodes_over(surface, face):

@@ -70,8 +70,8 @@ def separate_all(a, b, poses, points, limits, out, waiting, table):
 
 SHAPES = {
     **SOLIDS,
-    "cylinder": lambda random: cylinder(0.5, 2.0),
-    "pipe": lambda random: pipe(inner_radius=0.4, outer_radius=0.5, length=1.5),
+    "cylinder": lambda random: cylinder(0.5, 2.0, sections=32),
+    "pipe": lambda random: pipe(inner_radius=0.4, outer_radius=0.5, length=1.5, sections=32),
     "sheet": lambda random: half_of(ball(1.0, 2)),
 }
 
