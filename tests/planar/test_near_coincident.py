@@ -141,7 +141,10 @@ def feet(parts, points):
     step = max(8, 4000 // len(parts))
     t = np.arange(step + 1) / oracle.REAL(step)
     gaps = np.stack([_gaps_sq(points, evaluated(rows, t)[0]) for rows in parts])
-    best, n_rows = np.full(len(points), oracle.REAL(np.inf)), np.array([len(rows) for rows in parts])
+    best, n_rows = (
+        np.full(len(points), oracle.REAL(np.inf)),
+        np.array([len(rows) for rows in parts]),
+    )
     around = np.pad(gaps, ((0, 0), (0, 0), (1, 1)), constant_values=np.inf)
     dips = np.where((gaps <= around[:, :, :-2]) & (gaps <= around[:, :, 2:]), gaps, np.inf)
     flat = dips.transpose(1, 0, 2).reshape(len(points), -1)

@@ -31,16 +31,6 @@ WORTH = 0.25  # the drift's share of what a bound is too large, from which on a 
 SMALLEST = 4e-16  # an interval that floats cannot cut
 
 
-<<<<<<< HEAD
-class SearchScratch(NamedTuple):
-    """Scratch of a search: the planes of `curve.scratch`, and arrays for composed maps (`curve.follow`)."""
-
-    planes: np.ndarray
-    composed: np.ndarray
-
-
-=======
->>>>>>> curvek
 class Feet(NamedTuple):
     """The feet of an interval's start, middle and end on one piece of B, and how far they are."""
 
