@@ -5,6 +5,7 @@ branch ever flips. Not for: placing (`sketch.solve.place`).
 """
 
 import math
+from typing import NamedTuple
 
 from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import (
@@ -23,12 +24,25 @@ GRAZING = 4e-13
 touching."""
 
 
+class Locus(NamedTuple):
+    """Where a point may lie: on the line a x + b y = c with unit normal (kind 1), or on the circle
+    about (a, b) of radius c (2). Kind 0 is neither: the equation does not place the point."""
+
+    kind: int
+    a: float
+    b: float
+    c: float
+
+
+NO_LOCUS = Locus(0, 0.0, 0.0, 0.0)
+
+
 @inline
 def _unit_line(nx, ny, c):
     length = math.hypot(nx, ny)
     if length == 0.0:
-        return 0, 0.0, 0.0, 0.0
-    return 1, nx / length, ny / length, c / length
+        return NO_LOCUS
+    return Locus(1, nx / length, ny / length, c / length)
 
 
 @inline
@@ -46,7 +60,7 @@ def _lengths_locus(s, row, i, x):
     second = s.var[row, 4] == i or s.var[row, 6] == i
     at = 0 if first else 4
     if s.var[row, at] == i and s.var[row, at + 2] == i:
-        return 0, 0.0, 0.0, 0.0
+        return NO_LOCUS
     j = at + 2 if s.var[row, at] == i else at
     qx, qy = x[s.var[row, j]], x[s.var[row, j + 1]]
     if not (first and second):
@@ -54,22 +68,21 @@ def _lengths_locus(s, row, i, x):
         ax, ay = x[s.var[row, o]], x[s.var[row, o + 1]]
         bx, by = x[s.var[row, o + 2]], x[s.var[row, o + 3]]
         length = math.hypot(ax - bx, ay - by)
-        return 2, qx, qy, (k * length if first else length / k)
+        return Locus(2, qx, qy, (k * length if first else length / k))
     if s.var[row, 4] == i and s.var[row, 6] == i:
-        return 0, 0.0, 0.0, 0.0
+        return NO_LOCUS
     j = 6 if s.var[row, 4] == i else 4
     wx, wy = x[s.var[row, j]], x[s.var[row, j + 1]]
     if k == 1.0:
         return _unit_line(wx - qx, wy - qy, 0.5 * (wx * wx + wy * wy - qx * qx - qy * qy))
     g = 1.0 - k * k
     radius = k * math.hypot(qx - wx, qy - wy) / abs(g)
-    return 2, (qx - k * k * wx) / g, (qy - k * k * wy) / g, radius
+    return Locus(2, (qx - k * k * wx) / g, (qy - k * k * wy) / g, radius)
 
 
 @inline
 def locus(s, row, i, x):
-    """Where the point at variable i may lie for equation `row`: (1, nx, ny, c), (2, cx, cy, r) or
-    (0, ...)."""
+    """Where the point at variable i may lie for equation `row`."""
     code = s.code[row]
     v = s.value[row]
     if code == LINEAR:
@@ -88,30 +101,31 @@ def locus(s, row, i, x):
         c = x[s.var[row, 3]] + v
         if code == LINE_CIRCLE:
             c += s.coef[row, 0] * x[s.var[row, 4]]
-        return 1, -math.sin(theta), math.cos(theta), c
+        return Locus(1, -math.sin(theta), math.cos(theta), c)
     if code == LENGTHS:
         return _lengths_locus(s, row, i, x)
     if s.var[row, 0] == s.var[row, 2]:
-        return 0, 0.0, 0.0, 0.0
+        return NO_LOCUS
     qx, qy = _other(s, row, i, x)
     if code == POINT_POINT:
-        return 2, qx, qy, v
+        return Locus(2, qx, qy, v)
     if code == POINT_CIRCLE:
-        return 2, qx, qy, x[s.var[row, 4]] + v
+        return Locus(2, qx, qy, x[s.var[row, 4]] + v)
     if code == CIRCLE_CIRCLE:
         r = s.coef[row, 0] * x[s.var[row, 4]] + s.coef[row, 1] * x[s.var[row, 5]] + v
-        return 2, qx, qy, r
+        return Locus(2, qx, qy, r)
     theta = x[s.var[row, 4]]
     sin, cos = math.sin(theta), math.cos(theta)
     if code == MIDDLE_ON:
-        return 1, -sin, cos, 2.0 * x[s.var[row, 5]] + sin * qx - cos * qy
-    return 1, cos, sin, cos * qx + sin * qy
+        return Locus(1, -sin, cos, 2.0 * x[s.var[row, 5]] + sin * qx - cos * qy)
+    return Locus(1, cos, sin, cos * qx + sin * qy)
 
 
 @inline
-def nearest_on(kind, a, b, c, px, py):
-    """The nearest point of a locus to p, and whether there is one."""
-    if kind == 1:
+def nearest_on(locus, px, py):
+    """Whether there is a nearest point of a line or circle to p, and that point."""
+    a, b, c = locus.a, locus.b, locus.c
+    if locus.kind == 1:
         gap = a * px + b * py - c
         return True, px - gap * a, py - gap * b
     dx, dy = px - a, py - b
@@ -139,41 +153,79 @@ def _side(value, plus, minus):
 
 
 @inline
-def meet(k1, a1, b1, c1, k2, a2, b2, c2, sketch1, sketch2, px, py, turned):
-    """The common point of two loci on the sketch's side (`turned` 1) or the other (-1). p: the point
-    in the sketch."""
-    if k1 == 1 and k2 == 1:
-        det = a1 * b2 - a2 * b1
-        if abs(det) < 1e-12:
-            return False, 0.0, 0.0
-        return True, (c1 * b2 - c2 * b1) / det, (a1 * c2 - a2 * c1) / det
-    if k1 == 2 and k2 == 2:
-        dx, dy = a2 - a1, b2 - b1
-        d = math.hypot(dx, dy)
-        if d == 0.0 or c1 < 0.0 or c2 < 0.0:
-            return False, 0.0, 0.0
-        along = 0.5 * (d + (c1 - c2) * (c1 + c2) / d)
-        h = root_of((c1 - along) * (c1 + along), c1 * c1 + d * d)
-        ux, uy = dx / d, dy / d
-        fx, fy = a1 + along * ux, b1 + along * uy
-        tx, ty = -uy, ux
-        ox, oy = sketch1[1], sketch1[2]
-        sx, sy = sketch2[1] - ox, sketch2[2] - oy
-        side = sx * (py - oy) - sy * (px - ox)
+def _two_lines(first, second):
+    """Whether two lines meet, and where."""
+    det = first.a * second.b - second.a * first.b
+    if abs(det) < 1e-12:
+        return False, 0.0, 0.0
+    x = (first.c * second.b - second.c * first.b) / det
+    return True, x, (first.a * second.c - second.a * first.c) / det
+
+
+class Chord(NamedTuple):
+    """The two common points f + h t and f - h t of two loci, and the side of the drawn point.
+
+    Attributes:
+        fx, fy: [m] the foot. tx, ty: the unit vector along. h: [m] half the length, -1 where there are none.
+        side: above 0 where the point in the sketch lies towards t.
+    """
+
+    fx: float
+    fy: float
+    tx: float
+    ty: float
+    h: float
+    side: float
+
+
+NO_CHORD = Chord(0.0, 0.0, 0.0, 0.0, -1.0, 0.0)
+
+
+@inline
+def _two_circles(first, second, drawn_first, drawn_second, px, py):
+    """The common chord of two circles."""
+    dx, dy = second.a - first.a, second.b - first.b
+    d = math.hypot(dx, dy)
+    if d == 0.0 or first.c < 0.0 or second.c < 0.0:
+        return NO_CHORD
+    along = 0.5 * (d + (first.c - second.c) * (first.c + second.c) / d)
+    h = root_of((first.c - along) * (first.c + along), first.c * first.c + d * d)
+    ux, uy = dx / d, dy / d
+    ox, oy = drawn_first.a, drawn_first.b
+    sx, sy = drawn_second.a - ox, drawn_second.b - oy
+    side = sx * (py - oy) - sy * (px - ox)
+    return Chord(first.a + along * ux, first.b + along * uy, -uy, ux, h, side)
+
+
+@inline
+def _line_and_circle(line, circle, drawn_line, drawn_circle, px, py):
+    """The chord that a line cuts off a circle."""
+    if circle.c < 0.0:
+        return NO_CHORD
+    gap = line.a * circle.a + line.b * circle.b - line.c
+    h = root_of((circle.c - gap) * (circle.c + gap), circle.c * circle.c)
+    side = -drawn_line.b * (px - drawn_circle.a) + drawn_line.a * (py - drawn_circle.b)
+    return Chord(circle.a - gap * line.a, circle.b - gap * line.b, -line.b, line.a, h, side)
+
+
+@inline
+def meet(first, second, drawn_first, drawn_second, px, py, turned):
+    """Whether two loci meet, and their common point on the sketch's side (`turned` 1) or the other (-1).
+
+    `drawn_first` and `drawn_second` are the same loci in the sketch, p the point there.
+    """
+    if first.kind == 1 and second.kind == 1:
+        return _two_lines(first, second)
+    if first.kind == 2 and second.kind == 2:
+        chord = _two_circles(first, second, drawn_first, drawn_second, px, py)
+    elif first.kind == 2:
+        chord = _line_and_circle(second, first, drawn_second, drawn_first, px, py)
     else:
-        if k1 == 2:
-            k1, a1, b1, c1, k2, a2, b2, c2 = k2, a2, b2, c2, k1, a1, b1, c1
-            sketch1, sketch2 = sketch2, sketch1
-        if c2 < 0.0:
-            return False, 0.0, 0.0
-        gap = a1 * a2 + b1 * b2 - c1
-        h = root_of((c2 - gap) * (c2 + gap), c2 * c2)
-        fx, fy = a2 - gap * a1, b2 - gap * b1
-        tx, ty = -b1, a1
-        side = -sketch1[2] * (px - sketch2[1]) + sketch1[1] * (py - sketch2[2])
+        chord = _line_and_circle(first, second, drawn_first, drawn_second, px, py)
+    fx, fy, tx, ty, h = chord.fx, chord.fy, chord.tx, chord.ty, chord.h
     if h < 0.0:
         return False, 0.0, 0.0
     plus = (fx + h * tx - px) ** 2 + (fy + h * ty - py) ** 2
     minus = (fx - h * tx - px) ** 2 + (fy - h * ty - py) ** 2
-    h *= turned * _side(side, plus, minus)
+    h *= turned * _side(chord.side, plus, minus)
     return True, fx + h * tx, fy + h * ty

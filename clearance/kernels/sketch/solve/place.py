@@ -50,18 +50,18 @@ def _place_point(s, v, rows, count, x, sketch, turned):
     if count == 0:
         x[i], x[i + 1] = px, py
         return True
-    k1, a1, b1, c1 = locus(s, rows[0], i, x)
-    if k1 == 0:
+    first = locus(s, rows[0], i, x)
+    if first.kind == 0:
         return False
     if count == 1:
-        good, x[i], x[i + 1] = nearest_on(k1, a1, b1, c1, px, py)
+        good, x[i], x[i + 1] = nearest_on(first, px, py)
         return good
-    k2, a2, b2, c2 = locus(s, rows[1], i, x)
-    if k2 == 0:
+    second = locus(s, rows[1], i, x)
+    if second.kind == 0:
         return False
-    first = locus(s, rows[0], i, sketch)
-    second = locus(s, rows[1], i, sketch)
-    good, mx, my = meet(k1, a1, b1, c1, k2, a2, b2, c2, first, second, px, py, turned)
+    drawn_first = locus(s, rows[0], i, sketch)
+    drawn_second = locus(s, rows[1], i, sketch)
+    good, mx, my = meet(first, second, drawn_first, drawn_second, px, py, turned)
     if good:
         x[i], x[i + 1] = mx, my
     return good
