@@ -1,4 +1,4 @@
-"""Standing pairs touch all the time, since neither body moves, as an arm's foot and its table: one hint for all.
+"""Pairs that touch all the time, as an arm's foot and its table, or links drawn into one another: hints.
 
 Not for: pairs that touch for a while, which are what a run looks for.
 """
@@ -12,6 +12,7 @@ import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
+from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.record import Record
 from clearance.world.case import Case
 from clearance.world.mimics import followers
@@ -45,15 +46,33 @@ def _stands(case: Case, body: BodyIndex, standing: list[set[str]]) -> bool:
     return case.robots[body.i_robot].robot.bodies[body.i_body].name in standing[body.i_robot]
 
 
-def standing_hint(record: Record) -> list[str]:
-    """The hint, if there is such a pair, with the line of the case file that leaves them out."""
-    pairs = standing_contacts(record)
-    if not pairs:
+def links_always_in_contact(record: Record) -> list[tuple[str, str]]:
+    """The measured pairs of two links that touch at every step of several."""
+    if record.steps.num_rows < 2 or not isinstance(record.contacts, ContactRows):
         return []
-    count = "1 pair touches" if len(pairs) == 1 else f"{len(pairs)} pairs touch"
-    line = ", ".join(json.dumps(pair, ensure_ascii=False) for pair in pairs)
-    told = f"{count} all the time, since the link never moves"
-    return [f"{told}; where that is meant, add to the case: allow: [{line}]"]
+    measured, rows = measured_pairs(record.case)[0], record.contacts
+    of_links = [i for i, pair in enumerate(measured) if not pair.b.is_obstacle]
+    if not of_links or not (record.clearances <= 0.0).any():
+        return []
+    n_steps = np.bincount(rows.pairs, minlength=len(measured))
+    return [rows.names[i] for i in of_links if n_steps[i] == record.steps.num_rows]
+
+
+def standing_hint(record: Record) -> list[str]:
+    """One hint for each kind of such pairs, with the line of the case file that leaves them out."""
+    standing = standing_contacts(record)
+    links = [pair for pair in links_always_in_contact(record) if pair not in standing]
+    return [
+        *_hint(standing, "all the time, since the link never moves"),
+        *_hint(links, "at every step, link against link"),
+    ]
+
+
+def _hint(pairs: list[tuple[str, str]], when: str) -> Iterator[str]:
+    if pairs:
+        count = "1 pair touches" if len(pairs) == 1 else f"{len(pairs)} pairs touch"
+        line = ", ".join(json.dumps(pair, ensure_ascii=False) for pair in pairs)
+        yield f"{count} {when}; where that is meant, add to the case: allow: [{line}]"
 
 
 def _touch(
