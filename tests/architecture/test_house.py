@@ -59,3 +59,25 @@ def test_every_module_opens_with_what_it_is_for(path):
 
 def test_no_room_has_a_name_that_says_nothing():
     assert [path for path in MODULES if BARRED & {path.stem, path.parent.name}] == []
+
+
+COMMANDS = {"clearance/cli/check.py", "clearance/cli/profile_sweep.py"}
+"""Where click hands over one argument for each option."""
+
+MOST_ARGUMENTS, MOST_LINES = 8, 60
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_functions_take_few_arguments_and_are_read_at_once(path):
+    """No public function takes more than eight arguments; none has more lines than a page, docstring aside."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if not isinstance(node, ast.FunctionDef):
+            continue
+        given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+        own = [argument for argument in given if argument.arg not in ("self", "cls")]
+        if not node.name.startswith("_") and str(path.relative_to(ROOT)) not in COMMANDS:
+            assert len(own) <= MOST_ARGUMENTS, f"{path}: {node.name} takes {len(own)} arguments"
+        told = node.body[0] if ast.get_docstring(node) else None
+        n_told = told.end_lineno - told.lineno + 1 if told else 0
+        n_lines = node.end_lineno - node.lineno + 1 - n_told
+        assert n_lines <= MOST_LINES, f"{path}: {node.name} has {n_lines} lines"
