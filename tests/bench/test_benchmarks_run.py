@@ -75,23 +75,12 @@ def test_polytopes_measures_ours_and_the_peers(tmp_path):
     assert "LP + Qhull" in said
 
 
-@pytest.mark.parametrize("name", ["error_time.svg", "polygon_families.svg"])
-def test_pictures_are_drawn(tmp_path, name):
+def test_pictures_are_drawn(tmp_path):
     pytest.importorskip("matplotlib")
-    ran(
-        "error_time.py",
-        "--polygons",
-        1,
-        "--poses",
-        0,
-        "--steps",
-        0,
-        "--seconds",
-        0.01,
-        "--out",
-        tmp_path,
-    )
-    assert (tmp_path / name).read_text(encoding="utf-8").startswith("<?xml")
+    least = ("--polygons", 1, "--poses", 0, "--steps", 0, "--seconds", 0.01)
+    ran("error_time.py", *least, "--out", tmp_path)
+    for name in ("error_time.svg", "polygon_families.svg"):
+        assert (tmp_path / name).read_text(encoding="utf-8").startswith("<?xml")
 
 
 def test_contact_tells_what_the_deepest_moments_cost(tmp_path):

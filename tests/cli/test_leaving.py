@@ -1,4 +1,4 @@
-"""Leaving with an error depends on no thread and on no other process: every bad input, thirty times."""
+"""Leaving with an error depends on no thread and on no other process: every bad input, ten times."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from clearance.load.input_files import InputFiles
 from clearance.load.trajectory_file import parse_trajectory, read_trajectory
 from tests.cli.test_check_command import BAD, CASE, PATH, ROOT, URDF
 
-TIMES = 30
+TIMES = 10
 
 LEAVING = """
 import json, os, sys
@@ -64,7 +64,7 @@ def ends_of(folder: Path, faults: list[str], times: int, **environment: str) -> 
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
-def test_every_bad_input_ends_thirty_times_in_the_same_way(tmp_path: Path) -> None:
+def test_every_bad_input_ends_ten_times_in_the_same_way(tmp_path: Path) -> None:
     ends = ends_of(tmp_path, [*BAD], TIMES, CLEARANCE_COMPILES_AHEAD="1")
     for fault, found in ends.items():
         ((code, out, err),) = found
