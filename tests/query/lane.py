@@ -61,7 +61,7 @@ def body_answers(n):
 
 def answers_without_rules(n):
     """For each rule, the answers without it, and how many pairs of faces more were looked at."""
-    from clearance.kernels.search import body_pair, descent, node_pairs
+    from clearance.kernels.search import body_pair, descent, face_search, node_pairs
 
     def nothing_known(p, q, *_):
         """Of boxes alone or in lanes."""
@@ -76,7 +76,7 @@ def answers_without_rules(n):
     }
     found = {}
     for name, never in rules.items():
-        users = [module for module in (descent, node_pairs) if hasattr(module, name)]
+        users = [module for module in (descent, face_search, node_pairs) if hasattr(module, name)]
         rule = getattr(users[0], name)
         for module in users:
             setattr(module, name, never)
