@@ -293,15 +293,17 @@ def kernel_lane(lanes, i):
 
 
 @inline
-def ends_of(rows, i, numbers, indices):
-    return array_at(rows, i, NUMBERS, numbers)[-1] + array_at(rows, i, INDICES, indices)[-1]
+def ends_of(rows, i):
+    first = i * rows.shape[1]
+    numbers = array_at(rows, first + NUMBERS, np.float64)
+    return numbers[-1] + array_at(rows, first + INDICES, np.int64)[-1]
 
 
 def test_arrays_are_reached_by_their_addresses():
     numbers, indices = np.array([0.5, 1.5]), np.array([7, 8, 9])
     one = [numbers.ctypes.data, len(numbers), indices.ctypes.data, len(indices)]
     rows = np.array([[0, 0, 0, 0], one], dtype=np.int64)
-    assert reached(ends_of)(rows, 1, numbers, indices) == 10.5
+    assert reached(ends_of)(rows, 1) == 10.5
 
 
 if not numba.config.DISABLE_JIT:
