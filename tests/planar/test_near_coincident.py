@@ -16,6 +16,7 @@ from tests.planar.unlike import CASES, CUBIC, reparametrised, warped
 pytestmark = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_near_coincident_curves_are_closed_in_on(name):
     """As many intervals as some milliseconds hold, a bound of a millionth of what was asked, and it is true."""
@@ -81,6 +82,7 @@ def test_the_limit_decides_near_coincident_curves(exponent):
     assert within(a, b, 1.001 * distance + 1e-13) and not within(a, b, 0.999 * distance - 1e-13)
 
 
+@pytest.mark.slow
 def test_bounds_hold_for_many_small_changes():
     """Random warps of random curves, 1e-1 to 1e-14 off: no dense sample is beyond the bound."""
     random = np.random.default_rng(7)
@@ -141,7 +143,10 @@ def feet(parts, points):
     step = max(8, 4000 // len(parts))
     t = np.arange(step + 1) / oracle.REAL(step)
     gaps = np.stack([_gaps_sq(points, evaluated(rows, t)[0]) for rows in parts])
-    best, n_rows = np.full(len(points), oracle.REAL(np.inf)), np.array([len(rows) for rows in parts])
+    best, n_rows = (
+        np.full(len(points), oracle.REAL(np.inf)),
+        np.array([len(rows) for rows in parts]),
+    )
     around = np.pad(gaps, ((0, 0), (0, 0), (1, 1)), constant_values=np.inf)
     dips = np.where((gaps <= around[:, :, :-2]) & (gaps <= around[:, :, 2:]), gaps, np.inf)
     flat = dips.transpose(1, 0, 2).reshape(len(points), -1)
