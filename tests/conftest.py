@@ -11,6 +11,7 @@ from tests.guards import guarded, refused
 from tests.marks import marks_of
 
 MARKS = ("cold", "browser", "peer", "slow", "shared")
+LONG = {"cold", "browser", "slow"}
 
 examples.register()
 
@@ -22,6 +23,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         fixtures = item._fixtureinfo.name2fixturedefs.values()
         for mark in sorted(marks_of([item.function, *(f.func for last in fixtures for f in last)])):
             item.add_marker(mark)
+    _put_long_files_first(items)
+
+
+def _put_long_files_first(items: list[pytest.Item]) -> None:
+    """Files with tests that take seconds or start processes: begun last, one keeps a worker alone at the end."""
+    long = {item.path for item in items if LONG & {mark.name for mark in item.iter_markers()}}
+    items.sort(key=lambda item: item.path not in long)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -97,6 +97,7 @@ def report(tmp_path_factory):
     return cl.check(CASE).save(tmp_path_factory.mktemp("report"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("library", extras.LIBRARIES["view"])
 def test_view_says_which_extra_it_needs(hidden, monkeypatch, report, capsys, library):
     hidden(library)
@@ -113,6 +114,7 @@ def refused_by(function, *arguments) -> str:
     return str(caught.value)
 
 
+@pytest.mark.slow
 def test_each_door_says_which_extra_it_needs(hidden, tmp_path):
     hidden(*OPTIONAL)
     (tmp_path / "drawing.dxf").write_text("")

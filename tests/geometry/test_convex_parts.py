@@ -43,6 +43,7 @@ def test_a_convex_body_is_its_own_part():
     assert parts.outer == parts.inner and parts.outer[0].volume == pytest.approx(6.0, rel=1e-15)
 
 
+@pytest.mark.slow
 def test_facets_are_drawn_in_by_what_they_stand_out():
     parts = convex_parts(cl.sphere(0.1))
     assert parts.convex and parts.tight and parts.inner != parts.outer

@@ -17,6 +17,7 @@ BALL = ball(1.0, 3)
 TINY = ball(0.05, 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turned_round", [False, True])
 @pytest.mark.parametrize("every", [1, 3])
 def test_a_face_and_its_copies_have_one_leaf_and_the_same_answer(
@@ -46,6 +47,7 @@ def test_a_face_that_another_one_shares_two_corners_with_is_no_copy() -> None:
     assert sorted(leaves) == [0, 1, 2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("faces", "turned_round", "holds"),
     [

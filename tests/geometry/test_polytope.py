@@ -34,6 +34,7 @@ def test_half_spaces_and_polyhedra_give_the_same_cube():
     assert Polytope.from_polyhedron(Polytope(CUBE).polyhedron()).volume == 1.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [4, 5, 9, 14])
 def test_volume_and_face_count_are_those_of_the_oracle(n):
     for seed in range(4):
@@ -91,6 +92,7 @@ def test_a_concave_or_open_polyhedron_is_refused():
         Polytope.from_polyhedron(two)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "shape", [(1, 1, 1), (1e-6, 1, 1), (1, 1e-6, 1e-6), (1, 30, 0.1), (1e6, 1e6, 1e6)]
 )

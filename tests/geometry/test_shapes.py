@@ -118,6 +118,7 @@ def test_a_pipe_loses_no_material(outer, share, n):
             assert height * height >= least_bore**2 * dot(normal, normal)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", [1e-3, 0.05, 0.5, 2.0])
 def test_the_default_tolerance_is_a_tenth_of_a_millimetre(radius):
     for shape in (

@@ -21,6 +21,7 @@ def run(request):
     return cl.check(cl.load_case(SCENES / request.param / "case.yaml"), cross_check=True)
 
 
+@pytest.mark.slow
 def test_fcl_agrees_at_every_step(run):
     assert run.steps.num_rows >= 200
     assert run.cross_check.n_steps == run.steps.num_rows
@@ -29,6 +30,7 @@ def test_fcl_agrees_at_every_step(run):
     assert run.cross_check.worst_witness_error <= 1e-9
 
 
+@pytest.mark.slow
 def test_the_verdict_is_the_one_promised(run):
     statuses = set(run.steps["status"].to_pylist())
     assert statuses == VERDICTS[run.record.case.name]

@@ -209,6 +209,7 @@ def test_a_file_that_is_cut_off_anywhere_is_refused():
             mesh_from_bytes(data[:end], "m.glb")
 
 
+@pytest.mark.slow
 def test_meshes_placed_very_often_are_counted():
     nodes = [{"mesh": 0} for _ in range(100_000)]
     document = changed(DOCUMENT, "nodes", nodes)

@@ -66,6 +66,7 @@ def test_what_is_missing_or_no_length_is_refused_where_it_stands(tmp_path, name)
             assert f"scene.obstacles[0].{name}" in str(caught.value) and key in str(caught.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name, shape in SHAPES.items() if shape.radius])
 def test_a_radius_in_millimetres_is_suspect(tmp_path, name):
     given = example(name) | {SHAPES[name].radius: 6.0}

@@ -52,6 +52,7 @@ def spline(c, degree, weights):
     return Curve.bspline(c, degree, weights=weights)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(N_RANDOM))
 def test_random_pairs_agree_with_the_oracle(seed):
     one, two = random_pair(seed)
@@ -103,6 +104,7 @@ def test_hostile_pairs_agree_with_the_oracle(name, scale):
     assert found.error_bound <= 1e-12 * scale * 4
 
 
+@pytest.mark.slow
 def test_arcs_circles_and_polylines_agree_with_the_oracle():
     polyline = [[-2, 0], [0, 1.3], [1, -1], [2, 2]]
     pairs = [
@@ -177,6 +179,7 @@ def hausdorff_point(curve, point):
     return out[0, 0]
 
 
+@pytest.mark.slow
 def test_published_values():
     # shapely#2458: 4.949747468306 from the vertices, 9.849997461929 densified by 0.01
     a = Curve.polyline([(26, 8), (13, -2), (13, 19), (10, 19), (10, 23), (1, 17)])

@@ -100,6 +100,7 @@ CASES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_hostile_classes_agree_with_the_oracle(name):
     (a, one), (b, two) = CASES[name]

@@ -16,6 +16,7 @@ from tests.planar.unlike import CASES, CUBIC, reparametrised, warped
 pytestmark = pytest.mark.skipif(not oracle.PRECISE, reason="no extended floats on this machine")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 def test_near_coincident_curves_are_closed_in_on(name):
     """As many intervals as some milliseconds hold, a bound of a millionth of what was asked, and it is true."""
@@ -81,6 +82,7 @@ def test_the_limit_decides_near_coincident_curves(exponent):
     assert within(a, b, 1.001 * distance + 1e-13) and not within(a, b, 0.999 * distance - 1e-13)
 
 
+@pytest.mark.slow
 def test_bounds_hold_for_many_small_changes():
     """Random warps of random curves, 1e-1 to 1e-14 off: no dense sample is beyond the bound."""
     random = np.random.default_rng(7)

@@ -189,6 +189,7 @@ def test_a_witness_at_a_contours_end_keeps_its_contour():
     assert two.point(found.parameter_a) == pytest.approx([0, 9], abs=1e-12)
 
 
+@pytest.mark.slow
 def test_compare_prints_and_draws_the_same_bytes(tmp_path):
     pytest.importorskip("matplotlib")
     one, two = tmp_path / "a.yaml", tmp_path / "b.yaml"

@@ -100,6 +100,7 @@ def outline(n, noise):
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [0.0, 1e-6, 2e-3])
 def test_outlines_of_108_594_vertices(noise):
     many = outline(108_594, noise)

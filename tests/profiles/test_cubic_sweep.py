@@ -52,6 +52,7 @@ def test_a_box_that_swings_out_between_two_equal_steps_is_swept_where_it_was():
     assert found.bound <= 5e-4
 
 
+@pytest.mark.slow
 def test_a_bar_that_overshoots_sweeps_the_sector_to_its_turning_point():
     """At rest at the start and fast at the end: the cubic turns back before it comes forward."""
     case = moved(

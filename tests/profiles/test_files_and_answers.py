@@ -27,6 +27,7 @@ def profile():
     )
 
 
+@pytest.mark.slow
 def test_our_yaml_keeps_every_bit(profile, tmp_path):
     write_profile(profile, tmp_path / "p.yaml")
     again = read_profile(tmp_path / "p.yaml")
@@ -108,6 +109,7 @@ def test_open_outlines_can_be_compared_but_have_no_area():
         _ = open_line.region
 
 
+@pytest.mark.slow
 def test_the_commands_from_sweep_to_picture(tmp_path):
     case, zone = SCENES / "profiles" / "keep_in.yaml", SCENES / "sketches" / "keep_in_zone.yaml"
     run = CliRunner().invoke
@@ -173,6 +175,7 @@ def test_refusals_of_the_commands_are_one_line(arguments, said, tmp_path, monkey
     assert not (tmp_path / "x.yaml").exists()
 
 
+@pytest.mark.slow
 def test_check_says_how_close_the_sweep_comes_to_its_sketch():
     kept = cl.check(load_case(SCENES / "profiles" / "keep_in.yaml"))
     (answer,) = kept.record.profiles
@@ -182,6 +185,7 @@ def test_check_says_how_close_the_sweep_comes_to_its_sketch():
     assert answer.gap == pytest.approx(cl.minimum_distance(swept.curve, zone).distance, abs=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["keep_in", "d_cell", "port"])
 def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
     """keep_in and port_fails are answered in full above and below; here their counterparts."""
@@ -201,6 +205,7 @@ def test_each_example_has_a_case_that_is_kept_and_one_that_is_not(name):
         assert gap > 0.0 and (gap >= space.limit) == kept
 
 
+@pytest.mark.slow
 def test_a_sweep_beyond_its_sketch_violates_the_case_and_the_page_shows_it(tmp_path):
     broken = cl.check(load_case(SCENES / "profiles" / "port_fails.yaml"))
     assert not broken.passed and broken.status == "violated"

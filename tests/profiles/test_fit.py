@@ -84,6 +84,7 @@ def test_the_least_rectangle_about_a_turned_ellipse_like_outline_touches_four_si
     )  # smaller: it touches at once
 
 
+@pytest.mark.slow
 def test_the_largest_bar_in_a_round_port_has_its_corners_on_the_rim():
     radius, height, margin = 0.17, 0.10, 0.004
     port = cl.Curve.circle([0.02, 0.76], radius)
@@ -108,6 +109,7 @@ def test_nearest_is_the_middle_between_two_circles():
     assert found.distance.distance == pytest.approx(0.2, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_zone_about_a_sweep_contains_it_by_the_oracle():
     profile = cl.swept_profile(turning(slab([0.2, -0.05, 0], [1.0, 0.05, 0.1]), [0, 0.7, 1.3]))
     found = cl.fit(

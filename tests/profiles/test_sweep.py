@@ -69,6 +69,7 @@ def test_a_sphere_on_a_line_sweeps_a_stadium():
     assert cl.minimum_distance(found.curve, truth).distance > 0.0
 
 
+@pytest.mark.slow
 def test_a_straight_two_link_arm_reaches_a_disc():
     first, second, wide = 0.6, 0.4, 0.06
     case = moved(

@@ -87,6 +87,7 @@ def test_touching_is_neither_overlap_nor_apart(shift):
     assert common_point_paper(a, b).relation == "touch"
 
 
+@pytest.mark.slow
 def test_gjk_never_runs_on():
     for seed in range(200):
         rng = np.random.default_rng(seed)
@@ -105,6 +106,7 @@ def turned(angle: float, shift) -> np.ndarray:
     return pose
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("m", [2, 3, 5])
 def test_along_a_trajectory_a_warm_start_gives_the_same_answer_with_less_work(m):
     bodies = [ball(50, i) for i in range(m)]

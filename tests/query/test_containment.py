@@ -122,6 +122,7 @@ def test_both_poses_are_taken_exactly():
         )
 
 
+@pytest.mark.slow
 def test_rays_through_many_faces_like_the_oracle():
     """A ray looks only into the boxes of the tree that it may meet; a ring is met up to four times."""
     random = np.random.default_rng(32)

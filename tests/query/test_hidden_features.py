@@ -172,6 +172,7 @@ def cases():
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", cases())
 def test_no_distance_is_off_by_more_than_its_bound(name):
     """Found before: every fifth distance was too great, by up to its own size where it was a rounding or two."""

@@ -28,6 +28,7 @@ def cluster(m: int, n: int, seed: int = 0) -> list[Polytope]:
     return [ball(n, i, rng.normal(size=3) * 0.1) for i in range(m)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["cut", "dual"])
 @pytest.mark.parametrize(("m", "n"), [(2, 4), (2, 7), (3, 4), (3, 6), (5, 4)])
 def test_volumes_are_the_exact_ones(m, n, method):
@@ -101,6 +102,7 @@ def test_order_and_threads_change_nothing_beyond_1e_14(m, n):
     assert intersect(bodies, threads=2).volume == pytest.approx(first, rel=1e-14)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("m", "n"), [(2, 4), (2, 50), (2, 5000), (5, 300), (64, 50)])
 def test_it_agrees_with_scipy_and_satisfies_every_half_space(m, n):
     from scipy.spatial import ConvexHull, HalfspaceIntersection

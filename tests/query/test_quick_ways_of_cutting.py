@@ -24,6 +24,7 @@ def cluster(m: int, n: int, seed: int, spread: float = 0.2) -> list[Polytope]:
     return [Polytope(p * rng.uniform(0.8, 1.2, 3) + rng.normal(size=3) * spread) for p in points]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [4, 9, 300])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_ball_and_cells_call_nothing_inside_that_is_not(shape, n):
@@ -53,6 +54,7 @@ def test_the_ball_touches_the_nearest_plane_of_a_cube():
     assert numbers[HEAD + INVERSE_WIDTH] == 1.0 and len(numbers) >= HEAD + ROW * cube.n_faces
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_random_families_agree_with_one_hull_over_all_half_spaces(seed):
     rng = np.random.default_rng(seed)

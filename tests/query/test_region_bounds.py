@@ -96,6 +96,7 @@ def test_a_large_solid_cut_down_shares_the_same(seed):
     assert near.shared(far).is_empty == pair.shared(far).is_empty
 
 
+@pytest.mark.slow
 @needs_manifold
 def test_no_hull_is_made_of_a_large_concave_body(monkeypatch):
     """Its hull would take seconds, its faces against all triangles minutes."""

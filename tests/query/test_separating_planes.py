@@ -111,6 +111,7 @@ def test_what_is_farthest_along_a_direction_is_found(kind: str) -> None:
         }  # each farthest corner is there with the face that answers for it
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind_b", SHAPES)
 @pytest.mark.parametrize("kind_a", ["ball", "dented", "box", "pipe"])
 def test_planes_promise_no_more_than_the_distance(kind_a: str, kind_b: str) -> None:

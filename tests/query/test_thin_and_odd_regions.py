@@ -26,6 +26,7 @@ def exact_and_found(a: np.ndarray, b: np.ndarray) -> tuple[float, float]:
     return float(shared_volume(a, b)), intersect([Polytope(a), Polytope(b)]).volume
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("overlap", [1e-12, 1e-9, 1e-6, 1e-3, 1.0])
 @pytest.mark.parametrize(
     "shift", [(1.0, 0.3, 0.2), (1.0, 0.0, 0.0), (1.0, 1.0, 0.4), (1.0, 1.0, 1.0)]
@@ -39,6 +40,7 @@ def test_boxes_in_any_attitude_that_overlap_little(overlap, shift):
         assert found == 0.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("overlap", [1e-12, 1e-9, 1e-6, 1e-3])
 def test_mirrored_bodies_that_overlap_little(overlap):
     for seed in range(2):
@@ -50,6 +52,7 @@ def test_mirrored_bodies_that_overlap_little(overlap):
         assert exact > 0.0 and found == pytest.approx(exact, rel=1e-13, abs=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("overlap", [1e-12, 1e-9, 1e-6])
 def test_a_corner_just_through_a_face(overlap):
     for seed in range(3):

@@ -160,6 +160,7 @@ def finer(case, first, n_parts):
     return replace(case, robots=(replace(placed, trajectory=part),))
 
 
+@pytest.mark.slow
 def test_the_bound_is_never_above_a_thousand_samples(certified):
     assert_never_above_samples(certified, finer, 2)
 

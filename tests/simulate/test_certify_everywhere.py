@@ -41,6 +41,7 @@ def finer(case, first, n_parts):
     return on(case, times, before + share * (after - before))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SCENES, ids=lambda path: path.parent.name)
 def test_the_bound_holds_on_every_scene(path):
     case = cl.load_case(path)

@@ -31,6 +31,7 @@ def assert_row(near, steps, i):
     assert near.contact == (row["clearance"] == 0.0)
 
 
+@pytest.mark.slow
 def test_answers_are_those_of_a_run_in_any_order(run):
     checker = cl.Checker(run.record.case)
     positions = run.record.case.robots[0].trajectory.positions

@@ -305,6 +305,7 @@ def most_memory_of_all(folder: Path) -> tuple[int, int, int]:
     return most_memory(few, folder, 1), most_memory(many, folder, 1), most_memory(many, folder, 2)
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_steps(tmp_path: Path) -> None:
     """Ten times the steps: at most the clearances once (8 bytes a step) and a few codes, never rows or poses.
 

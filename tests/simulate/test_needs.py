@@ -25,6 +25,7 @@ def runs(request: pytest.FixtureRequest) -> dict[str, cl.Run]:
     }
 
 
+@pytest.mark.slow
 def test_pairs_have_the_same_steps_and_their_least_is_the_step(runs: dict[str, cl.Run]) -> None:
     steps, pairs = runs["steps"].steps, runs["pairs"].steps
     assert steps.equals(pairs)
@@ -85,6 +86,7 @@ def test_less_asked_is_less_done(runs: dict[str, cl.Run]) -> None:
     assert queries["minimum"] < queries["steps"] <= queries["pairs"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
 def test_threads_change_nothing(need: str) -> None:
     case = cl.load_case(SCENES / "panda_shelf" / "case.yaml")
@@ -156,6 +158,7 @@ def test_a_limit_that_nothing_comes_near_still_has_a_worst_step() -> None:
     assert limit.status == "clear"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effort", [0, 1, 64, 10**9])
 @pytest.mark.parametrize("name", ["box_pipe", "panda_shelf", "iiwa_pipe_rack"])
 def test_how_long_the_first_look_searches_changes_nothing(

@@ -91,6 +91,7 @@ def disc(radius, height, n=64):
     return Polyhedron(vertices, [tuple(range(n))[::-1], tuple(range(n, 2 * n)), *sides])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gap", [2e-4, 1e-3])
 def test_faces_that_slide_past_each_other_at_a_constant_gap_are_proven(gap):
     robot = robot_of(
@@ -104,6 +105,7 @@ def test_faces_that_slide_past_each_other_at_a_constant_gap_are_proven(gap):
     assert found.n_boxes < 0.5 * n_by_length
 
 
+@pytest.mark.slow
 def test_a_gap_below_the_resolution_is_undecided_and_told():
     robot = robot_of(
         [Body("a", disc(0.2, 0.05)), Body("b", disc(0.2, 0.05))],

@@ -51,6 +51,7 @@ def test_band_solves_what_numpy_solves(seed):
     assert not reached(sketch_damped._solve_band)(band, right)
 
 
+@pytest.mark.slow
 def test_a_long_strip_has_a_narrow_band():
     points, edges = prism(40, 0)
     p, _ = problem(points, points, edges)

@@ -102,6 +102,7 @@ def test_a_failed_search_is_not_called_inconsistent():
     assert set(result.searched) <= set(s.constraints) and result.searched
 
 
+@pytest.mark.slow
 def test_a_large_failed_search_names_its_cluster_and_no_conflict():
     points, edges = irreducible(36, 1)
     s, _ = distances(points, points, edges)

@@ -35,6 +35,7 @@ def scaled(s, factor):
     return s
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("power", [-20, -3, 1, 17])
 @pytest.mark.parametrize("name", FILES)
 def test_scaling_by_a_power_of_two_is_exact(name, power):
@@ -45,6 +46,7 @@ def test_scaling_by_a_power_of_two_is_exact(name, power):
     assert (np.array(t._lists.numbers) == factor * np.array(s._lists.numbers)).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("power", [-9, 6])
 def test_scaling_of_patterns_is_exact(power):
     points, edges = irreducible(36, 2)

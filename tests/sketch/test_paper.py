@@ -37,6 +37,7 @@ def test_bar_of_unknown_length_has_both_roots():
     assert sorted(round(v, 4) for v in lengths) == [10.8149, 12.5679]
 
 
+@pytest.mark.slow
 def test_bar_in_the_box_from_60_starts():
     for seed in range(60):
         sketch = load("bar_length")

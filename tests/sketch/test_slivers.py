@@ -21,6 +21,7 @@ def checked(seed, n):
     return s, x
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 11, 16, 17, 19])
 def test_patches_whose_plan_finds_no_place_are_solved_from_the_drawing(seed):
     checked(seed, 300)
@@ -30,6 +31,7 @@ def test_the_same_patch_is_solved_at_100():
     checked(19, 100)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 17])
 def test_large_patches(seed):
     checked(seed, 1000)
@@ -43,6 +45,7 @@ def minimum():
     return work, descend(work, x)
 
 
+@pytest.mark.slow
 def test_a_minimum_has_no_slope_and_a_fold_leads_lower():
     work, place = minimum()
     assert np.abs(place.error).max() > 1e-9

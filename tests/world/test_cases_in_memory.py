@@ -48,6 +48,7 @@ def made_again(case):
     return cl.Case("again", (robot,), standing, limits=case.limits, allow=case.allow)
 
 
+@pytest.mark.slow
 def test_a_case_from_memory_has_the_answers_of_the_file(given):
     asked = given.robots[0].trajectory
     case = made_again(given).with_trajectory(
