@@ -16,7 +16,7 @@ from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import (
     Certificate,
-    Contacts,
+    ContactSequence,
     CrossCheck,
     ProfileAnswer,
     Record,
@@ -57,7 +57,7 @@ class Answers:
     measurement: Measurement
     certificate: Certificate | None
     samples: Samples
-    contacts: Contacts | tuple[()]
+    contacts: ContactSequence | tuple[()]
     notices: tuple[Notice, ...]
     profiles: tuple[ProfileAnswer, ...]
     cross_check: CrossCheck | None
@@ -148,7 +148,7 @@ def _samples(
     return Samples(case, motions, resources.rows.table("steps", batches), unmeasured)
 
 
-def _contacts(plan: MeasurementPlan, found: Measurement) -> Contacts | tuple[()]:
+def _contacts(plan: MeasurementPlan, found: Measurement) -> ContactSequence | tuple[()]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
     if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
         return ()

@@ -17,7 +17,7 @@ import numpy as np
 from clearance.geometry.boolean import ClosedMesh
 from clearance.progress import Progress
 from clearance.query.contact import Contact
-from clearance.simulate.record import Contacts, StepContact
+from clearance.simulate.record import ContactSequence, StepContact
 
 MOST_REGIONS = 2000
 """Regions that are kept; one takes some 2 to 10 kB."""
@@ -60,7 +60,7 @@ class ContactFinder(Protocol):
 
 
 @dataclass(eq=False)
-class ContactRows(Contacts):
+class ContactRows(ContactSequence):
     """Every pair in contact at every step, steps first.
 
     Attributes:

@@ -65,7 +65,7 @@ class StepContact:
         return self.known
 
 
-class Contacts(Sequence[StepContact]):
+class ContactSequence(Sequence[StepContact]):
     """Every pair in contact at every step, steps first; what the run works out of them waits until it is asked."""
 
     @abstractmethod
@@ -301,23 +301,23 @@ class Record(Samples):
     every_pair: EveryPair | None = None
     notes: tuple[str, ...] = field(default_factory=tuple)
     notices: tuple[Notice, ...] = ()
-    contacts: Contacts | tuple[()] = ()
+    contacts: ContactSequence | tuple[()] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
-        if isinstance(self.contacts, Contacts) and len(self.contacts):
+        if isinstance(self.contacts, ContactSequence) and len(self.contacts):
             self.contacts.work_out(progress)
 
     @property
     def worked_out(self) -> Sequence[StepContact]:
         """The contacts whose depth the run works out: the deepest moment of each event, all, or none."""
-        return self.contacts.worked_out if isinstance(self.contacts, Contacts) else ()
+        return self.contacts.worked_out if isinstance(self.contacts, ContactSequence) else ()
 
     @property
     def contact_notes(self) -> tuple[str, ...]:
         """What stands for the bodies in contact, where it is not they themselves."""
-        return self.contacts.notes if isinstance(self.contacts, Contacts) else ()
+        return self.contacts.notes if isinstance(self.contacts, ContactSequence) else ()
 
     @cached_property
     def deepest(self) -> StepContact | None:

@@ -123,7 +123,7 @@ def _copy(entries, lower_bounds, i, fronts, k):
 
 
 @inline
-def _room_for(fronts, pair, n_kept, length):
+def _has_room(fronts, pair, n_kept, length):
     """Finds `length` places for a pair, moving the `n_kept` first of its front there; False if there are none."""
     spans = fronts.spans
     if length <= spans[pair, 2]:
@@ -149,7 +149,7 @@ def _room_for(fronts, pair, n_kept, length):
 def keep(fronts, pair, n_kept, entries, lower_bounds, n_fresh):
     """Makes the front of a pair from the `n_kept` first of the old one and `n_fresh` new entries."""
     length = n_kept + n_fresh
-    if length > LONGEST or not _room_for(fronts, pair, n_kept, length):
+    if length > LONGEST or not _has_room(fronts, pair, n_kept, length):
         forget(fronts, pair)
         return
     spans = fronts.spans

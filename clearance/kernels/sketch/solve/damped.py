@@ -14,7 +14,7 @@ import numpy as np
 from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
-from clearance.kernels.sketch.solve.motion import keep, move, restore, room_for, total_of
+from clearance.kernels.sketch.solve.motion import keep, move, new_kept_place, restore, total_of
 
 
 class ClusterNodes(NamedTuple):
@@ -264,7 +264,7 @@ def descend_damped(s, unknowns, place, half, limits):
     vertices, rows, n = unknowns.cluster.vertices, unknowns.cluster.rows, unknowns.n
     normal = NormalEquations(np.empty((n, half)), np.empty(n))
     damped = NormalEquations(np.empty((n, half)), np.empty(n))
-    unit, gradient, kept = np.empty(n), np.empty(8), room_for(s, vertices, place)
+    unit, gradient, kept = np.empty(n), np.empty(8), new_kept_place(s, vertices, place)
     total, damping = total_of(s, rows, place.x, gradient), limits.damping
     past, stale, k = total, True, 0
     while k < limits.longest and total > limits.least and damping <= 1e6:

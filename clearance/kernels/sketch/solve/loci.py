@@ -162,7 +162,7 @@ def _two_lines(first, second):
     return True, x, (first.a * second.c - second.a * first.c) / det
 
 
-class Chord(NamedTuple):
+class CommonChord(NamedTuple):
     """The two common points f + h t and f - h t of two loci, and the side of the drawn point.
 
     Attributes:
@@ -178,7 +178,7 @@ class Chord(NamedTuple):
     side: float
 
 
-NO_CHORD = Chord(0.0, 0.0, 0.0, 0.0, -1.0, 0.0)
+NO_CHORD = CommonChord(0.0, 0.0, 0.0, 0.0, -1.0, 0.0)
 
 
 @inline
@@ -194,7 +194,7 @@ def _two_circles(first, second, drawn_first, drawn_second, px, py):
     ox, oy = drawn_first.a, drawn_first.b
     sx, sy = drawn_second.a - ox, drawn_second.b - oy
     side = sx * (py - oy) - sy * (px - ox)
-    return Chord(first.a + along * ux, first.b + along * uy, -uy, ux, h, side)
+    return CommonChord(first.a + along * ux, first.b + along * uy, -uy, ux, h, side)
 
 
 @inline
@@ -205,7 +205,7 @@ def _line_and_circle(line, circle, drawn_line, drawn_circle, px, py):
     gap = line.a * circle.a + line.b * circle.b - line.c
     h = root_of((circle.c - gap) * (circle.c + gap), circle.c * circle.c)
     side = -drawn_line.b * (px - drawn_circle.a) + drawn_line.a * (py - drawn_circle.b)
-    return Chord(circle.a - gap * line.a, circle.b - gap * line.b, -line.b, line.a, h, side)
+    return CommonChord(circle.a - gap * line.a, circle.b - gap * line.b, -line.b, line.a, h, side)
 
 
 @inline

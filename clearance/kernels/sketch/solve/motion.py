@@ -159,7 +159,7 @@ def move(s, unknowns, step, size, place):
 
 
 @inline
-def room_for(s, vertices, place):
+def new_kept_place(s, vertices, place):
     """Room in which `keep` keeps the place of these vertices."""
     count = 0
     for v in vertices:

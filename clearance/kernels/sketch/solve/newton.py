@@ -13,7 +13,7 @@ import numpy as np
 from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
-from clearance.kernels.sketch.solve.motion import keep, move, restore, room_for, total_of
+from clearance.kernels.sketch.solve.motion import keep, move, new_kept_place, restore, total_of
 from clearance.kernels.sketch.solve.place import assign
 
 
@@ -128,7 +128,7 @@ def _step_of(linear, damping):
 
 
 @inline
-def descend(s, unknowns, place, rule, longest):
+def descend_cluster(s, unknowns, place, rule, longest):
     """Moves the cluster by up to `longest` steps until |residual| is at most `rule.floor` or nothing is gained.
 
     True when it is at most `rule.tolerance`.
@@ -136,7 +136,7 @@ def descend(s, unknowns, place, rule, longest):
     vertices, rows = unknowns.cluster.vertices, unknowns.cluster.rows
     m, n = rows.shape[0], unknowns.n
     linear = LinearEquations(np.empty(m), np.empty((m, n)), np.empty(8))
-    kept = room_for(s, vertices, place)
+    kept = new_kept_place(s, vertices, place)
     damping = 0.0
     total = assemble(s, unknowns, place, linear)
     for _ in range(longest):
@@ -201,7 +201,7 @@ def newton(s, unknowns, place, rule):
     """
     cluster, attempts = unknowns.cluster, rule.attempts
     vertices, rows = cluster.vertices, cluster.rows
-    kept = room_for(s, vertices, place)
+    kept = new_kept_place(s, vertices, place)
     keep(s, vertices, place, kept)
     spread = math.sqrt(total_of(s, rows, place.x, np.empty(8)) / rows.shape[0])
     state = 12345
@@ -211,7 +211,7 @@ def newton(s, unknowns, place, rule):
             strength = 0.2 + 1.8 * attempt / attempts
             state = _shake(s, cluster, place, strength * spread, state)
         longest = 40 if attempt == 0 else 20
-        if descend(s, unknowns, place, rule, longest):
+        if descend_cluster(s, unknowns, place, rule, longest):
             return True
     restore(s, vertices, kept, place)
     return False

@@ -17,7 +17,7 @@ from clearance.compile.jit import inline, kernel
 from clearance.kernels.sketch.equations import evaluate
 from clearance.kernels.sketch.graph.graph import POINT
 from clearance.kernels.sketch.solve.damped import DescentLimits, descend_damped, narrow, nodes_of
-from clearance.kernels.sketch.solve.motion import keep, move, restore, room_for, unknowns_of
+from clearance.kernels.sketch.solve.motion import keep, move, new_kept_place, restore, unknowns_of
 from clearance.kernels.sketch.solve.newton import newton
 
 RESTARTS = 60
@@ -165,7 +165,7 @@ def _spacing(s, vertices, x):
 
 
 @inline
-def search(s, unknowns, place, rule):
+def search_cluster(s, unknowns, place, rule):
     """Moves a large cluster until its equations hold to `rule.tolerance`; True when they do.
 
     On failure the place is as it was; `unknowns` are renumbered.
@@ -173,7 +173,7 @@ def search(s, unknowns, place, rule):
     vertices, rows, n = unknowns.cluster.vertices, unknowns.cluster.rows, unknowns.n
     nodes = nodes_of(s, unknowns)
     half, column = narrow(unknowns, nodes)
-    original, kept = room_for(s, vertices, place), room_for(s, vertices, place)
+    original, kept = new_kept_place(s, vertices, place), new_kept_place(s, vertices, place)
     keep(s, vertices, place, original)
     gradient, step = np.empty(8), np.empty(n)
     spacing, state = _spacing(s, vertices, place.x), np.int64(12345)
@@ -213,4 +213,4 @@ def solve_block(s, cluster, place, rule):
     unknowns = unknowns_of(s, cluster)
     if unknowns.n < BANDED:
         return newton(s, unknowns, place, rule)
-    return search(s, unknowns, place, rule)
+    return search_cluster(s, unknowns, place, rule)
