@@ -32,6 +32,7 @@ from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
+from clearance.world.forest import joined_positions
 from clearance.world.kinematics import rates_by_link, values_by_link
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
@@ -175,6 +176,7 @@ class _Work:
 
     surface: Surface
     world: World
+    case: Case
     motions: Sequence[Motion]
     question: _Question
 
@@ -183,7 +185,8 @@ class _Work:
         case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], question: _Question
     ) -> _Work:
         layout = lay_out(case, pairs)
-        return _Work(_with_whole_faces(layout.surface), layout.world, motions, question)
+        whole = _with_whole_faces(layout.surface)
+        return _Work(whole, layout.world, case, motions, question)
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
@@ -192,7 +195,8 @@ class _Work:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
             own = IntervalBounds(*(column[span] for column in bounds))
-            motion = CertifiedMotion(self.world, _joint_path(self.world.links, self.motions, ends))
+            path = _joint_path(self.world.links, self.case, self.motions, ends)
+            motion = CertifiedMotion(self.world, path)
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
             call(certify, self.surface, motion, steps, self.question.aim, own, counts)
@@ -217,15 +221,18 @@ def _with_whole_faces(surface: Surface) -> Surface:
     )
 
 
-def _joint_path(links: Links, motions: Sequence[Motion], steps: slice) -> JointPath:
+def _joint_path(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:
     """The motion of the joints above all links at `steps`."""
-    positions = np.concatenate([motion.positions[steps] for motion in motions], axis=1)
-    cubic = np.concatenate(
-        [np.full(motion.positions.shape[1], motion.velocities is not None) for motion in motions]
-    )
+    positions = joined_positions(case, motions, steps)
+    cubic = np.zeros(positions.shape[1], dtype=bool)
     velocities = np.empty((0, len(links.parents)))
+    own = [np.full(m.positions.shape[1], m.velocities is not None) for m in motions]
+    n_own = sum(map(len, own))
+    cubic[:n_own] = np.concatenate(own)
     if cubic.any():
-        velocities = rates_by_link(links, np.concatenate([_rates(m, steps) for m in motions], 1))
+        rates = np.zeros_like(positions)  # obstacles that move do so at constant speed
+        rates[:, :n_own] = np.concatenate([_rates(m, steps) for m in motions], 1)
+        velocities = rates_by_link(links, rates)
     return JointPath(
         _writable(motions[0].times[steps]),
         _writable(values_by_link(links, positions)),

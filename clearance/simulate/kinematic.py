@@ -10,7 +10,13 @@ from clearance.world.motion import Motion
 
 
 def kinematic_motion(placed: PlacedRobot) -> Motion:
-    """The motion that goes through the samples of the trajectory, with no tracking error."""
+    """The motion that goes through the samples of the trajectory, with no tracking error.
+
+    A robot without a trajectory stands.
+    """
+    if placed.trajectory is None:
+        stand = moving_positions(placed, (), np.zeros((1, 0)))
+        return Motion(placed, np.zeros(1), stand, np.zeros(1))
     asked = placed.asked
     velocities = None
     if asked.velocities is not None:

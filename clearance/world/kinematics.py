@@ -10,6 +10,7 @@ import numpy as np
 
 from clearance.errors import UnknownJoint, nearest_name
 from clearance.kernels.motion.kinematics import (
+    BALL,
     FIXED,
     NO_COLUMN,
     NO_PARENT,
@@ -67,19 +68,6 @@ def kinematic_tree_arrays(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndar
     return parents, kinds, fixed_parts, axes
 
 
-def joined_links(placed: Sequence[PlacedRobot]) -> Links:
-    """The links of several robots behind one another, for poses one step at a time.
-
-    They follow the columns of all robots' `moving_joints`, robot by robot.
-    """
-    robots = [_links_of(one.robot) for one in placed]
-    links = robots[0] if len(robots) == 1 else _behind_one_another(placed, robots)
-    roots = np.flatnonzero(links.parents == NO_PARENT)
-    parent_from_joint = links.parent_from_joint.copy()
-    parent_from_joint[roots] = [one.world_from_base for one in placed]
-    return links._replace(parent_from_joint=parent_from_joint)
-
-
 def seen_from(
     links: Links, wanted: Sequence[tuple[int, int]]
 ) -> tuple[Links, dict[tuple[int, int], int]]:
@@ -129,7 +117,7 @@ def poses_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
 
 
 @lru_cache(maxsize=8)
-def _links_of(robot: Robot) -> Links:
+def links_of_robot(robot: Robot) -> Links:
     """The links of one robot, standing at the origin."""
     parents, kinds, fixed_parts, axes = kinematic_tree_arrays(robot)
     parents = parents.copy()
@@ -143,17 +131,26 @@ def _links_of(robot: Robot) -> Links:
     return Links(parents, kinds, axes, fixed_parts, columns, factors, offsets)
 
 
-def _behind_one_another(placed: Sequence[PlacedRobot], robots: Sequence[Links]) -> Links:
-    links_before = np.cumsum([0, *(len(links.parents) for links in robots)])
-    columns_before = np.cumsum([0, *(len(one.robot.moving_joints) for one in placed)])
-    shifted = [
-        links._replace(
-            parents=np.where(links.parents == NO_PARENT, NO_PARENT, links.parents + first),
-            columns=np.where(links.columns == NO_COLUMN, NO_COLUMN, links.columns + column),
-        )
-        for links, first, column in zip(robots, links_before, columns_before, strict=False)
-    ]
-    return Links(*(np.concatenate(arrays) for arrays in zip(*shifted, strict=True)))
+def floating_links(first_column: int, parent: int, pose: np.ndarray, first_link: int) -> Links:
+    """The links of a body that floats: one that stands where it floats from, three that slide, one that turns.
+
+    Args:
+        first_column: of seven: position [m] and quaternion xyzw. parent: the link it floats from, or `NO_PARENT`.
+        pose: (4, 4) on the parent, or in the world [m]. first_link: where these links will lie.
+    """
+    fixed = np.tile(np.eye(4), (5, 1, 1))
+    fixed[0] = pose
+    axes = np.zeros((5, 3))
+    axes[1:4] = np.eye(3)
+    return Links(
+        np.array([parent, *range(first_link, first_link + 4)]),
+        np.array([FIXED, SLIDING, SLIDING, SLIDING, BALL]),
+        axes,
+        fixed,
+        np.array([NO_COLUMN, *range(first_column, first_column + 4)]),
+        np.ones(5),
+        np.zeros(5),
+    )
 
 
 def moving_positions(

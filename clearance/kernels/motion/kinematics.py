@@ -8,7 +8,7 @@ import numpy as np
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.arithmetic.vec3 import RigidMotion, Vec3, move, rigid
 
-FIXED, TURNING, SLIDING = 0, 1, 2
+FIXED, TURNING, SLIDING, BALL = 0, 1, 2, 3
 
 NO_PARENT, NO_COLUMN = -1, -1
 
