@@ -15,9 +15,9 @@ import numpy as np
 from clearance.simulate.measure import Measurement, Minima
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
-from clearance.simulate.record import Certificate, RuleAnswer
+from clearance.simulate.record import Certificate, RuleAnswer, motion_codes
 from clearance.simulate.sections import Section, SectionPlan
-from clearance.simulate.status import RowLimits, motion_codes, sample_codes
+from clearance.simulate.status import RowLimits, sample_codes
 from clearance.world.case import Case, Limits
 from clearance.world.motion import Motion
 from clearance.world.rules import DEFAULT

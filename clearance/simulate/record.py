@@ -180,6 +180,19 @@ class Certificate:
         return None if self.nearest_between is None else self.moment_of(self.nearest_between)
 
 
+def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.ndarray:
+    """(k,) what is proven of the motion from each of `steps` to the next, as indices into `STATUSES`.
+
+    Below a limit is what is not proven to stay above it; where only distances below the limit were asked about,
+    what is really seen below it. Contact is what is seen.
+    """
+    lower, upper = certificate.lower_bound[steps], certificate.upper_bound[steps]
+    seen = certificate.pair[steps] >= 0
+    below = [(lower < limit) & (seen | (upper >= limit)) for limit in (limits.fail, limits.warn)]
+    below[0] |= upper <= 0.0
+    return np.select([certificate.touches(steps), *below], [3, 2, 1], default=0)
+
+
 @dataclass(frozen=True, eq=False)
 class RuleAnswer:
     """How the pairs that one rule judges stand against it.

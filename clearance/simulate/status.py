@@ -11,7 +11,6 @@ from clearance.world.case import Limits
 
 if TYPE_CHECKING:
     from clearance.simulate.measure import Measurement
-    from clearance.simulate.record import Certificate
 
 
 class Status(StrEnum):
@@ -57,16 +56,3 @@ def sample_codes(found: Measurement, limits: Limits, steps: slice) -> np.ndarray
     undecided = (found.pair[steps] < 0) & (found.lower_bound[steps] < limits.warn)
     touching = None if found.touching is None else found.touching[steps]
     return np.where(undecided, -1, status_codes(found.clearance[steps], limits, touching))
-
-
-def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.ndarray:
-    """(k,) what is proven of the motion from each of `steps` to the next, as indices into `STATUSES`.
-
-    Below a limit is what is not proven to stay above it; where only distances below the limit were asked about,
-    what is really seen below it. Contact is what is seen.
-    """
-    lower, upper = certificate.lower_bound[steps], certificate.upper_bound[steps]
-    seen = certificate.pair[steps] >= 0
-    below = [(lower < limit) & (seen | (upper >= limit)) for limit in (limits.fail, limits.warn)]
-    below[0] |= upper <= 0.0
-    return np.select([certificate.touches(steps), *below], [3, 2, 1], default=0)
