@@ -20,8 +20,8 @@ from clearance.kernels.motion.certify import (
     IntervalBounds,
     certify,
 )
-from clearance.kernels.motion.joint_path import JointPath
-from clearance.kernels.motion.kinematics import Links
+from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
+from clearance.kernels.motion.kinematics import BALL, Links
 from clearance.kernels.motion.world import World
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
@@ -37,6 +37,7 @@ from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import Pair
 from clearance.world.reach import farthest_reach
+from clearance.world.slerp import arcs_between
 
 BEYOND = 1.001
 """Gaps beyond the warn limit that are asked about where more is not known: a proof within the gap decides it."""
@@ -231,7 +232,18 @@ def _joint_path(links: Links, motions: Sequence[Motion], steps: slice) -> JointP
         _writable(values_by_link(links, positions)),
         _writable(velocities),
         np.append(cubic, False)[links.columns],  # the last stands for no column
+        _ball_path(links, positions),
     )
+
+
+def _ball_path(links: Links, positions: np.ndarray) -> BallPath:
+    """The motion of the ball joints among all links, of positions (n, columns)."""
+    balls = np.flatnonzero(links.kinds == BALL)
+    if len(balls) == 0:
+        return NO_BALLS
+    orientations = positions[:, links.columns[balls, None] + np.arange(4)]
+    arcs = arcs_between(orientations[:-1], orientations[1:])
+    return BallPath(balls, _writable(orientations), _writable(arcs))
 
 
 def _rates(motion: Motion, steps: slice) -> np.ndarray:

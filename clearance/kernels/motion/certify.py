@@ -38,8 +38,8 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of,
     motion_bound_of_box,
 )
-from clearance.kernels.motion.joint_path import JointPath, part_of
-from clearance.kernels.motion.kinematics import Links, place_by_link
+from clearance.kernels.motion.joint_path import NO_BALLS, JointPath, part_of, part_of_arc
+from clearance.kernels.motion.kinematics import Links, orient, place_by_link
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.front import KEPT_DOWN
@@ -133,6 +133,7 @@ class CertifyState(NamedTuple):
     """What is carried from interval to interval, and scratch.
 
     Attributes:
+        links: those of the world, with a fixed part and an axis of each ball joint that hold in the interval.
         whole, part: the middle of the interval, and of a part of it.
         motion_bounds: (bodies, 8) numbers of the `MotionBound` of each in the interval.
         displacements: (bodies,) [m] how far each can have moved in all.
@@ -141,6 +142,7 @@ class CertifyState(NamedTuple):
         waiting: (DEPTH, 2) parts of an interval.
     """
 
+    links: Links
     whole: IntervalMiddle
     part: IntervalMiddle
     motion_bounds: np.ndarray
@@ -152,6 +154,17 @@ class CertifyState(NamedTuple):
 
 
 @inline
+def _begin_arcs(world_links, balls, step, links):
+    """Gives ball joints the orientation at `step` as a part of what is fixed, and the axis that they turn about then."""
+    for ball in range(len(balls.links)):
+        link = balls.links[ball]
+        fixed = world_links.parent_from_joint[link]
+        orient(fixed, balls.orientations[step, ball], links.parent_from_joint[link])
+        for k in range(3):
+            links.axes[link, k] = balls.arcs[step, ball, k]
+
+
+@inline
 def _go_to(links, path, step, low, high, middle):
     """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
     for link in range(path.positions.shape[1]):
@@ -159,7 +172,21 @@ def _go_to(links, path, step, low, high, middle):
         middle.positions[link] = part.middle
         middle.swing[link] = part.swing
         middle.bend[link] = part.bend
+    for ball in range(len(path.balls.links)):
+        link = path.balls.links[ball]
+        part = part_of_arc(path.balls, step, ball, low, high)
+        middle.positions[link], middle.swing[link] = part.middle, part.swing
+        middle.bend[link] = part.bend
     place_by_link(links, middle.positions, middle.poses)
+
+
+@inline
+def _own_arcs(links):
+    """The links with fixed parts and axes that can be written to."""
+    return Links(
+        links.parents, links.kinds, links.axes.copy(), links.parent_from_joint.copy(), links.columns,
+        links.factors, links.offsets,
+    )  # fmt: skip
 
 
 @inline
@@ -170,15 +197,15 @@ def _new_middle(n_links):
 
 
 @inline
-def _motion_bound_in(surface, world, body, middle):
-    """The motion bound of a body about `middle`."""
+def _motion_bound_in(surface, world, body, links, middle):
+    """The motion bound of a body about `middle`, its links as they are in the interval."""
     link = world.frames[body]
     if link < 0:
         return AT_REST
     root = surface.roots[world.solids[body]]
     pose = rigid(middle.poses[link])
     return motion_bound_of(
-        surface, root, world.links, link, middle.poses, middle.swing, middle.bend, pose
+        surface, root, links, link, middle.poses, middle.swing, middle.bend, pose
     )
 
 
@@ -191,9 +218,10 @@ def _motion_bound_at(motion_bounds, body):
 @inline
 def _go_on(surface, world, path, step, state):
     """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
-    _go_to(world.links, path, step, 0.0, 1.0, state.whole)
+    _begin_arcs(world.links, path.balls, step, state.links)
+    _go_to(state.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
-        motion_bound = _motion_bound_in(surface, world, body, state.whole)
+        motion_bound = _motion_bound_in(surface, world, body, state.links, state.whole)
         numbers = state.motion_bounds[body]
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,
@@ -243,7 +271,7 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
     world = motion.world
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
-        _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
+        _own_arcs(world.links), _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
@@ -255,9 +283,10 @@ def _like():
     pairs, poses = np.empty((0, 2), dtype=np.int64), np.empty((0, 0, 0))
     links = Links(places, places, rows, poses, places, numbers, numbers)
     middle = IntervalMiddle(numbers, numbers, numbers, poses)
-    state = CertifyState(middle, middle, rows, numbers, numbers, pairs, rows, new_scratch())
+    state = CertifyState(links, middle, middle, rows, numbers, numbers, pairs, rows, new_scratch())
     world = World(places, places, places, poses, pairs, links)
-    motion = CertifiedMotion(world, JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_)))
+    path = JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_), NO_BALLS)
+    motion = CertifiedMotion(world, path)
     steps = CertifiedSteps(0, 0, places, numbers)
     aim, bounds = CertificateGoal(0.0, 0.0, 0), IntervalBounds(numbers, numbers, numbers, places)
     return (
@@ -331,10 +360,10 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
         low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
         if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
             aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
-        _go_to(world.links, path, step, low, high, state.part)
+        _go_to(state.links, path, step, low, high, state.part)
         moving = PairMotion(
-            _motion_bound_in(surface, world, body_a, state.part),
-            _motion_bound_in(surface, world, body_b, state.part),
+            _motion_bound_in(surface, world, body_a, state.links, state.part),
+            _motion_bound_in(surface, world, body_b, state.links, state.part),
             b_moves,
         )
         held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)
