@@ -123,7 +123,7 @@ def seen_from(
 
 
 def all_links(*forests: Links) -> Links:
-    """The links of several forests behind one another; parents and columns are counted over all of them already."""
+    """The links of several forests behind one another, whose parents and columns count over all of them."""
     return Links(*(np.concatenate(arrays) for arrays in zip(*forests, strict=True)))
 
 
@@ -220,7 +220,7 @@ def moving_velocities(
 
 
 def values_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
-    """(n, links) the position of the joint above each link, of (n, columns); 0 for roots, fixed and ball joints."""
+    """(n, links) the position of the joint above each link, of (n, columns); 0 of roots, fixed and ball joints."""
     return rates_by_link(links, positions) + np.where(_follows(links), links.offsets, 0.0)
 
 

@@ -53,13 +53,18 @@ def aligned(quaternions: np.ndarray) -> np.ndarray:
     What is aligned stays as it is. Ties: at a right angle the sign goes with that of the row before.
     """
     flips = np.where(_dots(quaternions[:-1], quaternions[1:]) < 0.0, -1.0, 1.0)
-    return quaternions * np.concatenate([np.ones(min(1, len(quaternions))), flips.cumprod()])[:, None]
+    return (
+        quaternions * np.concatenate([np.ones(min(1, len(quaternions))), flips.cumprod()])[:, None]
+    )
 
 
 def _dots(p: np.ndarray, q: np.ndarray) -> np.ndarray:
     """(...,) scalar products, summed in this order everywhere: their signs decide the way round."""
     return (
-        p[..., 0] * q[..., 0] + p[..., 1] * q[..., 1] + p[..., 2] * q[..., 2] + p[..., 3] * q[..., 3]
+        p[..., 0] * q[..., 0]
+        + p[..., 1] * q[..., 1]
+        + p[..., 2] * q[..., 2]
+        + p[..., 3] * q[..., 3]
     )
 
 

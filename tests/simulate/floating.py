@@ -50,7 +50,9 @@ class Scene(NamedTuple):
         )  # fmt: skip
 
 
-def chain(kinds: Sequence[int], random: np.random.Generator, shift: float = 0.4) -> tuple[Links, int]:
+def chain(
+    kinds: Sequence[int], random: np.random.Generator, shift: float = 0.4
+) -> tuple[Links, int]:
     """A chain below a root, joints shifted and turned at random; and how many columns it follows."""
     n = len(kinds) + 1
     fixed = np.tile(np.eye(4), (n, 1, 1))
@@ -84,7 +86,9 @@ def swept(scene: Scene, within: float = np.inf) -> tuple[StepRows, np.ndarray]:
     rows = StepRows(
         np.empty(n), np.empty(n), np.empty(n, np.int64), np.empty((n, 2), np.int64), np.empty((n, 2, 3))
     )  # fmt: skip
-    no_pairs = PairRows(np.empty((0, n_pairs)), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3)))
+    no_pairs = PairRows(
+        np.empty((0, n_pairs)), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
+    )
     counts = np.empty(5, dtype=np.int64)
     call(
         sweep, join(scene.shapes), scene.world, SweptSteps(scene.positions, np.arange(n)),
@@ -117,8 +121,12 @@ def between(links: Links, before: np.ndarray, after: np.ndarray, shares: np.ndar
     s = shares[:, None]
     found = before + s * (after - before)
     for column in links.columns[links.kinds == BALL]:
-        p, q = (row[column : column + 4] / np.linalg.norm(row[column : column + 4]) for row in (before, after))
-        q = -q if sum(p[k] * q[k] for k in range(4)) < 0.0 else q
+        p, q = before[column : column + 4], after[column : column + 4]
+        if (
+            sum(p[k] * q[k] for k in range(4)) < 0.0
+        ):  # rounding decides about half a turn: as they are
+            q = -q
+        p, q = p / np.linalg.norm(p), q / np.linalg.norm(q)
         angle = 2.0 * np.arcsin(0.5 * np.linalg.norm(q - p))
         if angle > 1e-6:
             mixed = (np.sin((1.0 - s) * angle) * p + np.sin(s * angle) * q) / np.sin(angle)

@@ -155,7 +155,7 @@ class CertifyState(NamedTuple):
 
 @inline
 def _begin_arcs(world_links, balls, step, links):
-    """Gives ball joints the orientation at `step` as a part of what is fixed, and the axis that they turn about then."""
+    """Gives ball joints their orientation at `step` as a fixed part, and the axis that they turn about after it."""
     for ball in range(len(balls.links)):
         link = balls.links[ball]
         fixed = world_links.parent_from_joint[link]

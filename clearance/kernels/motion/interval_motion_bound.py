@@ -10,9 +10,12 @@ needs to be made for it.
 
 A ball joint follows the four parts of a unit quaternion. Of q and -q take the one nearer to q': with t the angle
 between the orientations, q . q' = cos(t/2), so |q' - q|^2 = 2 - 2 cos(t/2) and |q' - q| = 2 sin(t/4). A point at
-most r from the joint moves no farther than the chord 2 r sin(t/2) = 4 r sin(t/4) cos(t/4) <= 2 r |q' - q|, which is
-no more than 2 r times the sum of |q_i' - q_i|: the motion radius of each part is 2 r.
-Where lengths are at least l instead of 1, those of q/|q| differ by no more than |q' - q| / l.
+most r from the joint moves no farther than the chord
+
+    2 r sin(t/2) = 4 r sin(t/4) cos(t/4) <= 2 r |q' - q| <= sum over the four parts of |q_i' - q_i| 2 r,
+
+so the motion radius of each part is 2 r. Quaternions of lengths not below l, made of length one, are no more than
+|q' - q| / l apart: then it is 2 r / l.
 Not for: the motion between the steps (`joint_motion_bound`).
 """
 

@@ -23,7 +23,7 @@ PATH_ROUNDING = 2.0**-48
 
 
 BALL_ROUNDING = 2.0**-45
-"""[rad] Rounding of the orientation of a ball joint: 26 u of axis times half angle become 52, doubled (`CERTIFY.md`)."""
+"""[rad] Rounding of the orientation of a ball joint: 111 u, doubled; `CERTIFY.md` has the sum."""
 
 
 class BallPath(NamedTuple):

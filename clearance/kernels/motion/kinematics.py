@@ -22,7 +22,7 @@ class Links(NamedTuple):
         parent_from_joint: (links, 4, 4) its fixed part [m]; of a root its pose in the world.
         columns: (links,) of the positions that the joint follows, or `NO_COLUMN`. A ball joint follows four from
             there on: a quaternion (x, y, z, w) of length one to within rounding.
-        factors, offsets: (links,) its position is factor times that, plus offset [rad or m]; 1 and 0 of a ball joint.
+        factors, offsets: (links,) its position is factor times that, plus offset [rad or m]; 1, 0 of a ball joint.
     """
 
     parents: np.ndarray
@@ -36,7 +36,7 @@ class Links(NamedTuple):
 
 @inline(force=True)
 def turns(kind):
-    """True of a joint that turns: for good about its axis, or as a ball joint about one that is another each time."""
+    """True of a joint that turns about its axis; that of a ball joint is another in each interval."""
     return kind == TURNING or kind == BALL
 
 
