@@ -241,9 +241,9 @@ def _ball_path(links: Links, positions: np.ndarray) -> BallPath:
     balls = np.flatnonzero(links.kinds == BALL)
     if len(balls) == 0:
         return NO_BALLS
-    orientations = positions[:, links.columns[balls, None] + np.arange(4)]
-    arcs = arcs_between(orientations[:-1], orientations[1:])
-    return BallPath(balls, _writable(orientations), _writable(arcs))
+    turned = positions[:, links.columns[balls, None] + np.arange(4)]
+    arcs = np.concatenate([turned[:-1], arcs_between(turned[:-1], turned[1:])], axis=2)
+    return BallPath(balls, links.parent_from_joint[balls], _writable(arcs))
 
 
 def _rates(motion: Motion, steps: slice) -> np.ndarray:

@@ -133,7 +133,6 @@ class CertifyState(NamedTuple):
     """What is carried from interval to interval, and scratch.
 
     Attributes:
-        links: those of the world, with a fixed part and an axis of each ball joint that hold in the interval.
         whole, part: the middle of the interval, and of a part of it.
         motion_bounds: (bodies, 8) numbers of the `MotionBound` of each in the interval.
         displacements: (bodies,) [m] how far each can have moved in all.
@@ -142,7 +141,6 @@ class CertifyState(NamedTuple):
         waiting: (DEPTH, 2) parts of an interval.
     """
 
-    links: Links
     whole: IntervalMiddle
     part: IntervalMiddle
     motion_bounds: np.ndarray
@@ -154,14 +152,13 @@ class CertifyState(NamedTuple):
 
 
 @inline
-def _begin_arcs(world_links, balls, step, links):
-    """Gives ball joints their orientation at `step` as a fixed part, and the axis that they turn about after it."""
+def _begin_arcs(links, balls, step):
+    """Gives ball joints their orientation at `step` as a fixed part, and the axis that they turn about after."""
     for ball in range(len(balls.links)):
-        link = balls.links[ball]
-        fixed = world_links.parent_from_joint[link]
-        orient(fixed, balls.orientations[step, ball], links.parent_from_joint[link])
+        link, arc = balls.links[ball], balls.arcs[step, ball]
+        orient(balls.parent_from_joint[ball], arc, links.parent_from_joint[link])
         for k in range(3):
-            links.axes[link, k] = balls.arcs[step, ball, k]
+            links.axes[link, k] = arc[4 + k]
 
 
 @inline
@@ -181,12 +178,14 @@ def _go_to(links, path, step, low, high, middle):
 
 
 @inline
-def _own_arcs(links):
-    """The links with fixed parts and axes that can be written to."""
-    return Links(
+def _with_own_arcs(world):
+    """The world with links of which fixed parts and axes can be written to."""
+    links = world.links
+    own = Links(
         links.parents, links.kinds, links.axes.copy(), links.parent_from_joint.copy(), links.columns,
         links.factors, links.offsets,
     )  # fmt: skip
+    return World(world.solids, world.frames, world.groups, world.standing, world.pairs, own)
 
 
 @inline
@@ -197,15 +196,15 @@ def _new_middle(n_links):
 
 
 @inline
-def _motion_bound_in(surface, world, body, links, middle):
-    """The motion bound of a body about `middle`, its links as they are in the interval."""
+def _motion_bound_in(surface, world, body, middle):
+    """The motion bound of a body about `middle`."""
     link = world.frames[body]
     if link < 0:
         return AT_REST
     root = surface.roots[world.solids[body]]
     pose = rigid(middle.poses[link])
     return motion_bound_of(
-        surface, root, links, link, middle.poses, middle.swing, middle.bend, pose
+        surface, root, world.links, link, middle.poses, middle.swing, middle.bend, pose
     )
 
 
@@ -218,10 +217,10 @@ def _motion_bound_at(motion_bounds, body):
 @inline
 def _go_on(surface, world, path, step, state):
     """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
-    _begin_arcs(world.links, path.balls, step, state.links)
-    _go_to(state.links, path, step, 0.0, 1.0, state.whole)
+    _begin_arcs(world.links, path.balls, step)
+    _go_to(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
-        motion_bound = _motion_bound_in(surface, world, body, state.links, state.whole)
+        motion_bound = _motion_bound_in(surface, world, body, state.whole)
         numbers = state.motion_bounds[body]
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,
@@ -268,10 +267,11 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
         motion: a `CertifiedMotion`. steps: `CertifiedSteps`. aim: a `CertificateGoal`.
         tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
     """
-    world = motion.world
+    world = _with_own_arcs(motion.world)
+    motion = CertifiedMotion(world, motion.path)
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
-        _own_arcs(world.links), _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
+        _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
@@ -283,7 +283,7 @@ def _like():
     pairs, poses = np.empty((0, 2), dtype=np.int64), np.empty((0, 0, 0))
     links = Links(places, places, rows, poses, places, numbers, numbers)
     middle = IntervalMiddle(numbers, numbers, numbers, poses)
-    state = CertifyState(links, middle, middle, rows, numbers, numbers, pairs, rows, new_scratch())
+    state = CertifyState(middle, middle, rows, numbers, numbers, pairs, rows, new_scratch())
     world = World(places, places, places, poses, pairs, links)
     path = JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_), NO_BALLS)
     motion = CertifiedMotion(world, path)
@@ -360,10 +360,10 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
         low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
         if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
             aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
-        _go_to(state.links, path, step, low, high, state.part)
+        _go_to(world.links, path, step, low, high, state.part)
         moving = PairMotion(
-            _motion_bound_in(surface, world, body_a, state.links, state.part),
-            _motion_bound_in(surface, world, body_b, state.links, state.part),
+            _motion_bound_in(surface, world, body_a, state.part),
+            _motion_bound_in(surface, world, body_b, state.part),
             b_moves,
         )
         held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)

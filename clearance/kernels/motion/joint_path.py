@@ -31,16 +31,20 @@ class BallPath(NamedTuple):
 
     Attributes:
         links: (b,) below them.
-        orientations: (n, b, 4) quaternions (x, y, z, w).
-        arcs: (n - 1, b, 4) a unit axis, as it is seen from the orientation before, and the angle [rad].
+        parent_from_joint: (b, 4, 4) the fixed parts of the joints [m].
+        arcs: (n - 1, b, 8) the orientation before as a quaternion (x, y, z, w); a unit axis, as it is seen from
+            there; the angle [rad].
     """
 
     links: np.ndarray
-    orientations: np.ndarray
+    parent_from_joint: np.ndarray
     arcs: np.ndarray
 
 
-NO_BALLS = BallPath(np.empty(0, dtype=np.int64), np.empty((0, 0, 4)), np.empty((0, 0, 4)))
+ANGLE = 7
+"""Its place in an arc."""
+
+NO_BALLS = BallPath(np.empty(0, dtype=np.int64), np.empty((0, 4, 4)), np.empty((0, 0, 8)))
 """Of links that no ball joint carries."""
 
 
@@ -117,5 +121,5 @@ def part_of_arc(balls, step, ball, low, high):
 
     The bend is about any axis.
     """
-    turn = linear_part(0.0, balls.arcs[step, ball, 3], low, high)
+    turn = linear_part(0.0, balls.arcs[step, ball, ANGLE], low, high)
     return JointInterval(turn.middle, turn.swing, BALL_ROUNDING)
