@@ -32,7 +32,7 @@ from clearance.world.motion import Motion
 
 
 class Scene(NamedTuple):
-    """Bodies that links carry, or that stand at the origin (frame -1), pairs of them, and positions (n, columns)."""
+    """Bodies that links carry, or that stand at the origin (frame -1), and positions (n, columns)."""
 
     links: Links
     shapes: Sequence[Polyhedron]
@@ -70,7 +70,7 @@ def chain(
 
 
 def orientations(random: np.random.Generator, n: int, turn: float) -> np.ndarray:
-    """(n, 4) unit quaternions, each turned by `turn` [rad] about some axis from the one before; signs at random."""
+    """(n, 4) unit quaternions, each turned by `turn` [rad] from the one before; axes and signs at random."""
     axes = random.normal(size=(n, 3))
     axes *= turn / np.linalg.norm(axes, axis=1)[:, None]
     now, found = Rotation.random(random_state=random), []

@@ -17,7 +17,7 @@ from clearance.kernels.motion.interval_motion_bound import (
     interval_motion_bound_of,
 )
 from clearance.kernels.motion.joint_motion_bound import motion_bound_of, motion_bound_of_box
-from clearance.kernels.motion.joint_path import BALL_ROUNDING
+from clearance.kernels.motion.joint_path import BALL_ROUNDING, BallPath, part_of_arc
 from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, place_by_link
 from clearance.world.kinematics import (
     all_links,
@@ -222,6 +222,49 @@ def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
     world = np.column_stack([SHAPE.vertices, np.ones(8)]) @ placed.transpose(0, 2, 1)
     assert np.linalg.norm(world - world[0], axis=2).max() <= bound + 1e-14
     assert np.abs(placed[0] - room[link]).max() <= 1e-14
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_between_two_steps_a_ball_joint_is_one_that_turns(seed):
+    """The same motion about the axis of the arc: the same bounds but for rounding."""
+    random = np.random.default_rng(seed)
+    scene = arm_below(random, 2, random.choice([0.3, 1.5, 3.0]))
+    ball = 2
+    column = scene.links.columns[ball]
+    arc = arcs_between(*scene.positions[:, column : column + 4])
+    fixed, kinds = scene.links.parent_from_joint.copy(), scene.links.kinds.copy()
+    turned = floating.Rotation.from_quat(scene.positions[0, column : column + 4]).as_matrix()
+    fixed[ball, :3, :3] = fixed[ball, :3, :3] @ turned
+    axes, kinds[ball] = scene.links.axes.copy(), TURNING
+    axes[ball], angles = arc[:3], scene.positions.copy()
+    angles[:, column] = 0.0, arc[3]
+    turning = scene.links._replace(kinds=kinds, parent_from_joint=fixed, axes=axes)
+    same = scene._replace(links=turning, positions=angles)
+    found, wanted = floating.certified(scene), floating.certified(same)
+    assert wanted.lower[0] > 0.0
+    assert found.lower[0] == pytest.approx(wanted.lower[0], abs=1e-11)
+    assert found.upper[0] == pytest.approx(wanted.upper[0], abs=1e-11)
+
+    swing, bend = random.uniform(-0.3, 0.3, 7), np.zeros(7)
+    room = np.empty((7, 4, 4))
+    bounds = [
+        bound_about(surface_of(SHAPE), links, 6, np.zeros(7), swing, bend, room)
+        for links in (turning, turning._replace(kinds=scene.links.kinds))
+    ]
+    assert bounds[0] == bounds[1]
+
+
+def test_the_parts_of_an_arc():
+    balls = BallPath(np.array([1]), np.eye(4)[None], np.array([[[0, 0, 0, 1.0, 1, 0, 0, 0.8]]]))
+    found = arc_part(balls, 0.25, 0.75)
+    assert found.middle == pytest.approx(0.4, rel=1e-15)
+    assert 0.2 < found.swing <= 0.2 * (1.0 + 1e-11)
+    assert found.bend == BALL_ROUNDING
+
+
+@kernel
+def arc_part(balls, low, high):
+    return part_of_arc(balls, 0, 0, low, high)
 
 
 def on_one_base(n_steps: int = 30) -> tuple[Scene, dict]:
