@@ -131,6 +131,19 @@ def require_known(case: Case, name: str) -> None:
         raise UnknownLink(f"nothing is called {name!r}", valid=nearest_name(name, known))
 
 
+def owner_of(case: Case, mount: Mount) -> tuple[bool, int]:
+    """What a mount is on in the end: an obstacle (True, i) or a robot (False, i).
+
+    Raises:
+        UnknownLink, BadInput: as `resolved_mount`.
+    """
+    on = resolved_mount(case, mount).on
+    for i, obstacle in enumerate(case.obstacles):
+        if obstacle.name == on:
+            return True, i
+    return False, _link_names(case)[on][0]
+
+
 def _link_names(case: Case) -> dict[str, tuple[int, int]]:
     """Robot and link by `robot/link`, and by the link alone where there is one robot."""
     names = {

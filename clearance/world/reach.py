@@ -14,7 +14,7 @@ from clearance.tolerance import REACH, TURNS
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.cubic import extremes_between
-from clearance.world.forest import resolved_mount
+from clearance.world.forest import owner_of, resolved_mount
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
@@ -63,7 +63,6 @@ class _Frames:
 
     def __init__(self, case: Case, motions: Sequence[Motion]) -> None:
         self._case, self._motions = case, motions
-        self._obstacles = {obstacle.name: i for i, obstacle in enumerate(case.obstacles)}
 
     def of_robot(self, i: int) -> float:
         """Of all links of a robot."""
@@ -83,13 +82,10 @@ class _Frames:
         """Of what stands on a mount: no axis of it is longer than the sum of a shift's magnitudes."""
         if mount is None:
             return 0.0
+        is_obstacle, i = owner_of(self._case, mount)
         mount = resolved_mount(self._case, mount)
         shift = float(np.abs(mount.pose[:3, 3]).sum())
-        if mount.on in self._obstacles:
-            return ROOT_3 * self.of_obstacle(self._obstacles[mount.on]) + shift
-        names = [placed.robot.name for placed in self._case.robots]
-        i_robot = names.index(mount.on.split("/")[0]) if len(names) > 1 or "/" in mount.on else 0
-        return ROOT_3 * self.of_robot(i_robot) + shift
+        return ROOT_3 * (self.of_obstacle(i) if is_obstacle else self.of_robot(i)) + shift
 
 
 def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajectory) -> None:

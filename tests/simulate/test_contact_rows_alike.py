@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.motion import Motion
+from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory

@@ -7,9 +7,9 @@ import pytest
 
 import clearance as cl
 from clearance.geometry.shapes import box
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot, SelfClearance
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
