@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from clearance.world.motion import kinematic_motion
 
 from clearance.errors import BadInput, BadTime, UnknownLink, UnknownObstacle
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry
 from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
+from clearance.world.motion import kinematic_motion
 from clearance.world.mount import Mount
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import Timing, Window
