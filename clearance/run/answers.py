@@ -133,13 +133,13 @@ def _of_section(plan: MeasurementPlan, section: Section, resources: Resources) -
 
 
 def _measurement(question: Question, section: Section, resources: Resources) -> Measurement:
-    what = section.case, section.motions, section.pairs
     if question.method == "exact":
-        return measure(*what, question.need, resources)
+        return measure(section.in_motion, question.need, resources)
     from clearance.query.paper import NO_TOLERANCE
     from clearance.simulate.measure_paper import measure_paper
 
-    return measure_paper(*what, resources.progress, question.paper_tolerance or NO_TOLERANCE)
+    tolerance = question.paper_tolerance or NO_TOLERANCE
+    return measure_paper(section.in_motion, resources.progress, tolerance)
 
 
 def _certificate(
@@ -147,15 +147,8 @@ def _certificate(
 ) -> Certificate:
     from clearance.simulate.certify import certify_motion
 
-    return certify_motion(
-        section.case,
-        section.motions,
-        section.pairs,
-        found,
-        question.certify_gap,
-        question.need,
-        resources,
-    )
+    gap, need = question.certify_gap, question.need
+    return certify_motion(section.in_motion, found, gap, need, resources)
 
 
 def _samples(plan: MeasurementPlan, judged: Judged, resources: Resources) -> Samples:

@@ -8,13 +8,14 @@ the sections' answers come to together (`judged`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from clearance.simulate.layout import PairsInMotion
 from clearance.world.case import Case, Limits, Omission
 from clearance.world.clocks import are_tied
-from clearance.world.motion import Motion
 from clearance.world.pairs import Pair, Selection, nothing_to_measure, selected_pairs
 from clearance.world.timeline import Phase, Timeline
 
@@ -39,22 +40,13 @@ class Section:
     pairs: tuple[Pair, ...]
     places: np.ndarray
 
-    @property
-    def case(self) -> Case:
-        """The case in this phase; its limits are those of the distances of the bodies without their padding."""
+    @cached_property
+    def in_motion(self) -> PairsInMotion:
+        """Its pairs and how they move; limits are those of the distances of the bodies without their padding."""
         limits = self.phase.case.limits.of_rule(self.rule)
         if self.padding:
             limits = Limits(limits.fail + self.padding, limits.warn + self.padding, limits.joints)
-        return (
-            self.phase.case
-            if limits is self.phase.case.limits
-            else replace(self.phase.case, limits=limits)
-        )
-
-    @property
-    def motions(self) -> tuple[Motion, ...]:
-        """Of the robots, in this phase."""
-        return self.phase.motions
+        return PairsInMotion(self.phase.case, self.phase.motions, self.pairs, limits)
 
     @property
     def steps(self) -> slice:
