@@ -6,5 +6,6 @@ and a winding number says what lies inside a closed body. Not for: measuring (ro
 """
 
 from clearance.crosscheck.compare import cross_check
+from clearance.crosscheck.sections import cross_check_sections
 
-__all__ = ["cross_check"]
+__all__ = ["cross_check", "cross_check_sections"]

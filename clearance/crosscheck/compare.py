@@ -7,7 +7,7 @@ every measured body at every step.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -16,22 +16,28 @@ from clearance.crosscheck.peer_run import PeerAnswers, PeerRun
 from clearance.crosscheck.settle import off_body, peer_is_wrong
 from clearance.simulate.record import CrossCheck, Disagreement, Samples
 from clearance.tolerance import CROSS_CHECK
+from clearance.world.pairs import Pair
 
 GIVE_UP = 64
 """Steps that exact arithmetic looks at, or does not settle, after which the others are not looked at."""
 
 
-def cross_check(record: Samples, progress: Callable[[int, int], None] | None = None) -> CrossCheck:
+def cross_check(
+    record: Samples,
+    progress: Callable[[int, int], None] | None = None,
+    measured: Sequence[Pair] | None = None,
+) -> CrossCheck:
     """The comparison of every step of a record with FCL on the same bodies.
 
     Args:
         record: what we measured.
         progress: called with (steps done, all steps) now and then.
+        measured: the pairs, where they are not all that the case measures.
 
     Raises:
         Unavailable: python-fcl cannot be imported.
     """
-    run = PeerRun(record)
+    run = PeerRun(record, measured)
     answers = run.measure(progress)
     tolerance = CROSS_CHECK * answers.diagonal
     differences = np.abs(record.clearances - answers.clearances)
@@ -75,7 +81,12 @@ def _disagreement(
     run: PeerRun, answers: PeerAnswers, step: int, same_distance: bool, witness_error: float
 ) -> Disagreement:
     record = run.record
-    row = {name: record.steps[name][step].as_py() for name in ("clearance", "link", "obstacle")}
+    link, obstacle = record.sides[:2]
+    row = {
+        "clearance": record.steps["clearance"][step].as_py(),
+        "link": record.steps[link][step].as_py(),
+        "obstacle": record.steps[obstacle][step].as_py(),
+    }
     peer_clearance, i_pair = float(answers.clearances[step]), int(answers.i_pairs[step])
     pair = run.pairs[i_pair]
     if same_distance:
@@ -102,14 +113,10 @@ class _Witnesses:
 
     def __init__(self, run: PeerRun) -> None:
         self._run = run
-        steps = run.record.steps
-        self._points = {
-            side: np.column_stack([steps[f"{side}_{axis}"].to_numpy() for axis in "xyz"])
-            for side in ("link", "obstacle")
-        }
-        self._names = list(
-            zip(steps["link"].to_pylist(), steps["obstacle"].to_pylist(), strict=True)
-        )
+        steps, (link, obstacle, *places) = run.record.steps, run.record.sides
+        points = np.column_stack([steps[name].to_numpy() for name in places])
+        self._points = {"link": points[:, :3], "obstacle": points[:, 3:]}
+        self._names = list(zip(steps[link].to_pylist(), steps[obstacle].to_pylist(), strict=True))
         self._pairs = {(pair.link.name, pair.other.name): pair for pair in run.pairs}
 
     def errors(self) -> np.ndarray:

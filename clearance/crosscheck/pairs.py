@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from clearance.crosscheck.witness import PointLocator
 from clearance.simulate.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case
-from clearance.world.pairs import BodyIndex, measured_pairs
+from clearance.world.pairs import BodyIndex, Pair, measured_pairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,10 +59,15 @@ class Mover:
     side: PeerSide
 
 
-def peer_pairs(record: Samples) -> tuple[list[Mover], list[PeerPair]]:
+def peer_pairs(
+    record: Samples, measured: Sequence[Pair] | None = None
+) -> tuple[list[Mover], list[PeerPair]]:
     """The bodies that take part and every pair that the record does not list as unmeasured.
 
     Links are named as in the record: with their robot's name where there are several.
+
+    Args:
+        measured: the pairs, where they are not all that the case measures.
     """
     case = record.case
     left_out = {(entry.link, entry.obstacle) for entry in record.unmeasured}
@@ -75,7 +81,7 @@ def peer_pairs(record: Samples) -> tuple[list[Mover], list[PeerPair]]:
         return places[body]
 
     pairs: list[PeerPair] = []
-    for pair in measured_pairs(case)[0]:
+    for pair in measured_pairs(case)[0] if measured is None else measured:
         if (pair.a.name_in(case), pair.b.name_in(case)) in left_out:
             continue
         a, b = place_of(pair.a), place_of(pair.b)

@@ -7,7 +7,7 @@ nearest.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,8 @@ from clearance.crosscheck.bounds import greatest_displacements, lower_bound_boxe
 from clearance.crosscheck.containment import is_inside
 from clearance.crosscheck.pairs import PeerPair, peer_pairs
 from clearance.simulate.record import Samples
+from clearance.world.forest import link_poses_at
+from clearance.world.pairs import Pair
 
 _STEPS_AT_ONCE = 512
 _ROUNDING = 1e-12  # [m] taken off every lower bound: far above float64, far below the tolerance
@@ -41,9 +43,9 @@ class PeerAnswers:
 class PeerRun:
     """The bodies of a record in FCL, and the measuring of all its steps."""
 
-    def __init__(self, record: Samples) -> None:
+    def __init__(self, record: Samples, measured: Sequence[Pair] | None = None) -> None:
         self.record = record
-        self.movers, self.pairs = peer_pairs(record)
+        self.movers, self.pairs = peer_pairs(record, measured)
         self._i_movers = np.array([pair.i_mover for pair in self.pairs])
         self._i_others = np.array([pair.i_other for pair in self.pairs])
         self._low, self._high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -67,8 +69,9 @@ class PeerRun:
 
     def poses(self, start: int, stop: int) -> np.ndarray:
         """(movers, steps, 4, 4) `world_from_link` [m] of the steps `start` to `stop`."""
-        by_robot = [motion.poses(start, stop) for motion in self.record.motions]
-        return np.array([m.body.poses_in(self.record.case, by_robot) for m in self.movers])
+        case = self.record.case
+        poses = link_poses_at(case, self.record.motions, slice(start, stop))
+        return np.array([mover.body.poses_in(case, poses) for mover in self.movers])
 
     def collides(self, step: int, i_pair: int) -> bool:
         """True if FCL's collision test or the winding number finds contact of one pair at one

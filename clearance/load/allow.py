@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
-from clearance.world.pairs import matches
+from clearance.world.rules import matches
 
 _WILDCARDS = frozenset("*?[")
 

@@ -33,6 +33,7 @@ from clearance.world.notice import Notice
 from clearance.world.pairs import measured_pairs
 from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
+from clearance.world.rules import Allowance
 from clearance.world.trajectory import Trajectory
 
 
@@ -66,7 +67,7 @@ def load_case(path: str | PathLike[str]) -> Case:
         robots=(placed,),
         obstacles=obstacles,
         limits=_limits(given.limits),
-        allow=allow,
+        allow=tuple(map(Allowance, allow)),
         contact_response=given.contact_response,
         sources=files.sources,
         notes=(*note_on_joints_at_zero(robot, given_joints), *_srdf_notes(placed), *scene_notes),

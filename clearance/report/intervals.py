@@ -10,7 +10,8 @@ import numpy as np
 
 from clearance.simulate.record import Record
 from clearance.simulate.replay_frames import codes_of
-from clearance.simulate.steps import STATUSES, between_of, status_codes
+from clearance.simulate.status import STATUSES, status_codes
+from clearance.simulate.steps import between_of
 
 MOST_LISTED = 10_000
 """Most intervals of a level, and most events, that are listed; the steps tables have the status of every step."""

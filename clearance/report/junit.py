@@ -12,8 +12,8 @@ from clearance.report.folder import write_file
 from clearance.report.summary import certified_of
 from clearance.report.verdict import Verdict, profile_text, verdict_of
 from clearance.report.wording import certified_text, limit_mm, mm, moment_text, seconds
-from clearance.simulate.record import PairMinimum, Record
-from clearance.simulate.steps import STATUSES, Status, motion_codes
+from clearance.simulate.record import PairMinimum, Record, motion_codes
+from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Limits
 from clearance.world.notice import Severity
 

@@ -26,7 +26,7 @@ from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import badge_text, header, sections
 from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
-from clearance.simulate.steps import STATUSES
+from clearance.simulate.status import STATUSES
 
 _HERE = Path(__file__).parent
 

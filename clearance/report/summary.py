@@ -19,7 +19,6 @@ from clearance.simulate.moment import Moment
 from clearance.simulate.record import Certificate, CrossCheck, ProfileAnswer, Record
 from clearance.simulate.replay import link_label
 from clearance.simulate.standing import standing_hint
-from clearance.simulate.steps import status_of
 from clearance.world.body import Body
 from clearance.world.motion import Motion
 
@@ -94,7 +93,7 @@ def _worst(record: Record, worst: Moment) -> dict[str, Any]:
         "time": worst.time,
         "between": worst.between,
         "clearance": worst.clearance,
-        "status": status_of(worst.clearance, record.case.limits),
+        "status": record.status_of(worst),
         "link": worst.link,
         "obstacle": worst.obstacle,
         "point_link": list(worst.point_link),

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from clearance.report.wording import count, gap_text, limit_mm, mm, moment_text, span_text
 from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay_frames import codes_of
-from clearance.simulate.steps import STATUSES, Status
+from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 
@@ -141,9 +141,10 @@ def _measured(record: Record) -> str:
 
 def _occurring(record: Record) -> str | None:
     """The moment of least clearance, if it is below a limit."""
-    worst, limits = record.worst, record.case.limits
+    worst = record.worst
+    limits = record.rule(worst.rule).limits
     where = f"{worst.link} - {worst.obstacle} at {moment_text(worst)}"
-    if worst.clearance <= 0.0:
+    if worst.touches:
         return f"contact: {where}"
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
         if worst.clearance < limit:

@@ -6,12 +6,13 @@ asked (`question`), nor what it comes to (`result`).
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from clearance.run.question import Question
 from clearance.simulate import inside
 from clearance.simulate.fingerprint import fingerprint
-from clearance.simulate.kinematic import kinematic_motion
+from clearance.simulate.judged import Judged, SectionAnswer, judged
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import (
@@ -23,27 +24,33 @@ from clearance.simulate.record import (
     Samples,
 )
 from clearance.simulate.resources import Resources
+from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
-from clearance.world.case import Omission
-from clearance.world.motion import Motion
-from clearance.world.notice import Notice, worst_first
-from clearance.world.pairs import Pair, measured_pairs
+from clearance.world.clocks import require_clocks
+from clearance.world.motion import Motion, kinematic_motion
+from clearance.world.notice import Notice, Severity, worst_first
 from clearance.world.reach import require_within_reach
+from clearance.world.timeline import Phase, Timeline, timeline_of
+from clearance.world.used_rules import require_rules_used
 
 
 @dataclass(frozen=True, eq=False)
 class MeasurementPlan:
-    """What is measured for a question.
+    """What is measured for a question: when what moves how, and which pairs are measured when.
 
     Attributes:
-        motions: one for each of the case's robots.
-        unmeasured: links and pairs that are left out.
+        own: the motion of each robot at the times of its own table.
     """
 
     question: Question
-    motions: tuple[Motion, ...]
-    pairs: list[Pair]
-    unmeasured: list[Omission]
+    own: tuple[Motion, ...]
+    timeline: Timeline
+    sections: SectionPlan
+
+    @property
+    def motions(self) -> tuple[Motion, ...]:
+        """One for each of the case's robots, with the run's steps."""
+        return self.timeline.motions
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +58,10 @@ class Answers:
     """All that was found.
 
     Attributes:
-        certificate: None where nothing is proven. cross_check: None where no peer was asked.
+        cross_check: None where no peer was asked.
     """
 
-    measurement: Measurement
-    certificate: Certificate | None
+    judged: Judged
     samples: Samples
     contacts: ContactSequence | tuple[()]
     notices: tuple[Notice, ...]
@@ -72,19 +78,25 @@ def answered(question: Question, resources: Resources) -> Record:
     """
     plan = _plan(question)
     if resources.rows.folder is not None:
-        case = question.case
-        resources.rows.ask(fingerprint(case, plan.motions, plan.pairs, question.of_rows))
+        pairs = plan.sections.pairs
+        resources.rows.ask(fingerprint(question.case, plan.own, pairs, question.of_rows))
     return _record(plan, _answers(plan, resources))
 
 
 def _plan(question: Question) -> MeasurementPlan:
-    pairs, unmeasured = measured_pairs(question.case)
-    motions = _motions(question)
-    require_within_reach(question.case, motions)
-    return MeasurementPlan(question, motions, pairs, unmeasured)
+    case = question.case
+    require_clocks(case)
+    own = _motions(question)
+    timeline = timeline_of(case, own)
+    sections = section_plan(timeline)
+    require_rules_used(case, sections.pairs, sections.unmeasured)
+    for phase in timeline.phases:
+        require_within_reach(phase.case, phase.motions)
+    return MeasurementPlan(question, own, timeline, sections)
 
 
 def _motions(question: Question) -> tuple[Motion, ...]:
+    """The motion of each robot at the times of its own table."""
     case = question.case
     if question.motion == "kinematic":
         return tuple(kinematic_motion(placed) for placed in case.robots)
@@ -98,23 +110,30 @@ def _motions(question: Question) -> tuple[Motion, ...]:
 
 def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
     question = plan.question
-    found = _measurement(plan, resources)
-    certificate = _certificate(plan, found, resources) if question.certify else None
-    samples = _samples(plan, found, certificate, resources)
+    found = [_of_section(plan, section, resources) for section in plan.sections.sections]
+    all_judged = judged(plan.sections, found, question.case, plan.motions)
+    samples = _samples(plan, all_judged, resources)
     return Answers(
-        found,
-        certificate,
+        all_judged,
         samples,
         _contacts(plan, found),
-        _notices(plan, certificate),
+        _notices(plan, all_judged.certificate),
         _profiles(samples),
-        _peer(samples, resources) if question.cross_check else None,
+        _peer(samples, found, resources) if question.cross_check else None,
     )
 
 
-def _measurement(plan: MeasurementPlan, resources: Resources) -> Measurement:
-    question = plan.question
-    what = question.case, plan.motions, plan.pairs
+def _of_section(plan: MeasurementPlan, section: Section, resources: Resources) -> SectionAnswer:
+    own = resources.of_section(section.number, len(plan.sections.sections))
+    found = _measurement(plan.question, section, own)
+    certificate = (
+        _certificate(plan.question, section, found, own) if plan.question.certify else None
+    )
+    return SectionAnswer(section, found, certificate)
+
+
+def _measurement(question: Question, section: Section, resources: Resources) -> Measurement:
+    what = section.case, section.motions, section.pairs
     if question.method == "exact":
         return measure(*what, question.need, resources)
     from clearance.query.paper import NO_TOLERANCE
@@ -123,14 +142,15 @@ def _measurement(plan: MeasurementPlan, resources: Resources) -> Measurement:
     return measure_paper(*what, resources.progress, question.paper_tolerance or NO_TOLERANCE)
 
 
-def _certificate(plan: MeasurementPlan, found: Measurement, resources: Resources) -> Certificate:
+def _certificate(
+    question: Question, section: Section, found: Measurement, resources: Resources
+) -> Certificate:
     from clearance.simulate.certify import certify_motion
 
-    question = plan.question
     return certify_motion(
-        question.case,
-        plan.motions,
-        plan.pairs,
+        section.case,
+        section.motions,
+        section.pairs,
         found,
         question.certify_gap,
         question.need,
@@ -138,35 +158,40 @@ def _certificate(plan: MeasurementPlan, found: Measurement, resources: Resources
     )
 
 
-def _samples(
-    plan: MeasurementPlan, found: Measurement, certificate: Certificate | None, resources: Resources
-) -> Samples:
-    case, motions, pairs = plan.question.case, plan.motions, plan.pairs
+def _samples(plan: MeasurementPlan, judged: Judged, resources: Resources) -> Samples:
+    case, motions, pairs = plan.question.case, plan.motions, plan.sections.pairs
     simulated = plan.question.motion == "simulated"
-    batches = step_table(case, motions, pairs, found, certificate=certificate, with_error=simulated)
-    unmeasured = (*plan.unmeasured, *cut_throughout(case, pairs, found))
+    batches = step_table(case, motions, pairs, judged, with_error=simulated)
+    unmeasured = (*plan.sections.unmeasured, *cut_throughout(case, pairs, judged.found))
     return Samples(case, motions, resources.rows.table("steps", batches), unmeasured)
 
 
-def _contacts(plan: MeasurementPlan, found: Measurement) -> ContactSequence | tuple[()]:
+def _contacts(plan: MeasurementPlan, found: Sequence[SectionAnswer]) -> ContactSequence | tuple[()]:
     """What the steps in contact look like from near; loads what that needs only where there is one."""
-    if not any((found.clearance[block] <= 0.0).any() for block in blocks(len(found.clearance))):
+    if not any((one.found.clearance[b] <= 0.0).any() for one in found for b in _blocks(one)):
         return ()
-    from clearance.simulate.contact import find_contacts
+    from clearance.simulate.contact_phases import contacts_of
 
-    question = plan.question
-    return find_contacts(
-        question.case, plan.motions, plan.pairs, found.clearance, found.pair, question.contact
-    )
+    return contacts_of(plan.question.case, found, plan.motions[0].times, plan.question.contact)
+
+
+def _blocks(answer: SectionAnswer) -> Iterator[slice]:
+    return blocks(len(answer.found.clearance))
 
 
 def _notices(plan: MeasurementPlan, certificate: Certificate | None) -> tuple[Notice, ...]:
     """All that a reader of the verdict must know: of the case, and of how it was measured."""
     question = plan.question
-    exact = question.method == "exact"
-    measured = inside.notices(question.case, plan.motions, plan.pairs) if exact else ()
+    measured = inside.notices(plan.sections) if question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
-    return worst_first([*question.case.notices, *measured, *proven])
+    empty = [_nothing_measured(phase) for phase in plan.sections.empty]
+    return worst_first([*question.case.notices, *measured, *proven, *empty])
+
+
+def _nothing_measured(phase: Phase) -> Notice:
+    start, end = phase.span
+    text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
+    return Notice(Severity.WARNING, "pairs", text)
 
 
 def _profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
@@ -177,28 +202,32 @@ def _profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
     return answer_profiles(samples)
 
 
-def _peer(samples: Samples, resources: Resources) -> CrossCheck:
-    from clearance.crosscheck import cross_check
+def _peer(samples: Samples, found: Sequence[SectionAnswer], resources: Resources) -> CrossCheck:
+    from clearance.crosscheck import cross_check, cross_check_sections
 
-    return cross_check(samples, resources.progress)
+    if len(found) == 1 and found[0].section.padding == 0.0:
+        return cross_check(samples, resources.progress)
+    return cross_check_sections(found, resources.progress)
 
 
 def _record(plan: MeasurementPlan, answers: Answers) -> Record:
-    question, samples, found = plan.question, answers.samples, answers.measurement
-    case, motions = question.case, plan.motions
+    question, samples, judged = plan.question, answers.samples, answers.judged
+    case, motions, pairs = question.case, plan.motions, plan.sections.pairs
     return Record(
         case=case,
         motions=motions,
         steps=samples.steps,
         unmeasured=samples.unmeasured,
-        pair_minima=PairMinima(case, motions, plan.pairs, found),
-        tally=found.tally,
+        pair_minima=PairMinima(case, motions, pairs, judged.rules),
+        tally=judged.found.tally,
+        rules=judged.rules,
+        timeline=plan.timeline,
         method=question.method,
         paper_tolerance=question.paper_tolerance,
         motion_kind=question.motion,
         need=question.need,
-        every_pair=every_pair(case, plan.pairs, found),
-        certificate=answers.certificate,
+        every_pair=every_pair(case, pairs, judged.found),
+        certificate=judged.certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes)),
         notices=answers.notices,
         contacts=answers.contacts,

@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
+from clearance.simulate.moment import Moment
+from clearance.simulate.names import SIDES, columns_of, sides_of
 from clearance.simulate.record import Certificate, CrossCheck, Record
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
-from clearance.simulate.steps import status_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -52,13 +53,10 @@ class Run:
         row = self._row(moment.step)
         if moment is self.record.worst_sample:
             return row
-        ends = {"link": moment.point_link, "obstacle": moment.point_obstacle}
-        told = {
-            f"{body}_{axis}": x for body in ends for axis, x in zip("xyz", ends[body], strict=True)
-        }
-        told |= {name: getattr(moment, name) for name in ("time", "clearance", "link", "obstacle")}
-        status = status_of(moment.clearance, self.record.case.limits)
-        return row | told | {"between": True, "status": status}
+        told = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
+        for sides in {SIDES, sides_of(self.record.case)}:
+            told |= _told_of(sides, moment)
+        return row | told | {"between": True, "status": self.record.status_of(moment)}
 
     @property
     def worst_sample(self) -> dict:
@@ -69,7 +67,8 @@ class Run:
         row = self.record.steps.slice(step, 1).to_pylist()[0]
         if row.get("between"):
             known = row["clearance"]
-            status = None if known is None else status_of(known, self.record.case.limits)
+            moment = None if known is None else self.record.rule(row["rule"]).moment_at(step)
+            status = None if moment is None else self.record.status_of(moment)
             row |= {"between": False, "status": status}
         return row
 
@@ -139,3 +138,9 @@ class Run:
             raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")
         write(self.record, folder, self.rows)
         return Path(folder)
+
+
+def _told_of(sides: tuple[str, str], moment: Moment) -> dict[str, Any]:
+    """Names and witness points of a moment, as the columns of a table have them."""
+    values = (moment.link, moment.obstacle, *moment.point_link, *moment.point_obstacle)
+    return dict(zip(columns_of(sides), values, strict=True))

@@ -20,8 +20,8 @@ from clearance.kernels.motion.certify import (
     IntervalBounds,
     certify,
 )
-from clearance.kernels.motion.joint_path import JointPath
-from clearance.kernels.motion.kinematics import Links
+from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
+from clearance.kernels.motion.kinematics import BALL, Links
 from clearance.kernels.motion.world import World
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
@@ -32,11 +32,13 @@ from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP
 from clearance.world.case import Case, Limits
+from clearance.world.forest import joined_positions
 from clearance.world.kinematics import rates_by_link, values_by_link
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import Pair
 from clearance.world.reach import farthest_reach
+from clearance.world.slerp import arcs_between
 
 BEYOND = 1.001
 """Gaps beyond the warn limit that are asked about where more is not known: a proof within the gap decides it."""
@@ -175,6 +177,7 @@ class _Work:
 
     surface: Surface
     world: World
+    case: Case
     motions: Sequence[Motion]
     question: _Question
 
@@ -183,7 +186,8 @@ class _Work:
         case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], question: _Question
     ) -> _Work:
         layout = lay_out(case, pairs)
-        return _Work(_with_whole_faces(layout.surface), layout.world, motions, question)
+        whole = _with_whole_faces(layout.surface)
+        return _Work(whole, layout.world, case, motions, question)
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
@@ -192,7 +196,8 @@ class _Work:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
             own = IntervalBounds(*(column[span] for column in bounds))
-            motion = CertifiedMotion(self.world, _joint_path(self.world.links, self.motions, ends))
+            path = _path_of(self.world.links, self.case, self.motions, ends)
+            motion = CertifiedMotion(self.world, path)
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
             call(certify, self.surface, motion, steps, self.question.aim, own, counts)
@@ -217,21 +222,44 @@ def _with_whole_faces(surface: Surface) -> Surface:
     )
 
 
-def _joint_path(links: Links, motions: Sequence[Motion], steps: slice) -> JointPath:
+def _path_of(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:
     """The motion of the joints above all links at `steps`."""
-    positions = np.concatenate([motion.positions[steps] for motion in motions], axis=1)
-    cubic = np.concatenate(
-        [np.full(motion.positions.shape[1], motion.velocities is not None) for motion in motions]
-    )
-    velocities = np.empty((0, len(links.parents)))
+    positions = joined_positions(case, motions, steps)
+    cubic = np.zeros(positions.shape[1], dtype=bool)
+    own = np.concatenate([np.full(m.positions.shape[1], m.velocities is not None) for m in motions])
+    cubic[: len(own)] = own  # what obstacles move by is at constant speed
+    rates = np.zeros_like(positions)
     if cubic.any():
-        velocities = rates_by_link(links, np.concatenate([_rates(m, steps) for m in motions], 1))
+        rates[:, : len(own)] = np.concatenate([_rates(m, steps) for m in motions], 1)
+    return joint_path(links, motions[0].times[steps], positions, rates, cubic)
+
+
+def joint_path(
+    links: Links, times: np.ndarray, positions: np.ndarray, rates: np.ndarray, cubic: np.ndarray
+) -> JointPath:
+    """The motion of the joints above all links.
+
+    Args:
+        times: (n,) [s]. positions, rates: (n, columns). cubic: (columns,) True where the rates are followed.
+    """
+    velocities = rates_by_link(links, rates) if cubic.any() else np.empty((0, len(links.parents)))
     return JointPath(
-        _writable(motions[0].times[steps]),
+        _writable(times),
         _writable(values_by_link(links, positions)),
         _writable(velocities),
         np.append(cubic, False)[links.columns],  # the last stands for no column
+        _ball_path(links, positions),
     )
+
+
+def _ball_path(links: Links, positions: np.ndarray) -> BallPath:
+    """The motion of the ball joints among all links, of positions (n, columns)."""
+    balls = np.flatnonzero(links.kinds == BALL)
+    if len(balls) == 0:
+        return NO_BALLS
+    turned = positions[:, links.columns[balls, None] + np.arange(4)]
+    arcs = np.concatenate([turned[:-1], arcs_between(turned[:-1], turned[1:])], axis=2)
+    return BallPath(balls, links.parent_from_joint[balls], _writable(arcs))
 
 
 def _rates(motion: Motion, steps: slice) -> np.ndarray:

@@ -19,10 +19,11 @@ from clearance.kernels.motion.sweep_rows import PairRows, StepRows
 from clearance.simulate.inside import doubts_of, is_in_doubt
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import SWEEP_COUNTERS
-from clearance.simulate.steps import pair_names
+from clearance.simulate.names import pair_names
 from clearance.tolerance import REACH
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.kinematics import link_poses, moving_positions
+from clearance.world.forest import forest_of
+from clearance.world.kinematics import moving_positions
 from clearance.world.motion import Motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.plausibility import notices_of
@@ -79,7 +80,8 @@ class Checker:
     Threads may share a checker, but its questions are answered one at a time; give each thread its own.
 
     Args:
-        case: its trajectories say only which joints a configuration gives, and in which order.
+        case: its trajectories say only which joints a configuration gives, and in which order. Obstacles that move
+            are where their tables begin, parts that are carried where they lie, and windows of time say nothing.
 
     Attributes:
         joint_names: the joints that a configuration gives, robot by robot: those of the trajectory in its order;
@@ -104,7 +106,7 @@ class Checker:
         self.pairs = list(zip(*pair_names(case, pairs), strict=True))
         self._names = [placed.joints_given for placed in case.robots]
         self.joint_names = tuple(name for names in self._names for name in names)
-        self._placing = _placing(case.robots, self._names)
+        self._placing = _placing(case, self._names)
         self._layout = lay_out(case, pairs)
         no_rows = PairRows(
             np.empty((0, len(pairs))), np.empty(0), np.empty(0, np.int64), np.empty((0, 2, 3))
@@ -156,9 +158,7 @@ class Checker:
         """Of each pair that can be in doubt, whether it is at each of n positions of all moving joints."""
         if not self._doubts:
             return
-        counts = [len(placed.robot.moving_joints) for placed in self.case.robots]
-        columns = np.split(positions, np.cumsum(counts)[:-1], axis=1)
-        poses = [link_poses(*each) for each in zip(self.case.robots, columns, strict=True)]
+        poses = forest_of(self.case).poses(positions)
         for pair, i_pair, doubt in self._doubts:
             yield i_pair, is_in_doubt(self.case, pair, doubt, poses)
 
@@ -209,17 +209,16 @@ class Checker:
         return positions
 
 
-def _placing(
-    robots: Sequence[PlacedRobot], names: Sequence[tuple[str, ...]]
-) -> tuple[np.ndarray, list[int]]:
-    """(columns,) where the joints of all robots are that no configuration gives, and the columns that one does."""
+def _placing(case: Case, names: Sequence[tuple[str, ...]]) -> tuple[np.ndarray, list[int]]:
+    """(columns,) where all is that no configuration gives, and the columns that one does."""
     fixed, columns, n_before = [], [], 0
-    for placed, given in zip(robots, names, strict=True):
+    for placed, given in zip(case.robots, names, strict=True):
         row = moving_positions(placed, given, np.zeros((1, len(given))))[0]
         place = {joint.name: i for i, joint in enumerate(placed.robot.moving_joints)}
         columns += [n_before + place[name] for name in given]
         fixed.append(row)
         n_before += len(row)
+    fixed += [o.moves.columns[0] for o in case.obstacles if o.moves is not None]
     return np.concatenate(fixed), columns
 
 

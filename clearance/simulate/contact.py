@@ -30,10 +30,10 @@ from clearance.simulate.contact_events import (
 )
 from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.measure import pairs_in_contact
+from clearance.simulate.names import pair_names
 from clearance.simulate.parts import blocks
-from clearance.simulate.steps import pair_names
 from clearance.world.case import Case
-from clearance.world.kinematics import link_poses
+from clearance.world.forest import link_poses_at
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -205,13 +205,13 @@ class _OverlapFinder:
 
     def _world_from_b(self, i_pair: int, step: int) -> np.ndarray:
         b = self.pairs[i_pair].b
-        poses = [link_poses(motion.placed, motion.positions[step][None]) for motion in self.motions]
+        poses = link_poses_at(self.case, self.motions, slice(step, step + 1))
         return b.poses_in(self.case, poses)[0]
 
     def _poses(self, i_pair: int, steps: np.ndarray) -> np.ndarray:
         """(k, 4, 4) the first body of a pair as the second sees it."""
         pair = self.pairs[i_pair]
-        poses = [link_poses(motion.placed, motion.positions[steps]) for motion in self.motions]
+        poses = link_poses_at(self.case, self.motions, steps)
         return inverse(pair.b.poses_in(self.case, poses)) @ pair.a.poses_in(self.case, poses)
 
     def _shapes(self, i_pair: int) -> tuple[Polyhedron, Polyhedron]:

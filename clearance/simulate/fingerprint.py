@@ -17,6 +17,7 @@ from clearance.import_closure import PACKAGE, digest_of, import_closure
 from clearance.world.case import Case
 from clearance.world.kinematics import kinematic_tree_arrays
 from clearance.world.motion import Motion
+from clearance.world.mount import Mount
 from clearance.world.pairs import Pair
 
 _ENTRY = PACKAGE / "run" / "__init__.py"
@@ -34,7 +35,7 @@ def fingerprint(
     """
     digest = hashlib.sha256()
     digest.update(_program().encode())
-    told = (case.limits, tuple(pairs), options)
+    told = (case.limits, case.allow, case.carries, case.clock, tuple(pairs), options)
     digest.update(repr(told).encode())
     for motion in motions:
         robot = motion.placed.robot
@@ -49,17 +50,30 @@ def fingerprint(
         ]
         _add(digest, *arrays, motion.tracking_error)
         _add(digest, np.empty(0) if motion.velocities is None else motion.velocities)
-        digest.update(repr((robot.link_names, robot.joints)).encode())
+        digest.update(repr((robot.link_names, robot.joints, motion.placed.timing)).encode())
+        digest.update(repr(sorted(motion.placed.padding.items())).encode())
+        _add_mount(digest, motion.placed.mount)
     for obstacle in case.obstacles:
         digest.update(obstacle.name.encode())
         _add_shape(digest, obstacle.body.shape)
         _add(digest, obstacle.world_from_body)
+        _add_mount(digest, obstacle.mount)
+        digest.update(repr(obstacle.padding).encode())
+        if obstacle.moves is not None:
+            _add(digest, obstacle.moves.times, obstacle.moves.columns)
+            digest.update(repr(obstacle.moves.timing).encode())
     return digest.hexdigest()
 
 
 def sources() -> list[Path]:
     """The files of this package that decide a run's rows."""
     return import_closure([_ENTRY], leave_out=_BEFORE_AND_AFTER)
+
+
+def _add_mount(digest: hashlib._Hash, mount: Mount | None) -> None:
+    if mount is not None:
+        digest.update(mount.on.encode())
+        _add(digest, mount.pose)
 
 
 def _add_shape(digest: hashlib._Hash, shape: Polyhedron) -> None:

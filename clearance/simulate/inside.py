@@ -13,9 +13,10 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
 from clearance.query.inside import Doubt, doubt_of
-from clearance.simulate.steps import pair_names
+from clearance.simulate.names import pair_names
+from clearance.simulate.sections import Section, SectionPlan
 from clearance.world.case import Case
-from clearance.world.motion import Motion
+from clearance.world.forest import link_poses_at
 from clearance.world.notice import Notice, Severity
 from clearance.world.pairs import Pair
 
@@ -25,26 +26,30 @@ AT_ONCE = 1024
 FEWER = "close the mesh, or accept: [inside] in the case if it is hollow"
 
 
-def notices(case: Case, motions: Sequence[Motion], pairs: Sequence[Pair]) -> tuple[Notice, ...]:
+def notices(plan: SectionPlan) -> tuple[Notice, ...]:
     """One notice for each pair of which it is open at some step whether one body is inside the other."""
+    found: dict[int, Notice] = {}
+    for section in plan.sections:
+        for place, notice in _of_section(section):
+            found.setdefault(place, notice)
+    return tuple(notice for _, notice in sorted(found.items()))
+
+
+def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
+    """The same of a section, each with the place of the pair in the run."""
+    case, motions, pairs = section.case, section.motions, section.pairs
     names = pair_names(case, pairs)
     waiting = doubts_of(case, pairs)
-    found: dict[int, int] = {}
-    for start in range(0, motions[0].n_steps if waiting else 0, AT_ONCE):
-        poses = [m.poses(start, min(start + AT_ONCE, m.n_steps)) for m in motions]
+    for start in range(0, section.phase.n_steps if waiting else 0, AT_ONCE):
+        poses = link_poses_at(case, motions, slice(start, start + AT_ONCE))
         for i, doubt in list(waiting.items()):
             step = _first_in_doubt(case, pairs[i], doubt, poses)
             if step is not None:
-                found[i] = start + step
+                step += start
+                when = float(section.phase.times[step])
+                text = _text(names[0][i], names[1][i], step + section.phase.first, when)
+                yield int(section.places[i]), Notice(Severity.SUSPECT, "inside", text)
                 del waiting[i]
-    return tuple(
-        Notice(
-            Severity.SUSPECT,
-            "inside",
-            _text(names[0][i], names[1][i], step, motions[0].times[step]),
-        )
-        for i, step in sorted(found.items())
-    )
 
 
 def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
@@ -53,9 +58,9 @@ def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
     return {i: doubt for i, doubt in doubts.items() if doubt is not None}
 
 
-def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: Sequence[np.ndarray]) -> np.ndarray:
-    """(n,) whether a pair is in doubt and not in contact, at `poses` of the robots, (n, n_links, 4, 4) each."""
-    found = np.zeros(len(poses[0]), dtype=bool)
+def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> np.ndarray:
+    """(n,) whether a pair is in doubt and not in contact, at `poses` (n, links, 4, 4) of all links."""
+    found = np.zeros(len(poses), dtype=bool)
     for k in _in_doubt(case, pair, doubt, poses):
         found[k] = True
     return found
@@ -73,15 +78,13 @@ def _shapes(case: Case, pair: Pair) -> tuple[Polyhedron, Polyhedron]:
     return pair.a.shape_in(case), pair.b.shape_in(case)
 
 
-def _first_in_doubt(
-    case: Case, pair: Pair, doubt: Doubt, poses: Sequence[np.ndarray]
-) -> int | None:
+def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> int | None:
     """The first of the steps, of which `poses` are given, at which a pair is in doubt and not in contact."""
     return next(_in_doubt(case, pair, doubt, poses, along_a_way=True), None)
 
 
 def _in_doubt(
-    case: Case, pair: Pair, doubt: Doubt, poses: Sequence[np.ndarray], along_a_way: bool = False
+    case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray, along_a_way: bool = False
 ) -> Iterator[int]:
     one, other = _shapes(case, pair)
     of_one, of_other = pair.a.poses_in(case, poses), pair.b.poses_in(case, poses)

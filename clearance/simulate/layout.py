@@ -5,7 +5,6 @@ Not for: the measuring (`measure`) and the motion itself (`kinematic`, `bullet`)
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -13,10 +12,10 @@ import numpy as np
 
 from clearance.geometry.tree import join
 from clearance.kernels.mesh.surface import Surface
-from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.world import World
 from clearance.world.case import Case
-from clearance.world.kinematics import joined_links, poses_by_link, seen_from
+from clearance.world.forest import WORLD, carried_by, forest_of, joined_positions
+from clearance.world.kinematics import poses_by_link, seen_from
 from clearance.world.motion import Motion
 from clearance.world.pairs import BodyIndex, Pair
 
@@ -32,19 +31,22 @@ class Layout:
         surface: their trees and faces.
         world: what carries each body, and which to measure against each other.
         references: (p,) the link in whose frame each pair is measured, or `IN_WORLD`.
+        swapped: (p,) True where the second body of a pair is the first in `world.pairs`, since only that one
+            moves.
     """
 
     surface: Surface
     world: World
     references: np.ndarray
+    swapped: np.ndarray
 
     @property
     def is_in_world(self) -> bool:
-        """True if all pairs are measured in the world."""
-        return bool((self.references == IN_WORLD).all())
+        """True if all pairs are measured in the world, their bodies in order."""
+        return bool((self.references == IN_WORLD).all() and not self.swapped.any())
 
     def to_world(self, positions: np.ndarray, pairs: np.ndarray, points: np.ndarray) -> None:
-        """Takes witness points to the world, in place.
+        """Takes witness points to the world, and to the order of the pair's bodies, in place.
 
         Args:
             positions: (k, columns) of the joints [rad or m]. pairs: (k,) of which the points are, or -1.
@@ -56,6 +58,8 @@ class Layout:
             seen_from = poses[np.arange(len(rows)), self.references[pairs[rows]]]
             turned = np.einsum("kij,knj->kni", seen_from[:, :3, :3], points[rows])
             points[rows] = turned + seen_from[:, None, :3, 3]
+        swapped = np.flatnonzero((pairs >= 0) & self.swapped[pairs])
+        points[swapped] = points[swapped][:, ::-1]
 
 
 @dataclass(frozen=True, order=True)
@@ -68,16 +72,12 @@ class _Place:
 
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     """The layout of the bodies in `pairs`."""
-    links = joined_links(case.robots)
-    first_links = _first_links(case)
-    references = [_reference_of(case, pair, links, first_links) for pair in pairs]
+    links = forest_of(case).links
+    frames = {body: body.frame_in(case) for pair in pairs for body in (pair.a, pair.b)}
+    references = [_reference_of(case, frames[pair.a], frames[pair.b]) for pair in pairs]
     places = _places(pairs, references)
     solids = sorted({place.body for place in places}, key=_links_first)
-    link_of = {
-        place: first_links[place.body.i_robot] + place.body.link_in(case)
-        for place in places
-        if not place.body.is_obstacle
-    }
+    link_of = {place: frames[place.body] for place in places if frames[place.body] != WORLD}
     wanted = {(p.reference, link_of[p]) for p in places if p.reference != IN_WORLD}
     links, seen = seen_from(links, sorted(wanted))
     measured = np.array(
@@ -87,25 +87,27 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
         ],
         dtype=np.int64,
     )
-    frames = [_frame_of(place, link_of, seen) for place in places]
+    carriers = [_frame_of(place, link_of, seen) for place in places]
+    stands = np.array(carriers, dtype=np.int64) == -1
+    swapped = stands[measured[:, 0]] & ~stands[measured[:, 1]]
+    measured[swapped] = measured[swapped][:, ::-1]
     world = World(
         solids=np.array([solids.index(place.body) for place in places], dtype=np.int64),
-        frames=np.array(frames, dtype=np.int64),
-        groups=_groups(measured, np.array(frames)),
+        frames=np.array(carriers, dtype=np.int64),
+        groups=_groups(measured, np.array(carriers)),
         standing=_standing(case, places),
         pairs=measured,
         links=links,
     )
     shapes = [body.shape_in(case) for body in solids]
-    return Layout(join(shapes), world, np.array(references, dtype=np.int64))
+    return Layout(join(shapes), world, np.array(references, dtype=np.int64), swapped)
 
 
-def positions_at(motions: Sequence[Motion], steps: np.ndarray | range) -> np.ndarray:
-    """(k, columns) [rad or m] the positions of the moving joints of all robots, robot by robot; a copy."""
-    these = slice(steps.start, steps.stop) if isinstance(steps, range) else steps
-    if len(motions) == 1:
-        return np.array(motions[0].positions[these], dtype=np.float64, order="C")
-    return np.concatenate([motion.positions[these] for motion in motions], axis=1)
+def positions_at(case: Case, motions: Sequence[Motion], steps: np.ndarray | range) -> np.ndarray:
+    """(k, columns) [rad or m] the positions of all that moves, as `world.forest` has its columns; a copy."""
+    return joined_positions(
+        case, motions, slice(steps.start, steps.stop) if isinstance(steps, range) else steps
+    )
 
 
 def _links_first(body: BodyIndex) -> tuple[bool, BodyIndex]:
@@ -122,29 +124,18 @@ def _places(pairs: Sequence[Pair], references: Sequence[int]) -> list[_Place]:
     return sorted(found, key=lambda place: (place.reference, _links_first(place.body)))
 
 
-def _first_links(case: Case) -> list[int]:
-    """The first link of each robot, counted over all robots."""
-    counts = (len(placed.robot.link_names) for placed in case.robots)
-    return list(itertools.accumulate(counts, initial=0))
-
-
-def _reference_of(case: Case, pair: Pair, links: Links, first_links: Sequence[int]) -> int:
-    """The nearest link above both of one robot; else the world."""
-    if pair.b.is_obstacle or pair.a.i_robot != pair.b.i_robot:
+def _reference_of(case: Case, one: int, other: int) -> int:
+    """The nearest link above both of two links; the world where there is none, or one stands there."""
+    if WORLD in (one, other):
         return IN_WORLD
-    first = first_links[pair.a.i_robot]
-    one, other = first + pair.a.link_in(case), first + pair.b.link_in(case)
-    while one != other:  # parents come before children
-        if one > other:
-            one = int(links.parents[one])
-        else:
-            other = int(links.parents[other])
-    return one
+    forest = forest_of(case)
+    above = set(carried_by(forest, other))
+    return next((link for link in carried_by(forest, one) if link in above), IN_WORLD)
 
 
 def _frame_of(place: _Place, link_of: dict[_Place, int], seen: dict[tuple[int, int], int]) -> int:
     """The link that carries a body, or -1 for one that stands where it is seen."""
-    if place.body.is_obstacle:
+    if place not in link_of:
         return -1
     if place.reference == IN_WORLD:
         return link_of[place]
@@ -164,6 +155,6 @@ def _standing(case: Case, places: Sequence[_Place]) -> np.ndarray:
     standing = np.empty((len(places), 4, 4))
     standing[:] = np.eye(4)
     for place, seen in enumerate(places):
-        if seen.body.is_obstacle:
+        if seen.body.is_obstacle and seen.reference == IN_WORLD:
             standing[place] = case.obstacles[seen.body.i_body].world_from_body
     return standing

@@ -70,6 +70,9 @@ class Measurement:
             least so many; not measured until it is called. None if it was not asked for.
         every: (n, p) [m] the clearance of each pair at each step, if that was asked for.
         may_cut_pairs: True if a pair can be left out by rules without proof (the paper's).
+        touching: (n,) where the nearest bodies touch, if padding has lessened clearances; None without padding.
+        times_b: (n,) [s] when the second body of the nearest pair is where it was met, if that is not the time of
+            the step since their clocks are not tied; NaN where it is. None if all are tied.
     """
 
     clearance: np.ndarray
@@ -80,12 +83,19 @@ class Measurement:
     measure_pair_minima: Callable[[int | None], Minima] | None
     every: np.ndarray | None = None
     may_cut_pairs: bool = False
+    touching: np.ndarray | None = None
+    times_b: np.ndarray | None = None
+
+    def touches(self, steps: slice) -> np.ndarray:
+        """(k,) where the nearest bodies touch at some steps."""
+        return self.clearance[steps] <= 0.0 if self.touching is None else self.touching[steps]
 
 
 @dataclass(frozen=True, eq=False)
 class _Sweep:
     """What all parts of one measurement share."""
 
+    case: Case
     layout: Layout
     motions: Sequence[Motion]
     resources: Resources
@@ -139,7 +149,7 @@ class _Sweep:
 
     def sweep_steps(self, steps: Steps, goal: Goal, rows: StepRows, found: PairRows) -> np.ndarray:
         """Fills the rows of a few steps in one go; the counters, as in `SWEEP_COUNTERS`."""
-        positions = positions_at(self.motions, steps)
+        positions = positions_at(self.case, self.motions, steps)
         numbers = np.arange(steps.start, steps.stop) if isinstance(steps, range) else steps
         counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         least_only = goal.lasting and not goal.each and goal.within[0] == np.inf
@@ -157,7 +167,7 @@ class _Sweep:
         if not self.layout.is_in_world:
             self.layout.to_world(positions, rows.pair, rows.points)
             met = np.where(found.step >= 0, np.arange(len(found.step)), -1)
-            where = positions_at(self.motions, np.maximum(found.step, 0))
+            where = positions_at(self.case, self.motions, np.maximum(found.step, 0))
             self.layout.to_world(where, met, found.points)
         return counts
 
@@ -236,7 +246,7 @@ def measure(
         need: one of `NEEDS`.
         resources: threads, progress, and where the rows are kept.
     """
-    work = _Sweep(lay_out(case, pairs), motions, resources)
+    work = _Sweep(case, lay_out(case, pairs), motions, resources)
     if need == "pairs":
         return _every_pair(work)
     if need == "minimum":
@@ -251,7 +261,7 @@ def pairs_in_contact(
     case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], steps: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
-    work = _Sweep(lay_out(case, pairs), motions, Resources(jobs=1))
+    work = _Sweep(case, lay_out(case, pairs), motions, Resources(jobs=1))
     goal = Goal(np.zeros(work.n_pairs), True, False)
     found = []
     for span in parts(len(steps), sparse=True):

@@ -16,6 +16,7 @@ from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
 from clearance.simulate.measure import Measurement, Minima
 from clearance.world.case import Case
+from clearance.world.forest import link_poses_at
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
@@ -49,9 +50,9 @@ def measure_paper(
     tally: Counter[str] = Counter()
     for step in range(n_steps):
         if step % CHUNK == 0:
-            poses = [motion.poses(step, min(step + CHUNK, n_steps)) for motion in motions]
+            poses = link_poses_at(case, motions, slice(step, min(step + CHUNK, n_steps)))
         for i_pair, pair in enumerate(pairs):
-            near = _measured(case, pair, [each[step % CHUNK][None] for each in poses], tolerance)
+            near = _measured(case, pair, poses[step % CHUNK][None], tolerance)
             tally.update(near.tally)
             witnesses = (near.point_a, near.point_b)
             if near.distance < clearance[step]:
@@ -83,8 +84,8 @@ def _require_measured(clearance: np.ndarray, step: int, tolerance: float) -> Non
         )
 
 
-def _measured(case: Case, pair: Pair, poses: Sequence[np.ndarray], tolerance: float) -> Nearest:
-    """The paper's distance of a pair, of the poses (1, n_links, 4, 4) of each robot."""
+def _measured(case: Case, pair: Pair, poses: np.ndarray, tolerance: float) -> Nearest:
+    """The paper's distance of a pair, of the poses (1, links, 4, 4) of all links."""
     return distance_paper(
         pair.a.shape_in(case),
         pair.b.shape_in(case),

@@ -13,9 +13,10 @@ import numpy as np
 from clearance.query.distance import distance
 from clearance.simulate.names import pair_names
 from clearance.world.case import Case
-from clearance.world.kinematics import link_poses
+from clearance.world.forest import forest_of, positions_between
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
+from clearance.world.rules import DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +29,9 @@ class Moment:
         clearance: [m] of this pair, the nearest there.
         point_link, point_obstacle: witness points in the world frame [m].
         positions: of each robot's moving joints [rad] or [m], columns as `Motion.positions`.
+        share: how much of the interval from the step to the next has passed, 0 to 1.
+        rule: what judges the pair. touches: whether the bodies themselves touch, not only their paddings.
+        time_b: [s] when the second body is there, if its clock is not tied to that of the first; else None.
     """
 
     step: int
@@ -39,6 +43,10 @@ class Moment:
     point_link: tuple[float, float, float]
     point_obstacle: tuple[float, float, float]
     positions: tuple[np.ndarray, ...]
+    share: float = 0.0
+    rule: str = DEFAULT
+    touches: bool = False
+    time_b: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,10 +65,8 @@ class Moments:
         """
         pair = self.pairs[i_pair]
         positions = tuple(motion.positions_after(step, share) for motion in self.motions)
-        poses = [
-            link_poses(placed, at[None])
-            for placed, at in zip(self.case.robots, positions, strict=True)
-        ]
+        columns = positions_between(self.case, self.motions, step, share)
+        poses = forest_of(self.case).poses(columns[None])
         a, b = pair.a, pair.b
         found = distance(
             a.shape_in(self.case),
@@ -81,4 +87,6 @@ class Moments:
             point_link=point if touches else tuple(found.point_a.tolist()),
             point_obstacle=point,
             positions=positions,
+            share=share % 1.0,
+            touches=touches or found.distance <= 0.0,
         )

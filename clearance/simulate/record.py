@@ -12,13 +12,18 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.moment import Moment
+from clearance.simulate.names import columns_of, sides_in
 from clearance.simulate.parts import BLOCK
-from clearance.world.case import Case, Omission
+from clearance.simulate.status import STATUSES, Status, status_of
+from clearance.world.case import Case, Limits, Omission
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice
+from clearance.world.rules import DEFAULT
+from clearance.world.timeline import Timeline
 
 if TYPE_CHECKING:
     from clearance.query.contact import Contact
+    from clearance.simulate.measure import Measurement
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,7 @@ class PairMinimum:
     time: float  # [s]
     point_link: tuple[float, float, float]  # world frame [m]
     point_obstacle: tuple[float, float, float]
+    rule: str = DEFAULT
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,6 +146,7 @@ class Certificate:
         tally: counters by name.
         moment_of: measures the pair of an interval at that moment.
         notices: what a reader must know of it.
+        touching: (n,) where bodies touch, if padding has lessened the bounds; None without padding.
     """
 
     lower_bound: np.ndarray
@@ -150,6 +157,11 @@ class Certificate:
     tally: dict[str, int]
     moment_of: Callable[[int], Moment]
     notices: tuple[Notice, ...] = ()
+    touching: np.ndarray | None = None
+
+    def touches(self, steps: slice) -> np.ndarray:
+        """(k,) where bodies are seen to touch, at some steps or on the way to the next."""
+        return self.upper_bound[steps] <= 0.0 if self.touching is None else self.touching[steps]
 
     @property
     def worst_interval(self) -> int:
@@ -166,6 +178,77 @@ class Certificate:
     def worst(self) -> Moment | None:
         """The moment of that distance."""
         return None if self.nearest_between is None else self.moment_of(self.nearest_between)
+
+
+def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.ndarray:
+    """(k,) what is proven of the motion from each of `steps` to the next, as indices into `STATUSES`.
+
+    Below a limit is what is not proven to stay above it; where only distances below the limit were asked about,
+    what is really seen below it. Contact is what is seen.
+    """
+    lower, upper = certificate.lower_bound[steps], certificate.upper_bound[steps]
+    seen = certificate.pair[steps] >= 0
+    below = [(lower < limit) & (seen | (upper >= limit)) for limit in (limits.fail, limits.warn)]
+    below[0] |= upper <= 0.0
+    return np.select([certificate.touches(steps), *below], [3, 2, 1], default=0)
+
+
+@dataclass(frozen=True, eq=False)
+class RuleAnswer:
+    """How the pairs that one rule judges stand against it.
+
+    Attributes:
+        name: of the rule, "default" for the limits that hold where no rule does.
+        measurement: of all steps; pairs are those of the run. certificate: None where nothing is proven.
+        moment_at: the moment of a step whose clearance is known.
+    """
+
+    name: str
+    limits: Limits
+    measurement: Measurement
+    certificate: Certificate | None
+    moment_at: Callable[[int], Moment]
+
+    @cached_property
+    def worst_sample(self) -> Moment | None:
+        """The first step of least clearance; None where none is known."""
+        clearance = self.measurement.clearance
+        if np.isnan(clearance).all():
+            return None
+        touching = self.measurement.touches(slice(None))
+        if self.measurement.touching is not None and touching.any():
+            return self.moment_at(int(np.argmax(touching)))
+        return self.moment_at(int(np.nanargmin(clearance)))
+
+    @cached_property
+    def worst(self) -> Moment | None:
+        """The moment of least clearance, between two steps if a certificate has found a lesser one there."""
+        return _lesser(
+            self.worst_sample, None if self.certificate is None else self.certificate.worst
+        )
+
+    @cached_property
+    def status(self) -> str:
+        """How its worst moment stands: "clear", "near", "violated" or "contact"."""
+        return (
+            "clear"
+            if self.worst is None
+            else status_of(self.worst.clearance, self.limits, self.worst.touches)
+        )
+
+    def standing_of(self, moment: Moment) -> tuple[int, float]:
+        """What moments are ordered by, the worst first: status, then how far it is above the fail limit [m]."""
+        status = status_of(moment.clearance, self.limits, moment.touches)
+        return -STATUSES.index(Status(status)), moment.clearance - self.limits.fail
+
+
+def _lesser(known: Moment | None, between: Moment | None) -> Moment | None:
+    """The one of less clearance; contact of the bodies themselves is least."""
+    if known is None or between is None:
+        return between if known is None else known
+    if known.touches:
+        return known
+    return between if between.touches or between.clearance < known.clearance else known
 
 
 @dataclass(frozen=True, eq=False)
@@ -260,6 +343,11 @@ class Samples:
     steps: pa.Table
     unmeasured: tuple[Omission, ...]
 
+    @cached_property
+    def sides(self) -> tuple[str, ...]:
+        """The columns of `steps` that hold the names of the two bodies, then their points, x to z."""
+        return columns_of(sides_in(self.steps.column_names))
+
     @property
     def clearances(self) -> np.ndarray:
         """(n,) [m], NaN where only a bound was asked for."""
@@ -286,12 +374,16 @@ class Record(Samples):
         contacts: every pair in contact at every step, steps first; what the run works out of them is worked out
             when it is first looked at.
         notices: what a reader of the verdict must know: of the case, and found while measuring.
+        rules: what each rule comes to; one, "default", where the case has no rules.
+        timeline: when what moves how.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic" or "simulated".
     """
 
     pair_minima: Sequence[PairMinimum]
     tally: dict[str, int]
+    rules: tuple[RuleAnswer, ...]
+    timeline: Timeline
     method: str = "exact"
     paper_tolerance: float | None = None
     motion_kind: str = "kinematic"
@@ -334,32 +426,38 @@ class Record(Samples):
 
     @property
     def worst_step(self) -> int:
-        """The first step of least clearance."""
-        return int(np.nanargmin(self.clearances))
+        """The first step that stands worst against what judges it."""
+        return self.worst_sample.step
 
     @cached_property
     def worst_sample(self) -> Moment:
-        """The first step of least clearance."""
-        step = self.worst_step
-        row = self.steps.slice(step, 1).to_pylist()[0]
-        point_link, point_obstacle = (
-            tuple(row[f"{body}_{axis}"] for axis in "xyz") for body in ("link", "obstacle")
-        )
-        return Moment(
-            step=step,
-            time=row["time"],
-            between=False,
-            clearance=row["clearance"],
-            link=row["link"],
-            obstacle=row["obstacle"],
-            point_link=point_link,
-            point_obstacle=point_obstacle,
-            positions=tuple(motion.positions[step] for motion in self.motions),
-        )
+        """The step that stands worst against what judges it; without rules, the first of least clearance."""
+        return self._worst({rule: rule.worst_sample for rule in self.rules})
 
     @cached_property
     def worst(self) -> Moment:
-        """The moment of least clearance, between two steps if a certificate has found a lesser one there."""
-        known = self.worst_sample
-        between = None if self.certificate is None else self.certificate.worst
-        return between if between is not None and between.clearance < known.clearance else known
+        """The same of the whole motion, between two steps if a certificate has found a lesser moment there."""
+        return self._worst({rule: rule.worst for rule in self.rules})
+
+    @staticmethod
+    def _worst(moments: dict[RuleAnswer, Moment | None]) -> Moment:
+        standing = [
+            (rule.standing_of(moment), i, moment)
+            for i, (rule, moment) in enumerate(moments.items())
+            if moment is not None
+        ]
+        return min(standing, key=lambda row: row[:2])[2]
+
+    @cached_property
+    def nearest(self) -> Moment:
+        """The moment of least clearance of all pairs, whatever judges it."""
+        known = [rule.worst for rule in self.rules if rule.worst is not None]
+        return min(known, key=lambda moment: (not moment.touches, moment.clearance))
+
+    def rule(self, name: str) -> RuleAnswer:
+        """What a rule that judges something comes to."""
+        return next(rule for rule in self.rules if rule.name == name)
+
+    def status_of(self, moment: Moment) -> str:
+        """How a moment stands against what judges it."""
+        return status_of(moment.clearance, self.rule(moment.rule).limits, moment.touches)

@@ -16,7 +16,8 @@ from clearance.simulate.moment import Moment
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
 from clearance.simulate.resumable_rows import MeasuredRows
-from clearance.simulate.steps import STATUSES, between_of, status_codes
+from clearance.simulate.status import STATUSES, status_codes
+from clearance.simulate.steps import between_of
 from clearance.world.motion import Motion
 
 MOST_MOMENTS = 500

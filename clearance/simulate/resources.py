@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from clearance.errors import BadInput
 from clearance.progress import Progress
@@ -31,6 +31,12 @@ class Resources:
     def __post_init__(self) -> None:
         if self.jobs is not None and (not isinstance(self.jobs, int) or self.jobs < 1):
             raise BadInput(f"{self.jobs} jobs", valid="1 or more")
+
+    def of_section(self, number: int, of: int) -> Resources:
+        """The same for one of so many sections of a run, whose rows have names of their own."""
+        if of == 1:
+            return self
+        return replace(self, rows=self.rows.named(f"{number}-"))
 
     @property
     def n_threads(self) -> int:

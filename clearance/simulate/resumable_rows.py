@@ -73,6 +73,34 @@ class MeasuredRows:
     def ask(self, fingerprint: str) -> None:
         """Says what decides every row; rows of another fingerprint are thrown away."""
 
+    def named(self, prefix: str) -> MeasuredRows:
+        """The same rows, in which what is asked for by name has a prefix."""
+        return NamedRows(self, prefix)
+
+
+@dataclass(eq=False)
+class NamedRows(MeasuredRows):
+    """Rows of others under names of their own."""
+
+    rows: MeasuredRows
+    prefix: str
+
+    def array(self, name: str, shape: tuple[int, ...], kind: type = np.float64) -> np.ndarray:
+        return self.rows.array(self.prefix + name, shape, kind)
+
+    def log(self, name: str, spans: Sequence[slice]) -> PassLog:
+        return self.rows.log(self.prefix + name, spans)
+
+    def let_go(self) -> None:
+        self.rows.let_go()
+
+    def table(self, name: str, batches: Iterable[pa.Table]) -> pa.Table:
+        return self.rows.table(self.prefix + name, batches)
+
+    @property
+    def folder(self) -> Path | None:
+        return self.rows.folder
+
 
 IN_MEMORY = MeasuredRows()
 """Rows in memory only."""

@@ -15,6 +15,7 @@ from clearance.query.distance import distance
 from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.record import Record
 from clearance.world.case import Case
+from clearance.world.forest import link_poses_at
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.pairs import BodyIndex, measured_pairs
@@ -28,7 +29,7 @@ def standing_contacts(record: Record) -> list[tuple[str, str]]:
         return []
     case = record.case
     standing = [_standing_links(motion) for motion in record.motions]
-    poses = [motion.poses(0, 1) for motion in record.motions]
+    poses = link_poses_at(case, record.motions, slice(0, 1))
     touching = []
     for pair in measured_pairs(case)[0]:
         if not all(_stands(case, body, standing) for body in (pair.a, pair.b)):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from enum import StrEnum
 from functools import cached_property
 from typing import overload
 
@@ -11,48 +10,15 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.contact_columns import no_contact_columns
+from clearance.simulate.judged import Judged
 from clearance.simulate.measure import Measurement
-from clearance.simulate.names import pair_names
+from clearance.simulate.names import SIDES, BodyNames, columns_of, pair_names
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import Certificate, EveryPair, PairMinimum
-from clearance.world.case import Case, Limits, Omission
+from clearance.simulate.record import Certificate, EveryPair, PairMinimum, RuleAnswer
+from clearance.simulate.status import STATUSES
+from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
-
-
-class Status(StrEnum):
-    """How a step stands against the limits, worst last."""
-
-    CLEAR = "clear"
-    NEAR = "near"
-    VIOLATED = "violated"
-    CONTACT = "contact"
-
-
-STATUSES = tuple(Status)
-
-
-def status_codes(clearance: np.ndarray, limits: Limits) -> np.ndarray:
-    """(n,) indices into `STATUSES`: contact at 0, violated below `fail`, near below `warn`; 0 where unknown."""
-    below = [clearance <= 0.0, clearance < limits.fail, clearance < limits.warn]
-    return np.select(below, [3, 2, 1], default=0)
-
-
-def status_of(clearance: float, limits: Limits) -> str:
-    """How one clearance [m] stands against the limits."""
-    return str(STATUSES[int(status_codes(np.array(clearance), limits))])
-
-
-def motion_codes(certificate: Certificate, limits: Limits, steps: slice) -> np.ndarray:
-    """(k,) what is proven of the motion from each of `steps` to the next, as indices into `STATUSES`.
-
-    Below a limit is what is not proven to stay above it; where only distances below the limit were asked about,
-    what is really seen below it. Contact is what is seen.
-    """
-    lower, upper = certificate.lower_bound[steps], certificate.upper_bound[steps]
-    seen = certificate.pair[steps] >= 0
-    below = [(lower < limit) & (seen | (upper >= limit)) for limit in (limits.fail, limits.warn)]
-    return np.select([upper <= 0.0, *below], [3, 2, 1], default=0)
 
 
 def between_of(steps: pa.Table) -> np.ndarray:
@@ -66,21 +32,20 @@ def step_table(
     case: Case,
     motions: Sequence[Motion],
     pairs: Sequence[Pair],
-    found: Measurement,
+    judged: Judged,
     *,
-    certificate: Certificate | None = None,
     with_error: bool = False,
 ) -> Iterator[pa.Table]:
     """One row a step; columns as in `Record.steps`, null where only a bound is known. In blocks of steps."""
-    names = pair_names(case, pairs)
+    names, found, certificate = BodyNames.of(case, pairs), judged.found, judged.certificate
     n_steps = len(found.clearance)
     bounded = any((found.pair[block] < 0).any() for block in blocks(n_steps))
     for block in blocks(n_steps):
         columns = _measured_columns(names, found, motions[0].times, block)
-        codes = _sample_codes(found, case.limits, block)
+        codes = judged.sample_codes(block)
         if certificate is not None:
             columns |= _proven_columns(found, certificate, block)
-            codes, between = _with_motion(found, case.limits, certificate, block, codes)
+            codes, between = _with_motion(judged, block, codes)
             columns["between"] = pa.array(between)
         columns["status"] = _names([str(status) for status in STATUSES], codes)
         if certificate is None and bounded:
@@ -89,25 +54,41 @@ def step_table(
             errors = [motion.tracking_error[block] for motion in motions]
             columns["tracking_error"] = pa.array(np.max(errors, axis=0))
         columns |= no_contact_columns(block.stop - block.start)
-        yield pa.table(columns)
+        yield pa.table(columns | _sides(names, columns) | _rule_columns(names, judged, block))
 
 
-def _sample_codes(found: Measurement, limits: Limits, steps: slice) -> np.ndarray:
-    """(k,) the status of each of `steps` by itself; -1 where its bound does not decide."""
-    undecided = (found.pair[steps] < 0) & (found.lower_bound[steps] < limits.warn)
-    return np.where(undecided, -1, status_codes(found.clearance[steps], limits))
-
-
-def _with_motion(
-    found: Measurement, limits: Limits, certificate: Certificate, steps: slice, own: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def _with_motion(judged: Judged, steps: slice, own: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The status of each of `steps`, or of the motion to the next where that is worse than at both of its ends;
     and whether it is."""
-    after = _sample_codes(found, limits, slice(steps.start + 1, steps.stop + 1))
+    after = judged.sample_codes(slice(steps.start + 1, steps.stop + 1))
     after = np.append(after, [-1] * (len(own) - len(after)))
-    motion = motion_codes(certificate, limits, steps)
+    motion = judged.motion_codes(steps)
     between = (motion > 0) & (motion > np.maximum(own, after))
     return np.where(between, motion, own), between
+
+
+def _sides(names: BodyNames, columns: dict[str, pa.Array]) -> dict[str, pa.Array]:
+    """The two bodies under the names that every run has, where the run has names of its own for them."""
+    if names.sides == SIDES:
+        return {}
+    told = zip(names.columns, columns_of(SIDES), strict=True)
+    return {general: columns[own] for own, general in told}
+
+
+def _rule_columns(names: BodyNames, judged: Judged, steps: slice) -> dict[str, pa.Array]:
+    """What judged each step, and where there are several rules the nearest pair of all."""
+    rules = pa.array([rule.name for rule in judged.rules], type=pa.string())
+    columns = {"rule": rules.take(pa.array(judged.rules_at(steps)))}
+    if judged.rule is not None:
+        near = judged.nearest
+        columns |= {
+            "nearest_clearance": pa.array(near.clearance[steps], from_pandas=True),
+            "nearest_a": _names(names.a, near.pair[steps]),
+            "nearest_b": _names(names.b, near.pair[steps]),
+        }
+    if judged.found.times_b is not None:
+        columns["time_b"] = pa.array(judged.found.times_b[steps], from_pandas=True)
+    return columns
 
 
 def _proven_columns(
@@ -125,35 +106,36 @@ def _proven_columns(
 
 
 def _measured_columns(
-    names: tuple[list[str], list[str]], found: Measurement, times: np.ndarray, block: slice
+    names: BodyNames, found: Measurement, times: np.ndarray, block: slice
 ) -> dict[str, pa.Array]:
-    links, obstacles = names
-    columns = {
+    first, second, *places = names.columns
+    points = found.points[block].reshape(-1, 6)
+    return {
         "step": pa.array(np.arange(block.start, block.stop)),
         "time": pa.array(times[block]),
         "clearance": pa.array(found.clearance[block], from_pandas=True),
-        "link": _names(links, found.pair[block]),
-        "obstacle": _names(obstacles, found.pair[block]),
-    }
-    for i_side, side in enumerate(("link", "obstacle")):
-        for i_axis, axis in enumerate("xyz"):
-            values = found.points[block, i_side, i_axis]
-            columns[f"{side}_{axis}"] = pa.array(values, from_pandas=True)
-    return columns
+        first: _names(names.a, found.pair[block]),
+        second: _names(names.b, found.pair[block]),
+    } | {name: pa.array(points[:, i], from_pandas=True) for i, name in enumerate(places)}
 
 
 class PairMinima(Sequence[PairMinimum]):
     """The least clearance of every pair over the run, least first, found when first looked at.
 
-    Empty if less was asked for. Ties are in the order of the pairs. Of the first few nothing else is measured.
+    Empty if less was asked for. Ties are in the order of the pairs. Of the first few nothing else is measured. A
+    pair that different rules judge at different times is there once for each.
     """
 
     def __init__(
-        self, case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], found: Measurement
+        self,
+        case: Case,
+        motions: Sequence[Motion],
+        pairs: Sequence[Pair],
+        rules: Sequence[RuleAnswer],
     ) -> None:
         self._names = pair_names(case, pairs)
         self._times = motions[0].times
-        self._find = found.measure_pair_minima
+        self._rules = rules
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -178,23 +160,27 @@ class PairMinima(Sequence[PairMinimum]):
         return self._found(None)
 
     def _found(self, most: int | None) -> tuple[PairMinimum, ...]:
-        if self._find is None:
-            return ()
+        found = [row for rule in self._rules for row in self._of_rule(rule, most)]
+        return tuple(sorted(found, key=lambda row: row.clearance))
+
+    def _of_rule(self, rule: RuleAnswer, most: int | None) -> Iterator[PairMinimum]:
+        find = rule.measurement.measure_pair_minima
+        if find is None:
+            return
         links, obstacles = self._names
-        found = self._find(most)
-        return tuple(
-            PairMinimum(
-                link=links[i],
-                obstacle=obstacles[i],
-                clearance=float(found.clearance[i]),
-                step=int(found.step[i]),
-                time=float(self._times[found.step[i]]),
-                point_link=tuple(found.points[i, 0].tolist()),
-                point_obstacle=tuple(found.points[i, 1].tolist()),
-            )
-            for i in np.argsort(found.clearance, kind="stable")
-            if np.isfinite(found.clearance[i])  # the paper's rules can cut a pair at every step
-        )
+        found = find(most)
+        for i in np.argsort(found.clearance, kind="stable"):
+            if np.isfinite(found.clearance[i]):  # the paper's rules can cut a pair at every step
+                yield PairMinimum(
+                    link=links[i],
+                    obstacle=obstacles[i],
+                    clearance=float(found.clearance[i]),
+                    step=int(found.step[i]),
+                    time=float(self._times[found.step[i]]),
+                    point_link=tuple(found.points[i, 0].tolist()),
+                    point_obstacle=tuple(found.points[i, 1].tolist()),
+                    rule=rule.name,
+                )
 
 
 def every_pair(case: Case, pairs: Sequence[Pair], found: Measurement) -> EveryPair | None:

@@ -23,7 +23,7 @@ from clearance.errors import MissingFile
 from clearance.extras import importing
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, Replay, load_replay, replay_of
-from clearance.simulate.steps import STATUSES
+from clearance.simulate.status import STATUSES
 
 if TYPE_CHECKING:
     from clearance.view.viewer import Stage

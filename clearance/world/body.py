@@ -6,9 +6,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from clearance.errors import BadShape, at
+from clearance.errors import BadInput, BadShape, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
+from clearance.world.mount import Mount
+from clearance.world.padding import checked_padding
+from clearance.world.pose_table import PoseTable
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,14 +36,23 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class Obstacle:
-    """A body that stands in the scene.
+    """A body of the scene: it stands in the world, rides on another body, or moves by itself.
 
     Attributes:
-        world_from_body: (4, 4) pose [m].
+        world_from_body: (4, 4) pose [m] where it stands in the world; else the identity.
+        mount: what it rides on, and where.
+        moves: how it moves: in the world, or as seen from the pose of its mount.
+        padding: [m] by how much its clearance is lessened.
+
+    Raises:
+        BadInput: a pose in the world of what has none. BadDimension: a padding that is not 0 or more.
     """
 
     body: Body
     world_from_body: np.ndarray = field(default_factory=lambda: np.eye(4))
+    mount: Mount | None = None
+    moves: PoseTable | None = None
+    padding: float = 0.0
 
     def __post_init__(self) -> None:
         if not isinstance(self.body, Body):
@@ -50,6 +62,17 @@ class Obstacle:
             )
         with at(f"obstacle {self.name!r}"):
             object.__setattr__(self, "world_from_body", validated_pose(self.world_from_body))
+            checked_padding(self.padding)
+            if not self.stands and not np.array_equal(self.world_from_body, np.eye(4)):
+                raise BadInput(
+                    "both a pose in the world and what moves it are given",
+                    valid="the pose in Mount(on, pose), or the poses in `moves`",
+                )
+
+    @property
+    def stands(self) -> bool:
+        """True if nothing moves it."""
+        return self.mount is None and self.moves is None
 
     @property
     def name(self) -> str:

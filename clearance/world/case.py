@@ -19,11 +19,17 @@ from clearance.errors import (
 )
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
+from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name, require_own_names
 from clearance.world.notice import Notice
+from clearance.world.padding import checked_padding
+from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.robot import Robot
+from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
+from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -37,35 +43,42 @@ class Limits:
     Args:
         warn: as `fail` if not given.
         joints: what a joint beyond its limits is: "warn" for a warning, "fail" for a violation.
+        rules: limits of some pairs; the last that is of a pair holds, and where none is, these limits.
 
     Raises:
-        BadDimension: a level that is below 0 or not finite, or `warn` below `fail`.
+        BadDimension: a level that is below 0 or not finite, or `warn` below `fail`. DuplicateName: two rules of
+        one
+            name.
     """
 
     fail: float = 0.0
     warn: float = None  # type: ignore[assignment]  # always a number once it is made
     joints: str = "warn"
+    rules: tuple[Rule, ...] = ()
 
     def __post_init__(self) -> None:
         if self.warn is None:
             object.__setattr__(self, "warn", self.fail)
         for name in ("fail", "warn"):
-            object.__setattr__(self, name, _level(getattr(self, name), name))
+            object.__setattr__(self, name, checked_level(getattr(self, name), name))
         if self.warn < self.fail:
             raise BadDimension(
                 f"the warn limit {self.warn:g} m is below the fail limit {self.fail:g} m",
                 valid="warn at or above fail",
             )
+        require_own_names("rule", [rule.name for rule in self.rules])
 
+    @property
+    def rule_names(self) -> tuple[str, ...]:
+        """The names of what can judge a pair: the limits by themselves, then the rules."""
+        return (DEFAULT, *(rule.name for rule in self.rules))
 
-def _level(given: float, name: str) -> float:
-    try:
-        level = float(given)
-    except (TypeError, ValueError):
-        raise BadDimension(f"limit {name} is {given!r:.60}", valid="a number of metres") from None
-    if not 0.0 <= level < np.inf:
-        raise BadDimension(f"limit {name} is {level} m", valid="0 or more")
-    return level
+    def of_rule(self, i_rule: int) -> Limits:
+        """The limits by themselves (0), or those of a rule (from 1), as `rule_names` counts."""
+        if i_rule == 0:
+            return self if not self.rules else replace(self, rules=())
+        rule = self.rules[i_rule - 1]
+        return Limits(rule.fail, rule.warn, self.joints)
 
 
 @dataclass(frozen=True)
@@ -112,9 +125,12 @@ class PlacedRobot:
     Attributes:
         trajectory: what it is asked to do; None for a robot that is asked about by a `Checker` only.
         world_from_base: (4, 4) pose of the root link [m].
+        mount: what it stands on, if that is not the world; then `world_from_base` is the identity.
+        timing: when its trajectory is followed.
         fixed_positions: values [rad] or [m] of moving joints that the trajectory does not name.
         exclude_links: links that are not measured.
         self_clearance: whether its links are measured against one another, and which pairs are excused.
+        padding: [m] by how much the clearance of links is lessened, by link.
     """
 
     robot: Robot
@@ -125,10 +141,22 @@ class PlacedRobot:
     urdf_path: str = ""
     package_dirs: tuple[str, ...] = ()
     self_clearance: SelfClearance | None = None
+    mount: Mount | None = None
+    timing: Timing = AS_GIVEN
+    padding: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
             object.__setattr__(self, "world_from_base", validated_pose(self.world_from_base))
+            if self.mount is not None and not np.array_equal(self.world_from_base, np.eye(4)):
+                raise BadInput(
+                    "both a base in the world and a mount are given", valid="one of them"
+                )
+        for link, padding in self.padding.items():
+            with at(f"padding.{link}"):
+                checked_padding(padding)
+        if self.trajectory is not None:
+            require_samples_to_loop(self.trajectory.n_steps, self.timing)
         if self.trajectory is not None:
             with at(f"robot {self.robot.name!r}: trajectory"):
                 require_moving_joints(self.robot, self.trajectory.joint_names)
@@ -186,6 +214,25 @@ class SignOff:
     revision: str = ""
 
 
+@dataclass(frozen=True)
+class Clock:
+    """How far the clocks of actors may be apart [s]: 0 for one clock, infinite where they are not tied at all.
+
+    Raises:
+        BadTime: a slack below 0 or NaN.
+    """
+
+    slack: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.slack >= 0.0:
+            raise BadTime(f"the slack of the clock is {self.slack} s", valid="0 or more")
+
+
+COMMON = Clock()
+"""One clock for all."""
+
+
 @dataclass(frozen=True, eq=False)
 class Case:
     """Robots, obstacles, trajectories, limits.
@@ -193,7 +240,9 @@ class Case:
     Attributes:
         robots: at least one.
         obstacles: unique names.
-        allow: pairs of name patterns (`fnmatch`) that are not measured.
+        allow: pairs that are not measured; two patterns of names (`fnmatch`) become an `Allowance`.
+        carries: which parts are carried, by what and when.
+        clock: how far the actors' clocks may be apart.
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
@@ -207,7 +256,7 @@ class Case:
     robots: tuple[PlacedRobot, ...]
     obstacles: tuple[Obstacle, ...]
     limits: Limits = Limits()
-    allow: tuple[tuple[str, str], ...] = ()
+    allow: tuple[Allowance, ...] = ()
     contact_response: bool = False
     sources: tuple[Source, ...] = ()
     notes: tuple[str, ...] = ()
@@ -215,6 +264,8 @@ class Case:
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
     sign_off: SignOff | None = None
+    carries: tuple[Carry, ...] = ()
+    clock: Clock = COMMON
 
     def __post_init__(self) -> None:
         if not self.robots:
@@ -226,7 +277,11 @@ class Case:
             require_own_names("link", list(placed.robot.link_names))
         if len(self.robots) == 1 and self.robots[0].self_clearance:
             _require_other_names(self.robots[0].robot, self.obstacles)
-        _require_same_times(self.robots)
+        require_one_carrier(self.carries)
+        allow = (
+            row if isinstance(row, Allowance) else Allowance((row[0], row[1])) for row in self.allow
+        )
+        object.__setattr__(self, "allow", tuple(allow))
 
     def with_trajectory(
         self,
@@ -270,15 +325,4 @@ def _require_other_names(robot: Robot, obstacles: Sequence[Obstacle]) -> None:
             raise BadInput(
                 f"an obstacle and a link of robot {robot.name!r} are both called {obstacle.name!r}",
                 valid="another name for the obstacle, since links are measured against one another too",
-            )
-
-
-def _require_same_times(robots: Sequence[PlacedRobot]) -> None:
-    """Refuses robots that are not sampled at the same times: their steps would be of different moments."""
-    moving = [placed for placed in robots if placed.trajectory is not None]
-    for other in moving[1:]:
-        if not np.array_equal(moving[0].asked.times, other.asked.times):
-            raise BadTime(
-                f"robots {moving[0].robot.name!r} and {other.robot.name!r} have other times",
-                valid="the trajectories of all robots sampled at the same times",
             )

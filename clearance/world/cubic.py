@@ -39,6 +39,13 @@ def position_on(cubics: Cubics, share: np.ndarray) -> np.ndarray:
     )
 
 
+def velocity_on(cubics: Cubics, share: np.ndarray) -> np.ndarray:
+    """(n - 1, k) the derivative by the share there; shapes broadcast."""
+    rest = 1.0 - share
+    straight = cubics.step + (rest - share) * (rest * cubics.e0 - share * cubics.e1)
+    return straight - share * rest * (cubics.e0 + cubics.e1)
+
+
 def extremes_between(
     times: np.ndarray, positions: np.ndarray, velocities: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:

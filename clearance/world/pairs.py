@@ -1,19 +1,22 @@
-"""Which bodies are measured against which, and why the others are not."""
+"""Which bodies are measured against which, by which rule, and why the others are not."""
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
-from fnmatch import fnmatchcase
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from clearance.errors import NothingToMeasure
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
-from clearance.world.case import Case, Omission, PlacedRobot, SelfClearance
+from clearance.world.carry import Carry
+from clearance.world.case import Case, Omission, SelfClearance
+from clearance.world.forest import WORLD, Forest, forest_of
+from clearance.world.rules import matches
 from clearance.world.self_pairs import RIGID, self_pairs
+from clearance.world.timeline import Phase
 
 OBSTACLE = -1
 """Stands for the robot of a body that is an obstacle."""
@@ -55,12 +58,26 @@ class BodyIndex:
         """Which of its robot's links it is of."""
         return case.robots[self.i_robot].robot.link_names.index(self.body_in(case).name)
 
-    def poses_in(self, case: Case, link_poses: Sequence[np.ndarray]) -> np.ndarray:
-        """(n, 4, 4) `world_from_body` [m], from (n, n_links, 4, 4) of each robot."""
+    def frame_in(self, case: Case) -> int:
+        """The link of the case's forest that it is fixed to, at the link's own pose; `WORLD` for what stands."""
+        forest = forest_of(case)
         if self.is_obstacle:
+            return forest.obstacle_links[self.i_body]
+        return forest.robot_starts[self.i_robot] + self.link_in(case)
+
+    def poses_in(self, case: Case, link_poses: np.ndarray) -> np.ndarray:
+        """(n, 4, 4) `world_from_body` [m], from (n, links, 4, 4) of the case's forest."""
+        frame = self.frame_in(case)
+        if frame == WORLD:
             standing = case.obstacles[self.i_body].world_from_body
-            return np.broadcast_to(standing, (len(link_poses[0]), 4, 4)).copy()
-        return np.ascontiguousarray(link_poses[self.i_robot][:, self.link_in(case)])
+            return np.broadcast_to(standing, (len(link_poses), 4, 4)).copy()
+        return np.ascontiguousarray(link_poses[:, frame])
+
+    def padding_in(self, case: Case) -> float:
+        """[m] By how much its clearance is lessened."""
+        if self.is_obstacle:
+            return case.obstacles[self.i_body].padding
+        return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0)
 
     def body_in(self, case: Case) -> Body:
         """Its name and shape."""
@@ -74,41 +91,180 @@ class Pair:
     """Two bodies whose clearance is wanted.
 
     Attributes:
-        a: a link. b: a link or an obstacle; of two links of one robot, one that does not hang on `a`.
+        a: a link, or an obstacle where both are. b: any body; of two links of one robot the earlier one.
     """
 
     a: BodyIndex
     b: BodyIndex
 
 
-def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:
-    """The pairs to measure, and what is left out.
+@dataclass(frozen=True, eq=False)
+class Selection:
+    """What is measured in a phase of a run.
 
-    Robots first, then links, then obstacles in their order; then the links of each robot that is to be measured
-    against itself; then those of each two robots.
+    Attributes:
+        pairs: links and obstacles robot by robot, then links of one robot, then of two, then obstacles.
+        rules: of each pair what judges it, as `Limits.rule_names` counts. paddings: [m] of both of its bodies.
+        unmeasured: links and pairs that are left out, and why.
+    """
+
+    pairs: list[Pair] = field(default_factory=list)
+    rules: list[int] = field(default_factory=list)
+    paddings: list[float] = field(default_factory=list)
+    unmeasured: list[Omission] = field(default_factory=list)
+
+
+def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:
+    """The pairs to measure, and what is left out, of a case in which nothing changes hands.
 
     Raises:
         NothingToMeasure: no pair is left.
     """
-    pairs: list[Pair] = []
-    unmeasured: list[Omission] = []
-    for i_robot, placed in enumerate(case.robots):
-        unmeasured += _links_left_out(placed)
-        for link in _links(case, i_robot):
-            others = (BodyIndex(OBSTACLE, k) for k in range(len(case.obstacles)))
-            _sort_out(case, ((link, other) for other in others), pairs, unmeasured)
-    for i_robot, placed in enumerate(case.robots):
-        if placed.self_clearance:
-            _sort_out(case, _unexcused(case, i_robot, unmeasured), pairs, unmeasured)
-    for i_robot, i_other in itertools.combinations(range(len(case.robots)), 2):
-        both = itertools.product(_links(case, i_robot), _links(case, i_other))
-        _sort_out(case, both, pairs, unmeasured)
-    if not pairs:
-        raise NothingToMeasure(
-            "no link-obstacle pair is left to measure",
-            valid="at least one obstacle, and a link with geometry that is not excluded or allowed",
+    selection = _Selecting(case).selection()
+    if not selection.pairs:
+        raise nothing_to_measure()
+    return selection.pairs, selection.unmeasured
+
+
+def selected_pairs(phase: Phase) -> Selection:
+    """The pairs to measure in a phase; there may be none."""
+    absent = (phase.absent_robots, phase.absent_obstacles)
+    return _Selecting(phase.case, phase.span, phase.carried, *absent).selection()
+
+
+def nothing_to_measure() -> NothingToMeasure:
+    """What is raised where no pair is left."""
+    return NothingToMeasure(
+        "no link-obstacle pair is left to measure",
+        valid="at least one obstacle, and a link with geometry that is not excluded or allowed",
+    )
+
+
+@dataclass(eq=False)
+class _Selecting:
+    """Sorts the pairs of a case, in a stretch of its run, into those that are measured and those that are not."""
+
+    case: Case
+    span: tuple[float, float] = (-np.inf, np.inf)
+    carried: Mapping[str, Carry] = field(default_factory=dict)
+    absent_robots: frozenset[int] = frozenset()
+    absent_obstacles: frozenset[int] = frozenset()
+    found: Selection = field(default_factory=Selection)
+
+    def __post_init__(self) -> None:
+        case = self.case
+        self.forest: Forest = forest_of(case)
+        self.stands_alone = all(obstacle.stands for obstacle in case.obstacles) and not any(
+            placed.mount for placed in case.robots
         )
-    return pairs, unmeasured
+        self.robots = [i for i in range(len(case.robots)) if i not in self.absent_robots]
+        obstacles = range(len(case.obstacles))
+        self.obstacles = [
+            BodyIndex(OBSTACLE, i) for i in obstacles if i not in self.absent_obstacles
+        ]
+        self.allow = [row for row in case.allow if row.is_active(*self.span, self.carried)]
+        self.rules = [
+            (i, rule)
+            for i, rule in enumerate(case.limits.rules, start=1)
+            if rule.is_active(*self.span, self.carried)
+        ]
+
+    def selection(self) -> Selection:
+        """All pairs, sorted."""
+        case = self.case
+        for i_robot in self.robots:
+            self.found.unmeasured.extend(_links_left_out(case, i_robot))
+            for link in _links(case, i_robot):
+                self._sort_out((link, other) for other in self.obstacles)
+        for i_robot in self.robots:
+            if case.robots[i_robot].self_clearance:
+                self._sort_out(self._unexcused(i_robot))
+        for i_robot, i_other in itertools.combinations(self.robots, 2):
+            self._sort_out(itertools.product(_links(case, i_robot), _links(case, i_other)))
+        self._sort_out(self._of_obstacles())
+        return self.found
+
+    def _of_obstacles(self) -> Iterator[tuple[BodyIndex, BodyIndex]]:
+        """Two obstacles that can move against each other."""
+        if self.stands_alone:
+            return
+        for one, other in itertools.combinations(self.obstacles, 2):
+            parts = [self._rigid_part(body) for body in (one, other)]
+            if parts[0] != parts[1]:
+                yield one, other
+
+    def _unexcused(self, i_robot: int) -> Iterator[tuple[BodyIndex, BodyIndex]]:
+        """Pairs of links of one robot, the later link first; those that are excused are noted."""
+        case, placed = self.case, self.case.robots[i_robot]
+        asked = placed.self_clearance or SelfClearance()
+        links = {placed.robot.bodies[link.i_body].name: link for link in _links(case, i_robot)}
+        for pair in self_pairs(placed.robot, asked.matrix, trust_never=asked.trust_never):
+            if pair.link_a not in links or pair.link_b not in links:
+                continue
+            one, other = links[pair.link_b], links[pair.link_a]
+            if pair.excused is None:
+                yield one, other
+            elif pair.excused != RIGID:
+                self._leave_out(one, other, f"excused: {pair.excused}")
+
+    def _sort_out(self, bodies: Iterable[tuple[BodyIndex, BodyIndex]]) -> None:
+        """Adds what is measured to the pairs, and what is not to what is left out."""
+        for one, other in bodies:
+            why = self._why_not(one, other)
+            if why is not None:
+                self._leave_out(one, other, why)
+                continue
+            self.found.pairs.append(Pair(one, other))
+            self.found.rules.append(self._rule_of(one, other))
+            self.found.paddings.append(one.padding_in(self.case) + other.padding_in(self.case))
+
+    def _why_not(self, one: BodyIndex, other: BodyIndex) -> str | None:
+        """Why a pair is not measured, or None."""
+        names = names_of(self.case, one), names_of(self.case, other)
+        ordered = other.is_obstacle and not one.is_obstacle
+        for row in self.allow:
+            if row.matches_in_order(*names) if ordered else row.matches(*names):
+                return str(row)
+        for part, mate in (names, names[::-1]):
+            carry = self.carried.get(part[0])
+            why = None if carry is None else _why_while_carried(carry, mate)
+            if why is not None:
+                return why
+        if self._is_rigid(one, other):
+            return "moves with it"
+        return None
+
+    def _is_rigid(self, one: BodyIndex, other: BodyIndex) -> bool:
+        """True if two bodies, not of one robot, are joined by fixed joints and neither stands in the world."""
+        if self.stands_alone:
+            return False
+        if one.i_robot == other.i_robot and not one.is_obstacle:
+            return False
+        part = self._rigid_part(one)
+        return part != WORLD and part == self._rigid_part(other)
+
+    def _rigid_part(self, body: BodyIndex) -> int:
+        frame = body.frame_in(self.case)
+        return WORLD if frame == WORLD else self.forest.rigid_part(frame)
+
+    def _rule_of(self, one: BodyIndex, other: BodyIndex) -> int:
+        """What judges a pair: the last rule that is of it, or the limits by themselves."""
+        names = names_of(self.case, one), names_of(self.case, other)
+        return next((i for i, rule in reversed(self.rules) if rule.matches(*names)), 0)
+
+    def _leave_out(self, one: BodyIndex, other: BodyIndex, reason: str) -> None:
+        names = one.name_in(self.case), other.name_in(self.case)
+        self.found.unmeasured.append(Omission(*names, reason))
+
+
+def _why_while_carried(carry: Carry, mate: Collection[str]) -> str | None:
+    """Why a part that is carried is not measured against a body of some names, or None."""
+    if carry.by in mate:
+        return f"moves with it while {carry.part} is carried {carry.window}"
+    for pattern in carry.touch:
+        if any(matches(name, pattern) for name in mate):
+            return f"touch: {pattern}, while {carry.part} is carried {carry.window}"
+    return None
 
 
 def _links(case: Case, i_robot: int) -> list[BodyIndex]:
@@ -119,71 +275,23 @@ def _links(case: Case, i_robot: int) -> list[BodyIndex]:
     return [BodyIndex(i_robot, i) for i, body in bodies if body.name not in excluded]
 
 
-def _unexcused(
-    case: Case, i_robot: int, unmeasured: list[Omission]
-) -> Iterator[tuple[BodyIndex, BodyIndex]]:
-    """Pairs of links of one robot, the later link first; those that are excused are noted."""
+def _links_left_out(case: Case, i_robot: int) -> list[Omission]:
     placed = case.robots[i_robot]
-    asked = placed.self_clearance or SelfClearance()
-    links = {placed.robot.bodies[link.i_body].name: link for link in _links(case, i_robot)}
-    for pair in self_pairs(placed.robot, asked.matrix, trust_never=asked.trust_never):
-        if pair.link_a not in links or pair.link_b not in links:
-            continue
-        one, other = links[pair.link_b], links[pair.link_a]
-        if pair.excused is None:
-            yield one, other
-        elif pair.excused != RIGID:
-            reason = f"excused: {pair.excused}"
-            unmeasured.append(Omission(one.name_in(case), other.name_in(case), reason))
-
-
-def _sort_out(
-    case: Case,
-    bodies: Iterable[tuple[BodyIndex, BodyIndex]],
-    pairs: list[Pair],
-    unmeasured: list[Omission],
-) -> None:
-    """Adds what is measured to the pairs, and what a rule of the case allows to what is not."""
-    for one, other in bodies:
-        rule = _allowing_rule(case, one, other)
-        if rule is None:
-            pairs.append(Pair(one, other))
-        else:
-            reason = f"allowed by {list(rule)}"
-            unmeasured.append(Omission(one.name_in(case), other.name_in(case), reason))
-
-
-def _links_left_out(placed: PlacedRobot) -> list[Omission]:
+    before = "" if len(case.robots) == 1 else f"{placed.robot.name}/"
     with_shape = {body.name for body in placed.robot.bodies}
     excluded = frozenset(placed.exclude_links)
-    left_out = [Omission(name, "*", "excluded in the case file") for name in placed.exclude_links]
+    left_out = [
+        Omission(before + name, "*", "excluded in the case file") for name in placed.exclude_links
+    ]
     left_out += [
-        Omission(name, "*", "no geometry")
+        Omission(before + name, "*", "no geometry")
         for name in placed.robot.link_names
         if name not in with_shape and name not in excluded
     ]
     return left_out
 
 
-def _allowing_rule(case: Case, one: BodyIndex, other: BodyIndex) -> tuple[str, str] | None:
-    """The first rule that allows two bodies to touch; of two links, in either order."""
-    for rule in case.allow:
-        if _is_called(case, one, rule[0]) and _is_called(case, other, rule[1]):
-            return rule
-        if (
-            not other.is_obstacle
-            and _is_called(case, other, rule[0])
-            and _is_called(case, one, rule[1])
-        ):
-            return rule
-    return None
-
-
-def _is_called(case: Case, body: BodyIndex, pattern: str) -> bool:
-    """True if a pattern is of a body's name, or of a link's without its robot's."""
-    return matches(body.name_in(case), pattern) or matches(body.own_name_in(case), pattern)
-
-
-def matches(name: str, pattern: str) -> bool:
-    """True if `pattern` is the name itself (which may hold `[`, `*` or `?`) or a wildcard for it."""
-    return name == pattern or fnmatchcase(name, pattern)
+def names_of(case: Case, body: BodyIndex) -> tuple[str, ...]:
+    """The names that a pattern may be of: the body's, and a link's without its robot's."""
+    name, own = body.name_in(case), body.own_name_in(case)
+    return (name,) if name == own else (name, own)

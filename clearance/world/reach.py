@@ -14,10 +14,15 @@ from clearance.tolerance import REACH, TURNS
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.cubic import extremes_between
+from clearance.world.forest import owner_of, resolved_mount
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
+from clearance.world.mount import Mount
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+
+ROOT_3 = 3.0**0.5
+"""How much farther than along an axis a point of a cube is from its middle."""
 
 
 def farthest_reach(case: Case, motions: Sequence[Motion]) -> float:
@@ -44,13 +49,43 @@ def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
 
 def _reaches(case: Case, motions: Sequence[Motion]) -> Iterator[tuple[str, float]]:
     """Each body by name, and how far it gets from the origin along an axis at most [m]."""
-    for obstacle in case.obstacles:
-        name, origin = f"obstacle {obstacle.name!r}", obstacle.world_from_body[:3, 3]
-        yield name, _reach(obstacle.body, float(np.abs(origin).max()))
-    for motion in motions:
-        farthest = float(np.abs(motion.placed.world_from_base[:3, 3]).max() + _slide(motion))
+    frames = _Frames(case, motions)
+    for i, obstacle in enumerate(case.obstacles):
+        yield f"obstacle {obstacle.name!r}", _reach(obstacle.body, frames.of_obstacle(i))
+    for i, motion in enumerate(motions):
+        farthest = frames.of_robot(i)
         for body in motion.placed.robot.bodies:
             yield f"link {body.name!r}", _reach(body, farthest)
+
+
+class _Frames:
+    """How far the frames of robots and obstacles get from the origin along an axis at most [m]."""
+
+    def __init__(self, case: Case, motions: Sequence[Motion]) -> None:
+        self._case, self._motions = case, motions
+
+    def of_robot(self, i: int) -> float:
+        """Of all links of a robot."""
+        placed = self._case.robots[i]
+        base = float(np.abs(placed.world_from_base[:3, 3]).max())
+        return base + _slide(self._motions[i]) + self._below(placed.mount)
+
+    def of_obstacle(self, i: int) -> float:
+        """Of an obstacle, whoever has carried it."""
+        obstacle = self._case.obstacles[i]
+        own = float(np.abs(obstacle.world_from_body[:3, 3]).max())
+        if obstacle.moves is not None:
+            own += float(np.abs(obstacle.moves.positions).sum(axis=1).max())
+        return own + self._below(obstacle.mount)
+
+    def _below(self, mount: Mount | None) -> float:
+        """Of what stands on a mount: no axis of it is longer than the sum of a shift's magnitudes."""
+        if mount is None:
+            return 0.0
+        is_obstacle, i = owner_of(self._case, mount)
+        mount = resolved_mount(self._case, mount)
+        shift = float(np.abs(mount.pose[:3, 3]).sum())
+        return ROOT_3 * (self.of_obstacle(i) if is_obstacle else self.of_robot(i)) + shift
 
 
 def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajectory) -> None:

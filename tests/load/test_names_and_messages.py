@@ -10,7 +10,7 @@ from clearance.load.trajectory_file import parse_trajectory
 from clearance.load.urdf_elements import parse_document
 from clearance.load.yaml_file import parse_yaml
 from clearance.world.names import checked_name
-from clearance.world.pairs import matches
+from clearance.world.rules import matches
 
 
 @pytest.mark.parametrize("name", ["a\nb", "a\x01b", "a\x1b[31mb"])

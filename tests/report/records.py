@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
-from clearance.simulate.steps import STATUSES
+from clearance.simulate.status import STATUSES
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source
 from clearance.world.motion import Motion
@@ -128,7 +128,7 @@ def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
 def with_contacts(made: Record, work_out: str = "every") -> Record:
     """The record with the overlaps of its steps at 0, as a run finds them."""
     from clearance.simulate.contact import find_contacts
-    from clearance.simulate.steps import pair_names
+    from clearance.simulate.names import pair_names
     from clearance.world.pairs import measured_pairs
 
     pairs = measured_pairs(made.case)[0]

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.motion import Motion
+from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
@@ -96,7 +95,7 @@ def test_the_point_of_a_contact_is_that_of_a_single_question():
     found, pairs = measured(case, motion, np.arange(motion.n_steps)), measured_pairs(case)[0]
     for step in np.flatnonzero(found.clearance == 0.0):
         pair = pairs[found.pair[step]]
-        poses = [motion.poses(step, step + 1)]
+        poses = motion.poses(step, step + 1)
         (a, pose_a), (b, pose_b) = (
             (body.shape_in(case), body.poses_in(case, poses)[0]) for body in (pair.a, pair.b)
         )

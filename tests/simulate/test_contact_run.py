@@ -14,7 +14,7 @@ import clearance as cl
 from clearance.geometry import boolean
 from clearance.simulate import contact, contact_rows
 from clearance.simulate.contact import find_contacts
-from clearance.simulate.steps import pair_names
+from clearance.simulate.names import pair_names
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import measured_pairs

@@ -7,9 +7,9 @@ import pytest
 
 import clearance as cl
 from clearance.geometry.shapes import box
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot, SelfClearance
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
@@ -61,7 +61,7 @@ def case_of(seed: int, n_robots: int, *, cubic: bool = False) -> cl.Case:
 def every_distance(case: cl.Case) -> np.ndarray:
     """(steps, pairs) [m] by one question each."""
     pairs, _ = measured_pairs(case)
-    poses = [kinematic_motion(placed).poses() for placed in case.robots]
+    poses = np.concatenate([kinematic_motion(placed).poses() for placed in case.robots], axis=1)
     sides = [
         [(body.shape_in(case), body.poses_in(case, poses)) for body in (pair.a, pair.b)]
         for pair in pairs
@@ -104,12 +104,12 @@ def test_witness_points_are_in_the_world_and_as_far_apart(seed, n_robots):
     case = case_of(seed, n_robots)
     run = cl.check(case, certify=False)
     pairs, _ = measured_pairs(case)
-    poses = [kinematic_motion(placed).poses() for placed in case.robots]
+    poses = np.concatenate([kinematic_motion(placed).poses() for placed in case.robots], axis=1)
     steps = run.steps.to_pydict()
     names = {(p.a.name_in(case), p.b.name_in(case)): p for p in pairs}
     for k in range(0, N_STEPS, 7):
-        pair = names[steps["link"][k], steps["obstacle"][k]]
-        for side, body in (("link", pair.a), ("obstacle", pair.b)):
+        pair = names[steps["body_a"][k], steps["body_b"][k]]
+        for side, body in (("a", pair.a), ("b", pair.b)):
             point = np.array([steps[f"{side}_{axis}"][k] for axis in "xyz"])
             speck = box((1e-9, 1e-9, 1e-9)).transformed(at(*point))
             near = cl.distance(speck, body.shape_in(case), pose_b=body.poses_in(case, poses)[k])
@@ -127,7 +127,7 @@ def test_the_certificate_holds_between_the_steps(seed, cubic):
     bounds = np.asarray(run.certificate.lower_bound)
     for step in range(0, N_STEPS - 1, 5):
         for share in np.linspace(0.0, 1.0, finer):
-            poses = [motion_poses(motion, step, share) for motion in motions]
+            poses = np.concatenate([motion_poses(m, step, share) for m in motions], axis=1)
             least = min(
                 cl.distance(
                     pair.a.shape_in(case), pair.b.shape_in(case),

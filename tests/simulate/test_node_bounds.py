@@ -33,10 +33,10 @@ from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.placed import new_placed_bodies, put_all
 from clearance.kernels.motion.world import World, box_bound
 from clearance.kernels.search.node_pairs import NodeGroup, bounds_of_group, views_along
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.case import Limits
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
 from tests import oracle
 from tests.examples import examples

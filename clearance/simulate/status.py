@@ -1,0 +1,58 @@
+"""How a clearance stands against its limits: of a step, and of the motion to the next."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from clearance.world.case import Limits
+
+if TYPE_CHECKING:
+    from clearance.simulate.measure import Measurement
+
+
+class Status(StrEnum):
+    """How a step stands against the limits, worst last."""
+
+    CLEAR = "clear"
+    NEAR = "near"
+    VIOLATED = "violated"
+    CONTACT = "contact"
+
+
+STATUSES = tuple(Status)
+
+
+class RowLimits(NamedTuple):
+    """The limits of rows that different rules judge: (k,) each [m]."""
+
+    fail: np.ndarray
+    warn: np.ndarray
+
+
+def status_codes(
+    clearance: np.ndarray, limits: Limits | RowLimits, touching: np.ndarray | bool | None = None
+) -> np.ndarray:
+    """(n,) indices into `STATUSES`: contact, violated below `fail`, near below `warn`; 0 where unknown.
+
+    Args:
+        touching: (n,) where bodies touch, if padding has lessened clearances; at 0 and below without it. What
+            padding alone brings to 0 is violated.
+    """
+    is_contact = clearance <= 0.0 if touching is None else touching
+    is_violated = (clearance < limits.fail) | (clearance <= 0.0)
+    return np.select([is_contact, is_violated, clearance < limits.warn], [3, 2, 1], default=0)
+
+
+def status_of(clearance: float, limits: Limits, touches: bool | None = None) -> str:
+    """How one clearance [m] stands against the limits."""
+    return str(STATUSES[int(status_codes(np.array(clearance), limits, touches))])
+
+
+def sample_codes(found: Measurement, limits: Limits, steps: slice) -> np.ndarray:
+    """(k,) the status of each of `steps` by itself; -1 where its bound does not decide."""
+    undecided = (found.pair[steps] < 0) & (found.lower_bound[steps] < limits.warn)
+    touching = None if found.touching is None else found.touching[steps]
+    return np.where(undecided, -1, status_codes(found.clearance[steps], limits, touching))

@@ -1,0 +1,58 @@
+"""A part that is carried for a while: picked up where it is, one body all the time, let go where it then is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from clearance.errors import BadInput, BadTime
+from clearance.world.timing import Window
+
+
+@dataclass(frozen=True)
+class Carry:
+    """From when until when a part rides on a body.
+
+    Its pose there is that of the moment at which it is picked up; after the end it stays where it was let go.
+
+    Attributes:
+        part: name of an obstacle.
+        by: name of what carries it, as in `Mount.on`.
+        window: with a start; without an end it is carried until the run ends.
+        touch: patterns of bodies that it may touch while it is carried. What carries it moves with it, so that
+            pair is not measured.
+
+    Raises:
+        BadTime: no start. BadInput: a part that carries itself.
+    """
+
+    part: str
+    by: str
+    window: Window
+    touch: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.window.start):
+            raise BadTime(f"part {self.part!r} is carried from no time", valid="from: seconds")
+        if self.part == self.by:
+            raise BadInput(f"part {self.part!r} carries itself", valid="by: what carries it")
+
+
+def require_one_carrier(carries: Sequence[Carry]) -> None:
+    """Nothing, if each part is carried by one body at a time.
+
+    Raises:
+        BadInput: two windows of one part that overlap.
+    """
+    for i, one in enumerate(carries):
+        for other in carries[:i]:
+            if one.part != other.part:
+                continue
+            if one.window.start < other.window.end and other.window.start < one.window.end:
+                raise BadInput(
+                    f"part {one.part!r} is carried by {other.by!r} ({other.window}) and by {one.by!r} "
+                    f"({one.window}) at once",
+                    where=f"carry[{i}]",
+                    valid="windows of one part that do not overlap; one may begin where another ends",
+                )

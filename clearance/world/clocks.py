@@ -1,0 +1,100 @@
+"""Which bodies move by one clock: those of a tree, of what stands on it, and of what it carries at any time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+
+from clearance.errors import BadInput
+from clearance.world.case import Case
+from clearance.world.forest import owner_of
+from clearance.world.mount import Mount
+from clearance.world.pairs import BodyIndex
+
+NO_CLOCK = -1
+"""Of a body that stands."""
+
+_Thing = tuple[bool, int]
+"""A robot (False, i) or an obstacle (True, i)."""
+
+
+def are_tied(case: Case, one: BodyIndex, other: BodyIndex) -> bool:
+    """True if two bodies are where they are at the same time: by one clock, or since one of them stands."""
+    if case.clock.slack == 0.0:
+        return True
+    clocks = clocks_of(case)
+    a, b = clocks[one.is_obstacle, _index(one)], clocks[other.is_obstacle, _index(other)]
+    return NO_CLOCK in (a, b) or a == b
+
+
+def _index(body: BodyIndex) -> int:
+    return body.i_body if body.is_obstacle else body.i_robot
+
+
+@lru_cache(maxsize=16)
+def clocks_of(case: Case) -> dict[_Thing, int]:
+    """The clock of each robot (False, i) and obstacle (True, i): the number of an actor, or `NO_CLOCK`.
+
+    What stands has none, even where something that moves stands on it.
+    """
+    below = list(_below(case))
+    moving = _moving(case, below)
+    clocks = {thing: i for i, thing in enumerate(_things(case))}
+    for thing, carrier in below:
+        if carrier in moving:
+            old, new = clocks[thing], clocks[carrier]
+            clocks |= {one: new for one, clock in clocks.items() if clock == old}
+    return {thing: clock if thing in moving else NO_CLOCK for thing, clock in clocks.items()}
+
+
+def _things(case: Case) -> list[_Thing]:
+    robots = [(False, i) for i in range(len(case.robots))]
+    return robots + [(True, i) for i in range(len(case.obstacles))]
+
+
+def _below(case: Case) -> Iterator[tuple[_Thing, _Thing]]:
+    """What is on something at some time, and what that is."""
+    names = {obstacle.name: (True, i) for i, obstacle in enumerate(case.obstacles)}
+    mounted = [((False, i), robot.mount) for i, robot in enumerate(case.robots)]
+    mounted += [((True, i), obstacle.mount) for i, obstacle in enumerate(case.obstacles)]
+    carried = [carry for carry in case.carries if carry.part in names]
+    mounted += [(names[carry.part], Mount(carry.by)) for carry in carried]
+    for thing, mount in mounted:
+        if mount is not None:
+            yield thing, owner_of(case, mount)
+
+
+def _moving(case: Case, below: Sequence[tuple[_Thing, _Thing]]) -> set[_Thing]:
+    """Robots, what has a motion of its own, and all that is on them at some time."""
+    moving = {(False, i) for i in range(len(case.robots))}
+    moving |= {(True, i) for i, obstacle in enumerate(case.obstacles) if obstacle.moves}
+    for _ in below:
+        moving |= {thing for thing, carrier in below if carrier in moving}
+    return moving
+
+
+def require_clocks(case: Case) -> None:
+    """Nothing, if a case's windows say when they are, whatever the clocks of its actors.
+
+    Raises:
+        BadInput: a window of a rule or an allowance where clocks are not tied, or a part that changes clocks.
+    """
+    if case.clock.slack == 0.0:
+        return
+    for field, rows in (("limits.rules", case.limits.rules), ("allow", case.allow)):
+        for i, row in enumerate(rows):
+            if row.window.ends:
+                raise BadInput(
+                    "a window of time where clocks are not tied",
+                    where=f"{field}[{i}]",
+                    valid="while_carried, no window, or clock: common",
+                )
+    owners: dict[str, tuple[bool, int]] = {}
+    for i, carry in enumerate(case.carries):
+        owner = owners.setdefault(carry.part, owner_of(case, Mount(carry.by)))
+        if owner != owner_of(case, Mount(carry.by)):
+            raise BadInput(
+                f"part {carry.part!r} changes hands between actors whose clocks are not tied",
+                where=f"carry[{i}]",
+                valid="clock: common, or one actor that carries it",
+            )

@@ -1,0 +1,27 @@
+"""What something stands on that moves: a link of a robot, or an obstacle. Not for: how that moves (`forest`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from clearance.errors import at
+from clearance.geometry.pose import validated_pose
+
+
+@dataclass(frozen=True, eq=False)
+class Mount:
+    """A place on a body.
+
+    Attributes:
+        on: its name as in tables: an obstacle, `robot/link`, or the link alone where there is one robot.
+        pose: (4, 4) `on_from_base` [m] of what stands there.
+    """
+
+    on: str
+    pose: np.ndarray = field(default_factory=lambda: np.eye(4))
+
+    def __post_init__(self) -> None:
+        with at("pose"):
+            object.__setattr__(self, "pose", validated_pose(self.pose))

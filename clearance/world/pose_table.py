@@ -1,0 +1,111 @@
+"""How an obstacle moves: its pose over time. Not for: joints (`trajectory`), and files (room `load`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.errors import BadPose, BadShape, BadTime, NotFinite
+from clearance.tolerance import LARGEST, ROTATION
+from clearance.world.slerp import aligned, slerp
+from clearance.world.timing import AS_GIVEN, Timing
+
+
+@dataclass(frozen=True, eq=False)
+class PoseTable:
+    """Samples of a pose. Between them a body's origin moves straight, and it turns about one axis at constant
+    speed.
+
+    Attributes:
+        times: (n,) [s], strictly increasing. positions: (n, 3) [m] of the body's origin, in the world or in what
+            it stands on.
+        quaternions: (n, 4) xyzw of length one; signs are chosen so that neighbours are nearest.
+        timing: when the table is followed.
+
+    Raises:
+        BadShape, NotFinite: not one finite number each. BadTime: times that do not increase, or one sample where
+        the
+            table is to loop. BadPose: a quaternion that is not of length one within `tolerance.ROTATION`, or a
+            place beyond `tolerance.LARGEST`.
+    """
+
+    times: np.ndarray
+    positions: np.ndarray
+    quaternions: np.ndarray
+    timing: Timing = AS_GIVEN
+
+    def __post_init__(self) -> None:
+        for name, width in (("times", 0), ("positions", 3), ("quaternions", 4)):
+            object.__setattr__(self, name, _numbers(getattr(self, name), name, width, len(self)))
+        if len(self) < 1:
+            raise BadShape("there is no sample", valid="at least one row")
+        require_increasing(self.times)
+        lengths = np.linalg.norm(self.quaternions, axis=1)
+        off = np.flatnonzero(~(np.abs(lengths - 1.0) <= ROTATION))
+        if len(off):
+            row = int(off[0])
+            raise BadPose(
+                f"the quaternion {self.quaternions[row].tolist()} at {self.times[row]:g} s has length "
+                f"{lengths[row]:.9g}",
+                valid=f"length 1 within {ROTATION:g}, the scalar last",
+            )
+        if np.abs(self.positions).max() > LARGEST:
+            raise BadPose(
+                f"a position is {np.abs(self.positions).max():g} m away",
+                valid=f"{LARGEST:g} m or less",
+            )
+        require_samples_to_loop(len(self), self.timing)
+        object.__setattr__(self, "quaternions", aligned(self.quaternions / lengths[:, None]))
+
+    def __len__(self) -> int:
+        return int(np.size(self.times))
+
+    @property
+    def columns(self) -> np.ndarray:
+        """(n, 7) positions and quaternions side by side."""
+        return np.column_stack([self.positions, self.quaternions])
+
+    def after(self, step: int, share: float) -> np.ndarray:
+        """(7,) the pose when a share (0 to 1) of the interval after a sample has passed; of the last, its own."""
+        ends = slice(step, step + 2)
+        start, end = self.columns[ends][[0, -1]]
+        turned = slerp(start[None, 3:], end[None, 3:], np.array([share]))[0]
+        return np.concatenate([start[:3] + share * (end[:3] - start[:3]), turned])
+
+
+def require_samples_to_loop(n_samples: int, timing: Timing) -> None:
+    """Nothing, if a table can be followed as it is asked to be.
+
+    Raises:
+        BadTime: one sample where `loop` is asked.
+    """
+    if timing.after == "loop" and n_samples < 2:
+        raise BadTime("one sample where `after: loop` is asked", valid="two samples or more")
+
+
+def require_increasing(times: np.ndarray) -> None:
+    """Nothing, if times increase from sample to sample.
+
+    Raises:
+        BadTime: the first pair that does not.
+    """
+    late = np.flatnonzero(np.diff(times) <= 0.0)
+    if len(late):
+        before, after = times[late[0] : late[0] + 2].tolist()
+        raise BadTime(
+            f"time {after} follows {before}", valid="times must increase from sample to sample"
+        )
+
+
+def _numbers(given: object, name: str, width: int, n_rows: int) -> np.ndarray:
+    try:
+        numbers = np.ascontiguousarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise BadShape(f"{given!r:.60} is given", where=name, valid="an array of numbers") from None
+    wanted = (n_rows, width) if width else (n_rows,)
+    if numbers.shape != wanted:
+        raise BadShape(f"shape {numbers.shape} is given", where=name, valid=f"{wanted}")
+    if not np.isfinite(numbers).all():
+        raise NotFinite("a number is NaN or infinite", where=name, valid="finite numbers")
+    return numbers

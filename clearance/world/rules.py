@@ -1,0 +1,119 @@
+"""Which pairs may come how close, and which may touch: rows of patterns, times and carried parts.
+
+Not for: which pairs there are (`pairs`), and what a clearance is held against (`case.Limits`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+
+from clearance.errors import BadDimension, BadInput
+from clearance.world.timing import ALWAYS, Window
+
+DEFAULT = "default"
+"""The name of the limits that hold where no rule does."""
+
+
+def matches(name: str, pattern: str) -> bool:
+    """True if `pattern` is the name itself (which may hold `[`, `*` or `?`) or a wildcard for it."""
+    return name == pattern or fnmatchcase(name, pattern)
+
+
+@dataclass(frozen=True)
+class PairPattern:
+    """Two patterns of bodies, in any order, and when they are meant.
+
+    Attributes:
+        between: patterns of names as in tables; that of a link may leave out its robot's name.
+        window: of the run's time [s]. while_carried: only while this part is carried, if one is named.
+    """
+
+    between: tuple[str, str]
+    window: Window = ALWAYS
+    while_carried: str | None = None
+
+    def is_active(self, start: float, end: float, carried: Collection[str]) -> bool:
+        """True if it holds from `start` to `end` [s], between which no window begins or ends."""
+        if self.while_carried is not None and self.while_carried not in carried:
+            return False
+        return self.window.holds(start, end)
+
+    def matches(self, one: Collection[str], other: Collection[str]) -> bool:
+        """True if it is of two bodies, each given by the names it goes by."""
+        first, second = self.between
+        return (_any(one, first) and _any(other, second)) or (
+            _any(one, second) and _any(other, first)
+        )
+
+    def matches_in_order(self, one: Collection[str], other: Collection[str]) -> bool:
+        """True if the first pattern is of the first body and the second of the second."""
+        return _any(one, self.between[0]) and _any(other, self.between[1])
+
+    @property
+    def when(self) -> str:
+        """When it holds, in words; empty for always."""
+        told = [str(self.window)] if self.window.ends else []
+        told += [f"while {self.while_carried} is carried"] if self.while_carried else []
+        return " ".join(told)
+
+
+@dataclass(frozen=True)
+class Allowance(PairPattern):
+    """Pairs that are not measured; of a link and an obstacle the first pattern is of the link."""
+
+    def __str__(self) -> str:
+        return " ".join([f"allowed by {list(self.between)}", *([self.when] if self.when else [])])
+
+
+@dataclass(frozen=True)
+class Rule(PairPattern):
+    """Limits of some pairs [m].
+
+    Attributes:
+        name: for tables. fail, warn: as in `case.Limits`.
+
+    Raises:
+        BadDimension: a level that is below 0 or not finite, or `warn` below `fail`. BadInput: the name of the
+            limits that hold without a rule.
+    """
+
+    name: str = ""
+    fail: float = 0.0
+    warn: float = None  # type: ignore[assignment]  # always a number once it is made
+
+    def __post_init__(self) -> None:
+        if not self.name:
+            object.__setattr__(self, "name", " - ".join(self.between))
+        if self.name == DEFAULT:
+            raise BadInput(f"a rule is called {DEFAULT!r}", valid="another name")
+        if self.warn is None:
+            object.__setattr__(self, "warn", self.fail)
+        for name in ("fail", "warn"):
+            object.__setattr__(self, name, checked_level(getattr(self, name), name))
+        if self.warn < self.fail:
+            raise BadDimension(
+                f"the warn limit {self.warn:g} m of rule {self.name!r} is below its fail limit {self.fail:g} m",
+                valid="warn at or above fail",
+            )
+
+
+def _any(names: Collection[str], pattern: str) -> bool:
+    return any(matches(name, pattern) for name in names)
+
+
+def checked_level(given: float, name: str) -> float:
+    """The level of clearance [m] that a limit is.
+
+    Raises:
+        BadDimension: no number, below 0 or not finite.
+    """
+    try:
+        level = float(given)
+    except (TypeError, ValueError):
+        raise BadDimension(f"limit {name} is {given!r:.60}", valid="a number of metres") from None
+    if not 0.0 <= level < math.inf:
+        raise BadDimension(f"limit {name} is {level} m", valid="0 or more")
+    return level

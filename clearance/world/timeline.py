@@ -1,0 +1,372 @@
+"""A run's steps and its phases: from moments at which something changes hands, comes, goes or jumps to the next.
+
+Steps are the union of all sample times, and of the ends of all windows. In a phase the case is a plain one: what
+is carried rides on what carries it, and every table has a sample at every step. Where two phases meet, the step
+belongs to both, as it is come to and as it is left. Not for: where an actor is between its samples (`knots`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from clearance.errors import BadTime, UnknownObstacle, at, nearest_name
+from clearance.geometry.pose import inverse
+from clearance.world.body import Obstacle
+from clearance.world.carry import Carry
+from clearance.world.case import Case
+from clearance.world.forest import (
+    WORLD,
+    forest_of,
+    link_poses_at,
+    owner_of,
+    require_known,
+)
+from clearance.world.knots import Knots, knots_of, looped
+from clearance.world.motion import Motion
+from clearance.world.mount import Mount
+from clearance.world.pose_table import PoseTable
+from clearance.world.timing import Timing, Window
+
+
+@dataclass(frozen=True, eq=False)
+class Phase:
+    """A stretch of a run in which nothing changes hands, comes, goes or jumps, and no window begins or ends.
+
+    Attributes:
+        first, last: the steps at its ends; they belong to it.
+        case: the case as it is then; obstacles that move have a sample at each of its steps.
+        motions: of its robots at its steps.
+        carried: how each part that is carried is.
+        absent_robots, absent_obstacles: which are not in the cell, and all that stands on them.
+    """
+
+    first: int
+    last: int
+    case: Case
+    motions: tuple[Motion, ...]
+    carried: Mapping[str, Carry]
+    absent_robots: frozenset[int]
+    absent_obstacles: frozenset[int]
+
+    @property
+    def times(self) -> np.ndarray:
+        """(k,) [s] of its steps."""
+        return self.motions[0].times
+
+    @property
+    def n_steps(self) -> int:
+        """Number of its steps, both ends included."""
+        return self.last - self.first + 1
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """[s] When it begins and ends."""
+        return float(self.times[0]), float(self.times[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class Timeline:
+    """A case over time.
+
+    Attributes:
+        motions: of the robots at all steps; where two phases meet, as they are left.
+        phases: in order of time; each begins where the one before ends.
+    """
+
+    motions: tuple[Motion, ...]
+    phases: tuple[Phase, ...]
+
+    @property
+    def times(self) -> np.ndarray:
+        """(n,) [s] of the steps."""
+        return self.motions[0].times
+
+    def phase_of(self, step: int) -> Phase:
+        """The phase that a step begins or is in; of the last step the last."""
+        starts = [phase.first for phase in self.phases]
+        return self.phases[max(0, int(np.searchsorted(starts, step, side="right")) - 1)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Table:
+    """What one actor is asked to do.
+
+    Attributes:
+        knots: those of the whole run; one where it stands.
+        once: [s] the first and the last time of its own samples.
+        moves: False where it stands, and so says nothing of when the run begins and ends.
+    """
+
+    knots: Knots
+    once: tuple[float, float]
+    timing: Timing
+    moves: bool = True
+
+    def is_absent(self, times: np.ndarray) -> bool:
+        """True if it is not in the cell over a stretch in which that does not change."""
+        first, last = self.once
+        return self.timing.after == "absent" and bool(times[0] < first or times[-1] > last)
+
+
+def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
+    """The timeline of a case.
+
+    Args:
+        own: the motion of each robot at the times of its own table.
+
+    Raises:
+        NoTrajectory: nothing moves. BadTime: a window outside the run. UnknownObstacle, UnknownLink: a part, or
+        what
+            carries it, that is not there.
+    """
+    _require_parts(case)
+    robots = [_of_robot(motion) for motion in own]
+    obstacles = {i: _of_obstacle(o) for i, o in enumerate(case.obstacles) if o.moves is not None}
+    start, end = _span(case, [*robots, *obstacles.values()])
+    robots = [_laid_out(table, end) for table in robots]
+    obstacles = {i: _laid_out(table, end) for i, table in obstacles.items()}
+    tables = [*robots, *obstacles.values()]
+    cuts = _cuts(case, tables, start, end)
+    times = _steps([table.knots for table in tables if table.moves], cuts, start, end)
+    edges = [0, *np.searchsorted(times, cuts).tolist(), len(times) - 1]
+    phases: list[Phase] = []
+    for first, last in zip(edges, edges[1:], strict=False):
+        here = times[first : last + 1]
+        plain = Phase(
+            first,
+            last,
+            _with_samples(case, obstacles, here),
+            tuple(_resampled(m, t.knots, here) for m, t in zip(own, robots, strict=True)),
+            {c.part: c for c in case.carries if c.window.holds(float(here[0]), float(here[-1]))},
+            frozenset(i for i, table in enumerate(robots) if table.is_absent(here)),
+            frozenset(i for i, table in obstacles.items() if table.is_absent(here)),
+        )
+        phases.append(_with_absent(_with_parts(plain, phases)))
+    return Timeline(_joined(own, phases), tuple(phases))
+
+
+def _require_parts(case: Case) -> None:
+    names = [obstacle.name for obstacle in case.obstacles]
+    for i, carry in enumerate(case.carries):
+        with at(f"carry[{i}].part"):
+            if carry.part not in names:
+                raise UnknownObstacle(
+                    f"there is no part {carry.part!r}", valid=nearest_name(carry.part, names)
+                )
+        with at(f"carry[{i}].by"):
+            require_known(case, carry.by)
+
+
+def _of_robot(motion: Motion) -> _Table:
+    timing, asked = motion.placed.timing, motion.placed.trajectory
+    rates = motion.velocities
+    if rates is not None and timing.rate != 1.0:
+        rates = rates * timing.rate
+    knots = knots_of(timing.run_times(motion.times), motion.positions, rates)
+    return _Table(knots, _ends(knots), timing, moves=asked is not None)
+
+
+def _of_obstacle(obstacle: Obstacle) -> _Table:
+    table = obstacle.moves
+    assert table is not None
+    knots = knots_of(table.timing.run_times(table.times), table.columns, n_rotation=4)
+    return _Table(knots, _ends(knots), table.timing)
+
+
+def _ends(knots: Knots) -> tuple[float, float]:
+    return float(knots.times[0]), float(knots.times[-1])
+
+
+def _span(case: Case, tables: Sequence[_Table]) -> tuple[float, float]:
+    """[s] From the first sample of all to the last of those that do not loop."""
+    moving = [table for table in tables if table.moves]
+    if not moving:
+        _ = case.robots[0].asked  # refuses a case in which nothing moves
+    once = [table for table in moving if table.timing.after != "loop"] or moving
+    return min(table.once[0] for table in moving), max(table.once[1] for table in once)
+
+
+def _laid_out(table: _Table, end: float) -> _Table:
+    """The table over the whole run."""
+    if table.timing.after != "loop":
+        return table
+    return replace(table, knots=looped(table.knots, end))
+
+
+def _cuts(case: Case, tables: Sequence[_Table], start: float, end: float) -> np.ndarray:
+    """The times [s] inside the run at which a phase ends and the next begins."""
+    found = [table.knots.jumps for table in tables]
+    found += [np.array(table.once) for table in tables if table.timing.after == "absent"]
+    for where, window in _windows(case):
+        with at(where):
+            _require_within(window, start, end)
+        found.append(np.array(window.ends))
+    cuts = np.unique(np.concatenate(found)) if found else np.empty(0)
+    return cuts[(cuts > start) & (cuts < end)]
+
+
+def _windows(case: Case) -> Iterator[tuple[str, Window]]:
+    yield from ((f"carry[{i}]", carry.window) for i, carry in enumerate(case.carries))
+    yield from ((f"limits.rules[{i}]", rule.window) for i, rule in enumerate(case.limits.rules))
+    yield from ((f"allow[{i}]", row.window) for i, row in enumerate(case.allow))
+
+
+def _require_within(window: Window, start: float, end: float) -> None:
+    for edge in window.ends:
+        if not start <= edge <= end:
+            raise BadTime(
+                f"{edge:g} s is outside the run", valid=f"a time from {start:g} s to {end:g} s"
+            )
+
+
+def _steps(laid: Sequence[Knots], cuts: np.ndarray, start: float, end: float) -> np.ndarray:
+    """(n,) [s] all samples and cuts of the run, each once; the table's own array where there is one only."""
+    if len(laid) == 1 and not len(cuts) and start == laid[0].times[0] and end == laid[0].times[-1]:
+        return laid[0].times
+    times = np.unique(np.concatenate([*(knots.times for knots in laid), cuts]))
+    return times[(times >= start) & (times <= end)]
+
+
+def _resampled(motion: Motion, knots: Knots, times: np.ndarray) -> Motion:
+    """The motion at other times."""
+    if np.array_equal(times, motion.times) and not np.isin(knots.jumps, times[1:-1]).any():
+        return motion
+    return replace(
+        motion,
+        times=times,
+        positions=knots.values_at(times),
+        velocities=knots.rates_at(times),
+        tracking_error=_errors_at(motion, times),
+    )
+
+
+def _errors_at(motion: Motion, times: np.ndarray) -> np.ndarray:
+    """(n,) the greater tracking error of the samples before and after each time; the greatest where a table
+    loops.
+    """
+    timing, errors = motion.placed.timing, motion.tracking_error
+    if timing.after == "loop":
+        return np.full(len(times), errors.max())
+    own = timing.run_times(motion.times)
+    after = np.clip(np.searchsorted(own, times), 0, len(own) - 1)
+    before = np.clip(np.searchsorted(own, times, side="right") - 1, 0, len(own) - 1)
+    return np.maximum(errors[before], errors[after])
+
+
+def _with_samples(case: Case, tables: Mapping[int, _Table], times: np.ndarray) -> Case:
+    """The case with a sample of every obstacle that moves at each of some times."""
+    if not tables:
+        return case
+    obstacles = list(case.obstacles)
+    for i, table in tables.items():
+        values = table.knots.values_at(times)
+        obstacles[i] = replace(obstacles[i], moves=PoseTable(times, values[:, :3], values[:, 3:]))
+    return replace(case, obstacles=tuple(obstacles))
+
+
+def _with_parts(phase: Phase, before: Sequence[Phase]) -> Phase:
+    """The phase with its parts where they are: in somebody's hands, or where they were let go."""
+    case, last = phase.case, before[-1] if before else None
+    if last is not None:
+        case = _left_as_they_were(phase, last, frozenset(p for b in before for p in b.carried))
+    for carry in _carriers_first(phase.carried):
+        if last is None or last.carried.get(carry.part) is not carry:
+            case = _picked_up(replace(phase, case=case), carry, last)
+    return phase if case is phase.case else replace(phase, case=case)
+
+
+def _left_as_they_were(phase: Phase, last: Phase, parts: frozenset[str]) -> Case:
+    """The case with parts that have been carried where the phase before has them, in the same hands or in none."""
+    if not parts:
+        return phase.case
+    found = []
+    for here, then in zip(phase.case.obstacles, last.case.obstacles, strict=True):
+        carry = last.carried.get(here.name)
+        if carry is not None and carry is not phase.carried.get(here.name):
+            at_end = _pose_of(last, here.name, last.n_steps - 1)
+            found.append(Obstacle(here.body, at_end, padding=here.padding))
+        else:
+            found.append(then if here.name in parts else here)
+    return replace(phase.case, obstacles=tuple(found))
+
+
+def _with_absent(phase: Phase) -> Phase:
+    """The phase without what stands on something that is not in the cell."""
+    case = phase.case
+    gone = {(False, i) for i in phase.absent_robots} | {(True, i) for i in phase.absent_obstacles}
+    if not gone:
+        return phase
+    mounts = [((False, i), placed.mount) for i, placed in enumerate(case.robots)]
+    mounts += [((True, i), obstacle.mount) for i, obstacle in enumerate(case.obstacles)]
+    for _ in mounts:
+        gone |= {thing for thing, mount in mounts if _stands_on(case, mount, gone)}
+    robots = frozenset(i for is_obstacle, i in gone if not is_obstacle)
+    obstacles = frozenset(i for is_obstacle, i in gone if is_obstacle)
+    return replace(phase, absent_robots=robots, absent_obstacles=obstacles)
+
+
+def _stands_on(case: Case, mount: Mount | None, gone: Collection[tuple[bool, int]]) -> bool:
+    return mount is not None and owner_of(case, mount) in gone
+
+
+def _carriers_first(carried: Mapping[str, Carry]) -> list[Carry]:
+    """The parts in hand, each after what carries it."""
+    order: dict[str, Carry] = {}
+
+    def add(carry: Carry, above: tuple[str, ...]) -> None:
+        if carry.by in carried and carry.by not in above:
+            add(carried[carry.by], (*above, carry.part))
+        order.setdefault(carry.part, carry)
+
+    for carry in carried.values():
+        add(carry, (carry.part,))
+    return list(order.values())
+
+
+def _picked_up(phase: Phase, carry: Carry, last: Phase | None) -> Case:
+    """The case with a part on what carries it, at the pose that it has there when it is picked up."""
+    held = phase if last is None else last
+    world_from_part = _pose_of(held, carry.part, 0 if last is None else last.n_steps - 1)
+    world_from_by = _pose_of(phase, carry.by, 0)
+    mount = Mount(carry.by, inverse(world_from_by) @ world_from_part)
+    obstacles = tuple(
+        Obstacle(o.body, mount=mount, padding=o.padding) if o.name == carry.part else o
+        for o in phase.case.obstacles
+    )
+    return replace(phase.case, obstacles=obstacles)
+
+
+def _pose_of(phase: Phase, name: str, step: int) -> np.ndarray:
+    """(4, 4) `world_from_…` [m] of an obstacle or a link at one of a phase's own steps."""
+    link = forest_of(phase.case).link_called(phase.case, name)
+    if link == WORLD:
+        return next(o.world_from_body for o in phase.case.obstacles if o.name == name)
+    return link_poses_at(phase.case, phase.motions, slice(step, step + 1))[0, link]
+
+
+def _joined(own: Sequence[Motion], phases: Sequence[Phase]) -> tuple[Motion, ...]:
+    """The motions over all phases."""
+    if len(phases) == 1:
+        return phases[0].motions
+    joined = []
+    for i, motion in enumerate(own):
+        parts = [phase.motions[i] for phase in phases]
+        rates = [part.velocities for part in parts if part.velocities is not None]
+        joined.append(
+            replace(
+                motion,
+                times=_row_once([part.times for part in parts]),
+                positions=_row_once([part.positions for part in parts]),
+                velocities=None if motion.velocities is None else _row_once(rates),
+                tracking_error=_row_once([part.tracking_error for part in parts]),
+            )
+        )
+    return tuple(joined)
+
+
+def _row_once(parts: Sequence[np.ndarray]) -> np.ndarray:
+    """The rows of all phases; where two meet, that of the later one."""
+    return np.concatenate([*(part[:-1] for part in parts[:-1]), parts[-1]])

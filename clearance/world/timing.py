@@ -1,0 +1,88 @@
+"""When a table of samples is followed in a run, and stretches of a run's time. Not for: the samples themselves."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.errors import BadInput, BadTime
+
+AFTER = ("hold", "loop", "absent")
+"""What an actor does after its last sample: it stays there, begins again, or is not in the cell, which it is not
+before its first sample either."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """How the times of a table become times of the run.
+
+    Attributes:
+        start: [s] the run's time at the table's time 0.
+        rate: how many seconds of the table pass in one of the run; 0.5 is half as fast.
+        after: one of `AFTER`. Before its first sample an actor holds, unless it is absent.
+
+    Raises:
+        BadTime: a start that is not finite, or a rate that is not above 0. BadInput: an unknown `after`.
+    """
+
+    start: float = 0.0
+    rate: float = 1.0
+    after: str = "hold"
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.start):
+            raise BadTime(f"start is {self.start}", valid="a finite number of seconds")
+        if not 0.0 < self.rate < math.inf:
+            raise BadTime(
+                f"rate is {self.rate}", valid="a number above 0; 1 is as fast as the table"
+            )
+        if self.after not in AFTER:
+            raise BadInput(f"after is {self.after!r:.60}", valid=f"one of {', '.join(AFTER)}")
+
+    def run_times(self, times: np.ndarray) -> np.ndarray:
+        """(n,) [s] the run's times of a table's times; the same array where nothing changes."""
+        if self.start == 0.0 and self.rate == 1.0:
+            return times
+        return self.start + times / self.rate
+
+
+AS_GIVEN = Timing()
+"""A table whose times are the run's."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """A stretch of a run's time [s]; without bounds it is all of it.
+
+    Raises:
+        BadTime: an end that is not after the start, or NaN.
+    """
+
+    start: float = -math.inf
+    end: float = math.inf
+
+    def __post_init__(self) -> None:
+        if not self.start < self.end:
+            raise BadTime(
+                f"from {self.start:g} s until {self.end:g} s", valid="`until` must be after `from`"
+            )
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Those of its bounds that are given [s]."""
+        return tuple(end for end in (self.start, self.end) if math.isfinite(end))
+
+    def holds(self, start: float, end: float) -> bool:
+        """True if it contains a stretch that its own bounds do not cut."""
+        return self.start <= start and end <= self.end
+
+    def __str__(self) -> str:
+        told = [f"from {self.start:g} s"] if math.isfinite(self.start) else []
+        told += [f"until {self.end:g} s"] if math.isfinite(self.end) else []
+        return " ".join(told)
+
+
+ALWAYS = Window()
+"""All of a run."""
