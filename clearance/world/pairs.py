@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,8 +23,7 @@ OBSTACLE = -1
 """Stands for the robot of a body that is an obstacle."""
 
 
-@dataclass(frozen=True, order=True)
-class BodyIndex:
+class BodyIndex(NamedTuple):
     """A body of a case.
 
     Attributes:
@@ -86,8 +86,7 @@ class BodyIndex:
         return case.robots[self.i_robot].robot.bodies[self.i_body]
 
 
-@dataclass(frozen=True)
-class Pair:
+class Pair(NamedTuple):
     """Two bodies whose clearance is wanted.
 
     Attributes:
