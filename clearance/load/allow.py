@@ -17,35 +17,34 @@ class BodyNames:
     """What patterns of a case may match.
 
     Attributes:
-        links: those of one robot; `robot/link`, and the link alone, of several.
-        obstacles: of the scene.
+        table_links: links as tables name them: `robot/link` where there are several robots.
+        links: those, and of several robots the links alone too. obstacles: of the scene.
         links_meet: links are measured against links. obstacles_meet: obstacles are against obstacles.
     """
 
+    table_links: tuple[str, ...]
     links: tuple[str, ...]
     obstacles: tuple[str, ...]
-    links_meet: bool = False
-    obstacles_meet: bool = False
+    links_meet: bool
+    obstacles_meet: bool
 
 
 def body_names(case: Case) -> BodyNames:
     """The names of a case's bodies."""
     several = len(case.robots) > 1
-    links = [link for placed in case.robots for link in placed.robot.link_names]
-    if several:
-        owned = [
-            f"{placed.robot.name}/{link}"
-            for placed in case.robots
-            for link in placed.robot.link_names
-        ]
-        links = [*owned, *dict.fromkeys(links)]
+    alone = [link for placed in case.robots for link in placed.robot.link_names]
+    table_links = [
+        case.prefix_of(placed) + link for placed in case.robots for link in placed.robot.link_names
+    ]
+    mounted = any(placed.mount is not None for placed in case.robots)
     return BodyNames(
-        tuple(links),
+        tuple(table_links),
+        tuple(dict.fromkeys([*table_links, *alone])),
         tuple(obstacle.name for obstacle in case.obstacles),
-        several or any(placed.self_clearance for placed in case.robots),
-        bool(case.carries)
-        or any(not obstacle.stands for obstacle in case.obstacles)
-        or any(placed.mount is not None for placed in case.robots),
+        links_meet=several or any(placed.self_clearance for placed in case.robots),
+        obstacles_meet=bool(case.carries)
+        or mounted
+        or any(not obstacle.stands for obstacle in case.obstacles),
     )
 
 

@@ -75,7 +75,7 @@ def load_case(path: str | PathLike[str]) -> Case:
         )
         names = body_names(case)
         require_allowances(case.allow, names)
-        profiles = reserved_spaces(given.profiles, path.parent, files, names.links)
+        profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
         _require_mounts(case, entries, scene_at)
         for i, carry in enumerate(case.carries):
             with at(f"carry[{i}].touch"):

@@ -22,12 +22,20 @@ from clearance.world.notice import KINDS
 from clearance.world.timing import Window
 
 
+def _without_stroke(name: str) -> str:
+    if "/" in name:
+        raise BadInput(
+            f"{name!r:.60} is given", valid="no '/', since links of several robots are robot/link"
+        )
+    return name
+
+
 class Robot(StrictModel):
     """A robot, where it stands, what it does, and what of it is measured."""
 
     FILLED = frozenset({"name", "trajectory"})
 
-    name: Name | None = None
+    name: Annotated[Name, AfterValidator(_without_stroke)] | None = None
     urdf: Name
     package_dirs: list[Name] = []
     base: Base = Base()
