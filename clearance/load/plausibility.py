@@ -1,7 +1,7 @@
 """What only a file shows of values that look like a wrong unit: angles as they are written, scales, radii.
 
 Not for: what the case itself shows (`world.plausibility`), and values that cannot be right (`schema`,
-`trajectory_csv`).
+`csv_table`).
 """
 
 from __future__ import annotations
