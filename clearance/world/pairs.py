@@ -50,9 +50,7 @@ class BodyIndex(NamedTuple):
     def name_in(self, case: Case) -> str:
         """Its name; that of a link has its robot's before it where there are several."""
         name = self.own_name_in(case)
-        if self.is_obstacle or len(case.robots) == 1:
-            return name
-        return f"{case.robots[self.i_robot].robot.name}/{name}"
+        return name if self.is_obstacle else case.prefix_of(case.robots[self.i_robot]) + name
 
     def link_in(self, case: Case) -> int:
         """Which of its robot's links it is of."""
@@ -276,7 +274,7 @@ def _links(case: Case, i_robot: int) -> list[BodyIndex]:
 
 def _links_left_out(case: Case, i_robot: int) -> list[Omission]:
     placed = case.robots[i_robot]
-    before = "" if len(case.robots) == 1 else f"{placed.robot.name}/"
+    before = case.prefix_of(placed)
     with_shape = {body.name for body in placed.robot.bodies}
     excluded = frozenset(placed.exclude_links)
     left_out = [
