@@ -25,10 +25,10 @@ from clearance.kernels.motion.clock_tree import (
     new_clock_tree,
 )
 from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.two_clocks import TwoClocks
 from clearance.kernels.motion.unsynchronised import (
     StepsOfClock,
     TwoClockBounds,
-    TwoClocks,
     certify_unsynchronised,
 )
 from clearance.kernels.motion.unsynchronised_steps import (

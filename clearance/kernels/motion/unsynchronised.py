@@ -32,7 +32,6 @@ from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap, hold
 from clearance.kernels.motion.clock_rectangles import (
     ALL_TIMES,
     DEPTH,
-    Band,
     Waiting,
     clipped,
     halves_of,
@@ -45,36 +44,19 @@ from clearance.kernels.motion.clock_rectangles import (
     take_rectangle,
 )
 from clearance.kernels.motion.clock_tree import (
-    ClockTree,
     is_leaf_of_clock,
     middle_leaf,
     motion_of_node,
     row_in_middle,
 )
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
-from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.placed import GROWTH
-from clearance.kernels.motion.world import World
+from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
 
-class TwoClocks(NamedTuple):
-    """What moves by which clock.
-
-    Attributes:
-        world: the bodies; the first of each pair moves by clock a, the second by clock b.
-        path: how all joints move, from step to step of both clocks.
-        tree_a, tree_b: what is known of the spans of either clock.
-        columns: (bodies,) the place of each body among those of its clock.
-        band: which times occur together.
-    """
-
-    world: World
-    path: JointPath
-    tree_a: ClockTree
-    tree_b: ClockTree
-    columns: np.ndarray
-    band: Band
+OUTWARD = 1.0 + 1e-12
+"""Covers the rounding of a sum of a few lengths."""
 
 
 class TwoClockBounds(NamedTuple):
@@ -135,12 +117,14 @@ class RectangleGoal(NamedTuple):
         least: [m] the least distance seen in its intervals of clock a, the greatest of these.
         target: [m] what is to be proven.
         gap: [m] allowed below `least`.
+        is_fine: True if neither side is of several intervals.
         counts: True if a distance in the middle is one of an only interval of clock a, at times in the band.
     """
 
     least: float
     target: float
     gap: float
+    is_fine: bool
     counts: bool
 
 
@@ -190,6 +174,23 @@ def _bound_by_boxes(clocks, rectangle, pair, target):
 
 
 @inline
+def _settled_coarsely(surface, bodies, faces, moved, target, scratch, table):
+    """(a bound [m], True if it is enough or none can be) of a pair over spans of several intervals.
+
+    Args:
+        moved: [m] how far both bodies move from where they are.
+    """
+    limit = (target + moved) * OUTWARD
+    a, b = bodies.frames.a, bodies.frames.b
+    if corners_apart(surface, faces, a, b) < limit:
+        return 0.0, True
+    planes = apart_by_planes(surface, bodies, faces, limit, scratch, table)
+    if planes > limit:
+        return planes - moved, True
+    return 0.0, corners_apart(surface, faces, a, b) < limit
+
+
+@inline
 def _look_at_pair(lent, surface, clocks, rectangle, pair, goal, aim, state, tally, table):
     """What holds of a pair over a rectangle, as a `PairLook`."""
     r, world = rectangle, clocks.world
@@ -206,11 +207,18 @@ def _look_at_pair(lent, surface, clocks, rectangle, pair, goal, aim, state, tall
     pose_b, motion_b, moved_b = _side_of(
         surface, clocks, clocks.tree_b, body_b, r.node_b, whole_b, state.part_b
     )
-    tally[2] += 1
     bodies = PosedPair(
         lent, world.solids[body_a], lent, world.solids[body_b], frames_of(pose_a, pose_b)
     )
     faces = state.witness_faces[pair]
+    one_a = is_leaf_of_clock(clocks.tree_a, r.node_a)
+    if not goal.is_fine and (moved_b > moved_a or not one_a):  # else it may be halved for ever
+        bound, settled = _settled_coarsely(
+            surface, bodies, faces, moved_a + moved_b, goal.target, state.scratch, table
+        )
+        if settled:
+            return PairLook(bound, goal.least, bound >= goal.target, moved_a, moved_b)
+    tally[2] += 1
     motion = PairMotion(motion_a, motion_b, True)
     aim = CertificateGoal(goal.gap, aim.fail, aim.most_parts)
     held = hold(bodies, faces, motion, goal.least, aim, state.scratch, tally[1:], table)
@@ -231,7 +239,8 @@ def _goal_of(clocks, rectangle, aim, bounds, state):
         gap = state.gaps[row]
     one = is_leaf_of_clock(tree, node)
     counts = one and middle_occurs(tree, clocks.tree_b, rectangle, clocks.band)
-    return RectangleGoal(least, target, gap if one else aim.gap, counts)
+    is_fine = one and is_leaf_of_clock(clocks.tree_b, rectangle.node_b)
+    return RectangleGoal(least, target, gap if one else aim.gap, is_fine, counts)
 
 
 @inline

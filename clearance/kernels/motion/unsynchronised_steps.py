@@ -32,7 +32,14 @@ from clearance.kernels.motion.clock_rectangles import (
 )
 from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf
 from clearance.kernels.motion.sweep import NOT_LESS
-from clearance.kernels.search.body_pair import NO_FACE, TO_THE_END, PairQuestion, measure_pair
+from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
+from clearance.kernels.search.body_pair import (
+    NO_FACE,
+    NOTHING_MEASURED,
+    TO_THE_END,
+    PairQuestion,
+    measure_pair,
+)
 from clearance.kernels.search.front import Fronts, PairFront, no_fronts
 from clearance.kernels.search.scratch import Scratch, new_scratch
 
@@ -69,12 +76,16 @@ class StepsState(NamedTuple):
 
 
 class StepsPair(NamedTuple):
-    """A pair at one step of each clock: the rows of both trees, and a bound by boxes [m]."""
+    """A pair at one step of each clock.
+
+    Attributes:
+        bodies: a `PosedPair`. apart: True if boxes say so. within: [m] how near is asked about.
+    """
 
     pair: int
-    row_a: int
-    row_b: int
-    by_boxes: float
+    bodies: PosedPair
+    apart: bool
+    within: float
 
 
 @inline
@@ -86,23 +97,24 @@ def _rows_of(clocks, pair, leaf_a, leaf_b):
 
 
 @inline
-def _measured(lent, clocks, asked, within, state, tally, table):
-    """A pair at one step of each clock as `measure_pair` finds it, where it comes `within` [m]."""
-    world, faces = clocks.world, state.witness_faces[asked.pair]
-    body_a, body_b = world.pairs[asked.pair, 0], world.pairs[asked.pair, 1]
-    pose_a, pose_b = clocks.tree_a.poses[asked.row_a], clocks.tree_b.poses[asked.row_b]
-    bodies = PosedPair(
-        lent,
-        world.solids[body_a],
-        lent,
-        world.solids[body_b],
-        frames_of(rigid(pose_a), rigid(pose_b)),
+def _bodies_at(lent, clocks, pair, row_a, row_b):
+    """A pair's bodies at one step of each clock."""
+    solids, pairs = clocks.world.solids, clocks.world.pairs
+    pose_a, pose_b = rigid(clocks.tree_a.poses[row_a]), rigid(clocks.tree_b.poses[row_b])
+    return PosedPair(
+        lent, solids[pairs[pair, 0]], lent, solids[pairs[pair, 1]], frames_of(pose_a, pose_b)
     )
+
+
+@inline
+def _measured(asked, state, tally, table):
+    """A `StepsPair` as `measure_pair` finds it."""
+    faces = state.witness_faces[asked.pair]
     question = PairQuestion(
-        within, within, faces[0], faces[1], asked.by_boxes > 0.0, TO_THE_END, False
+        asked.within, asked.within, faces[0], faces[1], asked.apart, TO_THE_END, False
     )
     front = PairFront(state.fronts, 0, 0.0)
-    found = measure_pair(table, bodies, question, front, state.scratch)
+    found = measure_pair(table, asked.bodies, question, front, state.scratch)
     faces[0], faces[1] = found.face_a, found.face_b
     tally[2] += 1
     tally[3] += found.tally.nodes
@@ -118,7 +130,9 @@ def _note(row, step_b, pair, hit, found):
     """
     best = found.gaps_sq[row]
     is_before = pair < found.pair[row] or (pair == found.pair[row] and step_b < found.step_b[row])
-    if hit.face_a == 2**62 or hit.gap_sq > best or (hit.gap_sq == best and not is_before):
+    if hit.face_a == 2**62 or hit.gap_sq == np.inf:
+        return False
+    if hit.gap_sq > best or (hit.gap_sq == best and not is_before):
         return False
     found.gaps_sq[row], found.pair[row], found.step_b[row] = hit.gap_sq, pair, step_b
     found.clearance[row] = np.sqrt(hit.gap_sq)
@@ -134,8 +148,8 @@ def _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table):
     bound = bound_between(clocks.tree_a.boxes, row_a, clocks.tree_b.boxes, row_b, within)
     if bound > within:
         return False
-    asked = StepsPair(pair, row_a, row_b, bound)
-    hit = _measured(lent, clocks, asked, within, state, tally, table).hit
+    bodies = _bodies_at(lent, clocks, pair, row_a, row_b)
+    hit = _measured(StepsPair(pair, bodies, bound > 0.0, within), state, tally, table).hit
     return _note(row, step_b, pair, hit, found)
 
 
@@ -191,7 +205,39 @@ def _is_settled(clocks, rectangle, pair, found):
 
 
 @inline
-def _look(lent, clocks, rectangle, count, state, found, tally, table):
+def _within(clocks, node, found):
+    """[m] the least distance seen at the steps of a node, the greatest of these."""
+    within = 0.0
+    for row in range(clocks.tree_a.first[node], clocks.tree_a.last[node]):
+        within = max(within, found.clearance[row])
+    return within
+
+
+@inline
+def _look_at_pair(surface, asked, seen_enough, state, tally, table):
+    """(what is known of a pair in the middle of a rectangle, True if it is farther than was asked).
+
+    Args:
+        seen_enough: [m] what comes nearer is to be measured; of what does not it is enough to know that it is not
+            farther than was asked.
+    """
+    faces, bodies = state.witness_faces[asked.pair], asked.bodies
+    a, b = bodies.frames.a, bodies.frames.b
+    seen = corners_apart(surface, faces, a, b) * NOT_LESS
+    if seen_enough < seen < asked.within:
+        return NOTHING_MEASURED, False
+    planes = apart_by_planes(surface, bodies, faces, asked.within, state.scratch, table)
+    if planes > asked.within:
+        return NOTHING_MEASURED, True
+    seen = corners_apart(surface, faces, a, b) * NOT_LESS
+    if seen_enough < seen < asked.within:
+        return NOTHING_MEASURED, False
+    near = _measured(asked, state, tally, table)
+    return near, near.lower_bound > asked.within
+
+
+@inline
+def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
     """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time)."""
     r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
     pairs, columns = clocks.world.pairs, clocks.columns
@@ -204,23 +250,23 @@ def _look(lent, clocks, rectangle, count, state, found, tally, table):
         pair = listed[place]
         if _is_settled(clocks, r, pair, found):
             continue
-        within = 0.0
-        for row in range(tree_a.first[r.node_a], tree_a.last[r.node_a]):
-            within = max(within, found.clearance[row])
         moved_a = tree_a.moved[r.node_a, columns[pairs[pair, 0]]]
         moved_b = tree_b.moved[r.node_b, columns[pairs[pair, 1]]]
         row_a, row_b = _rows_of(clocks, pair, leaf_a, leaf_b)
         slack = CHAIN_SLACK * (tree_a.boxes.slacks[row_a] + tree_b.boxes.slacks[row_b])
-        within = (within + moved_a + moved_b) * NOT_LESS + slack
+        within = (_within(clocks, r.node_a, found) + moved_a + moved_b) * NOT_LESS + slack
         bound = bound_between(tree_a.boxes, row_a, tree_b.boxes, row_b, within)
         if bound > within:
             tally[1] += 1
             continue
-        asked = StepsPair(pair, row_a, row_b, bound)
-        near = _measured(lent, clocks, asked, within, state, tally, table)
+        asked = StepsPair(pair, _bodies_at(lent, clocks, pair, row_a, row_b), bound > 0.0, within)
+        seen_enough = found.clearance[leaf_a] if occurs else 0.0
+        if one_a and one_b:
+            seen_enough = np.inf
+        near, is_far = _look_at_pair(surface, asked, seen_enough, state, tally, table)
         if occurs:
             _note(leaf_a, tree_b.start + leaf_b, pair, near.hit, found)
-        if near.lower_bound <= within and not (one_a and one_b):
+        if not (is_far or (one_a and one_b)):
             listed[n_left] = pair
             n_left += 1
             most_a, most_b = max(most_a, moved_a), max(most_b, moved_b)
@@ -263,7 +309,7 @@ def _least_of_steps(surface, clocks, state, found, tally, table):
         if not meets_band(tree_a, tree_b, r, clocks.band):
             continue
         tally[0] += 1
-        n_left, in_a = _look(lent, clocks, r, count, state, found, tally, table)
+        n_left, in_a = _look(lent, surface, clocks, r, count, state, found, tally, table)
         if n_left == 0:
             continue
         assert n_waiting + 2 <= DEPTH
