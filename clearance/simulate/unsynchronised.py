@@ -1,4 +1,4 @@
-"""How close two motions come whose clocks nothing ties, or only to within a slack: at the steps, and proven between.
+"""How close two motions come whose clocks nothing ties, or only to within a slack: at steps, and proven between.
 
 Robots of two controllers start at unknown times, or drift: then every time of the one can occur with every time of
 the other that is at most the slack away. For each step, and each interval, of the first clock this asks for the
@@ -84,7 +84,7 @@ class UnsynchronisedIntervals:
     Attributes:
         lower_bound: (n - 1,) [m] proven. upper_bound: (n - 1,) [m] the least distance seen.
         share_a: (n - 1,) where in the interval that was, 0 to 1.
-        step_b, share_b: (n - 1,) the step of the second clock before it, and where in the interval after that step.
+        step_b, share_b: (n - 1,) the step of the second clock before it, and where in the interval after it.
         pair: (n - 1,) which pair.
     """
 

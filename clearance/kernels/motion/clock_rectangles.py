@@ -29,7 +29,7 @@ class Band(NamedTuple):
 
 
 class Rectangle(NamedTuple):
-    """A span of each clock's time: a node, and of a leaf that is an interval the part from `low` to `high`, 0 to 1."""
+    """A span of each clock's time: a node, and of a leaf the part from `low` to `high`, 0 to 1."""
 
     node_a: int
     node_b: int

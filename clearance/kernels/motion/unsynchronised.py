@@ -1,4 +1,4 @@
-"""A proven lower bound on the clearance of two bodies' motions that no common clock ties, or only to within a slack.
+"""A proven lower bound on the clearance of motions by two clocks that nothing ties, or only to within a slack.
 
 For each interval of clock a: over all its times, all times of clock b within the band, and all pairs of a body of
 either clock. Rectangles of both times (`clock_rectangles`) are looked at with the motion bounds of both clocks'
@@ -53,7 +53,6 @@ from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
 from clearance.kernels.search.scratch import Scratch, new_scratch
-
 
 OUTWARD = 1.0 + 1e-12
 """Covers the rounding of a sum of a few lengths."""
