@@ -3,8 +3,8 @@
     python scripts/bench/unsynchronised.py [--robots FOLDER] [--slack S] [--steps N] [--jobs J] [--grid N]
 
 Two arms stand face to face and wave, 300 steps each in 10 s; every pair of a link of either is measured. Beside
-the proof stands the least of a grid of N x N pairs of times, by single questions of the pairs whose balls come near
-enough: it may not be below the proof. Seconds are those of the processor, compiled, medians of three.
+the proof stands the least of a grid of N x N pairs of times, by single questions of the pairs whose balls come
+near enough: it may not be below the proof. Seconds are those of the processor, compiled, medians of three.
 FOLDER holds `panda_vamp` and `kuka_iiwa_pybullet`.
 """
 
