@@ -124,11 +124,14 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
 
 
 def _of_section(plan: MeasurementPlan, section: Section, resources: Resources) -> SectionAnswer:
-    own = resources.of_section(section.number, len(plan.sections.sections))
-    found = _measurement(plan.question, section, own)
-    certificate = (
-        _certificate(plan.question, section, found, own) if plan.question.certify else None
-    )
+    own, question = resources.of_section(section.number, len(plan.sections.sections)), plan.question
+    if not section.tied:
+        from clearance.simulate.two_clock_rows import measure_two_clocks
+
+        gap = question.certify_gap if question.certify else None
+        return SectionAnswer(section, *measure_two_clocks(section.of_two_clocks, gap, own))
+    found = _measurement(question, section, own)
+    certificate = _certificate(question, section, found, own) if question.certify else None
     return SectionAnswer(section, found, certificate)
 
 
@@ -178,13 +181,21 @@ def _notices(plan: MeasurementPlan, certificate: Certificate | None) -> tuple[No
     measured = inside.notices(plan.sections) if question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [_nothing_measured(phase) for phase in plan.sections.empty]
-    return worst_first([*question.case.notices, *measured, *proven, *empty])
+    untied = _not_cross_checked(plan) if question.cross_check else ()
+    return worst_first([*question.case.notices, *measured, *proven, *empty, *untied])
 
 
 def _nothing_measured(phase: Phase) -> Notice:
     start, end = phase.span
     text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
     return Notice(Severity.WARNING, "pairs", text)
+
+
+def _not_cross_checked(plan: MeasurementPlan) -> Iterator[Notice]:
+    untied = {pair for one in plan.sections.sections if not one.tied for pair in one.pairs}
+    if untied:
+        text = f"{len(untied)} pairs whose clocks are not tied are not cross-checked: FCL is asked about one time"
+        yield Notice(Severity.WARNING, "cross-check", text)
 
 
 def _profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:

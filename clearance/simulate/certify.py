@@ -60,7 +60,7 @@ def certify_motion(
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
         resources: threads, progress, and where the bounds are kept.
     """
-    gap, notices = _no_finer_than_rounding(what.case, what.motions, gap)
+    gap, notices = no_finer_than_rounding(what.case, what.motions, gap)
     work = _Work(what, _Question.of(found, what.limits, need, gap))
     n_steps = what.motions[0].n_steps
     log = _Log(resources.rows, "certify", n_steps, work.question)
@@ -79,7 +79,7 @@ def certify_motion(
     )
 
 
-def _no_finer_than_rounding(
+def no_finer_than_rounding(
     case: Case, motions: Sequence[Motion], gap: float
 ) -> tuple[float, tuple[Notice, ...]]:
     """The gap that can be had, and a warning where that is not what was asked for."""
@@ -176,7 +176,7 @@ class _Work:
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
-        world, surface = self.what.layout.world, _with_whole_faces(self.what.layout.surface)
+        world, surface = self.what.layout.world, with_whole_faces(self.what.layout.surface)
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
@@ -196,7 +196,7 @@ def _no_counts() -> np.ndarray:
     return np.zeros(len(COUNTERS), dtype=np.int64)
 
 
-def _with_whole_faces(surface: Surface) -> Surface:
+def with_whole_faces(surface: Surface) -> Surface:
     """The surface in which every face owns all its corners and edges, not only those it answers for."""
     starts, corners = surface.face_starts, surface.face_vertices
     return surface._replace(

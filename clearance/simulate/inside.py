@@ -30,6 +30,8 @@ def notices(plan: SectionPlan) -> tuple[Notice, ...]:
     """One notice for each pair of which it is open at some step whether one body is inside the other."""
     found: dict[int, Notice] = {}
     for section in plan.sections:
+        if section.other not in (None, section.phase):
+            continue  # what is apart at one time, and at all pairs of times, is inside at none
         for place, notice in _of_section(section):
             found.setdefault(place, notice)
     return tuple(notice for _, notice in sorted(found.items()))

@@ -8,7 +8,7 @@ least distance over all such times of the second. Not for: robots on one clock (
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -37,20 +37,16 @@ from clearance.kernels.motion.unsynchronised_steps import (
 )
 from clearance.kernels.motion.world import World
 from clearance.query.distance import distance
-from clearance.simulate.certify import (
-    _joint_path,
-    _no_finer_than_rounding,
-    _with_whole_faces,
-)
+from clearance.simulate.certify import joint_path, no_finer_than_rounding, with_whole_faces
 from clearance.simulate.layout import lay_out
+from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
 from clearance.simulate.parts import in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
-from clearance.world.case import Case
-from clearance.world.kinematics import link_poses
-from clearance.world.motion import Motion
+from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks, actor_of
+from clearance.world.forest import forest_of, positions_between
 from clearance.world.notice import Notice
-from clearance.world.pairs import Pair
+from clearance.world.pairs import BodyIndex
 
 COUNTERS = ("rectangles", "apart_by_boxes", "queries", "node_tests", "polygon_tests")
 
@@ -97,33 +93,12 @@ class UnsynchronisedIntervals:
 
 
 @dataclass(frozen=True, eq=False)
-class UnsynchronisedMoment:
-    """A time of each clock, and the distance of a pair then.
-
-    Attributes:
-        time_a, time_b: [s] of the first and the second clock.
-        clearance: [m] of the pair; 0 for a contact.
-        link, other: the pair's bodies, of the first and of the second clock.
-        points: (2, 3) witness points in the world [m].
-        positions: of each robot's moving joints [rad] or [m], at the time of its clock.
-    """
-
-    time_a: float
-    time_b: float
-    clearance: float
-    link: str
-    other: str
-    points: np.ndarray
-    positions: tuple[np.ndarray, ...]
-
-
-@dataclass(frozen=True, eq=False)
 class UnsynchronisedAnswers:
     """What is known of two clocks' motions.
 
     Attributes:
         slack: [s]. gap: [m] how far lower bounds may be below the upper bounds.
-        steps, intervals: of the first clock.
+        steps, intervals: of the first clock; no intervals where only the steps were looked at.
         tally: counters by name, of the steps and of the intervals.
         moment_of: the moment of an interval at which its upper bound was seen.
     """
@@ -131,72 +106,71 @@ class UnsynchronisedAnswers:
     slack: float
     gap: float
     steps: UnsynchronisedSteps
-    intervals: UnsynchronisedIntervals
+    intervals: UnsynchronisedIntervals | None
     steps_tally: dict[str, int]
     intervals_tally: dict[str, int]
-    moment_of: Callable[[int], UnsynchronisedMoment] = field(repr=False)
+    moment_of: Callable[[int], Moment] = field(repr=False)
     notices: tuple[Notice, ...] = ()
 
     @property
     def worst(self) -> int:
         """The first interval of least upper bound."""
+        assert self.intervals is not None
         return int(np.argmin(self.intervals.upper_bound))
 
 
 def least_unsynchronised(
-    case: Case,
-    motions: Sequence[Motion],
-    pairs: Sequence[Pair],
-    slack: float,
-    gap: float,
-    resources: Resources = DEFAULT_RESOURCES,
+    what: PairsOfTwoClocks, gap: float | None, resources: Resources = DEFAULT_RESOURCES
 ) -> UnsynchronisedAnswers:
-    """The least distances of `pairs` whose first bodies move by one clock and whose second bodies by another.
+    """The least distances of pairs of two clocks.
 
     Args:
-        motions: one for each robot, with the same steps, each by its own clock.
-        pairs: both bodies of each are links; no robot is on both sides.
-        slack: [s] by which the clocks differ at most; infinite where nothing ties them.
-        gap: [m] the lower bounds are within it of a distance that occurs.
+        gap: [m] the lower bounds are within it of a distance that occurs; None to look at the steps only.
 
     Raises:
         BadTime: a slack that is no time. BadInput: pairs that are not of two clocks.
     """
-    if not slack >= 0.0:
-        raise BadTime(f"a slack of {slack} s", valid="0 or more, or infinite")
-    _require_two_clocks(pairs)
-    gap, notices = _no_finer_than_rounding(case, motions, gap)
-    work = _Work.of(case, motions, pairs, slack, resources)
+    if not what.slack >= 0.0:
+        raise BadTime(f"a slack of {what.slack} s", valid="0 or more, or infinite")
+    _require_two_clocks(what)
+    work = _Work.of(what, resources)
     steps, steps_tally = work.steps()
-    goal = CertificateGoal(gap, case.limits.fail, MOST_RECTANGLES)
+    if gap is None:
+        return UnsynchronisedAnswers(what.slack, np.inf, steps, None, steps_tally, {}, _no_moment)
+    finest = [no_finer_than_rounding(side.case, side.motions, gap) for side in (what.a, what.b)]
+    gap = max(gap for gap, _ in finest)
+    goal = CertificateGoal(gap, what.limits.fail, MOST_RECTANGLES)
     intervals, intervals_tally = work.intervals(steps, goal)
-    moments = _Moments(case, motions, pairs, intervals)
     return UnsynchronisedAnswers(
-        slack,
+        what.slack,
         gap,
         steps,
         intervals,
         steps_tally,
         intervals_tally,
-        moments.of_interval,
-        notices,
+        _Moments(what, intervals).of_interval,
+        tuple(dict.fromkeys(notice for _, notices in finest for notice in notices)),
     )
 
 
-def _require_two_clocks(pairs: Sequence[Pair]) -> None:
-    first = {pair.a.i_robot for pair in pairs}
-    second = {pair.b.i_robot for pair in pairs}
-    if not pairs or first & second or any(pair.b.is_obstacle for pair in pairs):
+def _no_moment(interval: int) -> Moment:
+    raise AssertionError("nothing is proven of intervals")
+
+
+def _require_two_clocks(what: PairsOfTwoClocks) -> None:
+    first = {actor_of(pair.a) for pair in what.pairs}
+    if not what.pairs or first & what.actors_of_b:
         raise BadInput(
             "pairs that are not of two clocks",
-            valid="links of some robots against links of other robots, one pair or more",
+            valid="bodies of some actors against bodies of other actors, one pair or more",
         )
 
 
 @dataclass(frozen=True, eq=False)
 class _Work:
-    """What all parts share."""
+    """What all parts share. Rows of the path are the steps of clock b, then those of clock a."""
 
+    what: PairsOfTwoClocks
     surface: Surface
     world: World
     path: JointPath
@@ -206,31 +180,30 @@ class _Work:
     resources: Resources
 
     @staticmethod
-    def of(
-        case: Case,
-        motions: Sequence[Motion],
-        pairs: Sequence[Pair],
-        slack: float,
-        resources: Resources,
-    ) -> _Work:
-        layout = lay_out(case, pairs)
+    def of(what: PairsOfTwoClocks, resources: Resources) -> _Work:
+        layout = lay_out(what.case, what.pairs)
         world = layout.world
         bodies = np.unique(world.pairs[:, 0]), np.unique(world.pairs[:, 1])
         columns = np.zeros(len(world.frames), dtype=np.int64)
         for side in bodies:
             columns[side] = np.arange(len(side))
-        path = _joint_path(world.links, motions, slice(0, motions[0].n_steps))
-        rounding = TIME_ROUNDING * float(np.abs(path.times).max() + slack)
-        band = Band(float(slack), rounding if math.isfinite(rounding) else 0.0)
-        return _Work(layout.surface, world, path, band, bodies, columns, resources)
+        times = np.concatenate([what.b.times, what.a.times])
+        path = joint_path(world.links, times, *what.columns())
+        rounding = TIME_ROUNDING * float(np.abs(times).max() + what.slack)
+        band = Band(float(what.slack), rounding if math.isfinite(rounding) else 0.0)
+        return _Work(what, layout.surface, world, path, band, bodies, columns, resources)
 
     @property
-    def n_steps(self) -> int:
-        return len(self.path.times)
+    def n_a(self) -> int:
+        return len(self.what.a.times)
+
+    @property
+    def n_b(self) -> int:
+        return len(self.what.b.times)
 
     def steps(self) -> tuple[UnsynchronisedSteps, dict[str, int]]:
         """The least of each step."""
-        n = self.n_steps
+        n = self.n_a
         found = StepsFound(
             np.empty(n),
             np.empty(n, np.int64),
@@ -238,48 +211,53 @@ class _Work:
             np.empty((n, 2, 3)),
             np.empty(n),
         )
-        tree_b = self._tree(fill_steps_tree, slice(0, n), 1)
+        tree_b = self._tree(fill_steps_tree, slice(0, self.n_b), 1)
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
-            clocks = self._clocks(self._tree(fill_steps_tree, span, 0), tree_b)
+            clocks = self._clocks(self._tree(fill_steps_tree, self._of_a(span), 0), tree_b)
             own = StepsFound(*(column[span] for column in found))
             call(least_of_unsynchronised_steps, self.surface, clocks, own, counts)
             return span.stop, counts
 
         tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), 0)
+        none = np.isinf(found.clearance)  # no step of the other clock is in the band
+        found.pair[none], found.points[none] = -1, np.nan
         return UnsynchronisedSteps(found.clearance, found.pair, found.step_b, found.points), tally
 
     def intervals(
         self, steps: UnsynchronisedSteps, goal: CertificateGoal
     ) -> tuple[UnsynchronisedIntervals, dict[str, int]]:
         """What is proven of each interval."""
-        n = self.n_steps - 1
+        n = self.n_a - 1
         numbers, places = np.empty((4, n)), np.empty((2, n), dtype=np.int64)
         bounds = TwoClockBounds(
             numbers[0], numbers[1], numbers[2], places[0], numbers[3], places[1]
         )
-        if n > 0:
-            surface = _with_whole_faces(self.surface)
-            tree_b = self._tree(fill_intervals_tree, slice(0, n), 1)
+        tally = dict.fromkeys(COUNTERS, 0)
+        if n > 0 and self.n_b > 1:
+            surface = with_whole_faces(self.surface)
+            tree_b = self._tree(fill_intervals_tree, slice(0, self.n_b - 1), 1)
 
             def run_part(span: slice) -> tuple[int, np.ndarray]:
                 counts = np.zeros(len(COUNTERS), dtype=np.int64)
-                clocks = self._clocks(self._tree(fill_intervals_tree, span, 0), tree_b)
+                tree_a = self._tree(fill_intervals_tree, self._of_a(span), 0)
                 own = TwoClockBounds(*(column[span] for column in bounds))
                 ends = slice(span.start, span.stop + 1)
                 known = StepsOfClock(steps.clearance[ends], steps.step_b[ends], steps.pair[ends])
+                clocks = self._clocks(tree_a, tree_b)
                 call(certify_unsynchronised, surface, clocks, known, goal, own, counts)
                 return span.stop, counts
 
-            results = in_order(run_part, parts(n), self.resources.n_threads)
-            tally = self._tally(results, self.n_steps)
-        else:
-            tally = dict.fromkeys(COUNTERS, 0)
+            tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), self.n_a)
         found = UnsynchronisedIntervals(
             bounds.lower, bounds.upper, bounds.share_a, bounds.step_b, bounds.share_b, bounds.pair
         )
         return found, tally
+
+    def _of_a(self, span: slice) -> slice:
+        """The rows of the path at some steps or intervals of clock a."""
+        return slice(self.n_b + span.start, self.n_b + span.stop)
 
     def _tree(self, fill: Callable[..., None], span: slice, i_clock: int) -> ClockTree:
         bodies = self.bodies[i_clock]
@@ -296,7 +274,7 @@ class _Work:
         for done, counts in results:
             tally += counts
             if self.resources.progress:
-                self.resources.progress(n_before + done, 2 * self.n_steps - 1)
+                self.resources.progress(n_before + done, 2 * self.n_a - 1)
         return dict(zip(COUNTERS, tally.tolist(), strict=True))
 
 
@@ -304,44 +282,55 @@ class _Work:
 class _Moments:
     """Measures the pair of an interval at the two times at which it was seen nearest."""
 
-    case: Case
-    motions: Sequence[Motion]
-    pairs: Sequence[Pair]
+    what: PairsOfTwoClocks
     intervals: UnsynchronisedIntervals
 
-    def of_interval(self, interval: int) -> UnsynchronisedMoment:
+    def of_interval(self, interval: int) -> Moment:
         """The moment at which the upper bound of an interval was seen."""
-        found = self.intervals
-        pair = self.pairs[int(found.pair[interval])]
-        at_a = interval, float(found.share_a[interval])
-        at_b = int(found.step_b[interval]), float(found.share_b[interval])
-        second = {pair.b.i_robot for pair in self.pairs}
-        positions = tuple(
-            motion.positions_after(*(at_b if i in second else at_a))
-            for i, motion in enumerate(self.motions)
+        found, what, case = self.intervals, self.what, self.what.case
+        pair = what.pairs[int(found.pair[interval])]
+        share = float(found.share_a[interval])
+        at_a, at_b = (
+            (interval, share),
+            (int(found.step_b[interval]), float(found.share_b[interval])),
         )
-        poses = [
-            link_poses(placed, at[None])
-            for placed, at in zip(self.case.robots, positions, strict=True)
-        ]
+        poses = self._poses(what.a, at_a), self._poses(what.b, at_b)
         near = distance(
-            pair.a.shape_in(self.case),
-            pair.b.shape_in(self.case),
-            pose_a=pair.a.poses_in(self.case, poses)[0],
-            pose_b=pair.b.poses_in(self.case, poses)[0],
+            pair.a.shape_in(case),
+            pair.b.shape_in(case),
+            pose_a=pair.a.poses_in(what.a.case, poses[0])[0],
+            pose_b=pair.b.poses_in(what.b.case, poses[1])[0],
         )
         touches = bool(found.upper_bound[interval] <= 0.0)
-        links, others = pair_names(self.case, [pair])
-        return UnsynchronisedMoment(
-            time_a=self._time(*at_a),
-            time_b=self._time(*at_b),
+        names = pair_names(case, [pair])
+        positions = tuple(
+            what.b.motions[i].positions_after(*at_b)
+            if BodyIndex(i, 0) in what.actors_of_b
+            else motion.positions_after(*at_a)
+            for i, motion in enumerate(what.a.motions)
+        )
+        point_b = tuple(near.point_b.tolist())
+        return Moment(
+            step=interval + int(share == 1.0),
+            time=_time(what.a, *at_a),
+            between=0.0 < share < 1.0,
             clearance=0.0 if touches else near.distance,
-            link=links[0],
-            other=others[0],
-            points=np.stack([near.point_b if touches else near.point_a, near.point_b]),
+            link=names[0][0],
+            obstacle=names[1][0],
+            point_link=point_b if touches else tuple(near.point_a.tolist()),
+            point_obstacle=point_b,
             positions=positions,
+            share=share % 1.0,
+            touches=touches or near.distance <= 0.0,
+            time_b=_time(what.b, *at_b),
         )
 
-    def _time(self, step: int, share: float) -> float:
-        before, after = self.motions[0].times[step : step + 2]
-        return float(before + share * (after - before))
+    @staticmethod
+    def _poses(side: ClockMotion, at: tuple[int, float]) -> np.ndarray:
+        columns = positions_between(side.case, side.motions, *at)
+        return forest_of(side.case).poses(columns[None])
+
+
+def _time(side: ClockMotion, step: int, share: float) -> float:
+    before, after = side.times[step : step + 2]
+    return float(before + share * (after - before))

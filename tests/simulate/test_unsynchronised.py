@@ -10,13 +10,15 @@ from hypothesis import strategies as st
 import clearance as cl
 from clearance.errors import BadInput, BadTime
 from clearance.simulate.certify import certify_motion
-from clearance.simulate.kinematic import kinematic_motion
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
+from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import Pair, measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
@@ -60,7 +62,12 @@ def sliding(name: str, start, way, size=(0.1, 0.1, 0.1), n_steps: int = 6) -> Pl
 def asked(case: cl.Case, slack: float, *, jobs: int = 1, pairs=None) -> UnsynchronisedAnswers:
     motions = [kinematic_motion(placed) for placed in case.robots]
     pairs = measured_pairs(case)[0] if pairs is None else pairs
-    return least_unsynchronised(case, motions, pairs, slack, GAP, Resources(jobs))
+    return least_unsynchronised(whole_run(case, motions, pairs, slack), GAP, Resources(jobs))
+
+
+def whole_run(case, motions, pairs, slack):
+    side = ClockMotion(case, motions)
+    return PairsOfTwoClocks(side, side, pairs, case.limits, slack)
 
 
 def distances(case: cl.Case, moments_a: np.ndarray, moments_b: np.ndarray, near: np.ndarray):
@@ -73,8 +80,8 @@ def distances(case: cl.Case, moments_a: np.ndarray, moments_b: np.ndarray, near:
     pairs = measured_pairs(case)[0]
     found = np.full((len(pairs), len(moments_a), len(moments_b)), np.inf)
     for p, pair in enumerate(pairs):
-        of_a = pair.a.poses_in(case, [poses[0], poses[1]])
-        of_b = pair.b.poses_in(case, [poses[0], poses[1]])
+        of_a = pair.a.poses_in(case, np.concatenate(poses, axis=1))
+        of_b = pair.b.poses_in(case, np.concatenate(poses, axis=1))
         shapes = pair.a.shape_in(case), pair.b.shape_in(case)
         for i, k in np.argwhere(near):
             found[p, i, k] = cl.distance(*shapes, pose_a=of_a[i], pose_b=of_b[k]).distance
@@ -139,10 +146,10 @@ def test_the_moment_of_an_interval_has_its_upper_bound(cubic, slack):
     for i in range(8):
         moment = found.moment_of(i)
         times = case.robots[0].asked.times
-        assert times[i] <= moment.time_a <= times[i + 1]
-        assert abs(moment.time_a - moment.time_b) <= slack + 1e-12
+        assert times[i] <= moment.time <= times[i + 1]
+        assert abs(moment.time - moment.time_b) <= slack + 1e-12
         assert moment.clearance == pytest.approx(found.intervals.upper_bound[i], abs=1e-9)
-        apart = np.linalg.norm(moment.points[0] - moment.points[1])
+        apart = np.linalg.norm(np.subtract(moment.point_link, moment.point_obstacle))
         assert apart == pytest.approx(moment.clearance, abs=1e-9)
 
 
@@ -156,8 +163,10 @@ def test_boxes_that_come_towards_one_another():
     assert np.allclose(found.intervals.upper_bound, steps[1:], rtol=0.0, atol=1e-12)
     assert np.allclose(found.intervals.lower_bound, steps[1:], rtol=0.0, atol=1e-12 + GAP)
     moment = found.moment_of(found.worst)
-    assert (moment.time_a, moment.time_b) == (1.0, 1.0)
-    assert moment.points[:, 0].tolist() == pytest.approx([1.05, 1.95], abs=1e-12)
+    assert (moment.time, moment.time_b) == (1.0, 1.0)
+    assert [moment.point_link[0], moment.point_obstacle[0]] == pytest.approx(
+        [1.05, 1.95], abs=1e-12
+    )
 
 
 @pytest.mark.parametrize("slack", [0.0, 0.1, 0.2, 0.29])
@@ -216,10 +225,10 @@ def test_without_slack_it_is_what_one_clock_has(seed, cubic):
     case = two_robots(seed, cubic=cubic)
     motions = [kinematic_motion(placed) for placed in case.robots]
     pairs = measured_pairs(case)[0]
-    one = measure(case, motions, pairs)
-    tied = certify_motion(case, motions, pairs, one, GAP)
+    tied_pairs = PairsInMotion(case, motions, pairs)
+    tied = certify_motion(tied_pairs, measure(tied_pairs), GAP)
     found = asked(case, 0.0)
-    assert np.array_equal(found.steps.clearance, one.clearance)
+    assert np.array_equal(found.steps.clearance, measure(tied_pairs).clearance)
     assert found.steps.step_b.tolist() == list(range(9))
     bounds = found.intervals
     assert (bounds.lower_bound <= tied.upper_bound[:-1] + 1e-12).all()

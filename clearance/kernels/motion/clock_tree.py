@@ -17,10 +17,10 @@ from clearance.kernels.features.bounds import displacement
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes, place_box
 from clearance.kernels.motion.certify import (
-    _go_to,
-    _motion_bound_at,
-    _motion_bound_in,
-    _new_middle,
+    go_to_middle,
+    motion_bound_at,
+    motion_bound_in,
+    new_middle,
 )
 from clearance.kernels.motion.joint_motion_bound import MotionBound, motion_bound_of_box
 from clearance.kernels.motion.kinematics import place_by_link
@@ -71,6 +71,12 @@ def new_clock_tree(start, n_leaves, n_bodies):
 
 
 @inline(force=True)
+def n_leaves_of(tree):
+    """How many steps, or intervals, it is of."""
+    return (len(tree.first) + 1) // 2
+
+
+@inline(force=True)
 def is_leaf_of_clock(tree, node):
     """True if a node is one step or one interval."""
     return tree.left[node] < 0
@@ -92,7 +98,7 @@ def row_in_middle(tree, node, column):
 def motion_of_node(tree, node, column):
     """The `MotionBound` of a body over a node, about its pose in the middle leaf."""
     if is_leaf_of_clock(tree, node):
-        return _motion_bound_at(tree.motion_bounds, row_in_middle(tree, node, column))
+        return motion_bound_at(tree.motion_bounds, row_in_middle(tree, node, column))
     still = Vec3(0.0, 0.0, 0.0)
     return MotionBound(still, still, tree.moved[node, column], ANY_TURN)
 
@@ -151,7 +157,7 @@ def _fill_moved(surface, world, bodies, tree):
             most = 0.0
             for leaf in range(tree.first[node], tree.last[node]):
                 row = leaf * k + column
-                moved = motion_bound_of_box(box, _motion_bound_at(tree.motion_bounds, row))
+                moved = motion_bound_of_box(box, motion_bound_at(tree.motion_bounds, row))
                 if not is_leaf_of_clock(tree, node):
                     moved += displacement(surface, root, before, tree.poses[row])
                 most = max(most, moved)
@@ -166,7 +172,7 @@ def fill_steps_tree(surface, world, path, bodies, tree):
         path: a `JointPath` of all steps. bodies: (k,) those of the clock, each carried by a link.
     """
     n_leaves = len(tree.poses) // len(bodies)
-    middle = _new_middle(len(world.links.parents))
+    middle = new_middle(len(world.links.parents))
     _halve(tree, n_leaves)
     for leaf in range(n_leaves):
         place_by_link(world.links, path.positions[tree.start + leaf], middle.poses)
@@ -182,13 +188,13 @@ def fill_steps_tree(surface, world, path, bodies, tree):
 def fill_intervals_tree(surface, world, path, bodies, tree):
     """Fills a tree whose leaves are the intervals between steps; arguments as above."""
     n_leaves = len(tree.poses) // len(bodies)
-    middle = _new_middle(len(world.links.parents))
+    middle = new_middle(len(world.links.parents))
     _halve(tree, n_leaves)
     for leaf in range(n_leaves):
-        _go_to(world.links, path, tree.start + leaf, 0.0, 1.0, middle)
+        go_to_middle(world.links, path, tree.start + leaf, 0.0, 1.0, middle)
         _fill_leaf(surface, world, bodies, leaf, middle, tree)
         for column in range(len(bodies)):
-            bound = _motion_bound_in(surface, world, bodies[column], middle)
+            bound = motion_bound_in(surface, world, bodies[column], middle)
             _note_motion_bound(bound, tree.motion_bounds[leaf * len(bodies) + column])
     _fill_moved(surface, world, bodies, tree)
     for node in range(len(tree.first)):

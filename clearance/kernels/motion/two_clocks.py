@@ -30,7 +30,7 @@ class TwoClocks(NamedTuple):
 
     Attributes:
         world: the bodies; the first of each pair moves by clock a, the second by clock b.
-        path: how all joints move, from step to step of both clocks.
+        path: how all joints move: first from step to step of clock b, then of clock a.
         tree_a, tree_b: what is known of the spans of either clock.
         columns: (bodies,) the place of each body among those of its clock.
         band: which times occur together.

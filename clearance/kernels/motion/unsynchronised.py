@@ -24,9 +24,9 @@ from clearance.kernels.motion.certify import (
     WIDER,
     CertificateGoal,
     IntervalMiddle,
-    _go_to,
-    _motion_bound_in,
-    _new_middle,
+    go_to_middle,
+    motion_bound_in,
+    new_middle,
 )
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap, hold
 from clearance.kernels.motion.clock_rectangles import (
@@ -47,6 +47,7 @@ from clearance.kernels.motion.clock_tree import (
     is_leaf_of_clock,
     middle_leaf,
     motion_of_node,
+    n_leaves_of,
     row_in_middle,
 )
 from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
@@ -144,7 +145,7 @@ def _bring(clocks, tree, node, low, high, at, part):
     leaf = tree.start + tree.first[node]
     if is_whole(low, high) or (at[0] == leaf and at[1] == low and at[2] == high):
         return
-    _go_to(clocks.world.links, clocks.path, leaf, low, high, part)
+    go_to_middle(clocks.world.links, clocks.path, leaf, low, high, part)
     at[0], at[1], at[2] = leaf, low, high
 
 
@@ -155,7 +156,7 @@ def _side_of(surface, clocks, tree, body, node, whole, part):
     if whole:
         pose = rigid(tree.poses[row_in_middle(tree, node, column)])
         return pose, motion_of_node(tree, node, column), tree.moved[node, column]
-    motion = _motion_bound_in(surface, world, body, part)
+    motion = motion_bound_in(surface, world, body, part)
     box = box_of(surface, surface.roots[world.solids[body]])
     return rigid(part.poses[world.frames[body]]), motion, GROWTH * motion_bound_of_box(box, motion)
 
@@ -308,7 +309,7 @@ def _wait_halves(clocks, rectangle, in_a, count, n_waiting, bounds, waiting):
 @inline
 def _begin(clocks, steps, aim, bounds, state):
     """Takes the nearer end of each interval as what was seen, and lets all times of both clocks wait."""
-    n_steps = len(clocks.path.times)
+    n_steps = n_leaves_of(clocks.tree_b) + 1
     for row in range(len(bounds.upper)):
         end = 1 if steps.clearance[row + 1] < steps.clearance[row] else 0
         step_b = steps.step_b[row + end]
@@ -352,7 +353,7 @@ def certify_unsynchronised(surface, clocks, steps, aim, bounds, tally, table):
     state = RectangleState(
         new_waiting(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
         np.full(len(clocks.tree_a.first), math.inf), np.full((n_pairs, 2), -1),
-        _new_middle(n_links), _new_middle(n_links), np.full((2, 3), -1.0), new_scratch(),
+        new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), new_scratch(),
     )  # fmt: skip
     for i in range(len(tally)):
         tally[i] = 0

@@ -30,7 +30,7 @@ from clearance.kernels.motion.clock_rectangles import (
     put_rectangle,
     take_rectangle,
 )
-from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf
+from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
 from clearance.kernels.motion.sweep import NOT_LESS
 from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
 from clearance.kernels.search.body_pair import (
@@ -162,10 +162,26 @@ def _occur(clocks, row, step_b):
 
 
 @inline
+def _nearest_step(clocks, row):
+    """The step of clock b that is nearest in time to a step of clock a; it occurs with it if any does."""
+    times = clocks.path.times
+    time, low, high = times[clocks.tree_a.start + row], 0, n_leaves_of(clocks.tree_b) - 1
+    while low < high:
+        middle = (low + high) // 2
+        if times[middle] < time:
+            low = middle + 1
+        else:
+            high = middle
+    return low - 1 if low > 0 and time - times[low - 1] < times[low] - time else low
+
+
+@inline
 def _first_look(lent, clocks, row, state, found, tally, table):
     """Some distance at a step of clock a that is near the least."""
-    n_b = len(clocks.path.times)
-    own = clocks.tree_a.start + row
+    n_b = n_leaves_of(clocks.tree_b)
+    own = _nearest_step(clocks, row)
+    if not _occur(clocks, row, own):
+        return
     for pair in range(len(clocks.world.pairs)):
         _at_steps(lent, clocks, pair, row, own, state, found, tally, table)
     for k in range(FIRST_LOOK):
@@ -178,9 +194,12 @@ def _first_look(lent, clocks, row, state, found, tally, table):
 @inline
 def _walk(lent, clocks, row, state, found, tally, table):
     """From the best of the step before, some distance at the next that is near the least."""
-    n_b = len(clocks.path.times)
+    n_b = n_leaves_of(clocks.tree_b)
     pair, step_b = found.pair[row - 1], found.step_b[row - 1]
-    own = clocks.tree_a.start + row
+    own = _nearest_step(clocks, row)
+    if step_b < 0 or not _occur(clocks, row, own):
+        _first_look(lent, clocks, row, state, found, tally, table)
+        return
     while not _occur(clocks, row, step_b):
         step_b += 1 if step_b < own else -1
     _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table)
@@ -316,7 +335,7 @@ def _least_of_steps(surface, clocks, state, found, tally, table):
         earlier, later = halves_of(tree_a, tree_b, r, in_a)
         row = middle_leaf(tree_a, r.node_a)
         seen = tree_a.start + row if in_a else found.step_b[row]
-        if clocks.path.times[seen] > middle_of_side(tree_a, tree_b, r, in_a):
+        if seen >= 0 and clocks.path.times[seen] > middle_of_side(tree_a, tree_b, r, in_a):
             earlier, later = later, earlier
         put_rectangle(later, n_left, waiting, n_waiting)
         put_rectangle(earlier, n_left, waiting, n_waiting + 1)
