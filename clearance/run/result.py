@@ -57,6 +57,8 @@ class Run:
         told = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
         for sides in {SIDES, sides_of(self.record.case)}:
             told |= _told_of(sides, moment)
+        if "time_b" in row:
+            told["time_b"] = moment.time_b
         return row | told | {"between": True, "status": self.record.status_of(moment)}
 
     @property
