@@ -158,7 +158,7 @@ def unmeasured(summary: dict[str, Any]) -> Markup:
         told = "Nothing was left out: every link with a shape was measured against every obstacle."
         return section("Not measured", element("p", told))
     heads = (*HEADS[summary["sides"][0]], "Why")
-    found = table(heads, rows, tall=len(rows) > MOST_SHOWN_AT_ONCE)
+    found = table(heads, rows, class_="bodies", tall=len(rows) > MOST_SHOWN_AT_ONCE)
     return section("Not measured", *_counted(summary), found)
 
 

@@ -18,11 +18,7 @@ def cell_time(summary: dict[str, Any]) -> Markup:
     parts = dict.fromkeys(carry["part"] for carry in summary["carries"])
     rows = [_row(part, _hands(summary, part)) for part in parts]
     rows += [
-        _row(
-            summary,
-            actor["name"],
-            [_bar(summary, *span, "absent", "not in the cell") for span in actor["absent"]],
-        )
+        _row(actor["name"], _absences(summary, actor))
         for actor in summary["actors"]
         if actor["absent"] and actor["name"] not in parts
     ]

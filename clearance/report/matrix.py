@@ -38,7 +38,7 @@ def groups_of(summary: dict[str, Any]) -> list[Group]:
         for robot in summary["robots"]
     ]
     obstacles = [body["name"] for body in summary["obstacles"]]
-    titles = {"part": "carried parts", "obstacle": "moving obstacles", "": "obstacles"}
+    titles = {"part": "carried", "obstacle": "moving", "": "standing"}
     others = [
         Group(title, tuple(name for name in obstacles if kinds.get(name, "") == kind))
         for kind, title in titles.items()

@@ -49,7 +49,7 @@
 
   // The rules: with one, nothing is said of it; with several, each frame names its own.
   const several = data.rules.length > 1 || data.rules[0].name !== data.default_rule;
-  const ruleText = (name) => !several ? "" : name === data.default_rule ? "by the limits themselves" : `by rule ${name}`;
+  const ruleText = (name) => !several ? "" : name === data.default_rule ? "by the default limits" : `by rule ${name}`;
   const ruleOf = (i) => data.rules[data.rule[i]];
 
   // Who has what in hand at a frame, and when the second body of the line is there, if its clock is another.

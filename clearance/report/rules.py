@@ -112,7 +112,8 @@ def _idle(told: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def _row(rule: dict[str, Any], worst_of_all: str) -> Markup:
     between = "all other pairs" if rule["between"] is None else " - ".join(rule["between"])
-    name = element("strong", rule["name"]) if rule["name"] == worst_of_all else rule["name"]
+    name: object = name_shown(rule["name"])
+    name = element("strong", name) if rule["name"] == worst_of_all else name
     cells = [element("td", name), element("td", between), element("td", when_text(rule))]
     cells += [element("td", limit_mm(rule[level]), class_="number") for level in ("fail", "warn")]
     worst = rule["worst"]
@@ -143,4 +144,4 @@ def when_text(rule: dict[str, Any]) -> str:
 
 def name_shown(rule: str) -> str:
     """A rule's name where it stands beside others."""
-    return "the limits themselves" if rule == DEFAULT else rule
+    return "default limits" if rule == DEFAULT else rule
