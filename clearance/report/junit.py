@@ -127,16 +127,10 @@ def _rules(suite: ElementTree.Element, record: Record) -> None:
 
 def _is_violated(answer: RuleAnswer) -> bool:
     """True if a rule is broken at a step or, as far as proven, between two."""
-    violated = STATUSES.index(Status.VIOLATED)
-    if STATUSES.index(Status(answer.status)) >= violated:
-        return True
-    return answer.certificate is not None and _greatest(answer) >= violated
-
-
-def _greatest(answer: RuleAnswer) -> int:
-    """The worst that is proven of the motion between the samples of what a rule judges."""
-    assert answer.certificate is not None
-    return int(motion_codes(answer.certificate, answer.limits, slice(None)).max())
+    codes = [STATUSES.index(Status(answer.status))]
+    if answer.certificate is not None:
+        codes.append(int(motion_codes(answer.certificate, answer.limits, slice(None)).max()))
+    return max(codes) >= STATUSES.index(Status.VIOLATED)
 
 
 def _violated_between(record: Record) -> dict[tuple[str, str, str], str]:
@@ -188,8 +182,7 @@ def _certificate(suite: ElementTree.Element, record: Record) -> None:
         message = "looked at the samples only: nothing is said about the motion between them"
         ElementTree.SubElement(case, "skipped", message=message)
         return
-    worst = max(_greatest(answer) for answer in record.rules if answer.certificate is not None)
-    violated = worst >= STATUSES.index(Status.VIOLATED)
+    violated = any(map(_is_violated, record.rules))
     text = certified_text(certified_of(record, record.certificate))
     _tell(case, text, "LimitViolated" if violated else None)
 

@@ -11,10 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.query.distance import distance
 from clearance.simulate.contact_phases import ContactsOfPhases
 from clearance.simulate.contact_rows import ContactRows
-from clearance.simulate.handling import handling_hints
+from clearance.simulate.handling import gap_between, handling_hints
 from clearance.simulate.record import Record
 from clearance.simulate.sections import SectionPlan, section_plan
 from clearance.world.case import Case
@@ -115,12 +114,7 @@ def _touch(
     a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray
 ) -> bool:
     """True if two bodies touch; balls about their boxes that are apart decide without a search."""
-    centres = [pose[:3, :3] @ shape.bounds.mean(axis=0) + pose[:3, 3]
-               for shape, pose in ((a, world_from_a), (b, world_from_b))]  # fmt: skip
-    radii = [np.linalg.norm(np.ptp(shape.bounds, axis=0)) / 2.0 for shape in (a, b)]
-    if np.linalg.norm(centres[0] - centres[1]) > 1.001 * sum(radii):
-        return False
-    return distance(a, b, pose_a=world_from_a, pose_b=world_from_b).distance <= 0.0
+    return gap_between(a, world_from_a, b, world_from_b, far=0.0) <= 0.0
 
 
 def _standing_links(motion: Motion) -> set[str]:

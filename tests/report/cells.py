@@ -83,7 +83,7 @@ def cell(rules=RULES, robots=None, obstacles=None, carries=None, **changes) -> C
     if carries is None:
         carries = (
             Carry("part", "left/tool", Window(1.0, 2.0)),
-            Carry("part", "right/tool", Window(2.0, 3.0)),
+            Carry("part", "right/tool", Window(2.0)),
         )
     limits = Limits(0.0, 0.01, rules=rules)
     return Case(

@@ -74,7 +74,7 @@ def test_what_is_absent_is_hidden_and_so_is_what_stands_on_it(replay):
 
 def test_the_replay_knows_who_holds_what_and_what_judges_each_frame(replay):
     hands = [(one.part, one.by, one.start, one.end) for one in replay.carries]
-    assert hands == [("part", "left/tool", 1.0, 2.0), ("part", "right/tool", 2.0, 3.0)]
+    assert hands == [("part", "left/tool", 1.0, 2.0), ("part", "right/tool", 2.0, 4.0)]
     names = [replay.bodies[one.i_by].name for one in replay.carries]
     assert names == ["left/tool", "right/tool"]
     assert replay.rules[replay.rule[replay.i_worst]].name == "fence"
