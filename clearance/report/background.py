@@ -67,8 +67,8 @@ def _moving(summary: dict[str, Any]) -> list[str]:
     ]
     if tables:
         told.append(
-            f"Between two rows of its table of poses {', '.join(tables)} goes straight, and turns about one axis "
-            "at constant speed."
+            f"What moves by a table of poses ({', '.join(tables)}) goes straight from one row to the next, and "
+            "turns about one axis at constant speed."
         )
     if summary["paddings"]:
         paddings = [f"{name} {limit_mm(value)} mm" for name, value in summary["paddings"].items()]

@@ -58,15 +58,17 @@ def _hands(summary: dict[str, Any], part: str) -> list[Markup]:
         if carry["part"] == part:
             owner = carry["by"].split("/")[0]
             colour = robots.index(owner) % N_COLOURS if owner in robots else 0
-            span = carry["from"], carry["until"]
-            bars.append(_bar(summary, *span, f"hand{colour}", carry["by"]))
+            hand = f"hand{colour}", carry["by"]
+            bars.append(_bar(summary, carry["from"], carry["until"], *hand))
     own = next(actor for actor in summary["actors"] if actor["name"] == part)
     return bars + _absences(summary, own)
 
 
 def _absences(summary: dict[str, Any], actor: dict[str, Any]) -> list[Markup]:
     """The bars of an actor while it is not in the cell."""
-    return [_bar(summary, *span, "absent", "not in the cell") for span in actor["absent"]]
+    return [
+        _bar(summary, start, end, "absent", "not in the cell") for start, end in actor["absent"]
+    ]
 
 
 N_COLOURS = 4

@@ -52,8 +52,8 @@ def write_junit(record: Record, path: str | Path) -> None:
     between = _violated_between(record)
     judge = PairJudge.of(record)
     for minimum in record.pair_minima:
-        pair = (minimum.link, minimum.obstacle, minimum.rule)
-        _pair(suite, judge, minimum, between.get(pair))
+        named = (minimum.link, minimum.obstacle, minimum.rule)
+        _pair(suite, judge, minimum, between.get(named))
     for pair in record.unmeasured:
         case = _case(suite, pair.link, f"{pair.link} - {pair.obstacle}")
         ElementTree.SubElement(case, "skipped", message=pair.reason)

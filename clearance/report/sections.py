@@ -280,8 +280,8 @@ def events(summary: dict[str, Any]) -> Markup:
     if any(event["between"] for event in found):
         told.append("A step with + is the one before a moment between two steps.")
     notes = [element("p", text, class_="faint") for text in told]
-    heads = (">Time", ">Step", "What", ">mm", ">Least, mm", "Between")
-    heads += ("Rule",) if len(summary["rules"]) > 1 else ()
+    heads = [">Time", ">Step", "What", ">mm", ">Least, mm", "Between"]
+    heads += ["Rule"] if len(summary["rules"]) > 1 else []
     return section("Events", table(heads, rows, class_="clickable", tall=True), *notes)
 
 

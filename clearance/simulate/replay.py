@@ -237,8 +237,9 @@ def _nearest(bodies: Sequence[DrawnBody], frames: ReplayFrames) -> np.ndarray:
         {body.name: i for i, body in enumerate(bodies) if (body.kind == LINK) == is_link}
         for is_link in (True, False)
     )
-    first, second = others | links, links | others
-    pairs = [(first.get(a, -1), second.get(b, -1)) for a, b in (one.pair for one in frames.places)]
+    none: dict[str | None, int] = {None: -1}
+    first, second = none | others | links, none | links | others
+    pairs = [(first[a], second[b]) for a, b in (one.pair for one in frames.places)]
     return np.array(pairs, dtype=np.int32).reshape(-1, 2)
 
 
