@@ -34,6 +34,9 @@ ROBOTS, LINK_NOT_MEASURED = (0x5C7390, 0x7D6796, 0x4B7F78, 0x94705C), 0xA9B4C0
 OTHERS = {STANDING: (0xB9B4A8, 0.5), MOVING: (0x9C9480, 0.72), PART: (0xB3892F, 1.0)}
 """Colour and opacity of what is no link."""
 
+FOLDERS = {LINK: "links", STANDING: "obstacles", MOVING: "moving", PART: "parts"}
+"""Where bodies of a kind are in meshcat's tree."""
+
 REGION, WAY_OUT = 0xE01010, 0x4A0008
 
 
@@ -121,7 +124,7 @@ def fill(stage: Stage, replay: Replay) -> None:
     box = _box(replay)
     size = float(np.linalg.norm(box[1] - box[0]))
     for i, body in enumerate(replay.bodies):
-        path = f"{body.kind}s/{i} {body.name.replace('/', ' ')}"
+        path = f"{FOLDERS[body.kind]}/{i} {body.name.replace('/', ' ')}"
         stage.mesh(path, *replay.shapes[body.i_shape], *_look(body))
         _place(stage, path, replay.poses[i], times)
         _show(stage, path, replay.shown[i], times)
