@@ -156,3 +156,16 @@ def test_a_robot_that_comes_and_goes_is_hidden_before_and_after():
     replay = replay_of(cl.check(cell((), robots, (box("table", (4, 4, 0.1)),), ())).record)
     assert shown(replay, "right/tool")[0] == 1.0
     assert max(shown(replay, "right/tool")) <= 2.0
+
+
+@pytest.mark.parametrize("after", ["absent", "loop"])
+def test_a_step_at_which_something_goes_shows_what_was_nearest_until_then(after):
+    """The cart comes to 10 mm from the tool at 2 s, and is gone, or back where it began, from then on."""
+    robots = (sliding("left", [(0, 0), (4, 0)]), sliding("right", [(0, 3), (4, 3)]))
+    ways = table_of([(0, 0.5, 0, 0.5), (2, 0.11, 0, 0.5)], after=after)
+    obstacles = (box("cart", (0.1, 0.1, 0.1), moves=ways), box("table", (4, 4, 0.1)))
+    replay = replay_of(cl.check(cell((), robots, obstacles, ())).record)
+    assert replay.times[replay.i_worst] == 2.0
+    assert 2.0 in shown(replay, "cart")
+    assert place(replay, "cart", 2.0) == pytest.approx([0.11, 0, 0.5], abs=1e-6)
+    assert replay.clearances[replay.i_worst] == pytest.approx(0.01)
