@@ -21,8 +21,10 @@
     return (scaled / 10 ** decimals).toFixed(decimals);
   }
 
-  const measured = (i) => `${data.known[i] ? "" : "at least "}${mm(clearances[i])} mm`;
-  const between = (i) => !data.known[i] ? "not measured further" : data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
+  // Where no pair is left to measure, no bound holds: it is infinite.
+  const finite = clearances.filter(Number.isFinite);
+  const measured = (i) => !Number.isFinite(clearances[i]) ? "nothing measured" : `${data.known[i] ? "" : "at least "}${mm(clearances[i])} mm`;
+  const between = (i) => !Number.isFinite(clearances[i]) ? "no pair is left" : !data.known[i] ? "not measured further" : data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
   const wordOf = (code) => ({clear: "clear", near: "near miss", violated: "violated", contact: "contact"})[data.statuses[code]];
   const word = (i) => wordOf(data.status[i]);
   const nameOf = (pair) => pair.bodies.map((k) => data.bodies[k].name).join(" – ");
@@ -200,9 +202,9 @@
   }
 
   const used = [...new Set(data.rule)].map((k) => data.rules[k]);
-  const lowest = Math.min(0, 1.06 * toPlot(Math.min(...clearances)));
-  const greatest = toPlot(Math.max(...clearances, ...used.map((rule) => rule.warn))) * 1.06 || 1;
-  const near = Math.min(greatest, 2.5 * toPlot(Math.max(...used.map((rule) => rule.warn), Math.min(...clearances))) || greatest);
+  const lowest = Math.min(0, 1.06 * toPlot(Math.min(...finite)));
+  const greatest = toPlot(Math.max(...finite, ...used.map((rule) => rule.warn))) * 1.06 || 1;
+  const near = Math.min(greatest, 2.5 * toPlot(Math.max(...used.map((rule) => rule.warn), Math.min(...finite))) || greatest);
 
   function plotted() {
     const axis = {gridcolor: css("--grid"), zerolinecolor: css("--rule"), linecolor: css("--rule"), ticks: "outside", tickcolor: css("--rule"), fixedrange: false};

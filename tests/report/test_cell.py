@@ -21,7 +21,9 @@ from clearance.report.pair_curves import pair_curves
 from clearance.report.pair_judge import PairJudge
 from clearance.simulate.replay import replay_of
 from clearance.world.case import Clock, Limits, SelfClearance
-from clearance.world.rules import Rule
+from clearance.world.rules import Allowance, Rule
+from clearance.world.timing import Window
+from tests.made_cases import at
 from tests.report.cells import RULES, box, cell, sliding
 from tests.report.records import record as plain_record
 
@@ -286,3 +288,28 @@ def test_a_record_without_rules_says_nothing_of_rules():
     assert "<h2>Rules</h2>" not in html and "Who holds what" not in html
     assert summary["limits"] == {"fail": 0.01, "warn": 0.06, "joints": "warn"}
     assert Limits(fail=0.01, warn=0.06).rule_names == ("default",)
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_while_nothing_is_measured_the_report_says_so_and_stands(certify, tmp_path):
+    robots = (
+        sliding("left", [(0, 0), (1, 0.1), (2, 0.2), (3, 0.3)]),
+        sliding("right", [(0, 3), (3, 3)]),
+    )
+    allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
+    obstacles = (box("post", (0.1, 0.1, 2), at(0.6)),)
+    run = cl.check(cell((), robots, obstacles, (), allow=allow), certify=certify)
+    assert any(
+        "nothing is measured from 1.000 s to 2.500 s" in text for text in run.verdict.warnings
+    )
+    run.save(tmp_path / "out")
+    json.loads((tmp_path / "out" / "summary.json").read_text())
+    replay = replay_of(run.record)
+    assert [i for i, known in enumerate(replay.known) if not known] == [2]
+    assert replay.nearest[2].tolist() == [-1, -1]
+    assert (
+        "Infinity"
+        not in page_of(run.summary, replay).split('<script id="data"')[1].split("</script>")[0]
+    )
+    write_junit(run.record, tmp_path / "junit.xml")
+    assert printed(run)

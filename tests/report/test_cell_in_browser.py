@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.world.rules import Allowance
+from clearance.world.timing import Window
+from tests.made_cases import at
 from tests.report.browser import Page, chromium, executable
-from tests.report.cells import cell
+from tests.report.cells import box, cell, sliding
 
 pytestmark = pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
 
@@ -107,3 +110,20 @@ def test_nothing_is_clipped(page, width, theme):
         " && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))"
     )
     assert beyond == [] and page.errors == []
+
+
+def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path):
+    robots = (
+        sliding("left", [(0, 0), (1, 0.1), (2, 0.2), (3, 0.3)]),
+        sliding("right", [(0, 3), (3, 3)]),
+    )
+    allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
+    case = cell((), robots, (box("post", (0.1, 0.1, 2), at(0.6)),), (), allow=allow)
+    cl.check(case).save(tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        show(page, 2)
+        assert "nothing measured" in readout(page) and "no pair is left" in readout(page)
+        low, high = page.run("document.getElementById('curve')._fullLayout.yaxis.range")
+        assert low == 0.0 and 500.0 < high < 550.0
+        assert page.errors == []
