@@ -230,7 +230,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         paper_tolerance=question.paper_tolerance,
         motion_kind=question.motion,
         need=question.need,
-        every_pair=every_pair(case, pairs, judged.found),
+        every_pair=every_pair(case, pairs, judged),
         certificate=judged.certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes)),
         notices=answers.notices,
