@@ -21,7 +21,7 @@ from clearance.kernels.motion.certify import (
     certify,
 )
 from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
-from clearance.kernels.motion.kinematics import BALL, Links
+from clearance.kernels.motion.kinematics import BALL, TURNING, Links
 from clearance.kernels.motion.world import World
 from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
@@ -193,7 +193,8 @@ class _Work:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
             own = IntervalBounds(*(column[span] for column in bounds))
-            motion = CertifiedMotion(self.world, _joint_path(self.world.links, self.motions, ends))
+            path = _joint_path(self.world.links, self.motions, ends)
+            motion = CertifiedMotion(_with_turning_balls(self.world), path)
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
             call(certify, self.surface, motion, steps, self.question.aim, own, counts)
@@ -234,6 +235,19 @@ def _joint_path(links: Links, motions: Sequence[Motion], steps: slice) -> JointP
         np.append(cubic, False)[links.columns],  # the last stands for no column
         _ball_path(links, positions),
     )
+
+
+def _with_turning_balls(world: World) -> World:
+    """The world as the kernel takes it: ball joints are joints that turn, fixed parts and axes its own."""
+    links = world.links
+    if not (links.kinds == BALL).any():
+        return world
+    own = links._replace(
+        kinds=np.where(links.kinds == BALL, TURNING, links.kinds),
+        axes=links.axes.copy(),
+        parent_from_joint=links.parent_from_joint.copy(),
+    )
+    return world._replace(links=own)
 
 
 def _ball_path(links: Links, positions: np.ndarray) -> BallPath:

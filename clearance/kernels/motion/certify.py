@@ -35,8 +35,10 @@ from clearance.kernels.motion.joint_motion_bound import (
     AT_REST,
     MotionBound,
     PairMotion,
+    loosened,
     motion_bound_of,
     motion_bound_of_box,
+    orientation_rounding,
 )
 from clearance.kernels.motion.joint_path import NO_BALLS, JointPath, part_of, part_of_arc
 from clearance.kernels.motion.kinematics import Links, orient, place_by_link
@@ -59,7 +61,8 @@ class CertifiedMotion(NamedTuple):
     """What moves and how.
 
     Attributes:
-        world: the bodies and their pairs.
+        world: the bodies and their pairs. Ball joints are among the links as joints that turn, whose fixed parts
+            and axes are written for each interval: the arrays belong to this motion.
         path: how the joint above each link moves from step to step.
     """
 
@@ -134,7 +137,8 @@ class CertifyState(NamedTuple):
 
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
-        motion_bounds: (bodies, 8) numbers of the `MotionBound` of each in the interval.
+        motion_bounds: (bodies, 9) numbers of the `MotionBound` of each in the interval, and [m] what of it is the
+            rounding of orientations.
         displacements: (bodies,) [m] how far each can have moved in all.
         lower_bounds: (p,) [m] a bound on each pair's distance over an interval, plus the displacement at its end.
         witness_faces: (p, 2) the faces that were nearest, or -1.
@@ -171,21 +175,9 @@ def _go_to(links, path, step, low, high, middle):
         middle.bend[link] = part.bend
     for ball in range(len(path.balls.links)):
         link = path.balls.links[ball]
-        part = part_of_arc(path.balls, step, ball, low, high)
-        middle.positions[link], middle.swing[link] = part.middle, part.swing
-        middle.bend[link] = part.bend
+        arc = part_of_arc(path.balls, step, ball, low, high)
+        middle.positions[link], middle.swing[link] = arc.middle, arc.swing
     place_by_link(links, middle.positions, middle.poses)
-
-
-@inline
-def _with_own_arcs(world):
-    """The world with links of which fixed parts and axes can be written to."""
-    links = world.links
-    own = Links(
-        links.parents, links.kinds, links.axes.copy(), links.parent_from_joint.copy(), links.columns,
-        links.factors, links.offsets,
-    )  # fmt: skip
-    return World(world.solids, world.frames, world.groups, world.standing, world.pairs, own)
 
 
 @inline
@@ -196,16 +188,27 @@ def _new_middle(n_links):
 
 
 @inline
-def _motion_bound_in(surface, world, body, middle):
-    """The motion bound of a body about `middle`."""
+def _orientation_rounding(surface, world, balls, body, middle):
+    """[m] how far rounding of orientations can move a body; that of an interval holds in all its parts."""
+    link = world.frames[body]
+    if link < 0 or len(balls.links) == 0:
+        return 0.0
+    box = box_of(surface, surface.roots[world.solids[body]])
+    return orientation_rounding(box, world.links, link, balls, middle)
+
+
+@inline
+def _motion_bound_in(surface, world, body, middle, rounding):
+    """The motion bound of a body about `middle`; `rounding` [m] of orientations."""
     link = world.frames[body]
     if link < 0:
         return AT_REST
     root = surface.roots[world.solids[body]]
     pose = rigid(middle.poses[link])
-    return motion_bound_of(
+    bound = motion_bound_of(
         surface, root, world.links, link, middle.poses, middle.swing, middle.bend, pose
     )
+    return loosened(bound, rounding)
 
 
 @inline
@@ -220,8 +223,9 @@ def _go_on(surface, world, path, step, state):
     _begin_arcs(world.links, path.balls, step)
     _go_to(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
-        motion_bound = _motion_bound_in(surface, world, body, state.whole)
         numbers = state.motion_bounds[body]
+        numbers[8] = _orientation_rounding(surface, world, path.balls, body, state.whole)
+        motion_bound = _motion_bound_in(surface, world, body, state.whole, numbers[8])
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,
             motion_bound.velocity.y,
@@ -267,11 +271,10 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
         motion: a `CertifiedMotion`. steps: `CertifiedSteps`. aim: a `CertificateGoal`.
         tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
     """
-    world = _with_own_arcs(motion.world)
-    motion = CertifiedMotion(world, motion.path)
+    world = motion.world
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
-        _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
+        _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 9)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
@@ -362,8 +365,8 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
             aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
         _go_to(world.links, path, step, low, high, state.part)
         moving = PairMotion(
-            _motion_bound_in(surface, world, body_a, state.part),
-            _motion_bound_in(surface, world, body_b, state.part),
+            _motion_bound_in(surface, world, body_a, state.part, state.motion_bounds[body_a, 8]),
+            _motion_bound_in(surface, world, body_b, state.part, state.motion_bounds[body_b, 8]),
             b_moves,
         )
         held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)

@@ -117,9 +117,5 @@ def part_of(path, step, link, low, high):
 
 @inline(force=True)
 def part_of_arc(balls, step, ball, low, high):
-    """The part `low` to `high` of the turn of a ball joint from its orientation at `step` to the next [rad].
-
-    The bend is about any axis.
-    """
-    turn = linear_part(0.0, balls.arcs[step, ball, ANGLE], low, high)
-    return JointInterval(turn.middle, turn.swing, BALL_ROUNDING)
+    """The part `low` to `high` of the turn of a ball joint from its orientation at `step` to the next [rad]."""
+    return linear_part(0.0, balls.arcs[step, ball, ANGLE], low, high)
