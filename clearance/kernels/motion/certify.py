@@ -138,7 +138,7 @@ class CertifyState(NamedTuple):
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
         motion_bounds: (bodies, 9) numbers of the `MotionBound` of each in the interval, and [m] what of it is the
-            rounding of orientations.
+            rounding of orientations, which holds in all parts of it.
         displacements: (bodies,) [m] how far each can have moved in all.
         lower_bounds: (p,) [m] a bound on each pair's distance over an interval, plus the displacement at its end.
         witness_faces: (p, 2) the faces that were nearest, or -1.
@@ -188,16 +188,6 @@ def _new_middle(n_links):
 
 
 @inline
-def _orientation_rounding(surface, world, balls, body, middle):
-    """[m] how far rounding of orientations can move a body; that of an interval holds in all its parts."""
-    link = world.frames[body]
-    if link < 0 or len(balls.links) == 0:
-        return 0.0
-    box = box_of(surface, surface.roots[world.solids[body]])
-    return orientation_rounding(box, world.links, link, balls, middle)
-
-
-@inline
 def _motion_bound_in(surface, world, body, middle, rounding):
     """The motion bound of a body about `middle`; `rounding` [m] of orientations."""
     link = world.frames[body]
@@ -224,7 +214,12 @@ def _go_on(surface, world, path, step, state):
     _go_to(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
         numbers = state.motion_bounds[body]
-        numbers[8] = _orientation_rounding(surface, world, path.balls, body, state.whole)
+        numbers[8] = 0.0
+        if len(path.balls.links) > 0 and world.frames[body] >= 0:
+            box = box_of(surface, surface.roots[world.solids[body]])
+            numbers[8] = orientation_rounding(
+                box, world.links, world.frames[body], path.balls, state.whole
+            )
         motion_bound = _motion_bound_in(surface, world, body, state.whole, numbers[8])
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,

@@ -23,7 +23,7 @@ PATH_ROUNDING = 2.0**-48
 
 
 BALL_ROUNDING = 2.0**-45
-"""[rad] Rounding of the orientation of a ball joint: 111 u, doubled; `CERTIFY.md` has the sum."""
+"""[rad] Rounding of the orientation of a ball joint between steps: 111 u, doubled; `CERTIFY.md` has the sum."""
 
 
 class BallPath(NamedTuple):
