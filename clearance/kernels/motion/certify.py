@@ -41,7 +41,7 @@ from clearance.kernels.motion.joint_motion_bound import (
     orientation_rounding,
 )
 from clearance.kernels.motion.joint_path import NO_BALLS, JointPath, part_of, part_of_arc
-from clearance.kernels.motion.kinematics import Links, orient, place_by_link
+from clearance.kernels.motion.kinematics import BALL, Links, orient, place_by_link
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.front import KEPT_DOWN
@@ -188,17 +188,16 @@ def _new_middle(n_links):
 
 
 @inline
-def _motion_bound_in(surface, world, body, middle, rounding):
-    """The motion bound of a body about `middle`; `rounding` [m] of orientations."""
+def _motion_bound_in(surface, world, body, middle):
+    """The motion bound of a body about `middle`, without the rounding of orientations."""
     link = world.frames[body]
     if link < 0:
         return AT_REST
     root = surface.roots[world.solids[body]]
     pose = rigid(middle.poses[link])
-    bound = motion_bound_of(
+    return motion_bound_of(
         surface, root, world.links, link, middle.poses, middle.swing, middle.bend, pose
     )
-    return loosened(bound, rounding)
 
 
 @inline
@@ -220,7 +219,8 @@ def _go_on(surface, world, path, step, state):
             numbers[8] = orientation_rounding(
                 box, world.links, world.frames[body], path.balls, state.whole
             )
-        motion_bound = _motion_bound_in(surface, world, body, state.whole, numbers[8])
+        about_middle = _motion_bound_in(surface, world, body, state.whole)
+        motion_bound = loosened(about_middle, numbers[8])
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,
             motion_bound.velocity.y,
@@ -267,6 +267,8 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
         tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
     """
     world = motion.world
+    for kind in world.links.kinds:
+        assert kind != BALL, "a joint that turns takes its place"
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
         _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 9)),
@@ -330,6 +332,13 @@ def _certify(lent, motion, steps, aim, bounds, tally, state, table):
     return 0
 
 
+@inline(force=True)
+def _loosened_in(surface, world, body, state):
+    """The motion bound of a body about the middle of a part, with the rounding of the whole interval."""
+    bound = _motion_bound_in(surface, world, body, state.part)
+    return loosened(bound, state.motion_bounds[body, 8])
+
+
 @inline
 def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, table):
     """`hold` of a pair over the whole interval after `step`, halved until that is done."""
@@ -360,8 +369,8 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
             aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
         _go_to(world.links, path, step, low, high, state.part)
         moving = PairMotion(
-            _motion_bound_in(surface, world, body_a, state.part, state.motion_bounds[body_a, 8]),
-            _motion_bound_in(surface, world, body_b, state.part, state.motion_bounds[body_b, 8]),
+            _loosened_in(surface, world, body_a, state),
+            _loosened_in(surface, world, body_b, state),
             b_moves,
         )
         held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)
