@@ -21,7 +21,8 @@ from clearance.kernels.motion.certify import (
     certify,
 )
 from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
-from clearance.kernels.motion.kinematics import BALL, Links
+from clearance.kernels.motion.kinematics import BALL, TURNING, Links
+from clearance.kernels.motion.world import World
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
 from clearance.simulate.moment import Moment, Moments
@@ -185,7 +186,7 @@ class _Work:
             path = _path_of(world.links, self.what.case, self.what.motions, ends)
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
-            motion = CertifiedMotion(world, path)
+            motion = CertifiedMotion(with_turning_balls(world), path)  # no two threads share it
             call(certify, surface, motion, steps, self.question.aim, own, counts)
             return span.stop, counts
 
@@ -236,6 +237,19 @@ def joint_path(
         np.append(cubic, False)[links.columns],  # the last stands for no column
         _ball_path(links, positions),
     )
+
+
+def with_turning_balls(world: World) -> World:
+    """The world as the kernel takes it: ball joints are joints that turn, fixed parts and axes its own."""
+    links = world.links
+    if not (links.kinds == BALL).any():
+        return world
+    own = links._replace(
+        kinds=np.where(links.kinds == BALL, TURNING, links.kinds),
+        axes=links.axes.copy(),
+        parent_from_joint=links.parent_from_joint.copy(),
+    )
+    return world._replace(links=own)
 
 
 def _ball_path(links: Links, positions: np.ndarray) -> BallPath:

@@ -17,7 +17,7 @@ import numpy as np
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.world.case import Case, Limits, Omission
-from clearance.world.clocks import clock_pair, clocks_of
+from clearance.world.clocks import actors_of_clock, clock_pair, clocks_of
 from clearance.world.pairs import Pair, Selection, nothing_to_measure, selected_pairs
 from clearance.world.timeline import Phase, Timeline
 
@@ -66,7 +66,9 @@ class Section:
         assert self.other is not None
         a = ClockMotion(self.phase.case, self.phase.motions)
         b = ClockMotion(self.other.case, self.other.motions)
-        return PairsOfTwoClocks(a, b, self.pairs, self.limits, self.phase.case.clock.slack)
+        case, second = self.phase.case, self.pairs[0].b
+        actors = actors_of_clock(case, second)
+        return PairsOfTwoClocks(a, b, actors, self.pairs, self.limits, case.clock.slack)
 
     @property
     def steps(self) -> slice:

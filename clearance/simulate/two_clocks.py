@@ -39,6 +39,8 @@ class PairsOfTwoClocks:
 
     Attributes:
         a, b: how all moves by either clock.
+        actors_of_b: the robots (body 0 of each) and the obstacles that move by the second clock, whether they are
+            of a pair or only carry what is.
         pairs: no actor is on both sides.
         limits: of the pairs' distances. slack: [s] by which the clocks differ at most; infinite where nothing ties
             them.
@@ -46,14 +48,10 @@ class PairsOfTwoClocks:
 
     a: ClockMotion
     b: ClockMotion
+    actors_of_b: frozenset[BodyIndex]
     pairs: Sequence[Pair]
     limits: Limits
     slack: float
-
-    @cached_property
-    def actors_of_b(self) -> frozenset[BodyIndex]:
-        """The robots (body 0 of each) and the obstacles of the second clock."""
-        return frozenset(actor_of(pair.b) for pair in self.pairs)
 
     @cached_property
     def case(self) -> Case:
@@ -66,9 +64,10 @@ class PairsOfTwoClocks:
         return replace(self.a.case, obstacles=obstacles)
 
     def columns(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Positions and rates (n_b + n_a, columns), first at the steps of clock b, and (columns,) which are cubic.
+        """Positions and rates (n_b + n_a + 1, columns), first at the steps of clock b, and (columns,) which are
+        cubic.
 
-        What does not move by a clock has any numbers at its steps.
+        The last row is that before it once more. What does not move by a clock has any numbers at its steps.
         """
         robots = [
             self._rows(i, BodyIndex(i, 0), [side.motions[i].positions for side in (self.b, self.a)])
@@ -107,9 +106,9 @@ class PairsOfTwoClocks:
         of_b, of_a = sides
         if actor in self.actors_of_b:
             assert of_b is not None
-            return np.concatenate([of_b, np.repeat(of_b[:1], n_a, axis=0)])
+            return np.concatenate([of_b, np.repeat(of_b[:1], n_a + 1, axis=0)])
         assert of_a is not None
-        return np.concatenate([np.repeat(of_a[:1], n_b, axis=0), of_a])
+        return np.concatenate([np.repeat(of_a[:1], n_b, axis=0), of_a, of_a[-1:]])
 
 
 def actor_of(body: BodyIndex) -> BodyIndex:

@@ -37,7 +37,12 @@ from clearance.kernels.motion.unsynchronised_steps import (
 )
 from clearance.kernels.motion.world import World
 from clearance.query.distance import distance
-from clearance.simulate.certify import joint_path, no_finer_than_rounding, with_whole_faces
+from clearance.simulate.certify import (
+    joint_path,
+    no_finer_than_rounding,
+    with_turning_balls,
+    with_whole_faces,
+)
 from clearance.simulate.layout import lay_out
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
@@ -158,8 +163,10 @@ def _no_moment(interval: int) -> Moment:
 
 
 def _require_two_clocks(what: PairsOfTwoClocks) -> None:
-    first = {actor_of(pair.a) for pair in what.pairs}
-    if not what.pairs or first & what.actors_of_b:
+    if not what.pairs:
+        raise BadInput("no pairs of two clocks", valid="one pair or more")
+    first, second = ({actor_of(body) for body in side} for side in zip(*what.pairs, strict=True))
+    if first & what.actors_of_b or not second <= what.actors_of_b:
         raise BadInput(
             "pairs that are not of two clocks",
             valid="bodies of some actors against bodies of other actors, one pair or more",
@@ -187,7 +194,7 @@ class _Work:
         columns = np.zeros(len(world.frames), dtype=np.int64)
         for side in bodies:
             columns[side] = np.arange(len(side))
-        times = np.concatenate([what.b.times, what.a.times])
+        times = np.concatenate([what.b.times, what.a.times, what.a.times[-1:]])
         path = joint_path(world.links, times, *what.columns())
         rounding = TIME_ROUNDING * float(np.abs(times).max() + what.slack)
         band = Band(float(what.slack), rounding if math.isfinite(rounding) else 0.0)
@@ -262,11 +269,13 @@ class _Work:
     def _tree(self, fill: Callable[..., None], span: slice, i_clock: int) -> ClockTree:
         bodies = self.bodies[i_clock]
         tree = new_clock_tree(span.start, span.stop - span.start, len(bodies))
-        fill(self.surface, self.world, self.path, bodies, tree)
+        fill(self.surface, with_turning_balls(self.world), self.path, bodies, tree)
         return tree
 
     def _clocks(self, tree_a: ClockTree, tree_b: ClockTree) -> TwoClocks:
-        return TwoClocks(self.world, self.path, tree_a, tree_b, self.columns, self.band)
+        return TwoClocks(
+            with_turning_balls(self.world), self.path, tree_a, tree_b, self.columns, self.band
+        )
 
     def _tally(self, results: Iterator[tuple[int, np.ndarray]], n_before: int) -> dict[str, int]:
         """The counters of all parts, while progress is reported."""

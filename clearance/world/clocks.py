@@ -9,7 +9,7 @@ from clearance.errors import BadInput
 from clearance.world.case import Case
 from clearance.world.forest import owner_of
 from clearance.world.mount import Mount
-from clearance.world.pairs import BodyIndex
+from clearance.world.pairs import OBSTACLE, BodyIndex
 
 NO_CLOCK = -1
 """Of a body that stands."""
@@ -25,6 +25,17 @@ def clock_pair(case: Case, one: BodyIndex, other: BodyIndex) -> tuple[int, int] 
     clocks = clocks_of(case)
     a, b = clocks[one.is_obstacle, _index(one)], clocks[other.is_obstacle, _index(other)]
     return None if NO_CLOCK in (a, b) or a == b else (a, b)
+
+
+def actors_of_clock(case: Case, body: BodyIndex) -> frozenset[BodyIndex]:
+    """The robots (body 0 of each) and the obstacles that move by the clock of a body."""
+    clocks = clocks_of(case)
+    own = clocks[body.is_obstacle, _index(body)]
+    return frozenset(
+        BodyIndex(OBSTACLE, i) if is_obstacle else BodyIndex(i, 0)
+        for (is_obstacle, i), clock in clocks.items()
+        if clock == own
+    )
 
 
 def _index(body: BodyIndex) -> int:

@@ -12,12 +12,18 @@ from clearance.compile.jit import kernel
 from clearance.geometry.tree import surface_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.certify import IntervalMiddle
 from clearance.kernels.motion.interval_motion_bound import (
     fill_motion_radii,
     interval_motion_bound_of,
 )
-from clearance.kernels.motion.joint_motion_bound import motion_bound_of, motion_bound_of_box
-from clearance.kernels.motion.joint_path import BALL_ROUNDING, BallPath, part_of_arc
+from clearance.kernels.motion.joint_motion_bound import (
+    loosened,
+    motion_bound_of,
+    motion_bound_of_box,
+    orientation_rounding,
+)
+from clearance.kernels.motion.joint_path import BallPath, part_of_arc
 from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, place_by_link
 from clearance.world.kinematics import (
     all_links,
@@ -185,11 +191,14 @@ def test_the_bound_by_columns_is_not_idle():
 
 
 @kernel
-def bound_about(surface, links, link, positions, swing, bend, poses):
-    place_by_link(links, positions, poses)
-    pose = rigid(poses[link])
-    bound = motion_bound_of(surface, surface.roots[0], links, link, poses, swing, bend, pose)
-    return motion_bound_of_box(box_of(surface, 0), bound)
+def bound_about(surface, links, link, balls, middle):
+    place_by_link(links, middle.positions, middle.poses)
+    pose, box = rigid(middle.poses[link]), box_of(surface, 0)
+    bound = motion_bound_of(
+        surface, surface.roots[0], links, link, middle.poses, middle.swing, middle.bend, pose
+    )
+    rounding = orientation_rounding(box, links, link, balls, middle)
+    return motion_bound_of_box(box, loosened(bound, rounding)), rounding
 
 
 @examples(100)
@@ -203,7 +212,9 @@ def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
     middle, swing = values.mean(axis=0), 0.5 * (values[1] - values[0])
     bend, balls = np.zeros(len(swing)), np.flatnonzero(links.kinds == BALL)
     turning = links._replace(
-        axes=links.axes.copy(), parent_from_joint=links.parent_from_joint.copy()
+        kinds=np.where(links.kinds == BALL, TURNING, links.kinds),
+        axes=links.axes.copy(),
+        parent_from_joint=links.parent_from_joint.copy(),
     )
     for link in balls:
         at_link = slice(links.columns[link], links.columns[link] + 4)
@@ -212,15 +223,17 @@ def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
         turned = floating.Rotation.from_quat(ends[0, at_link]).as_matrix()
         turning.parent_from_joint[link, :3, :3] = links.parent_from_joint[link, :3, :3] @ turned
         turning.axes[link], middle[link], swing[link] = axis, angle / 2, angle / 2
-        bend[link] = BALL_ROUNDING
     swing *= 1.0 + 1e-12
     link = len(links.parents) - 1
     room = np.empty((link + 1, 4, 4))
-    bound = bound_about(surface_of(SHAPE), turning, link, middle, swing, bend, room)
+    state = IntervalMiddle(middle, swing, bend, room)
+    path = BallPath(balls, links.parent_from_joint[balls], np.empty((0, len(balls), 8)))
+    bound, rounding = bound_about(surface_of(SHAPE), turning, link, path, state)
+    assert 0.0 < rounding < 1e-12
     shares = np.array([0.5, *np.linspace(0.0, 1.0, 41)])
     placed = floating.poses(links, floating.between(links, *ends, shares))[:, link]
     world = np.column_stack([SHAPE.vertices, np.ones(8)]) @ placed.transpose(0, 2, 1)
-    assert np.linalg.norm(world - world[0], axis=2).max() <= bound + 1e-14
+    assert np.linalg.norm(world - world[0], axis=2).max() <= bound
     assert np.abs(placed[0] - room[link]).max() <= 1e-14
 
 
@@ -245,21 +258,13 @@ def test_between_two_steps_a_ball_joint_is_one_that_turns(seed):
     assert found.lower[0] == pytest.approx(wanted.lower[0], abs=1e-11)
     assert found.upper[0] == pytest.approx(wanted.upper[0], abs=1e-11)
 
-    swing, bend = random.uniform(-0.3, 0.3, 7), np.zeros(7)
-    room = np.empty((7, 4, 4))
-    bounds = [
-        bound_about(surface_of(SHAPE), links, 6, np.zeros(7), swing, bend, room)
-        for links in (turning, turning._replace(kinds=scene.links.kinds))
-    ]
-    assert bounds[0] == bounds[1]
-
 
 def test_the_parts_of_an_arc():
     balls = BallPath(np.array([1]), np.eye(4)[None], np.array([[[0, 0, 0, 1.0, 1, 0, 0, 0.8]]]))
     found = arc_part(balls, 0.25, 0.75)
     assert found.middle == pytest.approx(0.4, rel=1e-15)
     assert 0.2 < found.swing <= 0.2 * (1.0 + 1e-11)
-    assert found.bend == BALL_ROUNDING
+    assert found.bend == 0.0
 
 
 @kernel

@@ -19,7 +19,7 @@ from clearance.world.body import Body
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
-from clearance.world.pairs import Pair, measured_pairs
+from clearance.world.pairs import BodyIndex, Pair, measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests import oracle
@@ -67,7 +67,8 @@ def asked(case: cl.Case, slack: float, *, jobs: int = 1, pairs=None) -> Unsynchr
 
 def whole_run(case, motions, pairs, slack):
     side = ClockMotion(case, motions)
-    return PairsOfTwoClocks(side, side, pairs, case.limits, slack)
+    second = frozenset(BodyIndex(pair.b.i_robot, 0) for pair in pairs)
+    return PairsOfTwoClocks(side, side, second, pairs, case.limits, slack)
 
 
 def distances(case: cl.Case, moments_a: np.ndarray, moments_b: np.ndarray, near: np.ndarray):

@@ -35,11 +35,13 @@ from clearance.kernels.motion.joint_motion_bound import (
     AT_REST,
     MotionBound,
     PairMotion,
+    loosened,
     motion_bound_of,
     motion_bound_of_box,
+    orientation_rounding,
 )
 from clearance.kernels.motion.joint_path import NO_BALLS, JointPath, part_of, part_of_arc
-from clearance.kernels.motion.kinematics import Links, orient, place_by_link
+from clearance.kernels.motion.kinematics import BALL, Links, orient, place_by_link
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.front import KEPT_DOWN
@@ -59,7 +61,8 @@ class CertifiedMotion(NamedTuple):
     """What moves and how.
 
     Attributes:
-        world: the bodies and their pairs.
+        world: the bodies and their pairs. Ball joints are among the links as joints that turn, whose fixed parts
+            and axes are written for each interval: the arrays belong to this motion.
         path: how the joint above each link moves from step to step.
     """
 
@@ -134,7 +137,8 @@ class CertifyState(NamedTuple):
 
     Attributes:
         whole, part: the middle of the interval, and of a part of it.
-        motion_bounds: (bodies, 8) numbers of the `MotionBound` of each in the interval.
+        motion_bounds: (bodies, 9) numbers of the `MotionBound` of each in the interval, and [m] what of it is the
+            rounding of orientations, which holds in all parts of it.
         displacements: (bodies,) [m] how far each can have moved in all.
         lower_bounds: (p,) [m] a bound on each pair's distance over an interval, plus the displacement at its end.
         witness_faces: (p, 2) the faces that were nearest, or -1.
@@ -152,7 +156,7 @@ class CertifyState(NamedTuple):
 
 
 @inline
-def _begin_arcs(links, balls, step):
+def begin_arcs(links, balls, step):
     """Gives ball joints their orientation at `step` as a fixed part, and the axis that they turn about after."""
     for ball in range(len(balls.links)):
         link, arc = balls.links[ball], balls.arcs[step, ball]
@@ -171,21 +175,9 @@ def go_to_middle(links, path, step, low, high, middle):
         middle.bend[link] = part.bend
     for ball in range(len(path.balls.links)):
         link = path.balls.links[ball]
-        part = part_of_arc(path.balls, step, ball, low, high)
-        middle.positions[link], middle.swing[link] = part.middle, part.swing
-        middle.bend[link] = part.bend
+        arc = part_of_arc(path.balls, step, ball, low, high)
+        middle.positions[link], middle.swing[link] = arc.middle, arc.swing
     place_by_link(links, middle.positions, middle.poses)
-
-
-@inline
-def _with_own_arcs(world):
-    """The world with links of which fixed parts and axes can be written to."""
-    links = world.links
-    own = Links(
-        links.parents, links.kinds, links.axes.copy(), links.parent_from_joint.copy(), links.columns,
-        links.factors, links.offsets,
-    )  # fmt: skip
-    return World(world.solids, world.frames, world.groups, world.standing, world.pairs, own)
 
 
 @inline
@@ -197,7 +189,7 @@ def new_middle(n_links):
 
 @inline
 def motion_bound_in(surface, world, body, middle):
-    """The motion bound of a body about `middle`."""
+    """The motion bound of a body about `middle`, without the rounding of orientations."""
     link = world.frames[body]
     if link < 0:
         return AT_REST
@@ -209,6 +201,17 @@ def motion_bound_in(surface, world, body, middle):
 
 
 @inline
+def loosened_motion_bound_in(surface, world, balls, body, middle):
+    """The same with the rounding of orientations; ball joints must have the arcs of the interval."""
+    bound = motion_bound_in(surface, world, body, middle)
+    if len(balls.links) == 0 or world.frames[body] < 0:
+        return bound
+    box = box_of(surface, surface.roots[world.solids[body]])
+    rounding = orientation_rounding(box, world.links, world.frames[body], balls, middle)
+    return loosened(bound, rounding)
+
+
+@inline
 def motion_bound_at(motion_bounds, body):
     d = motion_bounds[body]
     return MotionBound(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
@@ -217,11 +220,18 @@ def motion_bound_at(motion_bounds, body):
 @inline
 def _go_on(surface, world, path, step, state):
     """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
-    _begin_arcs(world.links, path.balls, step)
+    begin_arcs(world.links, path.balls, step)
     go_to_middle(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
-        motion_bound = motion_bound_in(surface, world, body, state.whole)
         numbers = state.motion_bounds[body]
+        numbers[8] = 0.0
+        if len(path.balls.links) > 0 and world.frames[body] >= 0:
+            box = box_of(surface, surface.roots[world.solids[body]])
+            numbers[8] = orientation_rounding(
+                box, world.links, world.frames[body], path.balls, state.whole
+            )
+        about_middle = motion_bound_in(surface, world, body, state.whole)
+        motion_bound = loosened(about_middle, numbers[8])
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,
             motion_bound.velocity.y,
@@ -267,11 +277,12 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
         motion: a `CertifiedMotion`. steps: `CertifiedSteps`. aim: a `CertificateGoal`.
         tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
     """
-    world = _with_own_arcs(motion.world)
-    motion = CertifiedMotion(world, motion.path)
+    world = motion.world
+    for kind in world.links.kinds:
+        assert kind != BALL, "a joint that turns takes its place"
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
-        new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 8)),
+        new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 9)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
@@ -332,6 +343,13 @@ def _certify(lent, motion, steps, aim, bounds, tally, state, table):
     return 0
 
 
+@inline(force=True)
+def _loosened_in(surface, world, body, state):
+    """The motion bound of a body about the middle of a part, with the rounding of the whole interval."""
+    bound = motion_bound_in(surface, world, body, state.part)
+    return loosened(bound, state.motion_bounds[body, 8])
+
+
 @inline
 def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, table):
     """`hold` of a pair over the whole interval after `step`, halved until that is done."""
@@ -362,8 +380,8 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
             aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
         go_to_middle(world.links, path, step, low, high, state.part)
         moving = PairMotion(
-            motion_bound_in(surface, world, body_a, state.part),
-            motion_bound_in(surface, world, body_b, state.part),
+            _loosened_in(surface, world, body_a, state),
+            _loosened_in(surface, world, body_b, state),
             b_moves,
         )
         held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)

@@ -17,9 +17,10 @@ from clearance.kernels.features.bounds import displacement
 from clearance.kernels.mesh.surface import box_of
 from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes, place_box
 from clearance.kernels.motion.certify import (
+    begin_arcs,
     go_to_middle,
+    loosened_motion_bound_in,
     motion_bound_at,
-    motion_bound_in,
     new_middle,
 )
 from clearance.kernels.motion.joint_motion_bound import MotionBound, motion_bound_of_box
@@ -169,12 +170,15 @@ def fill_steps_tree(surface, world, path, bodies, tree):
     """Fills a tree whose leaves are steps.
 
     Args:
-        path: a `JointPath` of all steps. bodies: (k,) those of the clock, each carried by a link.
+        world: with links of its own, since those of ball joints are written to.
+        path: a `JointPath` of all steps, and one more, so that the last has an arc. bodies: (k,) those of the
+            clock, each carried by a link.
     """
     n_leaves = len(tree.poses) // len(bodies)
     middle = new_middle(len(world.links.parents))
     _halve(tree, n_leaves)
     for leaf in range(n_leaves):
+        begin_arcs(world.links, path.balls, tree.start + leaf)
         place_by_link(world.links, path.positions[tree.start + leaf], middle.poses)
         _fill_leaf(surface, world, bodies, leaf, middle, tree)
     _fill_moved(surface, world, bodies, tree)
@@ -191,10 +195,11 @@ def fill_intervals_tree(surface, world, path, bodies, tree):
     middle = new_middle(len(world.links.parents))
     _halve(tree, n_leaves)
     for leaf in range(n_leaves):
+        begin_arcs(world.links, path.balls, tree.start + leaf)
         go_to_middle(world.links, path, tree.start + leaf, 0.0, 1.0, middle)
         _fill_leaf(surface, world, bodies, leaf, middle, tree)
         for column in range(len(bodies)):
-            bound = motion_bound_in(surface, world, bodies[column], middle)
+            bound = loosened_motion_bound_in(surface, world, path.balls, bodies[column], middle)
             _note_motion_bound(bound, tree.motion_bounds[leaf * len(bodies) + column])
     _fill_moved(surface, world, bodies, tree)
     for node in range(len(tree.first)):

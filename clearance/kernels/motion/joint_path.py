@@ -23,7 +23,7 @@ PATH_ROUNDING = 2.0**-48
 
 
 BALL_ROUNDING = 2.0**-45
-"""[rad] Rounding of the orientation of a ball joint: 111 u, doubled; `CERTIFY.md` has the sum."""
+"""[rad] Rounding of the orientation of a ball joint between steps: 111 u, doubled; `CERTIFY.md` has the sum."""
 
 
 class BallPath(NamedTuple):
@@ -117,9 +117,5 @@ def part_of(path, step, link, low, high):
 
 @inline(force=True)
 def part_of_arc(balls, step, ball, low, high):
-    """The part `low` to `high` of the turn of a ball joint from its orientation at `step` to the next [rad].
-
-    The bend is about any axis.
-    """
-    turn = linear_part(0.0, balls.arcs[step, ball, ANGLE], low, high)
-    return JointInterval(turn.middle, turn.swing, BALL_ROUNDING)
+    """The part `low` to `high` of the turn of a ball joint from its orientation at `step` to the next [rad]."""
+    return linear_part(0.0, balls.arcs[step, ball, ANGLE], low, high)

@@ -35,12 +35,6 @@ class Links(NamedTuple):
 
 
 @inline(force=True)
-def turns(kind):
-    """True of a joint that turns about its axis; that of a ball joint is another in each interval."""
-    return kind == TURNING or kind == BALL
-
-
-@inline(force=True)
 def _then(a, b):
     """The motion `b` and then `a`."""
     return RigidMotion(
@@ -114,9 +108,9 @@ def _write(m, out):
 
 @inline(force=True)
 def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out):
-    """Writes the pose of a link whose joint is at `position`; a ball joint has turned so far about `axis`."""
+    """Writes the pose of a link whose joint, no ball joint, is at `position`."""
     at = _then(rigid(world_from_parent), rigid(parent_from_joint))
-    if turns(kind):
+    if kind == TURNING:
         at = _turned(at, axis, position)
     elif kind == SLIDING:
         at = _slid(at, axis, position)
@@ -156,7 +150,7 @@ def place_links(links, positions, poses, wanted, look):
 def place_by_link(links, positions, poses):
     """Fills `poses` (links, 4, 4) [m] of all links, the joint above each at `positions` (links,) [rad or m].
 
-    Ball joints turn about the axes that `links` has of them.
+    There are no ball joints among them.
     """
     for link in range(len(links.parents)):
         parent = links.parents[link]

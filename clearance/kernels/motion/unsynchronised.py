@@ -24,8 +24,9 @@ from clearance.kernels.motion.certify import (
     WIDER,
     CertificateGoal,
     IntervalMiddle,
+    begin_arcs,
     go_to_middle,
-    motion_bound_in,
+    loosened_motion_bound_in,
     new_middle,
 )
 from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap, hold
@@ -145,6 +146,7 @@ def _bring(clocks, tree, node, low, high, at, part):
     leaf = tree.start + tree.first[node]
     if is_whole(low, high) or (at[0] == leaf and at[1] == low and at[2] == high):
         return
+    begin_arcs(clocks.world.links, clocks.path.balls, leaf)
     go_to_middle(clocks.world.links, clocks.path, leaf, low, high, part)
     at[0], at[1], at[2] = leaf, low, high
 
@@ -156,7 +158,11 @@ def _side_of(surface, clocks, tree, body, node, whole, part):
     if whole:
         pose = rigid(tree.poses[row_in_middle(tree, node, column)])
         return pose, motion_of_node(tree, node, column), tree.moved[node, column]
-    motion = motion_bound_in(surface, world, body, part)
+    balls = clocks.path.balls
+    begin_arcs(
+        world.links, balls, tree.start + tree.first[node]
+    )  # the other side may have had them
+    motion = loosened_motion_bound_in(surface, world, balls, body, part)
     box = box_of(surface, surface.roots[world.solids[body]])
     return rigid(part.poses[world.frames[body]]), motion, GROWTH * motion_bound_of_box(box, motion)
 
