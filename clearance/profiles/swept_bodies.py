@@ -14,11 +14,10 @@ import numpy as np
 from clearance.errors import UnknownLink, UnknownObstacle, nearest_name
 from clearance.profiles.chords import Knots, knots_of, standing
 from clearance.profiles.plane import Plane
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.record import Samples
 from clearance.world.body import Body
 from clearance.world.case import Case
-from clearance.world.motion import Motion
+from clearance.world.motion import Motion, kinematic_motion
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,6 @@ from clearance.run.question import Question
 from clearance.simulate import inside
 from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.judged import Judged, SectionAnswer, judged
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import (
@@ -25,13 +24,14 @@ from clearance.simulate.record import (
     Samples,
 )
 from clearance.simulate.resources import Resources
-from clearance.simulate.sections import Section, SectionPlan, require_rules_used, section_plan
+from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
 from clearance.world.clocks import require_clocks
-from clearance.world.motion import Motion
+from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.notice import Notice, Severity, worst_first
 from clearance.world.reach import require_within_reach
 from clearance.world.timeline import Phase, Timeline, timeline_of
+from clearance.world.used_rules import require_rules_used
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ def _plan(question: Question) -> MeasurementPlan:
     own = _motions(question)
     timeline = timeline_of(case, own)
     sections = section_plan(timeline)
-    require_rules_used(case, sections)
+    require_rules_used(case, sections.pairs, sections.unmeasured)
     for phase in timeline.phases:
         require_within_reach(phase.case, phase.motions)
     return MeasurementPlan(question, own, timeline, sections)
@@ -133,13 +133,13 @@ def _of_section(plan: MeasurementPlan, section: Section, resources: Resources) -
 
 
 def _measurement(question: Question, section: Section, resources: Resources) -> Measurement:
-    what = section.case, section.motions, section.pairs
     if question.method == "exact":
-        return measure(*what, question.need, resources)
+        return measure(section.in_motion, question.need, resources)
     from clearance.query.paper import NO_TOLERANCE
     from clearance.simulate.measure_paper import measure_paper
 
-    return measure_paper(*what, resources.progress, question.paper_tolerance or NO_TOLERANCE)
+    tolerance = question.paper_tolerance or NO_TOLERANCE
+    return measure_paper(section.in_motion, resources.progress, tolerance)
 
 
 def _certificate(
@@ -147,15 +147,8 @@ def _certificate(
 ) -> Certificate:
     from clearance.simulate.certify import certify_motion
 
-    return certify_motion(
-        section.case,
-        section.motions,
-        section.pairs,
-        found,
-        question.certify_gap,
-        question.need,
-        resources,
-    )
+    gap, need = question.certify_gap, question.need
+    return certify_motion(section.in_motion, found, gap, need, resources)
 
 
 def _samples(plan: MeasurementPlan, judged: Judged, resources: Resources) -> Samples:

@@ -20,10 +20,9 @@ from clearance.kernels.motion.certify import (
     IntervalBounds,
     certify,
 )
-from clearance.kernels.motion.joint_path import JointPath
-from clearance.kernels.motion.kinematics import Links
-from clearance.kernels.motion.world import World
-from clearance.simulate.layout import lay_out
+from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
+from clearance.kernels.motion.kinematics import BALL, Links
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
 from clearance.simulate.moment import Moment, Moments
 from clearance.simulate.parts import blocks, in_order, parts
@@ -36,8 +35,8 @@ from clearance.world.forest import joined_positions
 from clearance.world.kinematics import rates_by_link, values_by_link
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
-from clearance.world.pairs import Pair
 from clearance.world.reach import farthest_reach
+from clearance.world.slerp import arcs_between
 
 BEYOND = 1.001
 """Gaps beyond the warn limit that are asked about where more is not known: a proof within the gap decides it."""
@@ -48,9 +47,7 @@ takes 3,000 to a tenth of a millimetre."""
 
 
 def certify_motion(
-    case: Case,
-    motions: Sequence[Motion],
-    pairs: Sequence[Pair],
+    what: PairsInMotion,
     found: Measurement,
     gap: float,
     need: str = "steps",
@@ -63,9 +60,9 @@ def certify_motion(
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
         resources: threads, progress, and where the bounds are kept.
     """
-    gap, notices = _no_finer_than_rounding(case, motions, gap)
-    work = _Work.of(case, motions, pairs, _Question.of(found, case.limits, need, gap))
-    n_steps = motions[0].n_steps
+    gap, notices = _no_finer_than_rounding(what.case, what.motions, gap)
+    work = _Work(what, _Question.of(found, what.limits, need, gap))
+    n_steps = what.motions[0].n_steps
     log = _Log(resources.rows, "certify", n_steps, work.question)
     results = in_order(work.certify(log.bounds), log.spans[log.done :], resources.n_threads)
     for i_part, (done, counts) in enumerate(results, start=log.done + 1):
@@ -77,7 +74,7 @@ def certify_motion(
         *log.bounds,
         gap,
         dict(zip(COUNTERS, log.tally.tolist(), strict=True)),
-        _moment_of(Moments(case, motions, pairs), log.bounds, found),
+        _moment_of(Moments(what.case, what.motions, what.pairs), log.bounds, found),
         notices,
     )
 
@@ -86,7 +83,7 @@ def _no_finer_than_rounding(
     case: Case, motions: Sequence[Motion], gap: float
 ) -> tuple[float, tuple[Notice, ...]]:
     """The gap that can be had, and a warning where that is not what was asked for."""
-    size = farthest_reach(case, motions)
+    size = farthest_reach(case, tuple(motions))
     finest = FINEST_CERTIFY_GAP * size
     if gap >= finest:
         return gap, ()
@@ -174,32 +171,22 @@ class _Log:
 class _Work:
     """What all parts of a certificate share."""
 
-    surface: Surface
-    world: World
-    case: Case
-    motions: Sequence[Motion]
+    what: PairsInMotion
     question: _Question
-
-    @staticmethod
-    def of(
-        case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], question: _Question
-    ) -> _Work:
-        layout = lay_out(case, pairs)
-        whole = _with_whole_faces(layout.surface)
-        return _Work(whole, layout.world, case, motions, question)
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
+        world, surface = self.what.layout.world, _with_whole_faces(self.what.layout.surface)
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
             own = IntervalBounds(*(column[span] for column in bounds))
-            path = _joint_path(self.world.links, self.case, self.motions, ends)
-            motion = CertifiedMotion(self.world, path)
+            path = _path_of(world.links, self.what.case, self.what.motions, ends)
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
-            call(certify, self.surface, motion, steps, self.question.aim, own, counts)
+            motion = CertifiedMotion(world, path)
+            call(certify, surface, motion, steps, self.question.aim, own, counts)
             return span.stop, counts
 
         return run_part
@@ -221,24 +208,44 @@ def _with_whole_faces(surface: Surface) -> Surface:
     )
 
 
-def _joint_path(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:
+def _path_of(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:
     """The motion of the joints above all links at `steps`."""
     positions = joined_positions(case, motions, steps)
     cubic = np.zeros(positions.shape[1], dtype=bool)
-    velocities = np.empty((0, len(links.parents)))
-    own = [np.full(m.positions.shape[1], m.velocities is not None) for m in motions]
-    n_own = sum(map(len, own))
-    cubic[:n_own] = np.concatenate(own)
+    own = np.concatenate([np.full(m.positions.shape[1], m.velocities is not None) for m in motions])
+    cubic[: len(own)] = own  # what obstacles move by is at constant speed
+    rates = np.zeros_like(positions)
     if cubic.any():
-        rates = np.zeros_like(positions)  # obstacles that move do so at constant speed
-        rates[:, :n_own] = np.concatenate([_rates(m, steps) for m in motions], 1)
-        velocities = rates_by_link(links, rates)
+        rates[:, : len(own)] = np.concatenate([_rates(m, steps) for m in motions], 1)
+    return joint_path(links, motions[0].times[steps], positions, rates, cubic)
+
+
+def joint_path(
+    links: Links, times: np.ndarray, positions: np.ndarray, rates: np.ndarray, cubic: np.ndarray
+) -> JointPath:
+    """The motion of the joints above all links.
+
+    Args:
+        times: (n,) [s]. positions, rates: (n, columns). cubic: (columns,) True where the rates are followed.
+    """
+    velocities = rates_by_link(links, rates) if cubic.any() else np.empty((0, len(links.parents)))
     return JointPath(
-        _writable(motions[0].times[steps]),
+        _writable(times),
         _writable(values_by_link(links, positions)),
         _writable(velocities),
         np.append(cubic, False)[links.columns],  # the last stands for no column
+        _ball_path(links, positions),
     )
+
+
+def _ball_path(links: Links, positions: np.ndarray) -> BallPath:
+    """The motion of the ball joints among all links, of positions (n, columns)."""
+    balls = np.flatnonzero(links.kinds == BALL)
+    if len(balls) == 0:
+        return NO_BALLS
+    turned = positions[:, links.columns[balls, None] + np.arange(4)]
+    arcs = np.concatenate([turned[:-1], arcs_between(turned[:-1], turned[1:])], axis=2)
+    return BallPath(balls, links.parent_from_joint[balls], _writable(arcs))
 
 
 def _rates(motion: Motion, steps: slice) -> np.ndarray:

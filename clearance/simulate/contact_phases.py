@@ -43,7 +43,12 @@ class _Part:
 def _of_section(answer: SectionAnswer, work_out: str) -> _Part:
     section, found = answer.section, answer.found
     rows = find_contacts(
-        section.case, section.motions, section.pairs, found.clearance, found.pair, work_out
+        section.phase.case,
+        section.phase.motions,
+        section.pairs,
+        found.clearance,
+        found.pair,
+        work_out,
     )
     return _Part(rows, section.phase.first, section.places)
 

@@ -37,7 +37,7 @@ def notices(plan: SectionPlan) -> tuple[Notice, ...]:
 
 def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
     """The same of a section, each with the place of the pair in the run."""
-    case, motions, pairs = section.case, section.motions, section.pairs
+    case, motions, pairs = section.phase.case, section.phase.motions, section.pairs
     names = pair_names(case, pairs)
     waiting = doubts_of(case, pairs)
     for start in range(0, section.phase.n_steps if waiting else 0, AT_ONCE):

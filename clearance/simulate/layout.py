@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from clearance.geometry.tree import join
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.world import World
-from clearance.world.case import Case
+from clearance.world.case import Case, Limits
 from clearance.world.forest import WORLD, carried_by, forest_of, joined_positions
 from clearance.world.kinematics import poses_by_link, seen_from
 from clearance.world.motion import Motion
@@ -60,6 +61,30 @@ class Layout:
             points[rows] = turned + seen_from[:, None, :3, 3]
         swapped = np.flatnonzero((pairs >= 0) & self.swapped[pairs])
         points[swapped] = points[swapped][:, ::-1]
+
+
+@dataclass(frozen=True, eq=False)
+class PairsInMotion:
+    """Pairs of bodies of a case in which nothing changes hands, and how all moves.
+
+    Attributes:
+        motions: one for each robot of the case, with the same steps.
+        limits: of the pairs' distances; those of the case if not given.
+    """
+
+    case: Case
+    motions: Sequence[Motion]
+    pairs: Sequence[Pair]
+    limits: Limits = None  # type: ignore[assignment]  # always there once it is made
+
+    def __post_init__(self) -> None:
+        if self.limits is None:
+            object.__setattr__(self, "limits", self.case.limits)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """All bodies in one searchable surface."""
+        return lay_out(self.case, self.pairs)
 
 
 @dataclass(frozen=True, order=True)

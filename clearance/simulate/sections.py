@@ -8,16 +8,15 @@ the sections' answers come to together (`judged`).
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
+from clearance.simulate.layout import PairsInMotion
 from clearance.world.case import Case, Limits, Omission
 from clearance.world.clocks import are_tied
-from clearance.world.motion import Motion
-from clearance.world.pairs import Pair, Selection, names_of, nothing_to_measure, selected_pairs
-from clearance.world.rules import Rule, matches
+from clearance.world.pairs import Pair, Selection, nothing_to_measure, selected_pairs
 from clearance.world.timeline import Phase, Timeline
 
 
@@ -41,22 +40,13 @@ class Section:
     pairs: tuple[Pair, ...]
     places: np.ndarray
 
-    @property
-    def case(self) -> Case:
-        """The case in this phase; its limits are those of the distances of the bodies without their padding."""
+    @cached_property
+    def in_motion(self) -> PairsInMotion:
+        """Its pairs and how they move; limits are those of the distances of the bodies without their padding."""
         limits = self.phase.case.limits.of_rule(self.rule)
         if self.padding:
             limits = Limits(limits.fail + self.padding, limits.warn + self.padding, limits.joints)
-        return (
-            self.phase.case
-            if limits is self.phase.case.limits
-            else replace(self.phase.case, limits=limits)
-        )
-
-    @property
-    def motions(self) -> tuple[Motion, ...]:
-        """Of the robots, in this phase."""
-        return self.phase.motions
+        return PairsInMotion(self.phase.case, self.phase.motions, self.pairs, limits)
 
     @property
     def steps(self) -> slice:
@@ -130,40 +120,6 @@ def _alike(case: Case, selection: Selection) -> dict[tuple[int, float, bool], li
 
 def _each_once(omissions: Iterable[Omission]) -> tuple[Omission, ...]:
     return tuple(dict.fromkeys(omissions))
-
-
-def require_rules_used(case: Case, plan: SectionPlan) -> None:
-    """Nothing, if every rule is of a pair, and what it says is carried is.
-
-    Raises:
-        UnknownLink, UnknownObstacle: a typing error, with the nearest name. BadInput: two bodies that are no pair.
-    """
-    pairs = [(names_of(case, pair.a), names_of(case, pair.b)) for pair in plan.pairs]
-    pairs += [((one.link,), (one.obstacle,)) for one in plan.unmeasured if one.obstacle != "*"]
-    bodies = sorted({name for pair in pairs for body in pair for name in body})
-    carried = [carry.part for carry in case.carries]
-    for field, rows in (("limits.rules", case.limits.rules), ("allow", case.allow)):
-        for i, row in enumerate(rows):
-            if row.while_carried is not None and row.while_carried not in carried:
-                raise UnknownObstacle(
-                    f"{row.while_carried!r} is never carried",
-                    where=f"{field}[{i}].while_carried",
-                    valid=nearest_name(row.while_carried, carried),
-                )
-    for i, rule in enumerate(case.limits.rules):
-        with at(f"limits.rules[{i}].between"):
-            _require_match(rule, pairs, bodies)
-
-
-def _require_match(
-    rule: Rule, pairs: Sequence[tuple[Sequence[str], Sequence[str]]], bodies: Sequence[str]
-) -> None:
-    if any(rule.matches(*pair) for pair in pairs):
-        return
-    for pattern in rule.between:
-        if not any(matches(name, pattern) for name in bodies):
-            raise UnknownLink(f"no body is called {pattern!r}", valid=nearest_name(pattern, bodies))
-    raise BadInput(f"no pair is of {list(rule.between)}", valid="patterns of two bodies of a pair")
 
 
 def by_phase(sections: Sequence[Section]) -> dict[int, list[Section]]:

@@ -20,10 +20,9 @@ from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import solid_of
 from clearance.query.common_point import common_point
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.swept_pieces import SweptPiece, swept_pieces
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.motion import Motion
+from clearance.world.motion import Motion, kinematic_motion
 
 WITHIN = 0.005
 """[m] Stretches of the sweep, by default: the pieces then stand out of the sweep by about as much."""

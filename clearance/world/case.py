@@ -28,7 +28,7 @@ from clearance.world.notice import Notice
 from clearance.world.padding import checked_padding
 from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.robot import Robot
-from clearance.world.rules import DEFAULT, Allowance, Rule
+from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
 
@@ -60,7 +60,7 @@ class Limits:
         if self.warn is None:
             object.__setattr__(self, "warn", self.fail)
         for name in ("fail", "warn"):
-            object.__setattr__(self, name, _level(getattr(self, name), name))
+            object.__setattr__(self, name, checked_level(getattr(self, name), name))
         if self.warn < self.fail:
             raise BadDimension(
                 f"the warn limit {self.warn:g} m is below the fail limit {self.fail:g} m",
@@ -79,16 +79,6 @@ class Limits:
             return self if not self.rules else replace(self, rules=())
         rule = self.rules[i_rule - 1]
         return Limits(rule.fail, rule.warn, self.joints)
-
-
-def _level(given: float, name: str) -> float:
-    try:
-        level = float(given)
-    except (TypeError, ValueError):
-        raise BadDimension(f"limit {name} is {given!r:.60}", valid="a number of metres") from None
-    if not 0.0 <= level < np.inf:
-        raise BadDimension(f"limit {name} is {level} m", valid="0 or more")
-    return level
 
 
 @dataclass(frozen=True)

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
 from clearance.errors import BadInput
 from clearance.world.case import Case
-from clearance.world.forest import resolved_mount
+from clearance.world.forest import owner_of
 from clearance.world.mount import Mount
 from clearance.world.pairs import BodyIndex
 
 NO_CLOCK = -1
 """Of a body that stands."""
+
+_Thing = tuple[bool, int]
+"""A robot (False, i) or an obstacle (True, i)."""
 
 
 def are_tied(case: Case, one: BodyIndex, other: BodyIndex) -> bool:
@@ -28,48 +32,45 @@ def _index(body: BodyIndex) -> int:
 
 
 @lru_cache(maxsize=16)
-def clocks_of(case: Case) -> dict[tuple[bool, int], int]:
+def clocks_of(case: Case) -> dict[_Thing, int]:
     """The clock of each robot (False, i) and obstacle (True, i): the number of an actor, or `NO_CLOCK`.
 
-    Raises:
-        BadInput: a part that is carried by actors of different clocks, or that has a motion of its own as well.
+    What stands has none, even where something that moves stands on it.
     """
-    clocks = {(False, i): i for i in range(len(case.robots))}
-    for i, obstacle in enumerate(case.obstacles):
-        clocks[True, i] = NO_CLOCK if obstacle.stands else len(case.robots) + i
+    below = list(_below(case))
+    moving = _moving(case, below)
+    clocks = {thing: i for i, thing in enumerate(_things(case))}
+    for thing, carrier in below:
+        if carrier in moving:
+            old, new = clocks[thing], clocks[carrier]
+            clocks |= {one: new for one, clock in clocks.items() if clock == old}
+    return {thing: clock if thing in moving else NO_CLOCK for thing, clock in clocks.items()}
+
+
+def _things(case: Case) -> list[_Thing]:
+    robots = [(False, i) for i in range(len(case.robots))]
+    return robots + [(True, i) for i in range(len(case.obstacles))]
+
+
+def _below(case: Case) -> Iterator[tuple[_Thing, _Thing]]:
+    """What is on something at some time, and what that is."""
     names = {obstacle.name: (True, i) for i, obstacle in enumerate(case.obstacles)}
     mounted = [((False, i), robot.mount) for i, robot in enumerate(case.robots)]
     mounted += [((True, i), obstacle.mount) for i, obstacle in enumerate(case.obstacles)]
-    mounted += [
-        (names[carry.part], Mount(carry.by)) for carry in case.carries if carry.part in names
-    ]
+    carried = [carry for carry in case.carries if carry.part in names]
+    mounted += [(names[carry.part], Mount(carry.by)) for carry in carried]
     for thing, mount in mounted:
         if mount is not None:
-            _join(clocks, thing, _owner(case, mount))
-    return clocks
+            yield thing, owner_of(case, mount)
 
 
-def _join(
-    clocks: dict[tuple[bool, int], int], thing: tuple[bool, int], below: tuple[bool, int]
-) -> None:
-    """Puts two things on one clock."""
-    old, new = clocks[thing], clocks[below]
-    if NO_CLOCK in (old, new):
-        clocks[thing] = clocks[below] = max(old, new)
-        return
-    for key, clock in clocks.items():
-        if clock == old:
-            clocks[key] = new
-
-
-def _owner(case: Case, mount: Mount) -> tuple[bool, int]:
-    """What a mount is on."""
-    on = resolved_mount(case, mount).on
-    for i, obstacle in enumerate(case.obstacles):
-        if obstacle.name == on:
-            return True, i
-    names = [placed.robot.name for placed in case.robots]
-    return False, names.index(on.split("/")[0]) if len(names) > 1 or "/" in on else 0
+def _moving(case: Case, below: Sequence[tuple[_Thing, _Thing]]) -> set[_Thing]:
+    """Robots, what has a motion of its own, and all that is on them at some time."""
+    moving = {(False, i) for i in range(len(case.robots))}
+    moving |= {(True, i) for i, obstacle in enumerate(case.obstacles) if obstacle.moves}
+    for _ in below:
+        moving |= {thing for thing, carrier in below if carrier in moving}
+    return moving
 
 
 def require_clocks(case: Case) -> None:
@@ -90,8 +91,8 @@ def require_clocks(case: Case) -> None:
                 )
     owners: dict[str, tuple[bool, int]] = {}
     for i, carry in enumerate(case.carries):
-        owner = owners.setdefault(carry.part, _owner(case, Mount(carry.by)))
-        if owner != _owner(case, Mount(carry.by)):
+        owner = owners.setdefault(carry.part, owner_of(case, Mount(carry.by)))
+        if owner != owner_of(case, Mount(carry.by)):
             raise BadInput(
                 f"part {carry.part!r} changes hands between actors whose clocks are not tied",
                 where=f"carry[{i}]",

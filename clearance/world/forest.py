@@ -18,7 +18,13 @@ from clearance.errors import BadInput, UnknownLink, at, nearest_name
 from clearance.kernels.motion.kinematics import FIXED, NO_COLUMN, NO_PARENT, Links
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
-from clearance.world.kinematics import floating_links, links_of_robot, poses_by_link
+from clearance.world.kinematics import (
+    all_links,
+    floating_links,
+    links_of_robot,
+    poses_by_link,
+    standing_link,
+)
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
 
@@ -125,6 +131,19 @@ def require_known(case: Case, name: str) -> None:
         raise UnknownLink(f"nothing is called {name!r}", valid=nearest_name(name, known))
 
 
+def owner_of(case: Case, mount: Mount) -> tuple[bool, int]:
+    """What a mount is on in the end: an obstacle (True, i) or a robot (False, i).
+
+    Raises:
+        UnknownLink, BadInput: as `resolved_mount`.
+    """
+    on = resolved_mount(case, mount).on
+    for i, obstacle in enumerate(case.obstacles):
+        if obstacle.name == on:
+            return True, i
+    return False, _link_names(case)[on][0]
+
+
 def _link_names(case: Case) -> dict[str, tuple[int, int]]:
     """Robot and link by `robot/link`, and by the link alone where there is one robot."""
     names = {
@@ -163,9 +182,8 @@ class _Planting:
             if obstacle.mount is not None and obstacle.moves is None:
                 with at(f"obstacle {obstacle.name!r}: on"):
                     self._plant_riding(i_obstacle, obstacle)
-        links = Links(*(np.concatenate(columns) for columns in zip(*self.parts, strict=True)))
         return Forest(
-            links,
+            all_links(*self.parts),
             tuple(self.robot_starts[i] for i in range(len(self.case.robots))),
             tuple(self.obstacle_links[i] for i in range(len(self.case.obstacles))),
         )
@@ -196,8 +214,11 @@ class _Planting:
         obstacle = self.case.obstacles[i_obstacle]
         with at(f"obstacle {obstacle.name!r}: on"), self._waiting(obstacle.name):
             parent, pose = self._stands_on(obstacle.mount)
-        first = self.n_links
-        self._add(floating_links(self.obstacle_columns[i_obstacle], parent, pose, first))
+        if parent == NO_PARENT:
+            parent = self.n_links
+            self._add(standing_link(pose))
+            pose = np.eye(4)
+        self._add(floating_links(self.n_links, self.obstacle_columns[i_obstacle], parent, pose))
         self.obstacle_links[i_obstacle] = self.n_links - 1
 
     def _plant_riding(self, i_obstacle: int, obstacle: Obstacle) -> None:

@@ -106,13 +106,47 @@ def seen_from(
     added = added._replace(
         parents=np.array(parents), parent_from_joint=fixed, kinds=kinds, columns=columns
     )
-    return Links(*(np.concatenate(both) for both in zip(links, added, strict=True))), places
+    return all_links(links, added), places
+
+
+def all_links(*forests: Links) -> Links:
+    """The links of several forests behind one another, whose parents and columns count over all of them."""
+    return Links(*(np.concatenate(arrays) for arrays in zip(*forests, strict=True)))
+
+
+def standing_link(world_from_link: np.ndarray) -> Links:
+    """One link that stands at a pose (4, 4) [m]: a root for others to hang on."""
+    return Links(
+        np.array([NO_PARENT]), np.array([FIXED]), np.zeros((1, 3)), world_from_link[None].astype(float),
+        np.array([NO_COLUMN]), np.ones(1), np.zeros(1),
+    )  # fmt: skip
+
+
+def floating_links(
+    first: int, columns_from: int, parent: int, parent_from_base: np.ndarray
+) -> Links:
+    """Four links that carry a body anywhere, seen from a base: three slides, and a ball joint that carries it.
+
+    They follow seven columns of the positions, x, y, z [m] and the quaternion x, y, z, w. To be put behind other
+    links by `all_links`; the body hangs on the last.
+
+    Args:
+        first: the place of the first of them among all links. columns_from: that of the first column.
+        parent: the link that they hang on; a root that stands can be had by `standing_link`.
+        parent_from_base: (4, 4) [m].
+    """
+    fixed = np.tile(np.eye(4), (4, 1, 1))
+    fixed[0] = parent_from_base
+    return Links(
+        np.array([parent, first, first + 1, first + 2]), np.array([SLIDING, SLIDING, SLIDING, BALL]),
+        np.eye(4)[:, :3].copy(), fixed, columns_from + np.arange(4), np.ones(4), np.zeros(4),
+    )  # fmt: skip
 
 
 def poses_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
     """(n, links, 4, 4) `world_from_link` [m] of all links, of positions (n, columns)."""
     poses = np.empty((len(positions), len(links.parents), 4, 4))
-    place_each(links, np.ascontiguousarray(values_by_link(links, positions)), poses)
+    place_each(links, np.ascontiguousarray(positions, dtype=np.float64), poses)
     return poses
 
 
@@ -129,28 +163,6 @@ def links_of_robot(robot: Robot) -> Links:
     for link, column, factor, offset in mimics:
         columns[link], factors[link], offsets[link] = column, factor, offset
     return Links(parents, kinds, axes, fixed_parts, columns, factors, offsets)
-
-
-def floating_links(first_column: int, parent: int, pose: np.ndarray, first_link: int) -> Links:
-    """The links of a body that floats: one that stands where it floats from, three that slide, one that turns.
-
-    Args:
-        first_column: of seven: position [m] and quaternion xyzw. parent: the link it floats from, or `NO_PARENT`.
-        pose: (4, 4) on the parent, or in the world [m]. first_link: where these links will lie.
-    """
-    fixed = np.tile(np.eye(4), (5, 1, 1))
-    fixed[0] = pose
-    axes = np.zeros((5, 3))
-    axes[1:4] = np.eye(3)
-    return Links(
-        np.array([parent, *range(first_link, first_link + 4)]),
-        np.array([FIXED, SLIDING, SLIDING, SLIDING, BALL]),
-        axes,
-        fixed,
-        np.array([NO_COLUMN, *range(first_column, first_column + 4)]),
-        np.ones(5),
-        np.zeros(5),
-    )
 
 
 def moving_positions(
@@ -182,22 +194,21 @@ def moving_velocities(
 
 
 def values_by_link(links: Links, positions: np.ndarray) -> np.ndarray:
-    """(n, links) the position of the joint above each link, of (n, columns); 0 for roots and fixed joints."""
-    return rates_by_link(links, positions) + np.where(
-        links.columns == NO_COLUMN, 0.0, links.offsets
-    )
+    """(n, links) the position of the joint above each link, of (n, columns); 0 of roots, fixed and ball joints."""
+    return rates_by_link(links, positions) + np.where(_follows(links), links.offsets, 0.0)
 
 
 def rates_by_link(links: Links, rates: np.ndarray) -> np.ndarray:
     """(n, links) the same of velocities (n, columns), of which offsets are no part."""
-    moving = np.where(links.columns == NO_COLUMN, 0.0, links.factors)
+    moving = np.where(_follows(links), links.factors, 0.0)
     if rates.shape[1] == 0:
         return np.zeros((len(rates), len(moving)))
-    return (
-        rates[:, np.maximum(links.columns, 0)] * moving
-        if rates.shape[1]
-        else np.zeros((len(rates), len(moving)))
-    )
+    return rates[:, np.maximum(links.columns, 0)] * moving
+
+
+def _follows(links: Links) -> np.ndarray:
+    """(links,) True where the position of the joint above is one number, made of a column."""
+    return (links.columns != NO_COLUMN) & (links.kinds != BALL)
 
 
 def _column(columns: dict[str, int], name: str) -> int:

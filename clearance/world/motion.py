@@ -8,7 +8,7 @@ import numpy as np
 
 from clearance.world.case import PlacedRobot
 from clearance.world.cubic import cubics_of, position_on
-from clearance.world.kinematics import link_poses
+from clearance.world.kinematics import link_poses, moving_positions, moving_velocities
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,3 +53,24 @@ class Motion:
             return before + share * (after - before)
         cubics = cubics_of(self.times[ends], self.positions[ends], self.velocities[ends])
         return position_on(cubics, np.array(share))[0]
+
+
+def kinematic_motion(placed: PlacedRobot) -> Motion:
+    """The motion that goes through the samples of the trajectory, with no tracking error.
+
+    A robot without a trajectory stands.
+    """
+    if placed.trajectory is None:
+        stand = moving_positions(placed, (), np.zeros((1, 0)))
+        return Motion(placed, np.zeros(1), stand, np.zeros(1))
+    asked = placed.asked
+    velocities = None
+    if asked.velocities is not None:
+        velocities = moving_velocities(placed, asked.joint_names, asked.velocities)
+    return Motion(
+        placed=placed,
+        times=asked.times,
+        positions=moving_positions(placed, asked.joint_names, asked.positions),
+        tracking_error=np.zeros(asked.n_steps),
+        velocities=velocities,
+    )

@@ -6,6 +6,7 @@ Both are unit mistakes or typing errors, and would end in overflow or in work wi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from clearance.tolerance import REACH, TURNS
 from clearance.world.body import Body
 from clearance.world.case import Case
 from clearance.world.cubic import extremes_between
-from clearance.world.forest import resolved_mount
+from clearance.world.forest import owner_of, resolved_mount
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
@@ -27,7 +28,7 @@ ROOT_3 = 3.0**0.5
 
 def farthest_reach(case: Case, motions: Sequence[Motion]) -> float:
     """[m] no coordinate of any body is larger in magnitude at any moment."""
-    return max(reach for _, reach in _reaches(case, motions))
+    return max(reach for _, reach in _reaches(case, tuple(motions)))
 
 
 def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
@@ -38,7 +39,7 @@ def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
     """
     for motion in motions:
         require_few_turns(motion.placed.robot, motion.joint_names, motion)
-    for what, reach in _reaches(case, motions):
+    for what, reach in _reaches(case, tuple(motions)):
         if not reach <= REACH:
             raise BadDimension(
                 f"it reaches {reach:g} m from the origin",
@@ -47,8 +48,13 @@ def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
             )
 
 
-def _reaches(case: Case, motions: Sequence[Motion]) -> Iterator[tuple[str, float]]:
+@lru_cache(maxsize=16)  # asked for again by each section of a phase
+def _reaches(case: Case, motions: tuple[Motion, ...]) -> list[tuple[str, float]]:
     """Each body by name, and how far it gets from the origin along an axis at most [m]."""
+    return list(_each_reach(case, motions))
+
+
+def _each_reach(case: Case, motions: Sequence[Motion]) -> Iterator[tuple[str, float]]:
     frames = _Frames(case, motions)
     for i, obstacle in enumerate(case.obstacles):
         yield f"obstacle {obstacle.name!r}", _reach(obstacle.body, frames.of_obstacle(i))
@@ -63,7 +69,6 @@ class _Frames:
 
     def __init__(self, case: Case, motions: Sequence[Motion]) -> None:
         self._case, self._motions = case, motions
-        self._obstacles = {obstacle.name: i for i, obstacle in enumerate(case.obstacles)}
 
     def of_robot(self, i: int) -> float:
         """Of all links of a robot."""
@@ -83,13 +88,10 @@ class _Frames:
         """Of what stands on a mount: no axis of it is longer than the sum of a shift's magnitudes."""
         if mount is None:
             return 0.0
+        is_obstacle, i = owner_of(self._case, mount)
         mount = resolved_mount(self._case, mount)
         shift = float(np.abs(mount.pose[:3, 3]).sum())
-        if mount.on in self._obstacles:
-            return ROOT_3 * self.of_obstacle(self._obstacles[mount.on]) + shift
-        names = [placed.robot.name for placed in self._case.robots]
-        i_robot = names.index(mount.on.split("/")[0]) if len(names) > 1 or "/" in mount.on else 0
-        return ROOT_3 * self.of_robot(i_robot) + shift
+        return ROOT_3 * (self.of_obstacle(i) if is_obstacle else self.of_robot(i)) + shift
 
 
 def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajectory) -> None:

@@ -5,6 +5,7 @@ Not for: which pairs there are (`pairs`), and what a clearance is held against (
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
@@ -75,7 +76,8 @@ class Rule(PairPattern):
         name: for tables. fail, warn: as in `case.Limits`.
 
     Raises:
-        BadDimension: `warn` below `fail`. BadInput: the name of the limits that hold without a rule.
+        BadDimension: a level that is below 0 or not finite, or `warn` below `fail`. BadInput: the name of the
+            limits that hold without a rule.
     """
 
     name: str = ""
@@ -89,6 +91,8 @@ class Rule(PairPattern):
             raise BadInput(f"a rule is called {DEFAULT!r}", valid="another name")
         if self.warn is None:
             object.__setattr__(self, "warn", self.fail)
+        for name in ("fail", "warn"):
+            object.__setattr__(self, name, checked_level(getattr(self, name), name))
         if self.warn < self.fail:
             raise BadDimension(
                 f"the warn limit {self.warn:g} m of rule {self.name!r} is below its fail limit {self.fail:g} m",
@@ -98,3 +102,18 @@ class Rule(PairPattern):
 
 def _any(names: Collection[str], pattern: str) -> bool:
     return any(matches(name, pattern) for name in names)
+
+
+def checked_level(given: float, name: str) -> float:
+    """The level of clearance [m] that a limit is.
+
+    Raises:
+        BadDimension: no number, below 0 or not finite.
+    """
+    try:
+        level = float(given)
+    except (TypeError, ValueError):
+        raise BadDimension(f"limit {name} is {given!r:.60}", valid="a number of metres") from None
+    if not 0.0 <= level < math.inf:
+        raise BadDimension(f"limit {name} is {level} m", valid="0 or more")
+    return level

@@ -7,7 +7,7 @@ belongs to both, as it is come to and as it is left. Not for: where an actor is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,8 +21,8 @@ from clearance.world.forest import (
     WORLD,
     forest_of,
     link_poses_at,
+    owner_of,
     require_known,
-    resolved_mount,
 )
 from clearance.world.knots import Knots, knots_of, looped
 from clearance.world.motion import Motion
@@ -296,29 +296,20 @@ def _left_as_they_were(phase: Phase, last: Phase, parts: frozenset[str]) -> Case
 def _with_absent(phase: Phase) -> Phase:
     """The phase without what stands on something that is not in the cell."""
     case = phase.case
-    gone = {case.robots[i].robot.name for i in phase.absent_robots}
-    gone |= {case.obstacles[i].name for i in phase.absent_obstacles}
+    gone = {(False, i) for i in phase.absent_robots} | {(True, i) for i in phase.absent_obstacles}
     if not gone:
         return phase
-    robots, obstacles = set(phase.absent_robots), set(phase.absent_obstacles)
-    for _ in range(len(case.robots) + len(case.obstacles)):
-        for i, placed in enumerate(case.robots):
-            if placed.mount is not None and _owner(case, placed.mount) in gone:
-                robots.add(i)
-                gone.add(placed.robot.name)
-        for i, obstacle in enumerate(case.obstacles):
-            if obstacle.mount is not None and _owner(case, obstacle.mount) in gone:
-                obstacles.add(i)
-                gone.add(obstacle.name)
-    return replace(phase, absent_robots=frozenset(robots), absent_obstacles=frozenset(obstacles))
+    mounts = [((False, i), placed.mount) for i, placed in enumerate(case.robots)]
+    mounts += [((True, i), obstacle.mount) for i, obstacle in enumerate(case.obstacles)]
+    for _ in mounts:
+        gone |= {thing for thing, mount in mounts if _stands_on(case, mount, gone)}
+    robots = frozenset(i for is_obstacle, i in gone if not is_obstacle)
+    obstacles = frozenset(i for is_obstacle, i in gone if is_obstacle)
+    return replace(phase, absent_robots=robots, absent_obstacles=obstacles)
 
 
-def _owner(case: Case, mount: Mount) -> str:
-    """The name of the robot or obstacle that a mount is on."""
-    on = resolved_mount(case, mount).on
-    if any(obstacle.name == on for obstacle in case.obstacles):
-        return on
-    return on.split("/")[0] if "/" in on else case.robots[0].robot.name
+def _stands_on(case: Case, mount: Mount | None, gone: Collection[tuple[bool, int]]) -> bool:
+    return mount is not None and owner_of(case, mount) in gone
 
 
 def _carriers_first(carried: Mapping[str, Carry]) -> list[Carry]:

@@ -16,12 +16,12 @@ import numpy as np
 import clearance as cl
 from clearance.load.srdf import load_srdf
 from clearance.load.urdf import load_urdf
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot, SelfClearance
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import Pair, measured_pairs
 from clearance.world.robot import Robot
 from clearance.world.rules import Allowance

@@ -18,7 +18,6 @@ from peers import Fcl, available, silenced
 
 from clearance.kernels.motion.kinematics import FIXED, NO_PARENT, SLIDING, TURNING
 from clearance.simulate.certify import certify_motion
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.record import Certificate
 from clearance.simulate.resources import Resources
@@ -26,6 +25,7 @@ from clearance.simulate.sections import SectionPlan, section_plan
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, forest_of, joined_positions, link_poses_at
 from clearance.world.kinematics import values_by_link
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import BodyIndex, measured_pairs
 from clearance.world.timeline import Timeline, timeline_of
 

@@ -23,10 +23,9 @@ import numpy as np  # noqa: E402
 from clearance import load_case  # noqa: E402
 from clearance.crosscheck.triangles import TriangleSoup, triangle_soup  # noqa: E402
 from clearance.geometry.polyhedron import Polyhedron  # noqa: E402
-from clearance.simulate.kinematic import kinematic_motion  # noqa: E402
 from clearance.world.body import Body  # noqa: E402
 from clearance.world.case import Case  # noqa: E402
-from clearance.world.motion import Motion  # noqa: E402
+from clearance.world.motion import Motion, kinematic_motion  # noqa: E402
 from clearance.world.pairs import Pair, measured_pairs  # noqa: E402
 
 SHARED = ROOT.parent / "shared" / "cases"

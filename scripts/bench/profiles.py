@@ -29,7 +29,7 @@ from clearance.profiles.outline_file import DrawnOutline
 from clearance.profiles.plane import Plane
 from clearance.profiles.profile import Profile
 from clearance.profiles.sweep import SHARE, TOLERANCE
-from clearance.simulate.kinematic import kinematic_motion
+from clearance.world.motion import kinematic_motion
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]

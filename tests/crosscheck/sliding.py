@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.record import Record
+from clearance.simulate.record import Samples
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Omission, PlacedRobot
 from clearance.world.motion import Motion
@@ -28,7 +28,7 @@ def rail_record(
     positions: list[float],
     rows: list[tuple[float, str, tuple[float, float, float], tuple[float, float, float]]],
     unmeasured: tuple[Omission, ...] = (),
-) -> Record:
+) -> Samples:
     """A record of `link` sliding along x; a row is (clearance, obstacle, link point, obstacle
     point).
     """
@@ -42,7 +42,7 @@ def rail_record(
     )
     motion = Motion(placed, times, column, np.zeros(len(times)))
     case = Case("rail", (placed,), standing)
-    return Record(case, (motion,), _steps(times, rows), unmeasured, (), {})
+    return Samples(case, (motion,), _steps(times, rows), unmeasured)
 
 
 def _steps(times: np.ndarray, rows: list) -> pa.Table:

@@ -19,12 +19,12 @@ import clearance as cl
 from clearance.crosscheck.triangles import triangle_soup
 from clearance.load.srdf import load_srdf
 from clearance.load.urdf import load_urdf
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.collision_matrix import NEVER
 from clearance.world.forest import link_poses_at
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import BodyIndex, measured_pairs
 from clearance.world.self_pairs import self_pairs
 from clearance.world.trajectory import Trajectory

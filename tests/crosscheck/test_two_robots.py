@@ -26,7 +26,7 @@ def test_every_step_agrees_and_links_have_their_robots_names() -> None:
     run = cl.check(two_robots(), cross_check=True)
     assert run.cross_check.agrees and run.cross_check.n_steps == 12
     assert run.cross_check.worst_witness_error < 1e-12
-    assert set(run.steps["link"].to_pylist()) <= {"flying/l6", "second/l6"}
+    assert set(run.steps["body_a"].to_pylist()) <= {"flying/l6", "second/l6"}
 
 
 def test_a_link_left_out_of_one_robot_is_asked_of_the_other() -> None:

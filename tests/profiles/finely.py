@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.kinematics import link_poses
+from clearance.world.motion import kinematic_motion
 from clearance.world.robot import JointKind
 from tests.profiles.moving import joint, moved, shifted, tetrahedron
 

@@ -11,8 +11,8 @@ import clearance as cl
 from clearance.profiles.chords import knots_of
 from clearance.profiles.course import course_of, positions_at
 from clearance.profiles.plane import Plane
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.kinematics import link_poses
+from clearance.world.motion import kinematic_motion
 from clearance.world.robot import JointKind
 from tests.examples import examples
 from tests.oracle.outlines import inside

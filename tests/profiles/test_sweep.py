@@ -11,8 +11,8 @@ import clearance as cl
 from clearance.errors import BadDimension, BadInput, NothingToMeasure, UnknownLink
 from clearance.profiles.course import positions_at
 from clearance.profiles.plane import Plane
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.kinematics import link_poses
+from clearance.world.motion import kinematic_motion
 from clearance.world.robot import JointKind
 from tests.examples import examples
 from tests.oracle.outlines import inside

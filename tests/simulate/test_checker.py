@@ -23,11 +23,11 @@ def assert_row(near, steps, i):
     row = steps.slice(i, 1).to_pylist()[0]
     assert (near.distance, near.link, near.obstacle) == (
         row["clearance"],
-        row["link"],
-        row["obstacle"],
+        row["body_a"],
+        row["body_b"],
     )
-    assert near.point_link.tolist() == [row[f"link_{axis}"] for axis in "xyz"]
-    assert near.point_obstacle.tolist() == [row[f"obstacle_{axis}"] for axis in "xyz"]
+    assert near.point_link.tolist() == [row[f"a_{axis}"] for axis in "xyz"]
+    assert near.point_obstacle.tolist() == [row[f"b_{axis}"] for axis in "xyz"]
     assert near.contact == (row["clearance"] == 0.0)
 
 

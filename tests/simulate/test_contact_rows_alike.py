@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import clearance as cl
-from clearance.simulate.kinematic import kinematic_motion
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.motion import Motion
+from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
@@ -27,7 +27,7 @@ FETCH = ROOT.parent / "shared" / "cases" / "fetch_cage_planned" / "case.yaml"
 def measured(case, motion, steps, need="steps"):
     """What is found of some steps of a motion that is nothing else."""
     part = Motion(motion.placed, motion.times[steps], motion.positions[steps], np.zeros(len(steps)))
-    return measure(case, (part,), measured_pairs(case)[0], need, Resources(jobs=1))
+    return measure(PairsInMotion(case, (part,), measured_pairs(case)[0]), need, Resources(jobs=1))
 
 
 def ball_through_wall():
@@ -96,7 +96,7 @@ def test_the_point_of_a_contact_is_that_of_a_single_question():
     found, pairs = measured(case, motion, np.arange(motion.n_steps)), measured_pairs(case)[0]
     for step in np.flatnonzero(found.clearance == 0.0):
         pair = pairs[found.pair[step]]
-        poses = [motion.poses(step, step + 1)]
+        poses = motion.poses(step, step + 1)
         (a, pose_a), (b, pose_b) = (
             (body.shape_in(case), body.poses_in(case, poses)[0]) for body in (pair.a, pair.b)
         )

@@ -16,11 +16,12 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of_box_along,
 )
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematics import joined_links, link_poses, positions_by_link
+from clearance.world.kinematics import link_poses, positions_by_link
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.made_cases import random_robot
+from tests.simulate.forests import links_of
 
 SHAPE = box((0.3, 0.1, 0.2))
 
@@ -57,7 +58,7 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
     aside = bend * rng.choice([-1.0, 0.3, 1.0], (len(shares), n_moving))
     aside[0] = 0.0
     poses = link_poses(placed, middle + shares[:, None] * half + aside)
-    chain = joined_links([standing(robot)])
+    chain = links_of([standing(robot)])
     swing = positions_by_link(robot, half[None])[0]
     direction = rng.normal(size=3)
     direction /= np.linalg.norm(direction)  # in the frame of the link
@@ -76,7 +77,7 @@ def test_no_point_leaves_its_bound(seed, n_joints, size, bent):
 
 def test_the_bound_of_a_slide_is_exact():
     robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = joined_links([standing(robot)])
+    chain = links_of([standing(robot)])
     poses = np.tile(np.eye(4), (2, 1, 1))
     bound, along = drifts(
         surface_of(SHAPE),
@@ -93,7 +94,7 @@ def test_the_bound_of_a_slide_is_exact():
 
 def test_a_bend_is_added_to_the_slide_in_every_direction():
     robot = Robot("slide", ("a", "b"), (Joint("j", JointKind.PRISMATIC, "a", "b", np.eye(4)),), ())
-    chain = joined_links([standing(robot)])
+    chain = links_of([standing(robot)])
     poses, bend = np.tile(np.eye(4), (2, 1, 1)), np.array([0.0, 0.125])
     sideways = np.array([0.0, 1.0, 0.0])
     bound, along = drifts(surface_of(SHAPE), chain, 1, poses, np.array([0.0, 0.25]), bend, sideways)

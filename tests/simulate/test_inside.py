@@ -8,8 +8,8 @@ import pytest
 import clearance as cl
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.simulate import inside
+from clearance.simulate.sections import section_plan
 from clearance.world.notice import Severity
-from clearance.world.pairs import measured_pairs
 from tests.made_cases import WORST, at, ball, faces_of, flying
 
 BALL = ball(2.0, 2)
@@ -79,7 +79,7 @@ def test_steps_in_contact_are_not_in_doubt() -> None:
     case = flying("through", rod, [(outer, at())], np.zeros((3, 6)))
     run = cl.check(case)
     assert run.status == "contact"
-    assert inside.notices(case, run.record.motions, measured_pairs(case)[0]) == ()
+    assert inside.notices(section_plan(run.record.timeline)) == ()
 
 
 def apart(shape: Polyhedron, scatter: float) -> Polyhedron:

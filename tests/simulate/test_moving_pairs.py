@@ -7,10 +7,9 @@ import pytest
 
 import clearance as cl
 from clearance.geometry.shapes import box
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.world.body import Body
 from clearance.world.case import PlacedRobot, SelfClearance
-from clearance.world.forest import forest_of, link_poses_at, positions_between
+from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
@@ -59,16 +58,10 @@ def case_of(seed: int, n_robots: int, *, cubic: bool = False) -> cl.Case:
     return cl.Case("moving", tuple(robots), (block,), limits=cl.Limits(0.05, 0.2))
 
 
-def poses_of(case: cl.Case) -> np.ndarray:
-    """(steps, links, 4, 4) [m] of the case's forest."""
-    motions = [kinematic_motion(placed) for placed in case.robots]
-    return link_poses_at(case, motions, slice(None))
-
-
 def every_distance(case: cl.Case) -> np.ndarray:
     """(steps, pairs) [m] by one question each."""
     pairs, _ = measured_pairs(case)
-    poses = poses_of(case)
+    poses = np.concatenate([kinematic_motion(placed).poses() for placed in case.robots], axis=1)
     sides = [
         [(body.shape_in(case), body.poses_in(case, poses)) for body in (pair.a, pair.b)]
         for pair in pairs
@@ -111,7 +104,7 @@ def test_witness_points_are_in_the_world_and_as_far_apart(seed, n_robots):
     case = case_of(seed, n_robots)
     run = cl.check(case, certify=False)
     pairs, _ = measured_pairs(case)
-    poses = poses_of(case)
+    poses = np.concatenate([kinematic_motion(placed).poses() for placed in case.robots], axis=1)
     steps = run.steps.to_pydict()
     names = {(p.a.name_in(case), p.b.name_in(case)): p for p in pairs}
     for k in range(0, N_STEPS, 7):
@@ -134,8 +127,7 @@ def test_the_certificate_holds_between_the_steps(seed, cubic):
     bounds = np.asarray(run.certificate.lower_bound)
     for step in range(0, N_STEPS - 1, 5):
         for share in np.linspace(0.0, 1.0, finer):
-            positions = positions_between(case, motions, step, float(share))
-            poses = forest_of(case).poses(positions[None])
+            poses = np.concatenate([motion_poses(m, step, share) for m in motions], axis=1)
             least = min(
                 cl.distance(
                     pair.a.shape_in(case), pair.b.shape_in(case),
@@ -144,6 +136,13 @@ def test_the_certificate_holds_between_the_steps(seed, cubic):
                 for pair in pairs
             )  # fmt: skip
             assert bounds[step] <= least + 1e-9
+
+
+def motion_poses(motion, step, share):
+    """(1, n_links, 4, 4) at a share of the interval after a step."""
+    from clearance.world.kinematics import link_poses
+
+    return link_poses(motion.placed, motion.positions_after(step, float(share))[None])
 
 
 def test_gluing_the_world_to_another_base_changes_no_self_clearance():

@@ -18,11 +18,12 @@ from clearance.kernels.motion.interval_motion_bound import (
 )
 from clearance.kernels.motion.world import World
 from clearance.world.case import PlacedRobot
-from clearance.world.kinematics import joined_links, link_poses
+from clearance.world.kinematics import link_poses
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.examples import examples
 from tests.made_cases import random_robot
+from tests.simulate.forests import links_of
 
 SCENES = Path(__file__).parents[2] / "scenes"
 SHAPE = box((0.3, 0.1, 0.2))
@@ -75,7 +76,7 @@ def test_no_body_moves_farther_than_its_joints_say(seed, n_joints, size):
     poses = link_poses(placed[i_robot], positions[:, columns])[:, link]
     world = corners @ poses.transpose(0, 2, 1)
     moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
-    bound = ways(surface_of(body), np.array([frame]), joined_links(placed), positions)
+    bound = ways(surface_of(body), np.array([frame]), links_of(placed), positions)
     assert (moved <= bound).all()
 
 
@@ -93,7 +94,7 @@ def test_parts_of_a_long_chain_that_are_off_orthonormal_stretch_the_bound():
     positions = np.array([[0.0], [0.001]])
     speck = box((1e-4, 1e-4, 1e-4))
     ends = link_poses(placed, positions)[:, 200, :, 3]
-    bound = ways(surface_of(speck), np.array([200]), joined_links([placed]), positions)
+    bound = ways(surface_of(speck), np.array([200]), links_of([placed]), positions)
     assert np.linalg.norm(ends[1] - ends[0]) <= bound[1] <= 0.1 * 1.001
 
 
@@ -105,7 +106,7 @@ def test_the_bound_is_not_idle():
             Robot("r", ("a", "b"), (joint,), ()), Trajectory(np.zeros(1), (), np.zeros((1, 0)))
         )
         bound = ways(
-            surface_of(SHAPE), np.array([1]), joined_links([placed]), np.array([[0.0], [0.01]])
+            surface_of(SHAPE), np.array([1]), links_of([placed]), np.array([[0.0], [0.01]])
         )
         assert bound[1] == pytest.approx(0.01 * arm, rel=1e-4)
 

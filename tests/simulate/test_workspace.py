@@ -10,12 +10,12 @@ import pytest
 import clearance as cl
 from clearance.errors import BadDimension, BadInput, Unavailable
 from clearance.geometry import boolean
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.swept_pieces import swept_pieces
 from clearance.simulate.workspace import shared_workspace
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.cubic import asked_at
+from clearance.world.motion import kinematic_motion
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests.report.records import arm, moved

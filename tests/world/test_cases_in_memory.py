@@ -138,8 +138,11 @@ def test_a_case_that_no_table_could_tell_apart_is_refused():
         cl.Case("twins", (still("left"), still("left")), posts("post"))
     with pytest.raises(DuplicateName, match="two obstacles have the name 'post'"):
         cl.Case("posts", (still("left"),), posts("post", "post"))
-    with pytest.raises(BadTime, match="'left' and 'right' have other times"):
-        cl.Case("clocks", (still("left"), still("right", (10.0, 20.0))), posts("post"))
+
+
+def test_robots_with_other_times_are_asked_at_all_of_them():
+    case = cl.Case("times", (still("left"), still("right", (0.5, 2.0))), posts("post"))
+    assert cl.check(case).steps["time"].to_pylist() == [0.0, 0.5, 1.0, 2.0]
 
 
 @pytest.mark.parametrize("name", ["post\x1b[31m", "post\nCLEAR", "post\uffff"])

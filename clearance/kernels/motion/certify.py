@@ -38,8 +38,8 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of,
     motion_bound_of_box,
 )
-from clearance.kernels.motion.joint_path import JointPath, part_of
-from clearance.kernels.motion.kinematics import Links, place_by_link
+from clearance.kernels.motion.joint_path import NO_BALLS, JointPath, part_of, part_of_arc
+from clearance.kernels.motion.kinematics import Links, orient, place_by_link
 from clearance.kernels.motion.placed import GROWTH
 from clearance.kernels.motion.world import World
 from clearance.kernels.search.front import KEPT_DOWN
@@ -152,6 +152,16 @@ class CertifyState(NamedTuple):
 
 
 @inline
+def _begin_arcs(links, balls, step):
+    """Gives ball joints their orientation at `step` as a fixed part, and the axis that they turn about after."""
+    for ball in range(len(balls.links)):
+        link, arc = balls.links[ball], balls.arcs[step, ball]
+        orient(balls.parent_from_joint[ball], arc, links.parent_from_joint[link])
+        for k in range(3):
+            links.axes[link, k] = arc[4 + k]
+
+
+@inline
 def _go_to(links, path, step, low, high, middle):
     """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
     for link in range(path.positions.shape[1]):
@@ -159,7 +169,23 @@ def _go_to(links, path, step, low, high, middle):
         middle.positions[link] = part.middle
         middle.swing[link] = part.swing
         middle.bend[link] = part.bend
+    for ball in range(len(path.balls.links)):
+        link = path.balls.links[ball]
+        part = part_of_arc(path.balls, step, ball, low, high)
+        middle.positions[link], middle.swing[link] = part.middle, part.swing
+        middle.bend[link] = part.bend
     place_by_link(links, middle.positions, middle.poses)
+
+
+@inline
+def _with_own_arcs(world):
+    """The world with links of which fixed parts and axes can be written to."""
+    links = world.links
+    own = Links(
+        links.parents, links.kinds, links.axes.copy(), links.parent_from_joint.copy(), links.columns,
+        links.factors, links.offsets,
+    )  # fmt: skip
+    return World(world.solids, world.frames, world.groups, world.standing, world.pairs, own)
 
 
 @inline
@@ -191,6 +217,7 @@ def _motion_bound_at(motion_bounds, body):
 @inline
 def _go_on(surface, world, path, step, state):
     """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
+    _begin_arcs(world.links, path.balls, step)
     _go_to(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
         motion_bound = _motion_bound_in(surface, world, body, state.whole)
@@ -240,7 +267,8 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
         motion: a `CertifiedMotion`. steps: `CertifiedSteps`. aim: a `CertificateGoal`.
         tally: (4,) counts: pairs whose carried bound was enough, searches, nodes and faces looked at.
     """
-    world = motion.world
+    world = _with_own_arcs(motion.world)
+    motion = CertifiedMotion(world, motion.path)
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
         _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
@@ -257,7 +285,8 @@ def _like():
     middle = IntervalMiddle(numbers, numbers, numbers, poses)
     state = CertifyState(middle, middle, rows, numbers, numbers, pairs, rows, new_scratch())
     world = World(places, places, places, poses, pairs, links)
-    motion = CertifiedMotion(world, JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_)))
+    path = JointPath(numbers, rows, rows, np.empty(0, dtype=np.bool_), NO_BALLS)
+    motion = CertifiedMotion(world, path)
     steps = CertifiedSteps(0, 0, places, numbers)
     aim, bounds = CertificateGoal(0.0, 0.0, 0), IntervalBounds(numbers, numbers, numbers, places)
     return (

@@ -7,6 +7,15 @@ w no farther than w; a change of several joints is made one after another. So be
 
 with radius_k, the motion radius, the farthest that a point of the body gets from joint k in any pose. No pose
 needs to be made for it.
+
+A ball joint follows the four parts of a unit quaternion. Of q and -q take the one nearer to q': with t the angle
+between the orientations, q . q' = cos(t/2), so |q' - q|^2 = 2 - 2 cos(t/2) and |q' - q| = 2 sin(t/4). A point at
+most r from the joint moves no farther than the chord
+
+    2 r sin(t/2) = 4 r sin(t/4) cos(t/4) <= 2 r |q' - q| <= sum over the four parts of |q_i' - q_i| 2 r,
+
+so the motion radius of each part is 2 r. Quaternions of lengths not below l, made of length one, are no more than
+|q' - q| / l apart: then it is 2 r / l.
 Not for: the motion between the steps (`joint_motion_bound`).
 """
 
@@ -16,7 +25,13 @@ from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.double_double import defect_of
 from clearance.kernels.arithmetic.vec3 import cross, dot, rigid, row
 from clearance.kernels.mesh.surface import box_of, corner_of
-from clearance.kernels.motion.kinematics import NO_COLUMN, NO_PARENT, SLIDING, TURNING
+from clearance.kernels.motion.kinematics import (
+    BALL,
+    NO_COLUMN,
+    NO_PARENT,
+    SLIDING,
+    TURNING,
+)
 
 OUTWARD = 1.0 + 2.0**-16
 """Covers the rounding of the sums here and of what the rotations of a chain stretch."""
@@ -65,6 +80,18 @@ def _farthest_slide(links, link, positions):
 
 
 @inline
+def _least_length(positions, column):
+    """[-] of the quaternions of a ball joint."""
+    least_sq = math.inf
+    for i in range(len(positions)):
+        length_sq = 0.0
+        for k in range(column, column + 4):
+            length_sq += positions[i, k] * positions[i, k]
+        least_sq = min(least_sq, length_sq)
+    return math.sqrt(least_sq)
+
+
+@inline
 def _motion_radii_of_body(box, links, link, positions, motion_radii):
     """Fills `motion_radii` (columns,) of one body, and returns what rounding can move it [m]."""
     radius = _radius(box)
@@ -76,7 +103,11 @@ def _motion_radii_of_body(box, links, link, positions, motion_radii):
         column = links.columns[link]
         if links.kinds[link] == SLIDING:
             beyond += _farthest_slide(links, link, positions)
-        if column != NO_COLUMN:
+        if links.kinds[link] == BALL:
+            arm = 2.0 * (radius + beyond) / _least_length(positions, column)
+            for k in range(column, column + 4):
+                motion_radii[k] += arm
+        elif column != NO_COLUMN:
             arm = 1.0
             if links.kinds[link] == TURNING:
                 arm = _radius_about(box, row(links.axes, link)) if own else radius + beyond
@@ -101,7 +132,7 @@ def fill_motion_radii(surface, world, positions, motion_radii, noise):
     Args:
         world: a `World`.
         positions: (k, columns) of all steps that are spoken of [rad or m].
-        motion_radii: (bodies, columns) [m per rad or m]. noise: (bodies,) [m].
+        motion_radii: (bodies, columns) [m per rad, m, or part of a quaternion]. noise: (bodies,) [m].
     """
     frames = world.frames
     for body in range(len(frames)):

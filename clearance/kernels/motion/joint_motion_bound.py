@@ -2,7 +2,8 @@
 
 About the middle of an interval, where joint k moves by s swing_k + b_k with |s| <= 1 and |b_k| <= bend_k, a point
 x moves by s v(x) + r: v is the link's twist by the swings, an affine map of x. |r| is at most half the greatest
-second derivative over all joint motions of |swing_k| + bend_k, and what the bends do in the first order.
+second derivative over all joint motions of |swing_k| + bend_k, and what the bends do in the first order. A ball
+joint turns about one axis in an interval; its bend, the rounding of its orientation, is a turn about any.
 Source: the product of exponentials differentiated twice; joints nearer to the link come first, since only they
 move the link about an axis.
 """
@@ -12,10 +13,21 @@ from typing import NamedTuple
 
 from clearance.compile.jit import inline
 from clearance.kernels.arithmetic.lanes import square_root
-from clearance.kernels.arithmetic.vec3 import Vec3, add, along, cross, dot, row, sub, turn_back
+from clearance.kernels.arithmetic.vec3 import (
+    Vec3,
+    add,
+    along,
+    cross,
+    dot,
+    move,
+    rigid,
+    row,
+    sub,
+    turn_back,
+)
 from clearance.kernels.features.bounds import LEAN, box_reach
 from clearance.kernels.mesh.surface import box_of, corner_of
-from clearance.kernels.motion.kinematics import NO_PARENT, SLIDING, TURNING
+from clearance.kernels.motion.kinematics import BALL, NO_PARENT, SLIDING, turns
 
 
 class MotionBound(NamedTuple):
@@ -67,6 +79,17 @@ def _farthest_from_axis(surface, root, pose, origin, axis):
 
 
 @inline
+def _farthest_from(surface, root, pose, origin):
+    """[m] an upper bound on the distance of the body's points from a point, by the corners of its box."""
+    far_sq = 0.0
+    box = box_of(surface, root)
+    for corner in range(8):
+        away = sub(move(rigid(pose), corner_of(box, corner)), origin)
+        far_sq = max(far_sq, dot(away, away))
+    return math.sqrt(far_sq)
+
+
+@inline
 def _world_axis(links, poses, link):
     pose = poses[link]
     x, y, z = links.axes[link, 0], links.axes[link, 1], links.axes[link, 2]
@@ -82,6 +105,7 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
     """The motion bound of a body that is fixed to `link`.
 
     Args:
+        links: with the axes that ball joints have in the interval.
         poses: (n_links, 4, 4) in the middle of the interval.
         swing: (n_links,) [rad or m] half of what the joint of each link moves in the interval, to first order.
         bend: (n_links,) [rad or m] how far from that it can be; 0 for linear motion.
@@ -90,7 +114,7 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
     shallower = 0.0  # sum of the motions of the turning joints between here and the base
     i = link
     while links.parents[i] != NO_PARENT:
-        if links.kinds[i] == TURNING:
+        if turns(links.kinds[i]):
             shallower += abs(swing[i]) + bend[i]
         i = links.parents[i]
     turn = shallower
@@ -100,12 +124,16 @@ def motion_bound_of(surface, root, links, link, poses, swing, bend, world_from_b
     i = link
     while links.parents[i] != NO_PARENT:
         size = abs(swing[i]) + bend[i]
-        if size > 0.0 and links.kinds[i] == TURNING:
+        if size > 0.0 and turns(links.kinds[i]):
             shallower = max(0.0, shallower - size)
             axis = _world_axis(links, poses, i)
             origin = Vec3(poses[i, 0, 3], poses[i, 1, 3], poses[i, 2, 3])
             arm = _farthest_from_axis(surface, root, poses[link], origin, axis) + moved
-            rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * arm
+            bent = arm
+            if links.kinds[i] == BALL:  # whose axis is rounded, too
+                bent = _farthest_from(surface, root, poses[link], origin) + moved
+                moved += bend[i] * bent
+            rest += 0.5 * size * arm * (size + 2.0 * shallower) + bend[i] * bent
             moved += size * arm
             spin = along(spin, swing[i], axis)
             velocity = along(velocity, swing[i], cross(origin, axis))

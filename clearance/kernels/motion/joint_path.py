@@ -22,6 +22,32 @@ PATH_ROUNDING = 2.0**-48
 """Rounding of a cubic's position and slope, relative to |T v0| + |T v1| + |D|: sixteen operations, doubled."""
 
 
+BALL_ROUNDING = 2.0**-45
+"""[rad] Rounding of the orientation of a ball joint: 111 u, doubled; `CERTIFY.md` has the sum."""
+
+
+class BallPath(NamedTuple):
+    """The motion of the ball joints: between two steps each turns about one axis at constant speed.
+
+    Attributes:
+        links: (b,) below them.
+        parent_from_joint: (b, 4, 4) the fixed parts of the joints [m].
+        arcs: (n - 1, b, 8) the orientation before as a quaternion (x, y, z, w); a unit axis, as it is seen from
+            there; the angle [rad].
+    """
+
+    links: np.ndarray
+    parent_from_joint: np.ndarray
+    arcs: np.ndarray
+
+
+ANGLE = 7
+"""Its place in an arc."""
+
+NO_BALLS = BallPath(np.empty(0, dtype=np.int64), np.empty((0, 4, 4)), np.empty((0, 0, 8)))
+"""Of links that no ball joint carries."""
+
+
 class JointPath(NamedTuple):
     """The motion of the joints above all links.
 
@@ -30,12 +56,14 @@ class JointPath(NamedTuple):
         positions: (n, n_links) [rad or m].
         velocities: (n, n_links) [rad/s or m/s], or (0, n_links) where all joints move linearly.
         is_cubic: (n_links,) False for a joint that moves linearly all the same.
+        balls: of the ball joints, which have no positions or velocities of their own.
     """
 
     times: np.ndarray
     positions: np.ndarray
     velocities: np.ndarray
     is_cubic: np.ndarray
+    balls: BallPath = NO_BALLS
 
 
 class JointInterval(NamedTuple):
@@ -85,3 +113,13 @@ def part_of(path, step, link, low, high):
         before, after, length * path.velocities[step, link],
         length * path.velocities[step + 1, link], low, high,
     )  # fmt: skip
+
+
+@inline(force=True)
+def part_of_arc(balls, step, ball, low, high):
+    """The part `low` to `high` of the turn of a ball joint from its orientation at `step` to the next [rad].
+
+    The bend is about any axis.
+    """
+    turn = linear_part(0.0, balls.arcs[step, ball, ANGLE], low, high)
+    return JointInterval(turn.middle, turn.swing, BALL_ROUNDING)

@@ -20,8 +20,9 @@ class Links(NamedTuple):
         parents: (links,) or `NO_PARENT` for a root, which stands.
         kinds: (links,) of the joint above each link. axes: (links, 3) its unit axis.
         parent_from_joint: (links, 4, 4) its fixed part [m]; of a root its pose in the world.
-        columns: (links,) of the positions that the joint follows, or `NO_COLUMN`.
-        factors, offsets: (links,) its position is factor times that, plus offset [rad or m].
+        columns: (links,) of the positions that the joint follows, or `NO_COLUMN`. A ball joint follows four from
+            there on: a quaternion (x, y, z, w) of length one to within rounding.
+        factors, offsets: (links,) its position is factor times that, plus offset [rad or m]; 1, 0 of a ball joint.
     """
 
     parents: np.ndarray
@@ -31,6 +32,12 @@ class Links(NamedTuple):
     columns: np.ndarray
     factors: np.ndarray
     offsets: np.ndarray
+
+
+@inline(force=True)
+def turns(kind):
+    """True of a joint that turns about its axis; that of a ball joint is another in each interval."""
+    return kind == TURNING or kind == BALL
 
 
 @inline(force=True)
@@ -73,6 +80,30 @@ def _slid(m, axis, position):
 
 
 @inline(force=True)
+def _oriented(m, positions, column):
+    """The motion `m` after the rotation of the quaternion at `positions[column : column + 4]`.
+
+    Exactness: of whatever length the quaternion is, the rotation is orthonormal to a few roundings.
+    """
+    x, y, z = positions[column], positions[column + 1], positions[column + 2]
+    w = positions[column + 3]
+    s = 2.0 / (x * x + y * y + z * z + w * w)
+    turn = RigidMotion(
+        1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w),
+        s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w),
+        s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y),
+        Vec3(0.0, 0.0, 0.0),
+    )  # fmt: skip
+    return _then(m, turn)
+
+
+@inline(force=True)
+def orient(pose, quaternion, out):
+    """Writes a (4, 4) pose that is turned by a quaternion (4,) first."""
+    _write(_oriented(rigid(pose), quaternion, 0), out)
+
+
+@inline(force=True)
 def _write(m, out):
     """Writes a motion as a (4, 4) pose."""
     out[0, 0], out[0, 1], out[0, 2], out[0, 3] = m.xx, m.xy, m.xz, m.t.x
@@ -83,9 +114,9 @@ def _write(m, out):
 
 @inline(force=True)
 def _place_link(world_from_parent, parent_from_joint, kind, axis, position, out):
-    """Writes the pose of a link whose joint is at `position`."""
+    """Writes the pose of a link whose joint is at `position`; a ball joint has turned so far about `axis`."""
     at = _then(rigid(world_from_parent), rigid(parent_from_joint))
-    if kind == TURNING:
+    if turns(kind):
         at = _turned(at, axis, position)
     elif kind == SLIDING:
         at = _slid(at, axis, position)
@@ -106,6 +137,10 @@ def place_links(links, positions, poses, wanted, look):
             _write(rigid(links.parent_from_joint[link]), poses[link])
             continue
         column = links.columns[link]
+        if links.kinds[link] == BALL:
+            at = _then(rigid(poses[parent]), rigid(links.parent_from_joint[link]))
+            _write(_oriented(at, positions, column), poses[link])
+            continue
         position = (
             0.0
             if column == NO_COLUMN
@@ -119,7 +154,10 @@ def place_links(links, positions, poses, wanted, look):
 
 @inline
 def place_by_link(links, positions, poses):
-    """Fills `poses` (links, 4, 4) [m] of all links, the joint above each at `positions` (links,) [rad or m]."""
+    """Fills `poses` (links, 4, 4) [m] of all links, the joint above each at `positions` (links,) [rad or m].
+
+    Ball joints turn about the axes that `links` has of them.
+    """
     for link in range(len(links.parents)):
         parent = links.parents[link]
         if parent == NO_PARENT:
@@ -133,9 +171,10 @@ def place_by_link(links, positions, poses):
 
 @kernel
 def place_each(links, positions, poses):
-    """`place_by_link` for positions (n, links) and poses (n, links, 4, 4)."""
+    """`place_links` of all links for positions (n, columns) and poses (n, links, 4, 4)."""
+    all_wanted = np.zeros(len(links.parents), dtype=np.int64)
     for step in range(len(positions)):
-        place_by_link(links, positions[step], poses[step])
+        place_links(links, positions[step], poses[step], all_wanted, 0)
 
 
 @kernel

@@ -1,0 +1,406 @@
+"""Links that follow quaternions: swept, certified and bounded, against bodies placed and measured one by one."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import clearance as cl
+from clearance.compile.jit import kernel
+from clearance.geometry.tree import surface_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.interval_motion_bound import (
+    fill_motion_radii,
+    interval_motion_bound_of,
+)
+from clearance.kernels.motion.joint_motion_bound import motion_bound_of, motion_bound_of_box
+from clearance.kernels.motion.joint_path import BALL_ROUNDING, BallPath, part_of_arc
+from clearance.kernels.motion.kinematics import BALL, FIXED, SLIDING, TURNING, place_by_link
+from clearance.world.kinematics import (
+    all_links,
+    floating_links,
+    poses_by_link,
+    rates_by_link,
+    seen_from,
+    standing_link,
+    values_by_link,
+)
+from clearance.world.slerp import aligned, arcs_between
+from tests import oracle
+from tests.examples import examples
+from tests.made_cases import at, dented, faces_of, torus
+from tests.oracle.rationals import exact_points
+from tests.simulate import floating
+from tests.simulate.floating import Scene, chain, orientations
+
+TURNS = {"usual": 0.7, "half a turn": np.pi, "tiny": 1e-9, "none": 0.0}
+SHAPE = cl.box((0.3, 0.1, 0.2))
+
+
+def two_floating(
+    random: np.random.Generator, n_steps: int, turn: float, far: float = 0.75
+) -> Scene:
+    """Two dented bodies that float and tumble past one another, and a ring that stands."""
+    world = standing_link(np.eye(4))
+    links = all_links(
+        world, floating_links(1, 0, 0, np.eye(4)), floating_links(5, 7, 0, at(0.1, -0.2, 0.3))
+    )
+    share = np.linspace(-1.0, 1.0, n_steps)[:, None]
+    places = [
+        far * np.array([side, 0.2, 0.1]) + 0.1 * share * random.normal(size=3)
+        for side in (-1.0, 1.0)
+    ]
+    turned = [orientations(random, n_steps, turn) for _ in range(2)]
+    positions = np.hstack([places[0], turned[0], places[1], turned[1]])
+    shapes = [dented(random, 1, 0.3, 0.4), dented(random, 1, 0.3, 0.35), torus(0.1, 0.04, 9, 5)]
+    return Scene(links, shapes, [4, 8, -1], [(0, 1), (0, 2), (1, 2)], positions)
+
+
+def arm_below(random: np.random.Generator, n_steps: int, turn: float) -> Scene:
+    """An arm of three joints on a base that tumbles, past a body that stands."""
+    links, n = chain([SLIDING, BALL, TURNING, FIXED, SLIDING, TURNING], random, shift=0.25)
+    positions = random.uniform(-1.0, 1.0, (1, n)) + 0.1 * random.normal(size=(n_steps, n)).cumsum(0)
+    column = links.columns[2]
+    positions[:, column : column + 4] = orientations(random, n_steps, turn)
+    shapes = [cl.box((0.1, 0.15, 0.1)), cl.box((0.3, 0.1, 0.1)), dented(random, 1, 0.3, 0.2)]
+    tip = floating.poses(links, positions)[n_steps // 2, 6, :3, 3]
+    away = random.normal(size=3)
+    stands = shapes[2].transformed(at(*(tip + 0.8 * away / np.linalg.norm(away))))
+    return Scene(links, [*shapes[:2], stands], [3, 6, -1], [(0, 2), (1, 2)], positions)
+
+
+SCENES = {"two that float": two_floating, "an arm below": arm_below}
+
+
+@pytest.mark.parametrize("turn", TURNS.values(), ids=TURNS)
+@pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
+@pytest.mark.parametrize("seed", range(3))
+def test_a_sweep_finds_what_single_questions_find(seed, make, turn):
+    scene = make(np.random.default_rng(seed), 40, turn)
+    rows, _ = floating.swept(scene)
+    truth = floating.distances(scene, scene.positions)
+    assert np.abs(rows.clearance - truth.min(axis=1)).max() < 1e-12
+    assert (rows.lower_bound <= truth.min(axis=1) + 1e-12).all()
+    apart = truth[np.arange(40), rows.pair] - truth.min(axis=1)
+    assert apart.max() < 1e-12
+
+
+@pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
+@pytest.mark.parametrize("seed", range(3))
+def test_steps_are_passed_over_and_nothing_is_missed(seed, make):
+    """Slowly turning: bodies are looked at when their columns have changed enough."""
+    random = np.random.default_rng(seed)
+    scene = make(random, 2, 0.4)
+    shares = np.linspace(0.0, 1.0, 300)
+    scene = scene._replace(positions=floating.between(scene.links, *scene.positions, shares))
+    truth = floating.distances(scene, scene.positions).min(axis=1)
+    within = truth.min() + 0.05 * np.ptp(truth)
+    rows, counts = floating.swept(scene, within)
+    assert counts[4] > 0
+    known = rows.pair >= 0
+    assert known[truth < within - 1e-12].all()
+    assert np.abs(rows.clearance - truth)[known].max() < 1e-12
+    assert (rows.lower_bound <= truth + 1e-12).all()
+
+
+@pytest.mark.parametrize("turn", TURNS.values(), ids=TURNS)
+@pytest.mark.parametrize("make", SCENES.values(), ids=SCENES)
+@pytest.mark.parametrize("seed", range(3))
+def test_no_bound_is_above_samples_a_thousand_times_finer(seed, make, turn):
+    scene = make(np.random.default_rng(seed), 4, turn)
+    bounds = floating.certified(scene)
+    shares = np.linspace(0.0, 1.0, 1001)
+    for step in range(3):
+        finer = floating.between(scene.links, *scene.positions[step : step + 2], shares)
+        least = floating.distances(scene, finer).min()
+        assert bounds.lower[step] <= least
+        assert bounds.upper[step] - bounds.lower[step] <= 1e-4
+        assert least <= bounds.upper[step] + 1e-4
+
+
+def test_half_a_turn_sweeps_the_side_of_the_given_signs():
+    """A blade that stands up turns down over one side or the other; a body is in the way on one of them."""
+    links = all_links(standing_link(np.eye(4)), floating_links(1, 0, 0, np.eye(4)))
+    blade = cl.box((0.02, 0.02, 0.2)).transformed(at(0.0, 0.0, 0.5))
+    block = cl.box((0.1, 0.1, 0.1)).transformed(at(0.5, 0.0, 0.0))
+    up = np.array([0, 0, 0, 0, 0, 0, 1.0])
+    for sign, touches in ((1.0, True), (-1.0, False)):
+        down = np.array([0, 0, 0, 0, sign, 0, 0.0])  # about y: z goes to x first, or to -x
+        scene = Scene(links, [blade, block], [4, -1], [(0, 1)], np.array([up, down]))
+        bounds = floating.certified(scene)
+        assert (bounds.lower[0] == 0.0) == touches
+        if not touches:  # nearest where it begins and ends
+            assert bounds.lower[0] == pytest.approx(floating.swept(scene)[0].clearance[0], abs=1e-4)
+
+
+@kernel
+def ways_in(surface, world, positions):
+    radii = np.empty((len(world.frames), positions.shape[1]))
+    noise = np.empty(len(world.frames))
+    fill_motion_radii(surface, world, positions, radii, noise)
+    bounds = np.empty(len(positions))
+    for step in range(len(positions)):
+        bounds[step] = interval_motion_bound_of(positions, 0, step, radii[0], noise[0])
+    return bounds
+
+
+KINDS = st.lists(st.sampled_from([FIXED, TURNING, SLIDING, BALL]), max_size=4)
+
+
+@examples(150)
+@given(
+    st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.0]),
+    st.sampled_from([1.0, 1.0 - 1e-6, 0.5]),
+)  # fmt: skip
+def test_no_body_moves_farther_than_its_columns_say(seed, above, below, size, length):
+    random = np.random.default_rng(seed)
+    links, n = chain([*above, BALL, *below], random, shift=random.choice([0.0, 0.5, 50.0]))
+    positions = random.uniform(-2.0, 2.0, n) + size * random.uniform(-1.0, 1.0, (12, n))
+    for column in links.columns[links.kinds == BALL]:
+        turned = orientations(random, 12, min(size, np.pi))
+        turned = aligned(turned) if random.random() < 0.7 else turned
+        positions[:, column : column + 4] = length * turned
+    link = len(links.parents) - 1
+    body = SHAPE.transformed(at(0.4, 0.0, -0.2)) if random.random() < 0.5 else SHAPE
+    corners = np.column_stack([body.vertices, np.ones(8)])
+    world = corners @ poses_by_link(links, positions)[:, link].transpose(0, 2, 1)
+    moved = np.linalg.norm(world - world[0], axis=2).max(axis=1)
+    scene = Scene(links, [body], [link], np.empty((0, 2), np.int64), positions)
+    assert (moved <= ways_in(surface_of(body), scene.world, positions)).all()
+
+
+def test_the_bound_by_columns_is_not_idle():
+    """About an axis across the farthest corner, all in one column, to first order."""
+    links = all_links(standing_link(np.eye(4)), floating_links(1, 0, 0, np.eye(4)))
+    speck = cl.box((1e-6, 1e-6, 1e-6)).transformed(at(1.0))
+    turn = 0.01
+    positions = np.array(
+        [[0, 0, 0, 0, 0, 0, 1.0], [0, 0, 0, 0, 0, np.sin(turn / 2), np.cos(turn / 2)]]
+    )
+    scene = Scene(links, [speck], [4], np.empty((0, 2), np.int64), positions)
+    assert ways_in(surface_of(speck), scene.world, positions)[1] == pytest.approx(turn, rel=0.01)
+
+
+@kernel
+def bound_about(surface, links, link, positions, swing, bend, poses):
+    place_by_link(links, positions, poses)
+    pose = rigid(poses[link])
+    bound = motion_bound_of(surface, surface.roots[0], links, link, poses, swing, bend, pose)
+    return motion_bound_of_box(box_of(surface, 0), bound)
+
+
+@examples(100)
+@given(st.integers(0, 2**32 - 1), KINDS, KINDS, st.sampled_from([0.0, 1e-9, 1e-3, 0.3, 3.1]))
+def test_no_point_leaves_its_bound_about_the_middle(seed, above, below, size):
+    """Every ball joint turns about an axis of its own, the others move linearly."""
+    random = np.random.default_rng(seed)
+    links, n = chain([*above, BALL, *below], random)
+    ends = random.uniform(-2.0, 2.0, n) + size * random.uniform(-1.0, 1.0, (2, n))
+    values = values_by_link(links, ends)
+    middle, swing = values.mean(axis=0), 0.5 * (values[1] - values[0])
+    bend, balls = np.zeros(len(swing)), np.flatnonzero(links.kinds == BALL)
+    turning = links._replace(
+        axes=links.axes.copy(), parent_from_joint=links.parent_from_joint.copy()
+    )
+    for link in balls:
+        at_link = slice(links.columns[link], links.columns[link] + 4)
+        ends[:, at_link] = orientations(random, 2, size)
+        *axis, angle = arcs_between(*ends[:, at_link])
+        turned = floating.Rotation.from_quat(ends[0, at_link]).as_matrix()
+        turning.parent_from_joint[link, :3, :3] = links.parent_from_joint[link, :3, :3] @ turned
+        turning.axes[link], middle[link], swing[link] = axis, angle / 2, angle / 2
+        bend[link] = BALL_ROUNDING
+    swing *= 1.0 + 1e-12
+    link = len(links.parents) - 1
+    room = np.empty((link + 1, 4, 4))
+    bound = bound_about(surface_of(SHAPE), turning, link, middle, swing, bend, room)
+    shares = np.array([0.5, *np.linspace(0.0, 1.0, 41)])
+    placed = floating.poses(links, floating.between(links, *ends, shares))[:, link]
+    world = np.column_stack([SHAPE.vertices, np.ones(8)]) @ placed.transpose(0, 2, 1)
+    assert np.linalg.norm(world - world[0], axis=2).max() <= bound + 1e-14
+    assert np.abs(placed[0] - room[link]).max() <= 1e-14
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_between_two_steps_a_ball_joint_is_one_that_turns(seed):
+    """The same motion about the axis of the arc: the same bounds but for rounding."""
+    random = np.random.default_rng(seed)
+    scene = arm_below(random, 2, random.choice([0.3, 1.5, 3.0]))
+    ball = 2
+    column = scene.links.columns[ball]
+    arc = arcs_between(*scene.positions[:, column : column + 4])
+    fixed, kinds = scene.links.parent_from_joint.copy(), scene.links.kinds.copy()
+    turned = floating.Rotation.from_quat(scene.positions[0, column : column + 4]).as_matrix()
+    fixed[ball, :3, :3] = fixed[ball, :3, :3] @ turned
+    axes, kinds[ball] = scene.links.axes.copy(), TURNING
+    axes[ball], angles = arc[:3], scene.positions.copy()
+    angles[:, column] = 0.0, arc[3]
+    turning = scene.links._replace(kinds=kinds, parent_from_joint=fixed, axes=axes)
+    same = scene._replace(links=turning, positions=angles)
+    found, wanted = floating.certified(scene), floating.certified(same)
+    assert wanted.lower[0] > 0.0
+    assert found.lower[0] == pytest.approx(wanted.lower[0], abs=1e-11)
+    assert found.upper[0] == pytest.approx(wanted.upper[0], abs=1e-11)
+
+    swing, bend = random.uniform(-0.3, 0.3, 7), np.zeros(7)
+    room = np.empty((7, 4, 4))
+    bounds = [
+        bound_about(surface_of(SHAPE), links, 6, np.zeros(7), swing, bend, room)
+        for links in (turning, turning._replace(kinds=scene.links.kinds))
+    ]
+    assert bounds[0] == bounds[1]
+
+
+def test_the_parts_of_an_arc():
+    balls = BallPath(np.array([1]), np.eye(4)[None], np.array([[[0, 0, 0, 1.0, 1, 0, 0, 0.8]]]))
+    found = arc_part(balls, 0.25, 0.75)
+    assert found.middle == pytest.approx(0.4, rel=1e-15)
+    assert 0.2 < found.swing <= 0.2 * (1.0 + 1e-11)
+    assert found.bend == BALL_ROUNDING
+
+
+@kernel
+def arc_part(balls, low, high):
+    return part_of_arc(balls, 0, 0, low, high)
+
+
+def on_one_base(n_steps: int = 30) -> tuple[Scene, dict]:
+    """Two bodies fixed to a base that tumbles and one on a joint of it, seen from the base."""
+    random = np.random.default_rng(7)
+    below, n = chain([FIXED, FIXED, TURNING], random)
+    floats = all_links(standing_link(np.eye(4)), floating_links(1, 0, 0, at(5.0)))
+    hung = below._replace(
+        parents=np.array([4, 5, 5, 5]),
+        kinds=np.array([FIXED, FIXED, FIXED, TURNING]),
+        columns=np.where(below.columns < 0, -1, below.columns + 7),
+    )
+    links, seen = seen_from(all_links(floats, hung), [(4, 6), (4, 7), (4, 8), (1, 7)])
+    shapes = [SHAPE.transformed(at(0.4)), SHAPE.transformed(at(-0.5)), SHAPE.transformed(at(z=0.9))]
+    positions = np.hstack(
+        [
+            random.normal(size=(n_steps, 3)),
+            orientations(random, n_steps, 0.9),
+            random.normal(size=(n_steps, n)),
+        ]
+    )
+    frames = [seen[4, 6], seen[4, 7], seen[4, 8]]
+    return Scene(links, shapes, frames, [(0, 1)], positions), seen
+
+
+def test_two_bodies_on_one_base_stay_as_far_apart():
+    scene, _ = on_one_base()
+    rows, counts = floating.swept(scene)
+    world = floating.distances(scene._replace(frames=[6, 7, 8]), scene.positions)
+    assert np.ptp(rows.clearance) == 0.0
+    assert np.abs(world[:, 0] - rows.clearance[0]).max() < 1e-12
+    assert counts[1] == 1  # asked once
+    assert np.ptp(floating.certified(scene).lower[:-1]) <= 1e-9
+    in_world = scene._replace(frames=[6, 7, 8])
+    assert np.abs(floating.swept(in_world)[0].clearance - rows.clearance).max() < 1e-12
+
+
+def test_a_joint_on_the_base_is_seen_from_it():
+    scene, _ = on_one_base()
+    scene = scene._replace(pairs=[(0, 2), (1, 2)])
+    world = floating.distances(scene._replace(frames=[6, 7, 8]), scene.positions).min(axis=1)
+    assert np.abs(floating.swept(scene)[0].clearance - world).max() < 1e-12
+
+
+def test_a_ball_joint_between_two_links_is_on_the_way_of_what_is_seen():
+    scene, seen = on_one_base()
+    placed = poses_by_link(scene.links, scene.positions)
+    from_slide = np.linalg.inv(placed[:, 1]) @ placed[:, 7]
+    assert np.abs(placed[:, seen[1, 7]] - from_slide).max() < 1e-14
+
+
+def test_floating_links_are_where_their_columns_say():
+    random = np.random.default_rng(3)
+    links = all_links(standing_link(at(1.0)), floating_links(1, 2, 0, at(0.0, 2.0)))
+    positions = np.hstack(
+        [random.normal(size=(20, 5)), orientations(random, 20, 1.0), np.zeros((20, 1))]
+    )
+    placed = poses_by_link(links, positions)[:, 4]
+    assert (placed[:, :3, 3] == positions[:, 2:5] + [1.0, 2.0, 0.0]).all()
+    turned = floating.Rotation.from_quat(positions[:, 5:9]).as_matrix()
+    assert np.abs(placed[:, :3, :3] - turned).max() < 1e-15
+    longer = positions.copy()
+    longer[:, 5:9] *= 3.0
+    assert np.abs(poses_by_link(links, longer)[:, 4] - placed).max() < 1e-15
+    assert (
+        values_by_link(links, positions) == np.c_[np.zeros(20), positions[:, 2:5], np.zeros(20)]
+    ).all()
+    assert (rates_by_link(links, positions)[:, 4] == 0.0).all()
+
+
+GRID = 1 << 150
+
+
+def of_length_one(q):
+    """Fractions on a grid of 2^-150."""
+    length = oracle.root(sum(x * x for x in q))
+    return [Fraction(round(x / length * GRID), GRID) for x in q]
+
+
+def exact_rotation(q):
+    """(3, 3) of a quaternion of any length, in fractions."""
+    x, y, z, w = q
+    s = 2 / (x * x + y * y + z * z + w * w)
+    return [
+        [1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
+        [s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
+        [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
+    ]
+
+
+def bisected(before, after, share):
+    """The orientation at a share k / 2^n of an arc, by halving: in the middle of p and q is p + q."""
+    p, q = (of_length_one([Fraction(x) for x in ends]) for ends in (before, after))
+    if sum(a * b for a, b in zip(p, q, strict=True)) < 0:
+        q = [-x for x in q]
+    low, high = Fraction(0), Fraction(1)
+    while low < share < high:
+        between, half = of_length_one([a + b for a, b in zip(p, q, strict=True)]), (low + high) / 2
+        if share < half:
+            q, high = between, half
+        else:
+            p, low = between, half
+    return p if share == low else q
+
+
+def placed_exactly(points, base, before, after, share):
+    """Corners, at a share of the way from one row (x, y, z, quaternion) to the next, in fractions."""
+    rows = exact_rotation(bisected(before[3:], after[3:], share))
+    there = [
+        Fraction(base[i]) + Fraction(before[i]) + share * (Fraction(after[i]) - Fraction(before[i]))
+        for i in range(3)
+    ]
+    return [
+        tuple(sum(r * x for r, x in zip(rows[i], point, strict=True)) + there[i] for i in range(3))
+        for point in points
+    ]
+
+
+@pytest.mark.parametrize("turn", [2.5, np.pi, 1e-9])
+@pytest.mark.parametrize("seed", range(2))
+def test_no_bound_is_above_exact_distances(seed, turn):
+    """At 65 places of an interval, in fractions; the bound is within its gap of what they see."""
+    scene = two_floating(np.random.default_rng(seed), 2, turn, far=0.3)
+    shapes = [cl.box((0.3, 0.2, 0.1)), cl.box((0.2, 0.2, 0.3))]
+    scene = scene._replace(shapes=shapes, frames=[4, 8], pairs=[(0, 1)])
+    bounds = floating.certified(scene)
+    corners, faces = (
+        [of(s) for s in shapes] for of in (lambda s: exact_points(s.vertices), faces_of)
+    )
+    before, after = scene.positions.tolist()
+    found = []
+    for k in range(65):
+        share = Fraction(k, 64)
+        a = placed_exactly(corners[0], (0.0, 0.0, 0.0), before[:7], after[:7], share)
+        b = placed_exactly(corners[1], (0.1, -0.2, 0.3), before[7:], after[7:], share)
+        found.append(oracle.polyhedron_distance_sq(a, faces[0], b, faces[1]))
+    assert 0.0 < bounds.lower[0]
+    assert Fraction(float(bounds.lower[0])) ** 2 <= min(found)
+    assert float(min(found)) ** 0.5 - bounds.lower[0] < 0.01

@@ -1,0 +1,145 @@
+"""Where everything is at every step and between, in cells in which all moves, held against formulas by hand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from clearance.errors import BadInput, BadTime, UnknownLink, UnknownObstacle
+from clearance.world.body import Obstacle
+from clearance.world.carry import Carry
+from clearance.world.forest import WORLD, forest_of, link_poses_at, positions_between
+from clearance.world.motion import kinematic_motion
+from clearance.world.mount import Mount
+from clearance.world.timeline import timeline_of
+from clearance.world.timing import Timing, Window
+from tests.cells import END, cell, pose_at
+
+NAMES = (
+    *(f"{robot}/{link}" for robot in ("left", "right", "track") for link in ("base", "boom", "tool")),
+    "post", "door", "crate", "part", "lid",
+)  # fmt: skip
+
+
+def timeline(case):
+    return timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
+
+
+def poses_in(phase, link_poses):
+    """Of each of `NAMES` (4, 4) in a phase, of (links, 4, 4)."""
+    forest = forest_of(phase.case)
+    standing = {o.name: o.world_from_body for o in phase.case.obstacles}
+    links = [forest.link_called(phase.case, name) for name in NAMES]
+    return [
+        standing[name] if link == WORLD else link_poses[link]
+        for name, link in zip(NAMES, links, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_bodies_are_where_their_tables_and_hands_say(seed):
+    case = cell(seed)
+    line = timeline(case)
+    assert [p.last for p in line.phases[:-1]] == [p.first for p in line.phases[1:]]
+    for phase in line.phases:
+        poses = link_poses_at(phase.case, phase.motions, slice(None))
+        for k, t in enumerate(phase.times):
+            left = k == phase.n_steps - 1
+            expected = [pose_at(case, name, float(t), left=left) for name in NAMES]
+            assert np.allclose(poses_in(phase, poses[k]), expected, rtol=0.0, atol=1e-9), t
+        for k in range(phase.n_steps - 1):
+            share = 0.37
+            t = float(phase.times[k] + share * (phase.times[k + 1] - phase.times[k]))
+            columns = positions_between(phase.case, phase.motions, k, share)
+            between = forest_of(phase.case).poses(columns[None])[0]
+            expected = [pose_at(case, name, t) for name in NAMES]
+            assert np.allclose(poses_in(phase, between), expected, rtol=0.0, atol=1e-9), t
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_steps_are_all_samples_and_the_ends_of_windows(seed):
+    case = cell(seed)
+    times = timeline(case).times
+    assert (np.diff(times) > 0.0).all()
+    asked = [placed.timing.run_times(placed.asked.times) for placed in case.robots]
+    asked += [np.array(carry.window.ends) for carry in case.carries]
+    for wanted in asked:
+        inside = wanted[(wanted >= times[0]) & (wanted <= times[-1])]
+        assert np.isin(inside, times).all()
+
+
+def test_a_part_that_changes_hands_does_not_jump():
+    for seed in range(20):
+        line = timeline(cell(seed))
+        for before, after in zip(line.phases, line.phases[1:], strict=False):
+            for name in ("part", "lid"):
+                held = [forest_of(p.case).link_called(p.case, name) for p in (before, after)]
+                ends = [
+                    poses_in(p, link_poses_at(p.case, p.motions, slice(i, i + 1 or None))[0])[
+                        NAMES.index(name)
+                    ]
+                    for p, i in ((before, -1), (after, 0))
+                ]
+                changes = before.carried.get("part") is not after.carried.get("part")
+                if (changes and "part" in before.carried) or held[0] == WORLD:
+                    assert np.allclose(*ends, rtol=0.0, atol=1e-9)
+
+
+def test_one_robot_alone_keeps_its_own_arrays():
+    case = cell(3)
+    alone = replace(case, robots=(case.robots[0],), obstacles=(case.obstacles[0],), carries=())
+    motion = kinematic_motion(alone.robots[0])
+    line = timeline_of(alone, [motion])
+    assert len(line.phases) == 1
+    assert line.motions[0] is motion
+    assert line.phases[0].case is alone
+
+
+def test_what_is_absent_and_all_on_it_is_gone_before_and_after():
+    case = cell(5)
+    door = case.obstacles[1]
+    moves = replace(door.moves, timing=Timing(1.0, 1.0, "absent"))
+    case = replace(
+        case,
+        obstacles=(case.obstacles[0], replace(door, moves=moves), *case.obstacles[2:]),
+        carries=(),
+    )
+    for phase in timeline(case).phases:
+        gone = phase.span[1] <= 1.0 or phase.span[0] >= 1.0 + float(moves.times[-1])
+        assert phase.absent_obstacles == (frozenset({1, 2}) if gone else frozenset())
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault", "says"),
+    [
+        ({"carries": (Carry("part", "left/hand", Window(1.0)),)}, UnknownLink, "left/hand"),
+        ({"carries": (Carry("prat", "left/tool", Window(1.0)),)}, UnknownObstacle, "did you mean 'part'"),
+        ({"carries": (Carry("part", "left/tool", Window(END + 1.0)),)}, BadTime, "outside the run"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_carried_is_refused(changes, fault, says):
+    with pytest.raises(fault) as told:
+        timeline(replace(cell(1), **changes))
+    assert says in str(told.value) or fault is UnknownObstacle
+
+
+def test_two_hands_at_once_are_refused():
+    carries = (Carry("part", "left/tool", Window(1.0, 3.0)), Carry("part", "door", Window(2.0)))
+    with pytest.raises(BadInput, match="at once"):
+        replace(cell(1), carries=carries)
+
+
+def test_actors_on_each_other_in_a_ring_are_refused():
+    case = cell(1)
+    left, right, track = case.robots
+    ring = replace(track, world_from_base=np.eye(4), mount=Mount("right/tool"))
+    with pytest.raises(BadInput, match="a ring"):
+        forest_of(replace(case, robots=(left, right, ring), carries=()))
+    crates = (
+        Obstacle(case.obstacles[0].body, mount=Mount("crate")),
+        replace(case.obstacles[2], mount=Mount("post")),
+    )
+    with pytest.raises(BadInput, match="a ring"):
+        forest_of(replace(case, obstacles=crates, carries=()))
