@@ -16,6 +16,7 @@ import numpy as np
 import clearance as cl
 from clearance.load.srdf import load_srdf
 from clearance.load.urdf import load_urdf
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.body import Body, Obstacle
@@ -136,7 +137,7 @@ def settled(case: Case) -> Case:
 def least_of(case: Case, pairs: list[Pair]) -> np.ndarray:
     """(p,) [m] the least clearance of each pair over the motion."""
     motions = [kinematic_motion(placed) for placed in case.robots]
-    found = measure(case, motions, pairs, "pairs", Resources(jobs=1))
+    found = measure(PairsInMotion(case, motions, pairs), "pairs", Resources(jobs=1))
     assert found.measure_pair_minima is not None
     return found.measure_pair_minima(None).clearance
 

@@ -7,7 +7,7 @@ do; for python-fcl poses are made beforehand. Not for: the clock (`clock`), one 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +18,7 @@ from peers import Fcl, available, silenced
 
 from clearance.kernels.motion.kinematics import FIXED, NO_PARENT, SLIDING, TURNING
 from clearance.simulate.certify import certify_motion
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.record import Certificate
 from clearance.simulate.resources import Resources
@@ -64,7 +65,8 @@ class Actors:
 
     def measure(self, need: str = "steps") -> Measurement:
         """Ours, on one thread."""
-        return measure(self.case, self.motions, self.pairs, need, Resources(jobs=1))
+        what = PairsInMotion(self.case, self.motions, self.pairs)  # laid out inside the clock
+        return measure(what, need, Resources(jobs=1))
 
 
 class OurLoop:
@@ -208,7 +210,7 @@ def sections_of(case: Case) -> Sections:
 def measured_sections(sections: Sections) -> list[Measurement]:
     """`steps` of each section, on one thread."""
     return [
-        measure(own.case, own.motions, own.pairs, "steps", Resources(jobs=1))
+        measure(replace(own.in_motion), "steps", Resources(jobs=1))  # a new layout
         for own in sections.plan.sections
     ]
 
@@ -218,7 +220,7 @@ def certified_sections(
 ) -> list[Certificate]:
     """The certificate of each section to a gap [m], on one thread."""
     return [
-        certify_motion(own.case, own.motions, own.pairs, steps, gap, resources=Resources(jobs=1))
+        certify_motion(replace(own.in_motion), steps, gap, resources=Resources(jobs=1))
         for own, steps in zip(sections.plan.sections, found, strict=True)
     ]
 

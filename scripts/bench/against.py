@@ -34,10 +34,22 @@ WORKER = r"""
 import hashlib, json, sys, time
 import numpy as np
 from clearance import load_case
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.pairs import measured_pairs
+
+try:
+    from clearance.simulate.layout import PairsInMotion
+    from clearance.world.motion import kinematic_motion
+
+    def work():
+        return measure(PairsInMotion(case, motions, pairs), resources=one_thread)
+
+except ImportError:  # older checkouts
+    from clearance.simulate.kinematic import kinematic_motion
+
+    def work():
+        return measure(case, motions, pairs, resources=one_thread)
 
 one_thread = Resources(jobs=1)
 for line in sys.stdin:
@@ -46,14 +58,14 @@ for line in sys.stdin:
         case = load_case(given)
         motions = tuple(kinematic_motion(placed) for placed in case.robots)
         pairs, _ = measured_pairs(case)
-        found = measure(case, motions, pairs, resources=one_thread)
+        found = work()
         arrays = (found.clearance, found.lower_bound, found.pair, found.points)
         bits = hashlib.sha256(b"".join(np.ascontiguousarray(a).tobytes() for a in arrays))
         answer = {"steps": len(found.clearance), "pairs": len(pairs), "bits": bits.hexdigest()}
     else:
         start = time.thread_time()
         for _ in range(given):
-            measure(case, motions, pairs, resources=one_thread)
+            work()
         answer = (time.thread_time() - start) / given
     print(json.dumps(answer), flush=True)
 """

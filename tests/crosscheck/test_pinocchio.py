@@ -19,6 +19,7 @@ import clearance as cl
 from clearance.crosscheck.triangles import triangle_soup
 from clearance.load.srdf import load_srdf
 from clearance.load.urdf import load_urdf
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.case import PlacedRobot, SelfClearance
@@ -108,7 +109,7 @@ def test_meshes_are_as_far_apart(name):
     )
     pairs, _ = measured_pairs(case)
     motions = [kinematic_motion(placed) for placed in case.robots]
-    found = measure(case, motions, pairs, "pairs", Resources(jobs=1)).every
+    found = measure(PairsInMotion(case, motions, pairs), "pairs", Resources(jobs=1)).every
     poses = link_poses_at(case, motions, slice(None))
     compared = 0
     for step in range(N_POSES):
