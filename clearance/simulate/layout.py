@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -87,8 +88,7 @@ class PairsInMotion:
         return lay_out(self.case, self.pairs)
 
 
-@dataclass(frozen=True, order=True)
-class _Place:
+class _Place(NamedTuple):
     """A body as it is seen from a link, or in the world."""
 
     reference: int
@@ -98,16 +98,18 @@ class _Place:
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     """The layout of the bodies in `pairs`."""
     links = forest_of(case).links
-    frames = {body: body.frame_in(case) for pair in pairs for body in (pair.a, pair.b)}
+    bodies = {body for pair in pairs for body in pair}
+    frames = {body: body.frame_in(case) for body in bodies}
     references = [_reference_of(case, frames[pair.a], frames[pair.b]) for pair in pairs]
     places = _places(pairs, references)
     solids = sorted({place.body for place in places}, key=_links_first)
     link_of = {place: frames[place.body] for place in places if frames[place.body] != WORLD}
     wanted = {(p.reference, link_of[p]) for p in places if p.reference != IN_WORLD}
     links, seen = seen_from(links, sorted(wanted))
+    row_of = {tuple(place): row for row, place in enumerate(places)}
     measured = np.array(
         [
-            [places.index(_Place(reference, body)) for body in (pair.a, pair.b)]
+            [row_of[reference, body] for body in pair]
             for pair, reference in zip(pairs, references, strict=True)
         ],
         dtype=np.int64,
@@ -144,7 +146,7 @@ def _places(pairs: Sequence[Pair], references: Sequence[int]) -> list[_Place]:
     found = {
         _Place(reference, body)
         for pair, reference in zip(pairs, references, strict=True)
-        for body in (pair.a, pair.b)
+        for body in pair
     }
     return sorted(found, key=lambda place: (place.reference, _links_first(place.body)))
 
