@@ -292,6 +292,30 @@ def test_no_bound_on_two_moving_bodies_is_above_samples_a_thousand_times_finer(s
     assert_as_tight_as_asked(run)
 
 
+@pytest.mark.parametrize("faster", ["left", "right"])
+@pytest.mark.parametrize("seed", range(3))
+def test_tips_that_pass_each_other_between_two_samples_are_seen(seed, faster):
+    """Two blades turn to and fro about their middles, one far and one a little; in between both tips point in."""
+    random = np.random.default_rng(seed)
+    blade = box((0.6, 0.04, 0.04))
+    robots = []
+    for name, side in (("left", -0.31), ("right", 0.31)):
+        spin = Joint(
+            "spin", JointKind.CONTINUOUS, "base", "blade", np.eye(4), np.array([0.0, 0.0, 1.0])
+        )
+        far = random.uniform(0.5, 1.0, 9) if name == faster else random.uniform(0.0, 0.01, 9)
+        path = Trajectory(np.arange(9.0), ("spin",), (far * (-1.0) ** np.arange(9))[:, None])
+        robot = Robot(name, ("base", "blade"), (spin,), (Body("blade", blade),))
+        robots.append(PlacedRobot(robot, path, at(side, 0.0, 0.01 * seed)))
+    case = cl.Case("blades", tuple(robots), ())
+    run = cl.check(case)
+    sampled = cl.check(finer(case, np.linspace(0.0, 8.0, 8001)), certify=False).record.clearances
+    dips = [sampled[1000 * k : 1000 * k + 1001].min() for k in range(8)]
+    assert (run.certificate.lower_bound[:-1] <= np.array(dips) + 1e-12).all()
+    assert min(dips) < run.record.clearances.min() - 1e-3
+    assert_as_tight_as_asked(run)
+
+
 @pytest.mark.parametrize("seed", range(2))
 def test_no_bound_on_a_part_that_changes_hands_within_an_interval_is_above_finer_samples(seed):
     """The hand-over is at no sample: the steps about it are its own."""
