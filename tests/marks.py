@@ -20,6 +20,7 @@ PEERS = {
     "fcl",
     "klampt",
     "manifold3d",
+    "pinocchio",
     "pybullet",
     "shapely",
     "solvespace",

@@ -18,8 +18,17 @@ from typing import Any, Protocol
 import numpy as np
 from inputs import Solid
 
-DISTRIBUTIONS = {"fcl": "python-fcl", "coal": "coal", "klampt": "Klampt", "pybullet": "pybullet"}
+DISTRIBUTIONS = {
+    "fcl": "python-fcl",
+    "coal": "coal",
+    "klampt": "Klampt",
+    "pybullet": "pybullet",
+    "pinocchio": "pin",
+}
 """Module to the name under which pip installs it."""
+
+PAIR_LIBRARIES = ("fcl", "coal", "klampt", "pybullet")
+"""Those that measure one pair at a time."""
 
 
 class PairPeer(Protocol):
@@ -282,7 +291,7 @@ def peer(key: str) -> PairPeer | None:
         return kind()
 
 
-def absent_peers(modules: Iterable[str] = DISTRIBUTIONS) -> list[str]:
+def absent_peers(modules: Iterable[str] = PAIR_LIBRARIES) -> list[str]:
     """One line for each of the libraries that is not installed."""
     return [
         f"absent: {DISTRIBUTIONS[module]} (pip install .[bench])"
@@ -291,7 +300,7 @@ def absent_peers(modules: Iterable[str] = DISTRIBUTIONS) -> list[str]:
     ]
 
 
-def versions(modules: Iterable[str] = DISTRIBUTIONS) -> str:
+def versions(modules: Iterable[str] = PAIR_LIBRARIES) -> str:
     """Names and versions of the libraries that are there."""
     found = [DISTRIBUTIONS[module] for module in modules if available(module)]
     return ", ".join(f"{name} {importlib.metadata.version(name)}" for name in found)

@@ -84,3 +84,17 @@ def test_first_run_times_the_command(tmp_path):
     )
     assert [row["run"] for row in rows] == ["first of the case", "warm"]
     assert all(float(row["seconds"]) > 0.0 for row in rows)
+
+
+def test_where_everything_moves_the_peers_agree(tmp_path):
+    pytest.importorskip("pinocchio", reason="pin is not installed (pip install .[bench])")
+    given = ("--rows", "two arms", "certificate of two arms", "--seconds", 0.1, "--passes", 1)
+    rows = rows_of("actors.py", tmp_path / "rows.csv", *given)
+    if not rows:
+        pytest.skip("example-robot-data is not installed (pip install .[bench])")
+    measured = [row for row in rows if row["what"] == "steps"]
+    assert {"clearance: steps", "Pinocchio + Coal: computeDistances"} <= {
+        row["method"] for row in measured
+    }
+    assert max(float(row["greatest_difference_m"]) for row in measured) < 1e-12
+    assert {row["method"] for row in rows} >= {"certificate to 0.1 mm"}

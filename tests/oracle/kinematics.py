@@ -1,4 +1,4 @@
-"""Where the links of a robot are, by rational arithmetic that shares no code with the package.
+"""Where the links of a robot are and what they carry, by rational arithmetic that shares no code with the package.
 
 The numbers of the robot (poses of joints, axes, positions) are taken as the rationals that they are; an axis says
 a direction. Sines and cosines are Taylor sums of integers. Coordinates come back on a grid of 2^-120, far below
@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from tests.oracle.rationals import root
+from tests.oracle.rationals import cross, root
 
 BITS = 180
 GRID = 1 << 120
@@ -51,6 +51,22 @@ def placed(vertices: Iterable, pose: Iterable) -> list[tuple[Fraction, ...]]:
     """The vertices in the world."""
     rows = _pose(pose)
     return [tuple(_on_grid(_along(row, point)) for row in rows) for point in _rationals(vertices)]
+
+
+def on(pose: Iterable, other_from_body: Iterable) -> Pose:
+    """`world_from_body` of what stands on something at `pose`."""
+    return _times(_pose(pose), _pose(other_from_body))
+
+
+def seen_from(pose: Iterable, world_from_body: Iterable) -> Pose:
+    """`other_from_body` of what is at `world_from_body`, as it is seen from something at `pose`."""
+    rows = _pose(pose)
+    a, b, c = (row[:3] for row in rows)
+    columns = [cross(b, c), cross(c, a), cross(a, b)]
+    volume = sum(x * y for x, y in zip(a, columns[0], strict=True))
+    back = [[column[i] / volume for column in columns] for i in range(3)]
+    shift = [-sum(row[k] * rows[k][3] for k in range(3)) for row in back]
+    return _times([[*row, x] for row, x in zip(back, shift, strict=True)], _pose(world_from_body))
 
 
 def _position(joint, by_name: Mapping, positions: Mapping[str, float]) -> Fraction:

@@ -26,7 +26,7 @@ from tests import oracle
 from tests.made_cases import at, faces_of
 from tests.oracle.kinematics import link_poses as exact_link_poses
 from tests.oracle.kinematics import placed as exactly_placed
-from tests.simulate.test_moving_pairs import solid_robot
+from tests.simulate.wandering import solid_robot
 from tests.strategies import rotations
 
 GAP = 1e-4
