@@ -118,7 +118,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         samples,
         _contacts(plan, found),
         _notices(plan, all_judged.certificate),
-        _profiles(samples),
+        _profiles(plan),
         _peer(samples, found, resources) if question.cross_check else None,
     )
 
@@ -194,12 +194,12 @@ def _nothing_measured(phase: Phase) -> Notice:
     return Notice(Severity.WARNING, "pairs", text)
 
 
-def _profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
-    if not samples.case.profiles:
+def _profiles(plan: MeasurementPlan) -> tuple[ProfileAnswer, ...]:
+    if not plan.question.case.profiles:
         return ()
     from clearance.profiles.answer import answer_profiles
 
-    return answer_profiles(samples)
+    return answer_profiles(plan.question.case, plan.timeline)
 
 
 def _peer(samples: Samples, found: Sequence[SectionAnswer], resources: Resources) -> CrossCheck:
