@@ -100,12 +100,9 @@ def _motions(question: Question) -> tuple[Motion, ...]:
     case = question.case
     if question.motion == "kinematic":
         return tuple(kinematic_motion(placed) for placed in case.robots)
-    from clearance.simulate.bullet import simulated_motion
+    from clearance.simulate.simulated import simulated_motions
 
-    return tuple(
-        simulated_motion(placed, case.obstacles, contact_response=case.contact_response)
-        for placed in case.robots
-    )
+    return simulated_motions(case)
 
 
 def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:

@@ -15,7 +15,14 @@ def holding_link(phase: Phase, i_obstacle: int) -> tuple[int, int] | None:
 
     A part that is carried by something that no robot carries is in no robot's hand.
     """
-    if i_obstacle in phase.absent_obstacles or not _is_in_hand(phase, i_obstacle):
+    if not _is_in_hand(phase, i_obstacle):
+        return None
+    return link_below(phase, i_obstacle)
+
+
+def link_below(phase: Phase, i_obstacle: int) -> tuple[int, int] | None:
+    """The robot and its link that an obstacle is on in a phase, carried or riding; None where there is none."""
+    if i_obstacle in phase.absent_obstacles:
         return None
     case = phase.case
     forest = forest_of(case)
