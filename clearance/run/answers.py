@@ -136,7 +136,12 @@ def _measurement(question: Question, section: Section, resources: Resources) -> 
     from clearance.query.paper import NO_TOLERANCE
     from clearance.simulate.measure_paper import measure_paper
 
-    return measure_paper(*what, resources.progress, question.paper_tolerance or NO_TOLERANCE)
+    return measure_paper(
+        *what,
+        resources.progress,
+        question.paper_tolerance or NO_TOLERANCE,
+        section.phase.first,
+    )
 
 
 def _certificate(

@@ -78,6 +78,11 @@ class Question:
                 f"method {self.method!r} measures every step",
                 valid="need 'steps', or method 'exact'",
             )
+        if self.method == "paper" and self.case.clock.slack > 0.0:
+            raise BadInput(
+                "method 'paper' measures bodies at one time, and the case's clocks are not tied",
+                valid="clock: common, or method 'exact'",
+            )
         if self.need in ("limit", "minimum") and self.cross_check:
             raise BadInput(
                 f"cross-check needs every step, not {self.need!r}", valid="need 'steps' or 'pairs'"
