@@ -28,39 +28,52 @@ from .simulate.record import CrossCheck, Record
 from .simulate.workspace import Workspace, shared_workspace
 from .sketch import Sketch, SketchResult
 from .world.body import Body, Obstacle
-from .world.case import Case, Limits, PlacedRobot, SelfClearance
+from .world.carry import Carry
+from .world.case import Case, Clock, Limits, PlacedRobot, SelfClearance
+from .world.mount import Mount
+from .world.pose_table import PoseTable
 from .world.robot import Robot
+from .world.rules import Allowance, Rule
+from .world.timing import Timing, Window
 from .world.trajectory import Trajectory
 
 __all__ = [
+    "Allowance",
     "BadInput",
     "Body",
+    "Carry",
     "Case",
     "Checker",
     "ClearanceError",
+    "Clock",
     "Contact",
     "CrossCheck",
     "Curve",
     "Fit",
     "Intersection",
     "Limits",
+    "Mount",
     "Nearest",
     "Obstacle",
     "PlacedRobot",
     "Polyhedron",
     "Polytope",
+    "PoseTable",
     "Profile",
     "Query",
     "Question",
     "Record",
     "Resources",
     "Robot",
+    "Rule",
     "Run",
     "SelfClearance",
     "Sketch",
     "SketchResult",
+    "Timing",
     "Trajectory",
     "Undecided",
+    "Window",
     "Workspace",
     "__version__",
     "answer",

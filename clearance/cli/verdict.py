@@ -18,24 +18,30 @@ from rich.text import Text
 from clearance.cli.progress import shown_progress
 from clearance.errors import shown
 from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
+from clearance.report.actors import carried_of
+from clearance.report.contact import HEADS
 from clearance.report.intervals import Interval, extent, intervals
-from clearance.report.verdict import Verdict, profile_text
+from clearance.report.verdict import Verdict, moment_line, profile_text
 from clearance.report.wording import (
     certified_text,
     contact_text,
     count,
-    limit_mm,
+    limits_text,
     mm,
+    moment_text,
+    other_time,
     seconds,
     span_text,
 )
 from clearance.run import Run
+from clearance.simulate.names import LINK_AND_OBSTACLE
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.world.notice import KINDS, Notice
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
 _LEVELS = {"contact": "contact", "below_fail": "below fail", "below_warn": "below warn"}
 _MOST_INTERVALS, _MOST_NOTES, _MOST_PAIRS, _MOST_DISAGREEMENTS = 4, 8, 5, 5
+_MOST_CARRIES = 6
 _PLAIN_WIDTH = 160  # columns for tables where the output is not a terminal
 
 
@@ -59,13 +65,13 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     """The lines; those that look into contacts are made when they are printed, after the verdict."""
     record, verdict = run.record, run.verdict
     lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
-    lines += [*_beside(verdict), *_worst(record)]
+    lines += [*_beside(verdict), *_worst(record), *_rules(record), *_carried(record)]
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines.append(partial(_deepest, record))
     nearest = record.pair_minima[:_MOST_PAIRS]
     if nearest:
-        lines.append(_pair_table(nearest))
+        lines.append(_pair_table(record, nearest))
     lines += [_row("profile", profile_text(answer)) for answer in record.profiles]
     lines += _certified(record)
     lines += _facets(record)
@@ -78,10 +84,14 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
 
 
 def _headline(record: Record, verdict: Verdict) -> Text:
-    limits = record.case.limits
+    """Verdict and least clearance; where there are rules, what stands worst against which."""
     text = Text(verdict.text(str.upper), style=_STYLES.get(verdict.status, "bold red"))
-    told = f"  {record.case.name}: least clearance {mm(record.worst.clearance)} mm"
-    told += f" (fail below {limit_mm(limits.fail)} mm, warn below {limit_mm(limits.warn)} mm)"
+    limits = record.case.limits
+    if limits.rules:
+        told = f": {moment_line(record, record.worst)} ({record.case.name})"
+    else:
+        told = f"  {record.case.name}: least clearance {mm(record.worst.clearance)} mm"
+        told += f" ({limits_text(limits.fail, limits.warn)})"
     return text.append(told, style="default not bold")
 
 
@@ -89,6 +99,7 @@ def _beside(verdict: Verdict) -> list[Text]:
     """What a reader must know beside the clearance: right below the headline."""
     not_checked = ", ".join(f"{name} not checked" for name in verdict.not_checked)
     lines = [_row("", not_checked)] if not_checked else []
+    lines += [_row("nearest", verdict.nearest)] if verdict.nearest else []
     lines += [_row("violated", text) for text in verdict.broken]
     lines += [_row("unproven", verdict.unproven)] if verdict.unproven else []
     lines += [_row("suspect", _suspect(one)) for one in verdict.suspects]
@@ -101,12 +112,44 @@ def _suspect(notice: Notice) -> str:
 
 def _worst(record: Record) -> list[Text]:
     worst = record.worst
-    points = f"link {_point(worst.point_link)}, obstacle {_point(worst.point_obstacle)} m"
+    a, b = ("link", "obstacle") if record.sides[:2] == LINK_AND_OBSTACLE else ("a", "b")
+    points = f"{a} {_point(worst.point_link)}, {b} {_point(worst.point_obstacle)} m"
     n_steps = count(record.steps.num_rows, "step")
     between = f"between the steps {worst.step} and {worst.step + 1}"
     where = between if worst.between else f"step {worst.step}"
-    told = f"{where} of {n_steps}, {seconds(worst.time)}: {worst.link} - {worst.obstacle}"
+    told = f"{where} of {n_steps}, {seconds(worst.time)}{other_time(worst.obstacle, worst.time_b)}"
+    told += f": {worst.link} - {worst.obstacle}"
     return [_row("worst", told), _row("points", points)]
+
+
+def _rules(record: Record) -> list[Text]:
+    """One line for each rule of the case, if it has any: how it stands, and its worst moment."""
+    limits = record.case.limits
+    if not limits.rules:
+        return []
+    answers = {answer.name: answer for answer in record.rules}
+    lines = []
+    for i, name in enumerate(limits.rule_names):
+        own, answer = limits.of_rule(i), answers.get(name)
+        told = f"{name} ({limits_text(own.fail, own.warn)}): "
+        if answer is None:
+            told += "judges nothing"
+        elif answer.worst is None:
+            told += f"{answer.status}, nothing nearer was asked for"
+        else:
+            worst = answer.worst
+            told += f"{answer.status}, {mm(worst.clearance)} mm, {worst.link} - {worst.obstacle}"
+            told += f" at {moment_text(worst)}"
+        lines.append(_row("rule", told))
+    return lines
+
+
+def _carried(record: Record) -> list[Text]:
+    """Who carries what from when until when."""
+    return [
+        _row("carried", f"{row['part']} by {row['by']}, {span_text(row['from'], row['until'])}")
+        for row in carried_of(record)[:_MOST_CARRIES]
+    ]
 
 
 def _certified(record: Record) -> list[Text]:
@@ -140,7 +183,8 @@ def _deepest(record: Record) -> list[Text]:
     told = found["deepest"]
     way = ", ".join(f"{value:.4f}" for value in told["direction"])
     text = f"step {told['step']}, {told['link']} in {told['obstacle']}: {contact_text(told)}"
-    return [_row("deepest", f"{text}; way out of the link ({way})")]
+    mover = "the link" if record.sides[:2] == LINK_AND_OBSTACLE else told["link"]
+    return [_row("deepest", f"{text}; way out of {mover} ({way})")]
 
 
 def _point(point: Sequence[float]) -> str:
@@ -165,20 +209,24 @@ def _span(part: Interval) -> str:
     return span_text(part.start, part.end)
 
 
-def _pair_table(nearest: Sequence[PairMinimum]) -> Table:
+def _pair_table(record: Record, nearest: Sequence[PairMinimum]) -> Table:
     table = Table(box=None, pad_edge=False, padding=(0, 2))
-    table.add_column("  closest at the samples: link")
-    table.add_column("obstacle")
+    first, second = HEADS[record.sides[0]]
+    table.add_column(f"  closest at the samples: {first.lower()}")
+    table.add_column(second.lower())
     for name in ("clearance mm", "step", "time s"):
         table.add_column(name, justify="right")
+    if record.case.limits.rules:
+        table.add_column("rule")
     for pair in nearest:
-        cells = (
+        cells = [
             f"  {pair.link}",
             pair.obstacle,
             mm(pair.clearance),
             str(pair.step),
             f"{pair.time:.3f}",
-        )
+        ]
+        cells += [pair.rule] if record.case.limits.rules else []
         table.add_row(*(Text(cell) for cell in cells))
     return table
 

@@ -41,10 +41,10 @@ def cross_check_sections(
 
 def _of_section(answer: SectionAnswer, progress: Callable[[int, int], None] | None) -> CrossCheck:
     section, first = answer.section, answer.section.phase.first
-    alone = RuleAnswer("", section.case.limits, answer.found, None, _no_moment)
+    alone = RuleAnswer("", section.in_motion.limits, answer.found, None, _no_moment)
     judged = Judged((alone,), answer.found, None, answer.found, None)
-    tables = step_table(section.case, section.motions, section.pairs, judged)
-    samples = Samples(section.case, section.motions, pa.concat_tables(tables), ())
+    tables = step_table(section.phase.case, section.phase.motions, section.pairs, judged)
+    samples = Samples(section.phase.case, section.phase.motions, pa.concat_tables(tables), ())
     found = cross_check(samples, progress, section.pairs)
     rows = tuple(replace(row, step=row.step + first) for row in found.disagreements)
     return replace(found, worst_step=found.worst_step + first, disagreements=rows)

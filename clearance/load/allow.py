@@ -1,37 +1,79 @@
-"""Names that a case takes from robot and scene: a typing error must not be a silent gap."""
+"""Names that a case takes from robots and scene: a typing error must not be a silent gap."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 
 from clearance.errors import BadInput, UnknownLink, UnknownObstacle, at, nearest_name
-from clearance.world.rules import matches
+from clearance.world.case import Case
+from clearance.world.rules import Allowance, matches
 
 _WILDCARDS = frozenset("*?[")
 
 
-def checked_pairs(
-    pairs: Sequence[Sequence[str]], links: Iterable[str], obstacles: Iterable[str]
-) -> tuple[tuple[str, str], ...]:
-    """The (link pattern, obstacle pattern) pairs, once each pattern matches something.
+@dataclass(frozen=True)
+class BodyNames:
+    """What patterns of a case may match.
+
+    Attributes:
+        table_links: links as tables name them: `robot/link` where there are several robots.
+        links: those, and of several robots the links alone too. obstacles: of the scene.
+        links_meet: links are measured against links. obstacles_meet: obstacles are against obstacles.
+    """
+
+    table_links: tuple[str, ...]
+    links: tuple[str, ...]
+    obstacles: tuple[str, ...]
+    links_meet: bool
+    obstacles_meet: bool
+
+
+def body_names(case: Case) -> BodyNames:
+    """The names of a case's bodies."""
+    several = len(case.robots) > 1
+    alone = [link for placed in case.robots for link in placed.robot.link_names]
+    table_links = [
+        case.prefix_of(placed) + link for placed in case.robots for link in placed.robot.link_names
+    ]
+    mounted = any(placed.mount is not None for placed in case.robots)
+    return BodyNames(
+        tuple(table_links),
+        tuple(dict.fromkeys([*table_links, *alone])),
+        tuple(obstacle.name for obstacle in case.obstacles),
+        links_meet=several or any(placed.self_clearance for placed in case.robots),
+        obstacles_meet=bool(case.carries)
+        or mounted
+        or any(not obstacle.stands for obstacle in case.obstacles),
+    )
+
+
+def require_allowances(rows: Sequence[Allowance], names: BodyNames) -> None:
+    """Nothing, if each pattern matches a body that it can be of: the first a link where one of the pair is.
 
     Raises:
         UnknownLink, UnknownObstacle: nothing matches, with the nearest name.
     """
-    links, obstacles = tuple(links), tuple(obstacles)
-    for i, (link, obstacle) in enumerate(pairs):
+    first = names.links + (names.obstacles if names.obstacles_meet else ())
+    second = names.obstacles + (names.links if names.links_meet else ())
+    for i, row in enumerate(rows):
         with at(f"allow[{i}]"):
-            if (
-                _matches(link, obstacles)
-                and _matches(obstacle, links)
-                and not _matches(link, links)
-            ):
-                raise UnknownLink(
-                    f"{link!r} is an obstacle and {obstacle!r} a link", valid="the link comes first"
-                )
-            _refuse_unmatched(link, links, "link", UnknownLink)
-            _refuse_unmatched(obstacle, obstacles, "obstacle", UnknownObstacle)
-    return tuple((link, obstacle) for link, obstacle in pairs)
+            _refuse_turned_round(*row.between, names)
+            what = "body" if names.obstacles_meet else "link"
+            _refuse_unmatched(row.between[0], first, what, UnknownLink)
+            what = "body" if names.links_meet and names.obstacles_meet else "obstacle"
+            _refuse_unmatched(row.between[1], second, what, UnknownObstacle)
+
+
+def require_patterns(given: Sequence[str], names: BodyNames) -> None:
+    """Nothing, if each pattern matches a body.
+
+    Raises:
+        UnknownLink: nothing matches, with the nearest name.
+    """
+    for i, pattern in enumerate(given):
+        with at(f"[{i}]"):
+            _refuse_unmatched(pattern, names.links + names.obstacles, "body", UnknownLink)
 
 
 def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]:
@@ -47,6 +89,16 @@ def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]
                 f"unknown link {name!r}", where=f"[{i}]", valid=nearest_name(name, known)
             )
     return tuple(given)
+
+
+def _refuse_turned_round(first: str, second: str, names: BodyNames) -> None:
+    """Refuses an obstacle before a link, which would be of no pair."""
+    is_obstacle = _matches(first, names.obstacles) and not _matches(first, names.links)
+    is_link = _matches(second, names.links) and not _matches(second, names.obstacles)
+    if is_obstacle and is_link:
+        raise UnknownLink(
+            f"{first!r} is an obstacle and {second!r} a link", valid="the link comes first"
+        )
 
 
 def _matches(pattern: str, names: Iterable[str]) -> bool:

@@ -7,38 +7,40 @@ something, numbers are finite, shapes are solids, times increase.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
-from clearance.errors import BadInput, MissingFile, at
+from clearance.errors import at
 from clearance.load import schema
-from clearance.load.allow import checked_links, checked_pairs
+from clearance.load.allow import body_names, require_allowances, require_patterns
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
-from clearance.load.motion_names import check_not_given_twice, note_on_joints_at_zero
+from clearance.load.motion_names import note_on_joints_at_zero
+from clearance.load.motion_notes import notes_on_motion
+from clearance.load.obstacle_schema import Scene
 from clearance.load.plausibility import angle_notices, obstacle_notices, odd_angles, scale_notices
 from clearance.load.reserved import reserved_spaces
+from clearance.load.robots import RobotReader
+from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
 from clearance.load.schema_errors import validated
-from clearance.load.srdf import read_srdf
-from clearance.load.trajectory_file import read_trajectory
-from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.load.yaml_file import parse_yaml
-from clearance.world.case import Case, Limits, PlacedRobot, SelfClearance, SignOff
-from clearance.world.moving_joints import require_moving_joints
+from clearance.world.case import Case, Clock, PlacedRobot, SignOff
+from clearance.world.clocks import require_clocks
+from clearance.world.forest import require_known
+from clearance.world.motion import kinematic_motion
 from clearance.world.names import checked_name
 from clearance.world.notice import Notice
-from clearance.world.pairs import measured_pairs
-from clearance.world.reach import require_few_turns
-from clearance.world.robot import Robot
-from clearance.world.rules import Allowance
-from clearance.world.trajectory import Trajectory
+from clearance.world.pairs import nothing_to_measure, selected_pairs
+from clearance.world.timeline import Timeline, timeline_of
+from clearance.world.used_rules import require_rules_used
 
 
 def load_case(path: str | PathLike[str]) -> Case:
-    """The case in a YAML file, with robot, scene and trajectory read and checked.
+    """The case in a YAML file, with robots, scene and trajectories read and checked.
 
     Args:
         path: the case file; the paths in it are relative to its folder.
@@ -50,35 +52,56 @@ def load_case(path: str | PathLike[str]) -> Case:
     files = InputFiles(path.parent)
     meshes = MeshStore(files)
     given, scene_at = _read_schema(path, files)
+    entries = given.entries()
+    reader = RobotReader(path.parent, meshes)
     with at(path.name):
-        placed = _placed_robot(given, path.parent, meshes)
+        robots = tuple(reader.placed(entry) for entry in entries)
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
-        robot = placed.robot
-        others = [obstacle.name for obstacle in obstacles]
-        if placed.self_clearance:
-            others += robot.link_names
-        allow = checked_pairs(given.allow, robot.link_names, others)
-        profiles = reserved_spaces(given.profiles, path.parent, files, robot.link_names)
-    given_joints = [*placed.asked.joint_names, *placed.fixed_positions]
-    case = Case(
-        name=given.name or _name_of(path),
-        robots=(placed,),
-        obstacles=obstacles,
-        limits=_limits(given.limits),
-        allow=tuple(map(Allowance, allow)),
-        contact_response=given.contact_response,
+        limits = limits_of(given.limits)
+        case = Case(
+            name=given.name or _name_of(path),
+            robots=robots,
+            obstacles=obstacles,
+            limits=limits,
+            allow=allowances_of(given.allow),
+            contact_response=given.contact_response,
+            notices=tuple(_notices(given)),
+            accept=tuple(given.accept),
+            sign_off=_sign_off(given.report),
+            carries=carries_of(given.carry),
+            clock=Clock(given.clock.slack),
+        )
+        names = body_names(case)
+        require_allowances(case.allow, names)
+        profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
+        _require_mounts(case, entries, scene_at)
+        for i, carry in enumerate(case.carries):
+            with at(f"carry[{i}].touch"):
+                require_patterns(carry.touch, names)
+        timeline = _run_through(case)
+    notes = [note for entry, placed in zip(entries, robots, strict=True)
+             for note in _robot_notes(entry, placed, len(robots) > 1)]  # fmt: skip
+    start, end = timeline.times[[0, -1]].tolist()
+    return replace(
+        case,
         sources=files.sources,
-        notes=(*note_on_joints_at_zero(robot, given_joints), *_srdf_notes(placed), *scene_notes),
+        notes=(*notes, *scene_notes, *notes_on_motion(case, start, end)),
         profiles=profiles,
-        notices=tuple(_notices(given)),
-        accept=tuple(given.accept),
-        sign_off=_sign_off(given.report),
     )
-    with at(path.name):
-        measured_pairs(case)  # refuses a case that leaves nothing to measure
-    return case
+
+
+def _run_through(case: Case) -> Timeline:
+    """The case over time, if it can be run: windows lie in it, rules are of pairs, something is measured."""
+    require_clocks(case)
+    timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
+    selections = [selected_pairs(phase) for phase in timeline.phases]
+    pairs = dict.fromkeys(pair for one in selections for pair in one.pairs)
+    if not pairs:
+        raise nothing_to_measure()
+    require_rules_used(case, pairs, [out for one in selections for out in one.unmeasured])
+    return timeline
 
 
 def _name_of(path: Path) -> str:
@@ -88,21 +111,29 @@ def _name_of(path: Path) -> str:
 
 
 def _notices(given: schema.Case) -> list[Notice]:
-    obstacles = given.scene.obstacles
+    """What of the bases and obstacles only the file shows."""
+    entries, obstacles = given.entries(), given.scene.obstacles
     scales = [(item.name, item.mesh.factors) for item in obstacles if item.mesh is not None]
-    return [
-        *angle_notices(odd_angles("the robot's base", given.robot.base.rpy)),
-        *obstacle_notices(obstacles),
-        *scale_notices(scales),
+    bases = [
+        odd
+        for entry in entries
+        for odd in odd_angles(
+            "the robot's base" if len(entries) == 1 else f"the base of {entry.field}",
+            entry.robot.base.rpy,
+        )
     ]
+    return [*angle_notices(bases), *obstacle_notices(obstacles), *scale_notices(scales)]
 
 
 @dataclass(frozen=True)
 class _ScenePlace:
-    """Where the obstacles are written: file and field for errors, folder for mesh files."""
+    """Where the obstacles are written: file and field for errors, folder for the files that they name; and the
+    field as seen from the case file.
+    """
 
     place: str
     folder: Path
+    field: str = "scene."
 
 
 def _read_schema(path: Path, files: InputFiles) -> tuple[schema.Case, _ScenePlace]:
@@ -116,97 +147,38 @@ def _read_schema(path: Path, files: InputFiles) -> tuple[schema.Case, _ScenePlac
             shown = files.shown(scene_path)
             refuse_foreign(files.read(scene_path), shown, "a scene")
             scene = parse_yaml(files.read(scene_path), shown)
-            validated(schema.Scene, scene, shown)
+            validated(Scene, scene, shown)
         raw = {**raw, "scene": scene}
-        scene_at = _ScenePlace(f"{path.name}: scene: {shown}", scene_path.parent)
+        scene_at = _ScenePlace(
+            f"{path.name}: scene: {shown}", scene_path.parent, f"scene: {shown}: "
+        )
     return validated(schema.Case, raw, path.name), scene_at
 
 
-def _placed_robot(given: schema.Case, folder: Path, meshes: MeshStore) -> PlacedRobot:
-    urdf_path = resolved(given.robot.urdf, folder)
-    package_dirs = tuple(resolved(text, folder) for text in given.robot.package_dirs)
-    with at("robot.package_dirs"):
-        _refuse_missing_folders(given.robot.package_dirs, package_dirs)
-    with at("robot.urdf"):
-        request = UrdfRequest(
-            urdf_path, package_dirs, given.robot.geometry, given.robot.collada_up_axis
-        )
-        robot = read_robot(request, meshes)
-    trajectory = _trajectory(resolved(given.trajectory.file, folder), robot, meshes)
-    with at("robot.joints"):
-        require_moving_joints(robot, given.robot.joints)
-        check_not_given_twice(given.robot.joints, trajectory.joint_names)
-    with at("robot.exclude_links"):
-        exclude_links = checked_links(given.robot.exclude_links, robot.link_names)
-    return PlacedRobot(
-        robot=robot,
-        trajectory=trajectory,
-        world_from_base=given.robot.base.matrix(),
-        fixed_positions=dict(given.robot.joints),
-        exclude_links=exclude_links,
-        urdf_path=str(urdf_path),
-        package_dirs=tuple(str(path) for path in package_dirs),
-        self_clearance=_self_clearance(given.robot, robot, folder, meshes.files),
-    )
+def _require_mounts(
+    case: Case, entries: Sequence[schema.RobotEntry], scene_at: _ScenePlace
+) -> None:
+    """Nothing, if what robots and obstacles are on is there."""
+    for entry, placed in zip(entries, case.robots, strict=True):
+        if placed.mount is not None:
+            with at(f"{entry.field}.base.on"):
+                require_known(case, placed.mount.on)
+    for i, obstacle in enumerate(case.obstacles):
+        if obstacle.mount is not None:
+            with at(f"{scene_at.field}obstacles[{i}].on"):
+                require_known(case, obstacle.mount.on)
 
 
-def _self_clearance(
-    given: schema.Robot, robot: Robot, folder: Path, files: InputFiles
-) -> SelfClearance | None:
-    """Whether the robot's links are measured against one another, and which pairs an SRDF file excuses."""
-    if not given.self_clearance:
-        for field in ("srdf", "trust_never"):
-            if getattr(given, field):
-                raise BadInput(
-                    "it excuses pairs of links, which are not measured",
-                    where=f"robot.{field}",
-                    valid="self_clearance: true, or no such field",
-                )
-        return None
-    if given.srdf is None:
-        if given.trust_never:
-            raise BadInput(
-                "it speaks of the pairs that an SRDF file calls Never",
-                where="robot.trust_never",
-                valid="robot.srdf: the file",
-            )
-        return SelfClearance()
-    with at("robot.srdf"):
-        matrix = read_srdf(resolved(given.srdf, folder), robot, files)
-    return SelfClearance(matrix, given.trust_never)
-
-
-def _srdf_notes(placed: PlacedRobot) -> tuple[str, ...]:
-    asked = placed.self_clearance
-    return () if asked is None or asked.matrix is None else asked.matrix.notes
-
-
-def _refuse_missing_folders(given: list[str], package_dirs: tuple[Path, ...]) -> None:
-    for i, (text, path) in enumerate(zip(given, package_dirs, strict=True)):
-        if not path.is_dir():
-            raise MissingFile(f"there is no folder {text!r}", where=f"[{i}]")
-
-
-def _trajectory(path: Path, robot: Robot, meshes: MeshStore) -> Trajectory:
-    with at("trajectory.file"):
-        shown = meshes.files.shown(path)
-        opened, n_bytes = meshes.files.unread(path)
-        try:
-            needed = bool(robot.moving_joints)
-            trajectory = read_trajectory(opened, n_bytes, shown, joints_needed=needed)
-        except BadInput:
-            with opened() as file:
-                refuse_foreign(file.read(65536), shown, "a trajectory")
-            raise
-        with at(shown):
-            require_moving_joints(robot, trajectory.joint_names)
-            require_few_turns(robot, trajectory.joint_names, trajectory)
-    return trajectory
+def _robot_notes(entry: schema.RobotEntry, placed: PlacedRobot, several: bool) -> list[str]:
+    """What the file leaves open of a robot, and what was left out of it."""
+    asked = placed.trajectory
+    given = [*(asked.joint_names if asked else ()), *placed.fixed_positions]
+    notes = note_on_joints_at_zero(placed.robot, given, f"{entry.field}.joints")
+    if several:
+        notes = [f"robot {placed.robot.name!r}: {note}" for note in notes]
+    matrix = placed.self_clearance and placed.self_clearance.matrix
+    return [*notes, *(matrix.notes if matrix else ())]
 
 
 def _sign_off(given: schema.Report | None) -> SignOff | None:
     return None if given is None else SignOff(given.author or "", given.revision or "")
-
-
-def _limits(given: schema.Limits) -> Limits:
-    return Limits(given.fail, given.fail if given.warn is None else given.warn, given.joints)

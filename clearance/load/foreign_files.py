@@ -55,7 +55,7 @@ _ADVICE = {
 _LEFT = {
     "urdf": ("a URDF file",),
     "xacro": ("a URDF file",),
-    "csv": ("a URDF file", "a trajectory"),
+    "csv": ("a URDF file", "a trajectory", "a table of poses"),
 }
 """What may be wanted where a file is of a kind, or is better answered by who reads it."""
 
@@ -71,7 +71,7 @@ def refuse_foreign(data: bytes, shown: str, wanted: str) -> None:
     """Nothing, if the file is not known to be something else than what is wanted.
 
     Args:
-        wanted: "a case file", "a scene", "a trajectory" or "a URDF file".
+        wanted: "a case file", "a scene", "a trajectory", "a table of poses" or "a URDF file".
 
     Raises:
         BadSyntax: what it is, and what to do with it.

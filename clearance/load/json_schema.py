@@ -5,9 +5,12 @@ Made from `schema`, with what its validators take beside the plain types. Not fo
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
 from clearance.load import schema
+from clearance.load.obstacle_schema import SHAPES
+from clearance.load.strict_model import StrictModel
 from clearance.world.notice import KINDS
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -17,15 +20,60 @@ def case_schema() -> dict[str, Any]:
     """The JSON Schema of a case file."""
     made = schema.Case.model_json_schema()
     parts, keys = made["$defs"], made["properties"]
+    _without_nothing(made, parts)
     keys["scene"] = _or_path(keys["scene"], "a YAML file with the scene")
-    keys["trajectory"] = _or_path(keys["trajectory"], "the trajectory's CSV file")
     keys["accept"]["items"]["enum"] = list(KINDS)
+    made["oneOf"] = [{"required": ["robot"]}, {"required": ["robots"]}]
+    made["anyOf"] = list(_what_moves())
     factors = parts["Mesh"]["properties"]["scale"]
     parts["Mesh"]["properties"]["scale"] = {"anyOf": [{"type": "number"}, factors], "default": 1.0}
-    parts["Obstacle"]["oneOf"] = [{"required": [shape]} for shape in schema.SHAPES]
-    parts["Pose"]["not"] = {"required": ["quat_xyzw", "rpy"]}
+    _edit_obstacle(parts["Obstacle"])
+    parts["Rule"]["anyOf"] = [{"required": ["fail"]}, {"required": ["warn"]}]
+    for pose in ("Pose", "Base"):
+        parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}
+    parts["TimedFile"] = _or_path(parts["TimedFile"], "a CSV file")
+    parts["Allowed"] = {"anyOf": [parts["Allowed"]["properties"]["between"], parts["Allowed"]]}
+    parts["Clock"] = {"anyOf": [{"enum": list(schema.CLOCKS)}, parts["Clock"]]}
+    keys["clock"]["default"] = "common"
     _without_titles(made)
     return {"$schema": _DIALECT, "title": "clearance case file", **made}
+
+
+def _what_moves() -> Iterator[dict[str, Any]]:
+    """Where a case can say that something moves; a scene in a file of its own may."""
+    moves = {"required": ["trajectory"]}
+    yield moves
+    yield {"properties": {"robot": moves}, "required": ["robot"]}
+    yield {"properties": {"robots": {"contains": moves}}, "required": ["robots"]}
+    obstacle = {"properties": {"obstacles": {"contains": {"required": ["moves"]}}}}
+    yield {"properties": {"scene": obstacle}}
+
+
+def _edit_obstacle(part: dict[str, Any]) -> None:
+    part["oneOf"] = [{"required": [shape]} for shape in SHAPES]
+    part["anyOf"] = [
+        {"not": {"required": [key]}} if key != "on" else {"required": [key]}
+        for key in ("moves", "pose", "on")
+    ]
+
+
+def _without_nothing(made: dict[str, Any], parts: dict[str, Any]) -> None:
+    """Takes out that a key may have nothing behind it where that is refused."""
+    named = {**parts, schema.Case.__name__: made}
+    for model in [model for model in _models(StrictModel) if model.__name__ in named]:
+        for key in model.FILLED:
+            given = named[model.__name__]["properties"][key]
+            kinds = [kind for kind in given.pop("anyOf") if kind != {"type": "null"}]
+            given.pop("default", None)
+            given.update(kinds[0])
+    for key in ("robot", "robots"):
+        made["properties"][key] = made["properties"][key]["anyOf"][0]
+
+
+def _models(base: type[StrictModel]) -> Iterator[type[StrictModel]]:
+    for model in base.__subclasses__():
+        yield model
+        yield from _models(model)
 
 
 def _or_path(mapping: dict[str, Any], what: str) -> dict[str, Any]:

@@ -23,12 +23,14 @@ def check_not_given_twice(in_case: Iterable[str], in_trajectory: Iterable[str]) 
             )
 
 
-def note_on_joints_at_zero(robot: Robot, given: Iterable[str]) -> list[str]:
-    """A note naming the moving joints that nobody gives a value; they stay at 0."""
+def note_on_joints_at_zero(robot: Robot, given: Iterable[str], field: str) -> list[str]:
+    """A note naming the moving joints that nobody gives a value; they stay at 0.
+
+    Args:
+        field: where a case file could give them one.
+    """
     known = set(given)
     left = [joint.name for joint in robot.moving_joints if joint.name not in known]
     if not left:
         return []
-    return [
-        f"joints given neither by the trajectory nor by robot.joints stay at 0: {listed(left, 8)}"
-    ]
+    return [f"joints given neither by the trajectory nor by {field} stay at 0: {listed(left, 8)}"]

@@ -1,7 +1,7 @@
 """Numbers in text as mesh files write them: ASCII digits, a sign, a point, an exponent, and nothing else.
 
 Python and numpy also take `1_0` for 10 and digits of other scripts; in a file either is damage. Not for:
-tables (`trajectory_csv`).
+tables (`csv_table`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """What only a file shows of values that look like a wrong unit: angles as they are written, scales, radii.
 
 Not for: what the case itself shows (`world.plausibility`), and values that cannot be right (`schema`,
-`trajectory_csv`).
+`csv_table`).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from clearance.geometry.shapes import SHAPES
-from clearance.load import schema
+from clearance.load.obstacle_schema import Obstacle
 from clearance.world.notice import Notice, Severity, listed
 
 LARGE_RADIUS = 5.0
@@ -31,7 +31,7 @@ def units(text: str) -> Notice:
     return Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}")
 
 
-def obstacle_notices(obstacles: Sequence[schema.Obstacle]) -> list[Notice]:
+def obstacle_notices(obstacles: Sequence[Obstacle]) -> list[Notice]:
     """What is odd about radii, angles and scales of a scene's obstacles."""
     wide, turned = [], []
     for obstacle in obstacles:
@@ -44,7 +44,7 @@ def obstacle_notices(obstacles: Sequence[schema.Obstacle]) -> list[Notice]:
     return notices + angle_notices(turned)
 
 
-def _radius(obstacle: schema.Obstacle) -> float:
+def _radius(obstacle: Obstacle) -> float:
     """[m] of a round shape; 0 for others."""
     shape = SHAPES.get(obstacle.kind)
     return 0.0 if shape is None or shape.radius is None else obstacle.dimensions[shape.radius]

@@ -1,4 +1,6 @@
-"""Obstacles of a case or scene file to solids in the world. Not for: their schema."""
+"""Obstacles of a case or scene file to solids that stand, ride or move. Not for: their schema, nor whether what
+they ride on is there (`case_file`).
+"""
 
 from __future__ import annotations
 
@@ -6,21 +8,23 @@ from pathlib import Path
 
 from clearance.errors import at
 from clearance.geometry.shapes import SHAPES
-from clearance.load import schema
-from clearance.load.input_files import resolved
+from clearance.load import obstacle_schema
+from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.notes import grouped
+from clearance.load.timed_files import pose_table_of
 from clearance.world.body import Body, Obstacle
+from clearance.world.mount import Mount
 from clearance.world.names import require_own_names
 
 
 def make_obstacles(
-    given: list[schema.Obstacle], folder: Path, meshes: MeshStore
+    given: list[obstacle_schema.Obstacle], folder: Path, meshes: MeshStore
 ) -> tuple[tuple[Obstacle, ...], list[str]]:
     """The obstacles in the file's order, and notes on meshes that had to be mended.
 
     Args:
-        folder: against which mesh files are looked up.
+        folder: against which files are looked up.
 
     Raises:
         DuplicateName: two obstacles with one name. BadInput: a shape that no solid can have, a bad
@@ -32,12 +36,26 @@ def make_obstacles(
     for i, item in enumerate(given):
         with at(f"obstacles[{i}]"):
             body, body_notes = _body(item, folder, meshes)
-        obstacles.append(Obstacle(body, item.pose.matrix()))
+            obstacles.append(_placed(item, body, folder, meshes.files))
         notes += [(body.origin, note) for note in body_notes]
     return tuple(obstacles), grouped(notes)
 
 
-def _body(item: schema.Obstacle, folder: Path, meshes: MeshStore) -> tuple[Body, list[str]]:
+def _placed(
+    item: obstacle_schema.Obstacle, body: Body, folder: Path, files: InputFiles
+) -> Obstacle:
+    """The body where it stands, or on what it rides, or as it moves."""
+    pose, moves = item.pose.matrix(), None
+    if item.moves is not None:
+        moves = pose_table_of(item.moves, "moves", folder, files)
+    if item.on is not None:
+        return Obstacle(body, mount=Mount(item.on, pose), moves=moves, padding=item.padding)
+    return Obstacle(body, pose, moves=moves, padding=item.padding)
+
+
+def _body(
+    item: obstacle_schema.Obstacle, folder: Path, meshes: MeshStore
+) -> tuple[Body, list[str]]:
     if item.mesh is not None:
         with at("mesh"):
             path = resolved(item.mesh.file, folder)

@@ -9,158 +9,37 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
-import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
-from clearance.errors import BadDimension, BadInput, UnknownKey, nearest_name
-from clearance.geometry import shapes
-from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
-from clearance.load.shape_schema import Triple, with_shapes
-from clearance.world.names import checked_name
+from clearance.errors import BadInput, MissingKey, nearest_name
+from clearance.load.limits_schema import Allowed, Limits
+from clearance.load.obstacle_schema import Scene
+from clearance.load.pose_schema import Base, TimedFile, window_of
+from clearance.load.strict_model import Level, Name, StrictModel
 from clearance.world.notice import KINDS
-
-Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
-
-
-Name = Annotated[str, Field(min_length=1), AfterValidator(checked_name)]
+from clearance.world.timing import Window
 
 
-class StrictModel(BaseModel):
-    """A mapping whose keys are all known."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _known_keys(cls, data: Any) -> Any:
-        if not isinstance(data, dict):
-            given = "nothing is given" if data is None else f"{data!r:.60} is given"
-            raise BadInput(
-                given, valid=f"a mapping is needed, with keys {', '.join(cls.model_fields)}"
-            )
-        for key in data:
-            if key not in cls.model_fields:
-                raise UnknownKey(
-                    f"unknown key {key!r}", valid=nearest_name(str(key), cls.model_fields)
-                )
-        return data
-
-
-class Pose(StrictModel):
-    """Where something stands: a point and a rotation (quaternion xyzw, or roll, pitch, yaw about
-    fixed axes).
-    """
-
-    xyz: Triple = [0.0, 0.0, 0.0]
-    quat_xyzw: Quadruple | None = None
-    rpy: Triple | None = None
-
-    @model_validator(mode="after")
-    def _is_rotation(self) -> Pose:
-        if self.quat_xyzw is not None and self.rpy is not None:
-            raise BadInput("both quat_xyzw and rpy are given", valid="give one of them")
-        self.matrix()
-        return self
-
-    def matrix(self) -> np.ndarray:
-        """The (4, 4) pose [m].
-
-        Raises:
-            BadPose: the quaternion is not of length one.
-        """
-        if self.quat_xyzw is not None:
-            return pose_from_quaternion(self.xyz, self.quat_xyzw)
-        return pose_from_rpy(self.xyz, self.rpy or [0.0, 0.0, 0.0])
-
-
-def _is_double(number: int | float) -> bool:
-    """True for a finite number that doubles can hold; whole numbers in a file may be longer."""
-    try:
-        return math.isfinite(number)
-    except OverflowError:
-        return False
-
-
-class Mesh(StrictModel):
-    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
-
-    file: Name
-    scale: Triple = [1.0, 1.0, 1.0]
-
-    @field_validator("scale", mode="before")
-    @classmethod
-    def _number_or_three(cls, scale: Any) -> Any:
-        factors = scale if isinstance(scale, list) else [scale]
-        numbers = all(isinstance(f, int | float) and not isinstance(f, bool) for f in factors)
-        if not numbers or len(factors) not in (1, 3) or not all(_is_double(f) for f in factors):
-            raise BadDimension(
-                f"{scale!r:.60} is given", valid="a finite number, or three, is needed"
-            )
-        if 0 in factors:
-            raise BadDimension(f"{scale!r:.60} is given", valid="a scale is not zero")
-        return [float(f) for f in factors] * (3 if len(factors) == 1 else 1)
-
-    @property
-    def factors(self) -> tuple[float, float, float]:
-        """The scale of each axis."""
-        x, y, z = self.scale
-        return x, y, z
-
-
-SHAPES = (*shapes.SHAPES, "mesh")
-
-
-class NamedPose(StrictModel):
-    """A name, and where what has it stands."""
-
-    name: Name
-    pose: Pose = Pose()
-
-
-if TYPE_CHECKING:
-    _Shaped = NamedPose
-else:  # the keys come from a table, which a type checker cannot follow
-    _Shaped = with_shapes(NamedPose, StrictModel)
-
-
-class Obstacle(_Shaped):
-    """A named solid that stands somewhere."""
-
-    mesh: Mesh | None = None
-
-    @property
-    def kind(self) -> str:
-        """Which of `SHAPES` it is."""
-        return next(key for key in SHAPES if getattr(self, key) is not None)
-
-    @property
-    def dimensions(self) -> dict[str, Any]:
-        """What is given of its shape, by name."""
-        return getattr(self, self.kind).model_dump(exclude_none=True)
-
-    @model_validator(mode="after")
-    def _one_shape(self) -> Obstacle:
-        given = [key for key in SHAPES if getattr(self, key) is not None]
-        if len(given) != 1:
-            what = f"{' and '.join(given)} are given" if given else "it has no shape"
-            raise BadInput(what, valid=f"give exactly one of {', '.join(SHAPES)}")
-        return self
-
-
-class Scene(StrictModel):
-    """What stands around the robot."""
-
-    obstacles: list[Obstacle]
+def _without_stroke(name: str) -> str:
+    if "/" in name:
+        raise BadInput(
+            f"{name!r:.60} is given", valid="no '/', since links of several robots are robot/link"
+        )
+    return name
 
 
 class Robot(StrictModel):
-    """The robot, and what of it is measured."""
+    """A robot, where it stands, what it does, and what of it is measured."""
 
+    FILLED = frozenset({"name", "trajectory"})
+
+    name: Annotated[Name, AfterValidator(_without_stroke)] | None = None
     urdf: Name
     package_dirs: list[Name] = []
-    base: Pose = Pose()
+    base: Base = Base()
+    trajectory: TimedFile | None = None
     exclude_links: list[Name] = []
     joints: dict[str, float] = {}
     geometry: Literal["collision", "visual", "collision_or_visual"] = "collision"
@@ -168,35 +47,55 @@ class Robot(StrictModel):
     self_clearance: bool = False
     srdf: Name | None = None
     trust_never: bool = False
+    padding: dict[str, Level] = {}
 
 
-class TrajectoryFile(StrictModel):
-    """Where the trajectory is: `{file: t.csv}`, or the path alone."""
+class Carry(StrictModel):
+    """A part that a link or an obstacle carries from a time until a time [s]; meanwhile it may touch some."""
 
-    file: Name
+    FILLED = frozenset({"until"})
+
+    part: Name
+    by: Name
+    from_: Annotated[float, Field(alias="from")]
+    until: float | None = None
+    touch: list[Name] = []
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Carry:
+        _ = self.window
+        return self
+
+    @property
+    def window(self) -> Window:
+        """When it is carried.
+
+        Raises:
+            BadTime: it ends before it begins.
+        """
+        return window_of(self.from_, self.until)
+
+
+CLOCKS = {"common": 0.0, "unsynchronised": math.inf}
+"""[s] How far the clocks of actors may be apart, by word."""
+
+
+class Clock(StrictModel):
+    """How far the clocks of robots may be apart: `common`, `unsynchronised`, or `{slack: seconds}`."""
+
+    slack: Annotated[float, Field(ge=0, allow_inf_nan=True)]
 
     @model_validator(mode="before")
     @classmethod
-    def _path_alone(cls, data: Any) -> Any:
-        return {"file": data} if isinstance(data, str) else data
-
-
-class Limits(StrictModel):
-    """Least clearances [m]: below `fail` the case is violated, below `warn` it is a near miss; and what a
-    joint beyond its limits is.
-    """
-
-    fail: Annotated[float, Field(ge=0)] = 0.0
-    warn: Annotated[float, Field(ge=0)] | None = None
-    joints: Literal["warn", "fail"] = "warn"
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Limits:
-        if self.warn is not None and self.warn < self.fail:
-            raise BadInput(
-                f"warn {self.warn:g} is below fail {self.fail:g}", valid="warn is at least fail"
-            )
-        return self
+    def _word_or_slack(cls, data: Any) -> Any:
+        if isinstance(data, str):
+            if data not in CLOCKS:
+                raise BadInput(f"{data!r:.60} is given", valid=nearest_name(data, CLOCKS))
+            return {"slack": CLOCKS[data]}
+        if not isinstance(data, dict) or not data:
+            given = "nothing is given" if not data else f"{data!r:.60} is given"
+            raise BadInput(given, valid=f"{', '.join(CLOCKS)} or {{slack: seconds}}")
+        return data
 
 
 class Profile(StrictModel):
@@ -229,16 +128,86 @@ class Report(StrictModel):
     revision: Name | None = None
 
 
+class RobotEntry(NamedTuple):
+    """A robot of a case file.
+
+    Attributes:
+        field: where it is written. trajectory, trajectory_field: what it does, and where that is written.
+    """
+
+    field: str
+    robot: Robot
+    trajectory: TimedFile | None
+    trajectory_field: str
+
+
 class Case(StrictModel):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
+    FILLED = frozenset({"trajectory"})
+
     name: Name | None = None
-    robot: Robot
+    robot: Robot | None = None
+    robots: Annotated[list[Robot], Field(min_length=1)] | None = None
     scene: Scene
-    trajectory: TrajectoryFile
+    trajectory: TimedFile | None = None
+    carry: list[Carry] = []
     limits: Limits = Limits()
-    allow: list[Annotated[list[Name], Field(min_length=2, max_length=2)]] = []
+    allow: list[Allowed] = []
+    clock: Clock = Clock(slack=0.0)
     contact_response: bool = False
     profiles: list[Profile] = []
     accept: list[Kind] = []
     report: Report | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_of_robot_and_robots(cls, data: Any) -> Any:
+        if isinstance(data, dict) and set(data) <= set(cls.keys()):
+            if "robot" in data and "robots" in data:
+                raise BadInput("both robot and robots are given", valid="one of them")
+            if "robot" not in data and "robots" not in data:
+                raise MissingKey("'robot' is missing", valid="robot, or robots for several")
+            for key in ("robot", "robots"):
+                if data.get(key, ...) is None:
+                    raise BadInput("nothing is given", where=key, valid=_NEEDED[key])
+        return data
+
+    @model_validator(mode="after")
+    def _one_trajectory_each(self) -> Case:
+        entries = self.entries()
+        if self.trajectory is not None:
+            if len(entries) > 1:
+                raise BadInput(
+                    f"a trajectory beside {len(entries)} robots",
+                    where="trajectory",
+                    valid="trajectory in each robot",
+                )
+            if entries[0].robot.trajectory is not None:
+                raise BadInput(
+                    f"a trajectory is given here and in {entries[0].field}",
+                    where="trajectory",
+                    valid="one of them",
+                )
+        moving = any(obstacle.moves is not None for obstacle in self.scene.obstacles)
+        if not moving and all(entry.trajectory is None for entry in entries):
+            raise MissingKey("'trajectory' is missing", valid="nothing moves without one")
+        return self
+
+    def entries(self) -> list[RobotEntry]:
+        """The robots in the file's order."""
+        if self.robot is not None:
+            return [self._entry("robot", self.robot)]
+        robots = self.robots or []
+        return [self._entry(f"robots[{i}]", robot) for i, robot in enumerate(robots)]
+
+    def _entry(self, field: str, robot: Robot) -> RobotEntry:
+        if self.trajectory is not None:
+            return RobotEntry(field, robot, self.trajectory, "trajectory")
+        return RobotEntry(field, robot, robot.trajectory, f"{field}.trajectory")
+
+
+_NEEDED = {
+    "robot": f"a mapping is needed, with keys {', '.join(Robot.keys())}",
+    "robots": "a list of robots is needed",
+}

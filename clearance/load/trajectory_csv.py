@@ -1,45 +1,17 @@
 """CSV to a trajectory: a `time` column [s] and one column a joint, by name, in any order.
 
 A column `<joint>/velocity` [rad/s or m/s], named as ros2_control names its interfaces, gives the joint's velocity;
-all joints have one or none.
-
-The table is parsed by pyarrow in one pass, block by block, so that memory holds its numbers and never
-its text; only when something is wrong is the text gone through again, slowly, to name the line. Not
-for: which joints the robot has (`motion_names`).
+all joints have one or none. Not for: which joints the robot has (`motion_names`), nor how a table is parsed
+(`csv_table`).
 """
 
 from __future__ import annotations
 
-import csv
-import io
-import os
-from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, BinaryIO
-
-import numpy as np
-
-from clearance.errors import (
-    BadShape,
-    BadSyntax,
-    BadTime,
-    ClearanceError,
-    DuplicateName,
-    MissingKey,
-    NotFinite,
-    nearest_name,
-)
-from clearance.world.names import checked_name
+from clearance.errors import BadShape, MissingKey, nearest_name
+from clearance.load.csv_table import TIME, Opener, columns_of, header_of, refuse_standing_time
 from clearance.world.trajectory import Trajectory
 
-if TYPE_CHECKING:
-    import pyarrow as pa
-
-_TIME = "time"
 _VELOCITY = "/velocity"
-
-
-Opener = Callable[[], BinaryIO]
-"""Opens a file for reading from its start."""
 
 
 def read_csv(opened: Opener, n_bytes: int, joints_needed: bool) -> Trajectory:
@@ -52,69 +24,21 @@ def read_csv(opened: Opener, n_bytes: int, joints_needed: bool) -> Trajectory:
         BadSyntax, BadShape, MissingKey, DuplicateName, NotFinite, BadTime: with the line in the
         file. BadDimension: a velocity that no joint can have.
     """
-    names = _header(opened)
+    names = header_of(opened, "joint names")
+    _refuse_unmatched_velocities(names)
     if joints_needed and len(names) == 1:
         raise BadShape("there is no joint column", valid="time and at least one joint are needed")
-    joints = tuple(name for name in names if name != _TIME and not name.endswith(_VELOCITY))
-    parts = [[_TIME], joints]
+    joints = tuple(name for name in names if name != TIME and not name.endswith(_VELOCITY))
+    parts = [[TIME], joints]
     if len(joints) < len(names) - 1:
         parts.append([joint + _VELOCITY for joint in joints])
-    times, *moving = _columns(opened, n_bytes, names, parts)
-    _refuse_standing_time(times[:, 0], opened)
+    times, *moving = columns_of(opened, n_bytes, names, parts)
+    refuse_standing_time(times[:, 0], opened)
     return Trajectory(times[:, 0], joints, *moving)
 
 
-def _columns(
-    opened: Opener, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
-) -> list[np.ndarray]:
-    """For each of `parts` the (n, len(part)) columns of its names."""
-    most = (
-        n_bytes // (2 * len(names)) + 2
-    )  # a cell is a digit and a comma; what is not filled takes no memory
-    tables = [np.empty((most, len(part))) for part in parts]
-    n_rows = 0
-    for batch in _batches(opened, names):
-        rows = slice(n_rows, n_rows + batch.num_rows)
-        for table, part in zip(tables, parts, strict=True):
-            for i, name in enumerate(part):
-                table[rows, i] = batch.column(names.index(name)).to_numpy()
-        n_rows = rows.stop
-    if not n_rows:
-        raise _no_rows()
-    for table in tables:
-        table.resize(
-            (n_rows, table.shape[1]), refcheck=False
-        )  # gives the rest back, without a copy
-    _refuse_not_finite(tables, parts, names, opened)
-    return tables
-
-
-def _header(opened: Opener) -> list[str]:
-    _, cells = next(_rows(opened), (0, []))
-    if not any(cell.strip() for cell in cells):
-        raise BadSyntax(
-            "the file is empty", valid=f"a header with {_TIME!r} and joint names is needed"
-        )
-    names = [cell.strip() for cell in cells]
-    seen: set[str] = set()
-    for i, name in enumerate(names):
-        if not name:
-            raise BadSyntax(f"column {i + 1} of the header has no name")
-        if name in seen:
-            raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
-        seen.add(name)
-        checked_name(name)
-    if _TIME not in names:
-        raise MissingKey(
-            f"there is no column {_TIME!r} in the header {','.join(names)!r:.80}",
-            valid="the header names the columns, separated by commas: time and joint names",
-        )
-    _refuse_unmatched_velocities(names)
-    return names
-
-
 def _refuse_unmatched_velocities(names: list[str]) -> None:
-    joints = [name for name in names if name != _TIME and not name.endswith(_VELOCITY)]
+    joints = [name for name in names if name != TIME and not name.endswith(_VELOCITY)]
     given = [name.removesuffix(_VELOCITY) for name in names if name.endswith(_VELOCITY)]
     known, moving = frozenset(joints), frozenset(given)
     for joint in given:
@@ -129,132 +53,3 @@ def _refuse_unmatched_velocities(names: list[str]) -> None:
             f"joint {without[0]!r} has no column {without[0] + _VELOCITY!r}, joint {given[0]!r} has one",
             valid="velocities of all joints or of none",
         )
-
-
-def _batches(opened: Opener, names: list[str]) -> Iterator[pa.RecordBatch]:
-    """All rows, a few megabytes at a time; columns as in the header."""
-    import pyarrow as pa
-    from pyarrow import csv as arrow_csv
-
-    keys = [str(i) for i in range(len(names))]
-    types = arrow_csv.ConvertOptions(
-        column_types=dict.fromkeys(keys, pa.float64()), null_values=[], strings_can_be_null=False
-    )
-    reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(opened))
-    try:
-        with opened() as file, _native(file) as stream:
-            yield from arrow_csv.open_csv(stream, reading, convert_options=types)
-    except pa.ArrowException as error:
-        raise _fault_in_rows(opened, names) or BadSyntax(
-            f"not a table of numbers: {error}"
-        ) from None
-
-
-def _native(file: BinaryIO) -> pa.NativeFile:
-    """The same file, read without Python: pyarrow reads ahead in threads of its own.
-
-    One that is still inside a Python file when the interpreter ends takes the whole process with it
-    ("terminate called without an active exception").
-    """
-    import pyarrow as pa
-
-    name = getattr(file, "name", None)
-    if isinstance(name, str | bytes):
-        return pa.OSFile(os.fsdecode(name), "rb")
-    content = file.read()
-    held = pa.allocate_buffer(len(content))
-    np.frombuffer(held, dtype=np.uint8)[:] = np.frombuffer(content, dtype=np.uint8)
-    return pa.BufferReader(held)
-
-
-def _no_rows() -> ClearanceError:
-    return BadShape("there are no rows below the header", valid="at least one row is needed")
-
-
-def _fault_in_rows(opened: Opener, names: list[str]) -> ClearanceError | None:
-    """The first row that is not as many numbers as the header has names."""
-    rows = _rows(opened)
-    next(rows)
-    n_rows = 0
-    for line, cells in rows:
-        n_rows += 1
-        where = f"line {line}"
-        if len(cells) != len(names):
-            return BadShape(
-                f"{len(cells)} columns", where=where, valid=f"the header has {len(names)}"
-            )
-        for name, cell in zip(names, cells, strict=True):
-            if not _is_number(cell):
-                return BadSyntax(
-                    f"{cell.strip()!r} in column {name!r} is not a number", where=where
-                )
-    return None if n_rows else _no_rows()
-
-
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return "_" not in cell
-
-
-def _refuse_not_finite(
-    tables: list[np.ndarray], parts: Sequence[Sequence[str]], names: list[str], opened: Opener
-) -> None:
-    bad = []
-    for table, part in zip(tables, parts, strict=True):
-        least = np.flatnonzero(~np.isfinite(table).all(axis=1))[:1].tolist()
-        bad += [
-            (row, names.index(part[i]), table[row, i]) for row in least for i in range(len(part))
-        ]
-    wrong = [(row, column, value) for row, column, value in bad if not np.isfinite(value)]
-    if not wrong:
-        return
-    i_row, i_column, value = min(wrong, key=lambda cell: cell[:2])
-    raise NotFinite(
-        f"{value} in column {names[i_column]!r}",
-        where=f"line {_line_of_row(opened, i_row)}",
-        valid="a finite number is needed",
-    )
-
-
-def _refuse_standing_time(times: np.ndarray, opened: Opener) -> None:
-    late = np.flatnonzero(np.diff(times) <= 0)
-    if not len(late):
-        return
-    i_row = int(late[0]) + 1
-    raise BadTime(
-        f"time {float(times[i_row])} follows {float(times[i_row - 1])}",
-        where=f"line {_line_of_row(opened, i_row)}",
-        valid="time must increase from row to row",
-    )
-
-
-def _rows(opened: Opener) -> Iterator[tuple[int, list[str]]]:
-    """(line number, cells) of every row that is not blank; lines count from 1."""
-    with opened() as file:
-        reader = csv.reader(io.TextIOWrapper(file, encoding="utf-8-sig", newline=""))
-        try:
-            for cells in reader:
-                if cells:
-                    yield reader.line_num, cells
-        except UnicodeDecodeError:
-            raise BadSyntax("the file is not UTF-8 text", valid="a CSV file is needed") from None
-        except csv.Error as error:
-            raise BadSyntax(f"not CSV: {error}", where=f"line {reader.line_num}") from None
-
-
-def _header_line(opened: Opener) -> int:
-    """Number of lines up to and with the header."""
-    line, _ = next(_rows(opened))
-    return line
-
-
-def _line_of_row(opened: Opener, i_row: int) -> int:
-    rows = _rows(opened)
-    next(rows)
-    for i, (line, _) in enumerate(rows):
-        if i == i_row:
-            return line
-    raise AssertionError("a row that was parsed is gone")

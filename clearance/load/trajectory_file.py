@@ -10,7 +10,8 @@ from collections.abc import Callable
 from pathlib import PurePath
 
 from clearance.errors import at
-from clearance.load.trajectory_csv import Opener, read_csv
+from clearance.load.csv_table import Opener
+from clearance.load.trajectory_csv import read_csv
 from clearance.world.trajectory import Trajectory
 
 READERS: dict[str, Callable[[Opener, int, bool], Trajectory]] = {

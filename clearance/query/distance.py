@@ -11,7 +11,7 @@ from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.kernels.mesh.convex import seem_convex
 from clearance.kernels.search.polygon_pair import PolygonPairAnswers, nearest_polygons
-from clearance.query.one_pair import room_for
+from clearance.query.one_pair import kept_pair
 from clearance.query.paper import NO_TOLERANCE, distance_paper, polygon_distance_paper
 from clearance.query.result import Nearest
 
@@ -50,7 +50,7 @@ def distance(
         return distance_paper(
             a, b, *poses, tolerance=NO_TOLERANCE if tolerance is None else tolerance
         )
-    return room_for(a, b).nearest(pose_a, pose_b)
+    return kept_pair(a, b).nearest(pose_a, pose_b)
 
 
 def polygon_distance(p: np.ndarray, q: np.ndarray, *, method: str = "exact") -> Nearest:

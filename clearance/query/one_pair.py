@@ -26,7 +26,7 @@ from clearance.query.result import Nearest
 _AT_REST = np.eye(4)
 
 HELD = 256
-"""Pairs whose room is held for each thread, a kilobyte each."""
+"""Pairs that are kept for each thread, a kilobyte each."""
 
 
 class OnePair:
@@ -79,17 +79,17 @@ def answer_rows(n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 class _KeptPair:
-    """A pair that was asked about; its room goes when one of the solids does."""
+    """A pair that was asked about; its arrays go when one of the solids does."""
 
-    def __init__(self, a: Polyhedron, b: Polyhedron, room: OnePair) -> None:
-        self.room: OnePair | None = room
+    def __init__(self, a: Polyhedron, b: Polyhedron, pair: OnePair) -> None:
+        self.pair: OnePair | None = pair
         self._a, self._b = weakref.ref(a, self._let_go), weakref.ref(b, self._let_go)
 
     def is_of(self, a: Polyhedron, b: Polyhedron) -> bool:
         return self._a() is a and self._b() is b
 
     def _let_go(self, _: weakref.ref) -> None:
-        self.room = None
+        self.pair = None
 
 
 class _Thread(threading.local):
@@ -103,17 +103,17 @@ class _Thread(threading.local):
 _thread = _Thread()
 
 
-def room_for(a: Polyhedron, b: Polyhedron) -> OnePair:
+def kept_pair(a: Polyhedron, b: Polyhedron) -> OnePair:
     """Arrays for a pair: those of an earlier question of this thread, if there is one."""
     asked = _thread.asked.get((id(a), id(b)))
     # a solid that is gone may have had the same address
-    if asked is not None and asked.room is not None and asked.is_of(a, b):
-        return asked.room
+    if asked is not None and asked.pair is not None and asked.is_of(a, b):
+        return asked.pair
     if len(_thread.asked) == HELD:
         _thread.asked.clear()
-    room = OnePair(a, b, _thread.scratch, goes_on=False)
-    _thread.asked[id(a), id(b)] = _KeptPair(a, b, room)
-    return room
+    pair = OnePair(a, b, _thread.scratch, goes_on=False)
+    _thread.asked[id(a), id(b)] = _KeptPair(a, b, pair)
+    return pair
 
 
 def _pose(given: np.ndarray | None) -> np.ndarray:

@@ -5,12 +5,14 @@ Each function returns one piece of HTML made from the summary.
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 from markupsafe import Markup
 
+from clearance.report.contact import HEADS
 from clearance.report.markup import element, section, step_link, table
-from clearance.report.wording import certified_text, count, scientific_mm
+from clearance.report.wording import certified_text, count, limit_mm, scientific_mm
 
 MAX_DISAGREEMENTS = 200
 """Most steps of a failed cross-check printed on the page; all are in `summary.json`."""
@@ -24,6 +26,7 @@ def certainty(summary: dict[str, Any]) -> Markup:
         element("p", _exactness(summary["method"], summary["paper_tolerance"])),
         element("p", _tessellation(summary["tessellation_bound"])),
         element("p", *_sampling(summary)),
+        *[element("p", text) for text in _moving(summary)],
         *_cross_check(summary["cross_check"]),
         element("ul", *notes) if notes else Markup(""),
     )
@@ -52,6 +55,35 @@ def _tessellation(bound: float) -> str:
         f"{bound * 1000:.3g} mm outside the true surfaces, so a clearance can be too small by "
         "that much and never too large."
     )
+
+
+def _moving(summary: dict[str, Any]) -> list[str]:
+    """What is assumed of what moves by a table of poses, of paddings, and of clocks."""
+    told = []
+    tables = [
+        one["name"]
+        for one in summary["actors"]
+        if one["kind"] != "robot" and one["between_samples"]
+    ]
+    if tables:
+        told.append(
+            f"What moves by a table of poses ({', '.join(tables)}) goes straight from one row to the next, and "
+            "turns about one axis at constant speed."
+        )
+    if summary["paddings"]:
+        paddings = [f"{name} {limit_mm(value)} mm" for name, value in summary["paddings"].items()]
+        told.append(f"Clearances are less the padding of both bodies: {', '.join(paddings)}.")
+    clocks = {
+        "slack": "may be up to {slack:g} s apart either way",
+        "unsynchronised": "are not tied",
+    }
+    kind = summary["clock"]["kind"]
+    if kind in clocks:
+        how = clocks[kind].format(slack=summary["clock"]["slack"])
+        told.append(
+            f"The clocks of the actors {how}: every pair of times that this allows is looked at."
+        )
+    return told
 
 
 _MEASURED = {
@@ -117,21 +149,34 @@ def unmeasured(summary: dict[str, Any]) -> Markup:
         element(
             "tr",
             element("td", pair["link"]),
-            element("td", "every obstacle" if pair["obstacle"] == "*" else pair["obstacle"]),
+            element("td", _whole(summary) if pair["obstacle"] == "*" else pair["obstacle"]),
             element("td", pair["reason"]),
         )
         for pair in summary["unmeasured"]
     ]
     if not rows:
-        return section(
-            "Not measured",
-            element(
-                "p",
-                "Nothing was left out: every link with a shape was measured "
-                "against every obstacle.",
-            ),
-        )
-    return section("Not measured", table(("Link", "Obstacle", "Why"), rows))
+        told = "Nothing was left out: every link with a shape was measured against every obstacle."
+        return section("Not measured", element("p", told))
+    heads = (*HEADS[summary["sides"][0]], "Why")
+    found = table(heads, rows, class_="bodies", tall=len(rows) > MOST_SHOWN_AT_ONCE)
+    return section("Not measured", *_counted(summary), found)
+
+
+MOST_SHOWN_AT_ONCE = 24
+"""Most rows of what was not measured that do not scroll."""
+
+
+def _whole(summary: dict[str, Any]) -> str:
+    return "every obstacle" if summary["sides"][0] == "link" else "everything"
+
+
+def _counted(summary: dict[str, Any]) -> list[Markup]:
+    """How many pairs there are of each reason, where there are many."""
+    reasons = Counter(pair["reason"] for pair in summary["unmeasured"])
+    if len(summary["unmeasured"]) <= MOST_SHOWN_AT_ONCE:
+        return []
+    told = ", ".join(f"{reason}: {number:,}" for reason, number in reasons.most_common())
+    return [element("p", f"{told}.")]
 
 
 def loaded(summary: dict[str, Any]) -> Markup:

@@ -69,11 +69,10 @@ def contacts(summary: dict[str, Any]) -> Markup:
         f"Deepest at {seconds(deepest['time'])}, ",
         step_link(deepest["step"]),
         f": {deepest['link']} in {deepest['obstacle']}, {contact_text(deepest)}. The shortest way out "
-        f"found moves the link by {depth_mm(deepest['penetration'])} mm along ({way}).",
+        f"found moves {_mover(deepest, summary)} by {depth_mm(deepest['penetration'])} mm along ({way}).",
     )
     heads = (
-        "Link",
-        "Obstacle",
+        *HEADS[summary["sides"][0]],
         ">Steps",
         ">Deep, mm",
         ">At least",
@@ -87,6 +86,15 @@ def contacts(summary: dict[str, Any]) -> Markup:
         table(heads, [_row(pair) for pair in found["pairs"]], class_="clickable"),
         element("p", *_meaning(found["pairs"]), class_="faint"),
     )
+
+
+HEADS = {"link": ("Link", "Obstacle"), "body_a": ("Body", "Other body")}
+"""What the page calls the two bodies of a pair."""
+
+
+def _mover(contact: dict[str, Any], summary: dict[str, Any]) -> str:
+    """What the way out moves."""
+    return "the link" if summary["sides"][0] == "link" else str(contact["link"])
 
 
 def _row(pair: dict[str, Any]) -> Markup:
@@ -113,7 +121,7 @@ def _meaning(pairs: list[dict[str, Any]]) -> list[str]:
     told = [
         "Of each pair the deepest of the steps that are worked out: one of every event, its deepest as far as "
         "hulls or shared volumes tell, unless more was asked for. At these the replay shows the common region in "
-        "red and the way out of the link as an arrow of fixed length. "
+        "red and the way out of the first body as an arrow of fixed length. "
     ]
     if all(pair["exact"] and pair["volume_exact"] for pair in pairs):
         return [*told, "Depth and volume are exact to the rounding of float64."]

@@ -10,8 +10,8 @@ import numpy as np
 
 from clearance.simulate.record import Record
 from clearance.simulate.replay_frames import codes_of
-from clearance.simulate.status import STATUSES, status_codes
-from clearance.simulate.steps import between_of
+from clearance.simulate.row_status import RowStatus
+from clearance.simulate.status import STATUSES
 
 MOST_LISTED = 10_000
 """Most intervals of a level, and most events, that are listed; the steps tables have the status of every step."""
@@ -31,7 +31,7 @@ _LEFT = {
 }
 
 
-_TOLD = ("time", "clearance", "link", "obstacle")
+_TOLD = ("time", "clearance", "link", "obstacle", "rule")
 
 
 @dataclass(frozen=True)
@@ -41,9 +41,9 @@ class Interval:
     Attributes:
         first_step, last_step: both inside; the motion from the last one on is too where it ends between steps.
         start, end: [s] from the first step to the last one, or the next if it ends between them.
-        worst_step: the first step of least clearance, or the one before that moment; worst_time [s], clearance
-            [m], link and obstacle are of that moment.
-        between: the least clearance is between two steps.
+        worst_step: the first step that stands worst, or the one before that moment; worst_time [s], clearance
+            [m], the two bodies (link, obstacle) and the rule that judges them are of that moment.
+        between: that moment is between two steps.
     """
 
     first_step: int
@@ -56,6 +56,7 @@ class Interval:
     clearance: float
     link: str
     obstacle: str
+    rule: str
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Event:
     Attributes:
         step: the step, or the one before the moment. between: whether it is between steps; then that is the moment
             of least clearance there.
-        clearance: [m] unknown, and so are the names, where a bound decides.
+        clearance: [m] unknown, and so are the names, where a bound decides. rule: what judges it.
         least: [m] until the level is left again; None where it is left.
     """
 
@@ -76,13 +77,14 @@ class Event:
     clearance: float | None
     link: str | None
     obstacle: str | None
+    rule: str
     least: float | None = None
 
 
 def intervals(record: Record) -> dict[str, list[Interval]]:
     """For each of `LEVELS` its first `MOST_LISTED` intervals in order of time; none where only the least step is
     known."""
-    seen = _LeastBetween.of(record)
+    seen = _Levels.of(record)
     return {
         level: [seen.interval(int(a), int(b)) for a, b in runs[:MOST_LISTED]]
         for level, runs in _level_runs(record).items()
@@ -101,7 +103,7 @@ def events(record: Record) -> list[Event]:
         what += [_ENTERED[level]] * len(runs) + [_LEFT[level]] * len(left)
     step, stop = np.concatenate(steps), np.concatenate(stops)
     first = np.lexsort([np.concatenate(order), step])[:MOST_LISTED]
-    seen = _LeastBetween.of(record)
+    seen = _Levels.of(record)
     codes = np.concatenate(order)
     return [seen.event(int(step[i]), int(stop[i]), int(codes[i]), what[i]) for i in first]
 
@@ -119,8 +121,8 @@ def extent(record: Record, level: str) -> tuple[int, int]:
     """How many intervals of a level there are, and of how many steps, not counting those of which only the motion
     to the next is at that level."""
     runs = _level_runs(record)[level]
-    seen = _LeastBetween.of(record)
-    n_between = int((seen.between & (seen.own < LEVELS[level]) & _inside(runs, record)).sum())
+    seen = _Levels.of(record)
+    n_between = int((seen.rows.between & (seen.own < LEVELS[level]) & _inside(runs, record)).sum())
     return len(runs), int((runs[:, 1] - runs[:, 0]).sum()) - n_between
 
 
@@ -153,45 +155,43 @@ def _runs(inside: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class _LeastBetween:
-    """What was seen from each step to the next.
+class _Levels:
+    """How each row stands, and what is least where.
 
     Attributes:
-        least: (n,) [m] at the step, or between where the status is of that; NaN where only a bound is known.
-        own: (n,) the status code of each step by itself. between: (n,) whether the status is another.
+        own: (n,) the status code of each step by itself.
     """
 
     record: Record
-    least: np.ndarray
+    rows: RowStatus
     own: np.ndarray
-    between: np.ndarray
 
     @staticmethod
-    def of(record: Record) -> _LeastBetween:
-        between, least, own = between_of(record.steps), record.clearances, codes_of(record.steps)
-        if record.certificate is not None:
-            own = np.where(between, status_codes(least, record.case.limits), own)
-            least = np.where(between, record.certificate.upper_bound, least)
-        return _LeastBetween(record, least, own, between)
+    def of(record: Record) -> _Levels:
+        rows = RowStatus(record)
+        codes = codes_of(record.steps)
+        own = codes if not rows.between.any() else np.where(rows.between, rows.of_samples(), codes)
+        return _Levels(record, rows, own)
 
     def moment(self, step: int) -> dict[str, Any]:
         """What is known of a step, or of the moment after it that gives it its status."""
-        certificate = self.record.certificate
-        if certificate is None or not self.between[step]:
+        if not self.rows.between[step]:
             return self.sample(step)
-        moment = certificate.moment_of(step)
+        moment = self.rows.moment_between(step)
         return {name: getattr(moment, name) for name in _TOLD}
 
     def sample(self, step: int) -> dict[str, Any]:
         """What is known of a step."""
         row = self.record.steps.slice(step, 1).to_pylist()[0]
-        return {name: row[name] for name in _TOLD}
+        columns = ("time", "clearance", *self.record.sides[:2], "rule")
+        return {name: row[column] for name, column in zip(_TOLD, columns, strict=True)}
 
     def interval(self, start: int, stop: int) -> Interval:
-        worst = start + int(np.nanargmin(self.least[start:stop]))
+        worst = start + self._worst(slice(start, stop))
         told = self.moment(worst)
         times = self.record.motions[0].times
-        last = min(stop, len(times) - 1) if self.between[stop - 1] else stop - 1
+        between = self.rows.between
+        last = min(stop, len(times) - 1) if between[stop - 1] else stop - 1
         return Interval(
             first_step=start,
             last_step=stop - 1,
@@ -199,13 +199,21 @@ class _LeastBetween:
             end=float(times[last]),
             worst_step=worst,
             worst_time=told.pop("time"),
-            between=bool(self.between[worst]),
+            between=bool(between[worst]),
             **told,
         )
 
+    def _worst(self, steps: slice) -> int:
+        """The first of some rows that stands worst, and of those alike is nearest to the fail limit."""
+        margin = self.rows.margin[steps]
+        if len(self.record.rules) > 1:
+            codes = codes_of(self.record.steps.slice(steps.start, steps.stop - steps.start))
+            margin = np.where(codes == codes.max(), margin, np.inf)
+        return int(np.nanargmin(margin))
+
     def event(self, step: int, stop: int, code: int, what: str) -> Event:
         """Entering the level of a status code at a step, until `stop`; leaving it if these are the same."""
-        known = self.least[step:stop]
+        known = self.rows.least[step:stop]
         least = None if stop == step or np.isnan(known).all() else float(np.nanmin(known))
         between = stop > step and bool(self.own[step] < code)
         told = self.moment(step) if between else self.sample(step)

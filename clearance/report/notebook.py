@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from markupsafe import Markup
 
+from clearance.report.contact import HEADS
 from clearance.report.markup import element, table
 from clearance.report.verdict import verdict_of
-from clearance.report.wording import limit_mm, mm, moment_text
+from clearance.report.wording import limits_text, mm, moment_text
 from clearance.simulate.record import PairMinimum, Record
 
 MOST_PAIRS = 5
@@ -19,12 +20,15 @@ def run_text(record: Record) -> str:
 
 def run_html(record: Record) -> str:
     """The same with what must be known beside it, and the closest pairs as a table."""
-    verdict, limits = verdict_of(record), record.case.limits
-    told = f"fail below {limit_mm(limits.fail)} mm, warn below {limit_mm(limits.warn)} mm"
-    beside = [f"{name} not checked" for name in verdict.not_checked]
+    verdict = verdict_of(record)
+    limits = record.rule(record.worst.rule).limits
+    told = limits_text(limits.fail, limits.warn)
+    beside = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
+    beside += [f"{name} not checked" for name in verdict.not_checked]
     beside += [f"suspect {one.kind}: {one.text}" for one in verdict.suspects] + list(
         verdict.warnings
     )
+    several = bool(record.case.limits.rules)
     return element(
         "div",
         element(
@@ -34,17 +38,19 @@ def run_html(record: Record) -> str:
         ),
         element("ul", *[element("li", line) for line in beside]),
         table(
-            ("Link", "Obstacle", ">mm", ">Step", ">s"),
-            [_row(p) for p in record.pair_minima[:MOST_PAIRS]],
+            (*HEADS[record.sides[0]], ">mm", ">Step", ">s", *(["Rule"] if several else [])),
+            [_row(p, several=several) for p in record.pair_minima[:MOST_PAIRS]],
         ),
     )
 
 
 def _worst(record: Record) -> str:
     worst = record.worst
-    return f"{mm(worst.clearance)} mm, {worst.link} - {worst.obstacle} at {moment_text(worst)}"
+    by = f" (rule {worst.rule!r})" if record.case.limits.rules else ""
+    return f"{mm(worst.clearance)} mm{by}, {worst.link} - {worst.obstacle} at {moment_text(worst)}"
 
 
-def _row(pair: PairMinimum) -> Markup:
-    cells = (pair.link, pair.obstacle, mm(pair.clearance), pair.step, f"{pair.time:.3f}")
+def _row(pair: PairMinimum, *, several: bool) -> Markup:
+    cells = [pair.link, pair.obstacle, mm(pair.clearance), pair.step, f"{pair.time:.3f}"]
+    cells += [pair.rule] if several else []
     return element("tr", *[element("td", cell) for cell in cells])

@@ -21,8 +21,10 @@
     return (scaled / 10 ** decimals).toFixed(decimals);
   }
 
-  const measured = (i) => `${data.known[i] ? "" : "at least "}${mm(clearances[i])} mm`;
-  const between = (i) => !data.known[i] ? "not measured further" : data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
+  // Where no pair is left to measure, no bound holds: it is infinite.
+  const finite = clearances.filter(Number.isFinite);
+  const measured = (i) => !Number.isFinite(clearances[i]) ? "nothing measured" : `${data.known[i] ? "" : "at least "}${mm(clearances[i])} mm`;
+  const between = (i) => !Number.isFinite(clearances[i]) ? "no pair is left" : !data.known[i] ? "not measured further" : data.nearest[i].map((k) => (k < 0 ? "–" : data.bodies[k].name)).join(" – ");
   const wordOf = (code) => ({clear: "clear", near: "near miss", violated: "violated", contact: "contact"})[data.statuses[code]];
   const word = (i) => wordOf(data.status[i]);
   const nameOf = (pair) => pair.bodies.map((k) => data.bodies[k].name).join(" – ");
@@ -47,16 +49,20 @@
     return data.between[i] ? `between the steps ${shown(step)} and ${shown(step + 1)}` : `step ${shown(step)}`;
   };
 
-  const statusOf = (clearance) => {
-    const {fail, warn} = data.limits;
-    return clearance <= 0 ? 3 : clearance < fail ? 2 : clearance < warn ? 1 : 0;
-  };
+  // The rules: with one, nothing is said of it; with several, each frame names its own.
+  const several = data.rules.length > 1 || data.rules[0].name !== data.default_rule;
+  const ruleText = (name) => !several ? "" : name === data.default_rule ? "by the default limits" : `by rule ${name}`;
+  const ruleOf = (i) => data.rules[data.rule[i]];
+
+  // Who has what in hand at a frame, and when the second body of the line is there, if its clock is another.
+  const inHand = (i) => data.carries.filter((one) => one.start <= times[i] && (times[i] < one.end || times[i] === one.end && i === n - 1));
+  const otherTime = (i) => data.times_b[i] === null ? "" : `, ${data.bodies[data.nearest[i][1]].name} at ${data.times_b[i].toFixed(3)} s`;
 
   // What is shown at this frame: the nearest pair, or the chosen one at the step where it comes closest.
   function told() {
     const pair = chosen === null ? null : data.pairs[chosen];
     if (pair === null || frame !== frameOfStep(pair.step)) return null;
-    return {...pair, status: statusOf(pair.clearance)};
+    return pair;
   }
 
   function showFrame(i) {
@@ -68,7 +74,9 @@
     strong.textContent = pair ? `${mm(pair.clearance)} mm` : measured(frame);
     strong.style.color = colours[pair ? pair.status : data.status[frame]];
     byId("readout").append(strong, ` ${pair ? wordOf(pair.status) : word(frame)}`, document.createElement("br"),
-      pair ? nameOf(pair) : between(frame), document.createElement("br"), `${times[frame].toFixed(3)} s, ${stepText(frame)}`);
+      pair ? nameOf(pair) : between(frame), document.createElement("br"), `${times[frame].toFixed(3)} s, ${stepText(frame)}${pair ? "" : otherTime(frame)}`);
+    if (several) byId("readout").append(document.createElement("br"), ruleText(pair ? pair.rule : ruleOf(frame).name));
+    for (const one of inHand(frame)) byId("readout").append(document.createElement("br"), `${one.by} holds ${one.part}`);
     for (const contact of data.contacts) if (contact.frame === frame) {
       byId("readout").append(document.createElement("br"), contact.text);
     }
@@ -91,11 +99,19 @@
     return {x: Array.from(times), y, mode: "lines", line: {color: colours[code], width: 2.2}, hoverinfo: "skip", cliponaxis: false};
   }
 
+  const escaped = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;");
+
+  function ruleHover(i) {
+    if (!several) return "";
+    const {name, fail, warn} = ruleOf(i);
+    return `<br>${escaped(ruleText(name))}: ${limitText("fail", fail)}, ${limitText("warn", warn)}`;
+  }
+
   function hoverTrace() {
     return {
       x: Array.from(times), y: Array.from(clearances, toPlot), mode: "lines", line: {width: 0}, opacity: 0, cliponaxis: false,
       text: Array.from(times, (t, i) =>
-        `<b>${measured(i)}</b> ${word(i)}<br>${between(i).replace(/</g, "&lt;")}<br>${t.toFixed(3)} s, ${stepText(i)}`),
+        `<b>${measured(i)}</b> ${word(i)}<br>${escaped(between(i))}<br>${t.toFixed(3)} s, ${stepText(i)}${escaped(otherTime(i))}${ruleHover(i)}`),
       hovertemplate: "%{text}<extra></extra>", hoverlabel: {bgcolor: css("--card"), bordercolor: css("--rule"), font: {color: css("--ink")}, align: "left"},
     };
   }
@@ -138,13 +154,18 @@
     return {type: "rect", xref: "x", yref: "paper", x0: start - half, x1: end + half, y0: 0, y1: 1, fillcolor: colour, opacity: 0.11, line: {width: 0}, layer: "below"};
   }
 
-  function limitLine(metres, colour) {
-    return {type: "line", xref: "paper", x0: 0, x1: 1, y0: toPlot(metres), y1: toPlot(metres), line: {color: colour, width: 1.2, dash: "4px,3px"}};
+  // The limit that holds at each frame: one straight line, or steps where rules differ from frame to frame.
+  function limitTrace([, of, colour]) {
+    const level = (i) => toPlot(of(ruleOf(i))), x = [times[0]], y = [level(0)];
+    for (let i = 1; i < n; i++) if (level(i) !== y[y.length - 1]) { x.push(times[i]); y.push(level(i)); }
+    x.push(n > 1 ? times[n - 1] : times[0] + 1);
+    y.push(y[y.length - 1]);
+    return {x, y, mode: "lines", line: {color: colour, width: 1.2, dash: "4px,3px", shape: "hv"}, hoverinfo: "skip", cliponaxis: false};
   }
 
-  // Labels stand beside their lines, or above and below where the lines are too near for both.
-  function limitLabel(name, metres, colour) {
-    const {fail, warn} = data.limits, pixels = Math.max(100, curve.clientHeight - 54) / (zoomed() ? near : greatest);
+  // Labels stand beside their lines, at the last frame, or above and below where the lines are too near for both.
+  function limitLabel([name, of, colour]) {
+    const {fail, warn} = ruleOf(n - 1), metres = of(ruleOf(n - 1)), pixels = Math.max(100, curve.clientHeight - 54) / (zoomed() ? near : greatest);
     const close = fail > 0 && toPlot(warn - fail) * pixels < 14, up = name === "warn";
     const beside = {xanchor: "left", xshift: 4, yanchor: close ? (up ? "bottom" : "top") : "middle"};
     const within = {xanchor: "right", xshift: -4, yanchor: close && !up ? "top" : "bottom"};
@@ -165,40 +186,43 @@
     const ruler = document.createElement("span");
     ruler.style.cssText = "position: absolute; visibility: hidden; white-space: nowrap; font-size: 11px";
     document.body.append(ruler);
-    const widths = shownLimits().map(([name, limit]) => {
-      ruler.textContent = limitText(name, limit);
+    const widths = shownLimits().map(([name, of]) => {
+      ruler.textContent = limitText(name, of(ruleOf(n - 1)));
       return ruler.offsetWidth;
     });
     ruler.remove();
     return 20 + Math.max(0, ...widths);
   }
 
+  // Levels that are above 0 at some frame; warn only where it is not everywhere the same as fail.
   function shownLimits() {
-    const {fail, warn} = data.limits;
-    return [["fail", fail, css("--violated")], ["warn", warn, css("--near")]].filter(([name, limit]) => limit > 0 && !(name === "warn" && limit <= fail));
+    const used = [...new Set(data.rule)].map((k) => data.rules[k]);
+    const levels = [["fail", (rule) => rule.fail, css("--violated")], ["warn", (rule) => rule.warn, css("--near")]];
+    return levels.filter(([name, of]) => used.some((rule) => of(rule) > 0 && (name === "fail" || rule.warn > rule.fail)));
   }
 
-  const greatest = toPlot(Math.max(...clearances, data.limits.warn)) * 1.06;
-  const near = Math.min(greatest, 2.5 * toPlot(Math.max(data.limits.warn, data.limits.fail, Math.min(...clearances))));
+  const used = [...new Set(data.rule)].map((k) => data.rules[k]);
+  const lowest = Math.min(0, 1.06 * toPlot(Math.min(...finite)));
+  const greatest = toPlot(Math.max(...finite, ...used.map((rule) => rule.warn))) * 1.06 || 1;
+  const near = Math.min(greatest, 2.5 * toPlot(Math.max(...used.map((rule) => rule.warn), Math.min(...finite))) || greatest);
 
   function plotted() {
     const axis = {gridcolor: css("--grid"), zerolinecolor: css("--rule"), linecolor: css("--rule"), ticks: "outside", tickcolor: css("--rule"), fixedrange: false};
-    const highest = Math.max(greatest, ...pairTraces().flatMap((trace) => trace.y.map((y) => 1.06 * y)));
+    const highest = Math.max(greatest, ...pairTraces().flatMap((trace) => trace.y.filter((y) => y === y).map((y) => 1.06 * y)));
     return {
       margin: {l: 58, r: roomForLimits(), t: 8, b: 46}, showlegend: false, hovermode: "x", hoverdistance: -1, dragmode: "zoom",
       font: {family: getComputedStyle(document.body).fontFamily, size: 12, color: css("--soft")},
       paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
       xaxis: {...axis, title: {text: "time, s", standoff: 6}, range: [times[0], n > 1 ? times[n - 1] : times[0] + 1]},
-      yaxis: {...axis, title: {text: "clearance, mm", standoff: 8}, range: [0, zoomed() ? near : highest]},
+      yaxis: {...axis, title: {text: "clearance, mm", standoff: 8}, range: [lowest, zoomed() ? near : highest]},
       shapes: [...data.intervals.below_warn.map((range) => band(range, css("--near"))),
-        ...data.intervals.below_fail.map((range) => band(range, css("--violated"))),
-        ...shownLimits().map(([, limit, colour]) => limitLine(limit, colour))],
-      annotations: shownLimits().map(([name, limit, colour]) => limitLabel(name, limit, colour)),
+        ...data.intervals.below_fail.map((range) => band(range, css("--violated")))],
+      annotations: shownLimits().map(limitLabel),
     };
   }
 
   const zoomed = () => byId("zoom-limits").getAttribute("aria-pressed") === "true";
-  const allTraces = () => [hoverTrace(), ...data.statuses.map((_, code) => statusTrace(code)), worstTrace(), ...pairTraces()];
+  const allTraces = () => [hoverTrace(), ...data.statuses.map((_, code) => statusTrace(code)), ...shownLimits().map(limitTrace), worstTrace(), ...pairTraces()];
   const redraw = () => Plotly.react(curve, allTraces(), plotted());
 
   function drawCurve() {

@@ -26,7 +26,9 @@ from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import badge_text, header, sections
 from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
-from clearance.simulate.status import STATUSES
+from clearance.simulate.replay_bodies import LINK
+from clearance.simulate.status import STATUSES, Status
+from clearance.world.rules import DEFAULT
 
 _HERE = Path(__file__).parent
 
@@ -68,7 +70,10 @@ def page_of(
 def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
     return {
         "statuses": STATUSES,
-        "limits": summary["limits"],
+        "rules": [asdict(rule) for rule in replay.rules],
+        "rule": replay.rule.tolist(),
+        "default_rule": DEFAULT,
+        "carries": [asdict(carry) for carry in replay.carries],
         "intervals": {
             level: _bands(summary["intervals"][level], (summary["end"] - summary["start"]) / FINEST)
             for level in ("below_warn", "below_fail")
@@ -79,9 +84,11 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
                 "kind": body.kind,
                 "measured": body.measured,
                 "shape": body.i_shape,
+                "robot": body.i_robot,
                 "poses": _floats(poses, "<f4"),
+                "shown": _flags(shown),
             }
-            for body, poses in zip(replay.bodies, replay.poses, strict=True)
+            for body, poses, shown in zip(replay.bodies, replay.poses, replay.shown, strict=True)
         ],
         "shapes": [
             {"vertices": _floats(vertices, "<f4"), "triangles": _floats(triangles, "<u4")}
@@ -91,6 +98,7 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
         "steps": replay.steps.tolist(),
         "between": replay.between.tolist(),
         "times": _floats(replay.times, "<f8"),
+        "times_b": [None if np.isnan(time) else time for time in replay.times_b.tolist()],
         "clearances": _floats(replay.clearances, "<f8"),
         "known": replay.known.tolist(),
         "lines": _floats(replay.lines, "<f8"),
@@ -113,18 +121,18 @@ def _data(summary: dict[str, Any], replay: Replay) -> dict[str, Any]:
 def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -> dict[str, Any]:
     """The least clearance of each pair with its line, and its curve if there is one."""
     links, others = (
-        {body.name: i for i, body in enumerate(replay.bodies) if body.kind == kind}
-        for kind in ("link", "obstacle")
+        {body.name: i for i, body in enumerate(replay.bodies) if (body.kind == LINK) == is_link}
+        for is_link in (True, False)
     )
-    others = (
-        links | others
-    )  # the second body may be a link as well; where a name is both, it is an obstacle
+    first, second = others | links, links | others  # where a name is both, as in `replay`
     pairs = [
         {
-            "bodies": [links[pair["link"]], others[pair["obstacle"]]],
+            "bodies": [first[pair["link"]], second[pair["obstacle"]]],
             "step": pair["step"],
             "time": pair["time"],
             "clearance": pair["clearance"],
+            "status": STATUSES.index(Status(pair["status"])),
+            "rule": pair["rule"],
             "line": [*pair["point_link"], *pair["point_obstacle"]],
         }
         for pair in summary["pairs"]
@@ -156,6 +164,11 @@ def _stage_note(replay: Replay) -> str:
         "least clearance of every stretch is kept; all steps are in steps.csv and steps.parquet.",
         class_="faint",
     )
+
+
+def _flags(shown: np.ndarray) -> list[int] | None:
+    """Where a body is in the cell, 0 or 1 for each frame; None where it always is."""
+    return None if shown.all() else shown.tolist()
 
 
 def _floats(array: np.ndarray, kind: str) -> str:

@@ -22,7 +22,8 @@ class PairCurves:
 
     Attributes:
         times: (k,) [s] the middle of each stretch; of each step where there are no more.
-        clearances: (p, k) float32 [m], rounded down; pairs as in `Record.pair_minima`.
+        clearances: (p, k) float32 [m], rounded down; pairs as in `Record.pair_minima`; NaN while one is not
+            measured.
     """
 
     times: np.ndarray
@@ -37,7 +38,7 @@ def pair_curves(record: Record, kept: MeasuredRows = IN_MEMORY) -> PairCurves | 
     n_steps, n_pairs = every.clearance.shape
     n_parts = min(n_steps, max(1, MOST_NUMBERS // n_pairs))
     starts = np.arange(n_parts) * n_steps // n_parts
-    least = np.minimum.reduceat(every.clearance, starts, axis=0)
+    least = np.fmin.reduceat(every.clearance, starts, axis=0)
     kept.let_go()
     times = record.motions[0].times
     middles = 0.5 * (times[starts] + times[np.append(starts[1:], n_steps) - 1])

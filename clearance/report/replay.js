@@ -1,8 +1,10 @@
-// The replay: meshcat's viewer with the robot, the obstacles and the line between the witness points.
+// The replay: meshcat's viewer with all bodies and the line between the witness points.
 // It knows frames, not times; page.js decides which frame is shown.
 "use strict";
 
-const LINK = 0x5c7390, LINK_IDLE = 0xa9b4c0, OBSTACLE = 0xb9b4a8;
+const ROBOTS = [0x5c7390, 0x7d6796, 0x4b7f78, 0x94705c]; // as --hand0 to --hand3 of the page
+const LINK_IDLE = 0xa9b4c0, OBSTACLE = 0xb9b4a8, MOVING = 0x9c9480, PART = 0xb3892f;
+const SOLID = {link: 1, part: 1, moving: 0.72, obstacle: 0.5};
 const LINE_PIXELS = 2.4, DOT_PIXELS = 4;
 const EDGE = {light: 0x1c2530, dark: 0xd8e0e8}, GRID = {light: [0xd3d8dc, 0xe3e7ea], dark: [0x3a444f, 0x2b333c]};
 const REGION = 0xe01010, WAY_OUT = 0x4a0008, ARROW_PIXELS = 78;
@@ -24,6 +26,7 @@ class Replay {
     this.viewer.gui.domElement.style.display = "none";
     this.viewer.hide_background();
     this.lines = decode(data.lines, Float64Array);
+    this.times = decode(data.times, Float64Array);
     this.geometries = data.shapes.map((shape) => this.geometry(shape));
     this.bodies = data.bodies.map((body, i) => this.body(body, i));
     this.marks();
@@ -46,11 +49,11 @@ class Replay {
   }
 
   body(body, i) {
-    const solid = body.kind === "link";
+    const opacity = SOLID[body.kind], solid = opacity === 1;
     const path = [body.kind + "s", `${i} ${body.name}`];
-    const colour = !solid ? OBSTACLE : body.measured ? LINK : LINK_IDLE;
+    const colour = this.colourOf(body);
     const surface = new this.three.MeshLambertMaterial({
-      color: colour, flatShading: true, side: this.three.DoubleSide, transparent: !solid, opacity: solid ? 1 : 0.5,
+      color: colour, flatShading: true, side: this.three.DoubleSide, transparent: !solid, opacity,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
     const edges = new this.three.LineBasicMaterial({color: EDGE[this.theme], transparent: true, opacity: solid ? 0.35 : 0.28});
@@ -58,9 +61,23 @@ class Replay {
     this.viewer.set_object(path.concat("surface"), new this.three.Mesh(shape.surface, surface));
     this.viewer.set_object(path.concat("edges"), new this.three.LineSegments(shape.edges, edges));
     const node = this.viewer.scene_tree.find(path).object;
-    const made = {node, surface, colour, poses: decode(body.poses, Float32Array), bounds: shape.surface.boundingBox, kind: body.kind};
+    const made = {node, surface, colour, poses: decode(body.poses, Float32Array), bounds: shape.surface.boundingBox, kind: body.kind, shown: body.shown};
     this.place(made, 0);
     return made;
+  }
+
+  colourOf(body) {
+    if (body.kind === "link") return body.measured ? ROBOTS[body.robot % ROBOTS.length] : LINK_IDLE;
+    return {part: PART, moving: MOVING, obstacle: OBSTACLE}[body.kind];
+  }
+
+  // A part in a robot's hand has some of its colour, so that it is seen to change hands.
+  tint(body, i, frame) {
+    body.surface.color.set(body.colour);
+    if (body.kind !== "part") return;
+    const time = this.times[frame];
+    const held = this.data.carries.find((one) => one.i_part === i && one.start <= time && time < one.end);
+    if (held && held.i_by >= 0) body.surface.color.lerp(new this.three.Color(this.colourOf(this.data.bodies[held.i_by])), 0.6);
   }
 
   // The line and its two dots: drawn over everything, as thick on the screen from near as from far.
@@ -78,11 +95,11 @@ class Replay {
       return mesh;
     };
     this.line = add("line", tube, LINE_PIXELS / 2, true);
-    this.dots = [add("link point", ball, DOT_PIXELS, false), add("obstacle point", ball, DOT_PIXELS, false)];
+    this.dots = [add("first point", ball, DOT_PIXELS, false), add("second point", ball, DOT_PIXELS, false)];
     this.material = material;
   }
 
-  // The region that two bodies share, seen through both of them, and the way out of the link.
+  // The region that two bodies share, seen through both of them, and the way out of the first.
   contact(contact, i) {
     const geometry = new this.three.BufferGeometry();
     geometry.setAttribute("position", new this.three.BufferAttribute(decode(contact.vertices, Float32Array), 3));
@@ -145,7 +162,8 @@ class Replay {
     const colour = new this.three.Color(this.colours[chosen ? chosen.status : data.status[frame]]);
     this.bodies.forEach((body, i) => {
       if (body.poses.length > 7) this.place(body, frame);
-      body.surface.color.set(body.colour);
+      if (body.shown) body.node.visible = body.shown[body.shown.length > 1 ? frame : 0] === 1;
+      this.tint(body, i, frame);
       if (this.nearest.includes(i)) body.surface.color.lerp(colour, 0.55);
     });
     this.material.color.copy(colour);
@@ -184,6 +202,7 @@ class Replay {
       })),
       colour: "#" + this.material.color.getHexString(),
       bodies,
+      hidden: this.data.bodies.filter((body, i) => !this.bodies[i].node.visible).map((body) => body.name),
     };
   }
 
@@ -197,11 +216,11 @@ class Replay {
     return box;
   }
 
-  // The robot's room, and of the obstacles what stands in or near it, decide what the camera frames.
+  // The room of all that moves, and of the obstacles what stands in or near it, decide what the camera frames.
   fit() {
     const n = this.data.steps.length;
     const frames = Array.from({length: Math.min(n, 60)}, (_, i) => Math.floor(i * (n - 1) / Math.max(1, Math.min(n, 60) - 1)));
-    const room = this.worldBox(this.bodies.filter((body) => body.kind === "link"), frames);
+    const room = this.worldBox(this.bodies.filter((body) => body.kind !== "obstacle"), frames);
     const all = this.worldBox(this.bodies.filter((body) => body.kind === "obstacle"), [0]);
     const reach = room.getSize(new this.three.Vector3()).length();
     this.box = room.clone().expandByScalar(0.25 * reach).intersect(all.union(room));
@@ -265,7 +284,7 @@ class Replay {
     const ray = new this.three.Ray(point, eye.clone().sub(point).normalize());
     const span = eye.distanceTo(point);
     return this.bodies.filter((body, i) => {
-      if (this.nearest.includes(i)) return false;
+      if (this.nearest.includes(i) || !body.node.visible) return false;
       body.node.updateMatrix();
       const hit = ray.intersectBox(body.bounds.clone().applyMatrix4(body.node.matrix), new this.three.Vector3());
       return hit !== null && hit.distanceTo(point) < span;

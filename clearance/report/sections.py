@@ -11,6 +11,7 @@ from typing import Any
 from markupsafe import Markup
 
 from clearance.report.background import certainty, loaded, provenance, sign_off, unmeasured
+from clearance.report.cell_time import cell_time
 from clearance.report.contact import contacts
 from clearance.report.markup import (
     element,
@@ -19,9 +20,11 @@ from clearance.report.markup import (
     step_link,
     table,
 )
+from clearance.report.matrix import matrix
 from clearance.report.profiles import profiles
+from clearance.report.rules import name_shown, rules
 from clearance.report.verdict import verdict_text
-from clearance.report.wording import count, joint_value, limit_mm, mm, seconds
+from clearance.report.wording import count, joint_value, limits_text, mm, other_time, seconds
 
 MAX_EVENT_ROWS = 200
 """Most events printed on the page; all are in `summary.json`."""
@@ -36,17 +39,11 @@ _TITLES = {
 
 
 def header(summary: dict[str, Any]) -> Markup:
-    """Name, verdict, what puts it in doubt, least clearance, limits."""
-    limits = summary["limits"]
+    """Name, verdict, what puts it in doubt, the moment that stands worst, limits."""
     facts = [
-        ("Least clearance", element("strong", mm(summary["worst"]["clearance"])) + " mm"),
+        *_worst_facts(summary),
         ("Certified", _certified_word(summary["certified"])),
-        ("Between", f"{summary['worst']['link']} and {summary['worst']['obstacle']}"),
-        ("At", moment_of(summary["worst"])),
-        (
-            "Limits",
-            f"fail below {limit_mm(limits['fail'])} mm, warn below {limit_mm(limits['warn'])} mm",
-        ),
+        *_limit_facts(summary),
         ("Measured", f"{_extent(summary)}, {summary['motion']} motion"),
         ("Cross-check", _cross_check_word(summary["cross_check"])),
     ]
@@ -59,17 +56,49 @@ def header(summary: dict[str, Any]) -> Markup:
     badge = element("p", badge_text(summary), class_=f"verdict {_badge_class(summary)}")
     return (
         element("div", title, badge, class_="title")
+        + _headline(summary)
         + _beside(summary)
         + element("dl", *items, class_="facts")
     )
 
 
+def _worst_facts(summary: dict[str, Any]) -> list[tuple[str, object]]:
+    worst = summary["worst"]
+    name = "Least clearance" if summary["nearer"] is None else "Worst against its rule"
+    return [
+        (name, element("strong", mm(worst["clearance"])) + " mm"),
+        ("Between", f"{worst['link']} and {worst['obstacle']}"),
+        ("At", moment_of(worst)),
+    ]
+
+
+def _limit_facts(summary: dict[str, Any]) -> list[tuple[str, object]]:
+    if len(summary["rules"]) == 1:
+        limits = summary["limits"]
+        return [("Limits", limits_text(limits["fail"], limits["warn"]))]
+    rule = next(one for one in summary["rules"] if one["name"] == summary["worst"]["rule"])
+    limits = limits_text(rule["fail"], rule["warn"])
+    return [("Judged by", name_shown(rule["name"])), ("Its limits", limits)]
+
+
+def _headline(summary: dict[str, Any]) -> Markup:
+    """What stands worst against which rule, and what is nearest if that is something else; where there are
+    rules."""
+    if len(summary["rules"]) == 1:
+        return Markup("")
+    worst = summary["worst"]
+    told = next(iter(summary["reasons"]), None) if worst["status"] != "clear" else None
+    lines = [element("li", told, class_=f"text-{worst['status']}")] if told else []
+    lines += [element("li", f"Nearest of all: {summary['nearer']}")] if summary["nearer"] else []
+    return element("ul", *lines, class_="beside headline") if lines else Markup("")
+
+
 def badge_text(summary: dict[str, Any]) -> str:
     """The verdict in a few words."""
-    status, measured, basis, disputed_by = (
-        summary[name] for name in ("verdict", "measured", "basis", "disputed_by")
+    status, measured, basis, disputed_by, clocks = (
+        summary[name] for name in ("verdict", "measured", "basis", "disputed_by", "clocks")
     )
-    text = verdict_text(status, measured, basis, disputed_by, shown=_TITLES.__getitem__)
+    text = verdict_text(status, measured, basis, disputed_by, clocks, _TITLES.__getitem__)
     return text[0].upper() + text[1:]
 
 
@@ -104,7 +133,7 @@ def moment_of(worst: dict[str, Any]) -> str:
     step = f"step {worst['step']:,}"
     if worst["between"]:
         step = f"between the steps {worst['step']:,} and {worst['step'] + 1:,}"
-    return f"{seconds(worst['time'])}, {step}"
+    return f"{seconds(worst['time'])}, {step}{other_time(worst['obstacle'], worst['time_b'])}"
 
 
 _EXTENTS = {
@@ -136,6 +165,8 @@ def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:
                 element("div", events(summary), certainty(summary)),
                 class_="columns",
             ),
+            rules(summary),
+            cell_time(summary),
             contacts(summary),
             profiles(summary, pictures),
             matrix(summary),
@@ -179,10 +210,21 @@ def worst_moment(summary: dict[str, Any]) -> Markup:
             moment_link(worst, moment_of(worst)),
             ".",
         ),
+        *_nearest(summary),
         *_worst_sample(summary),
-        table(("Joint", ">Position", "In its range"), rows, tall=True),
+        table(("Joint", ">Position", "In its range"), rows, tall=True) if rows else Markup(""),
         table(("Witness point", ">x, mm", ">y, mm", ">z, mm"), points),
     )
+
+
+def _nearest(summary: dict[str, Any]) -> list[Markup]:
+    """The least clearance of all, where something else stands worse against its rule."""
+    if summary["nearer"] is None:
+        return []
+    nearest = summary["nearest"]
+    text = f"Nearest of all are {nearest['link']} and {nearest['obstacle']}: {mm(nearest['clearance'])} mm at "
+    by = f", judged by {name_shown(nearest['rule'])}: {nearest['status']}."
+    return [element("p", text, moment_link(nearest, moment_of(nearest)), by)]
 
 
 def _worst_sample(summary: dict[str, Any]) -> list[Markup]:
@@ -190,7 +232,8 @@ def _worst_sample(summary: dict[str, Any]) -> list[Markup]:
     sample = summary["worst_sample"]
     if not summary["worst"]["between"]:
         return []
-    text = f"At the steps the least is {mm(sample['clearance'])} mm between {sample['link']} and "
+    least = "least" if len(summary["rules"]) == 1 else "worst"
+    text = f"At the steps the {least} is {mm(sample['clearance'])} mm between {sample['link']} and "
     return [element("p", text, f"{sample['obstacle']}, ", step_link(sample["step"]), ".")]
 
 
@@ -219,7 +262,7 @@ def events(summary: dict[str, Any]) -> Markup:
             element("td", seconds(event["time"]), class_="number"),
             element("td", f"{event['step']:,}{'+' if event['between'] else ''}", class_="number"),
             element("td", event["what"]),
-            *_event_cells(event),
+            *_event_cells(event, several=len(summary["rules"]) > 1),
             data_step=event["step"],
             data_time=event["time"] if event["between"] else None,
             tabindex=0,
@@ -237,88 +280,17 @@ def events(summary: dict[str, Any]) -> Markup:
     if any(event["between"] for event in found):
         told.append("A step with + is the one before a moment between two steps.")
     notes = [element("p", text, class_="faint") for text in told]
-    heads = (">Time", ">Step", "What", ">mm", ">Least, mm", "Between")
+    heads = [">Time", ">Step", "What", ">mm", ">Least, mm", "Between"]
+    heads += ["Rule"] if len(summary["rules"]) > 1 else []
     return section("Events", table(heads, rows, class_="clickable", tall=True), *notes)
 
 
-def _event_cells(event: dict[str, Any]) -> tuple[Markup, Markup, Markup]:
+def _event_cells(event: dict[str, Any], *, several: bool) -> list[Markup]:
     least = "" if event["least"] is None else mm(event["least"])
     if event["clearance"] is None:
         figures, who = ("", least), "not measured further"
     else:
         figures, who = (mm(event["clearance"]), least), f"{event['link']} - {event['obstacle']}"
     now, until = (element("td", figure, class_="number") for figure in figures)
-    return now, until, element("td", who)
-
-
-_PAIR_SHOWN = {True: "its own curve", False: "its place beside the curve"}
-
-
-def matrix(summary: dict[str, Any]) -> Markup:
-    """Least clearance of each link and obstacle in mm, coloured by the limits; nothing if not asked for."""
-    if not summary["pairs"]:
-        return Markup("")
-    cells = {(pair["link"], pair["obstacle"]): (i, pair) for i, pair in enumerate(summary["pairs"])}
-    all_links = dict.fromkeys(
-        body["name"] for robot in summary["robots"] for body in robot["links"]
-    )
-    links = [name for name in all_links if any(name == link for link, _ in cells)]
-    obstacles = [*(body["name"] for body in summary["obstacles"]), *all_links]
-    obstacles = [name for name in obstacles if any(name == other for _, other in cells)]
-    head = element(
-        "tr",
-        element("td", ""),
-        *[element("th", element("span", name), scope="col", title=name) for name in obstacles],
-    )
-    rows = [
-        element(
-            "tr",
-            element("th", link, scope="row"),
-            *[_matrix_cell(cells.get((link, name)), summary["limits"]) for name in obstacles],
-        )
-        for link in links
-    ]
-    body = element("table", element("thead", head), element("tbody", *rows), class_="matrix")
-    return section(
-        "Least clearance of every pair, mm",
-        element("div", body, class_="scroll tall whole"),
-        element(
-            "p",
-            "At the steps, rounded down. A click moves the replay to the step where that pair comes "
-            f"closest, with its line and {_PAIR_SHOWN[summary['need'] == 'pairs']}; "
-            "\N{EN DASH} marks a pair that was not measured.",
-            class_="faint",
-        ),
-    )
-
-
-def _matrix_cell(found: tuple[int, dict[str, Any]] | None, limits: dict[str, float]) -> Markup:
-    if found is None:
-        return element("td", "\N{EN DASH}", class_="none")
-    place, pair = found
-    title = (
-        f"{pair['link']} - {pair['obstacle']}: {mm(pair['clearance'])} mm, step {pair['step']}, "
-        f"{seconds(pair['time'])}"
-    )
-    return element(
-        "td",
-        mm(pair["clearance"]),
-        class_=f"cell {_shade(pair['clearance'], limits)}",
-        data_step=pair["step"],
-        data_pair=place,
-        tabindex=0,
-        title=title,
-    )
-
-
-def _shade(clearance: float, limits: dict[str, float]) -> str:
-    if clearance <= 0.0:
-        return "contact"
-    if clearance < limits["fail"]:
-        return "violated"
-    if clearance < limits["warn"]:
-        return "near"
-    return next(
-        (f"far{i}" for i, bound in enumerate((0.05, 0.1, 0.2, 0.4, 0.8)) if clearance < bound),
-        "far5",
-    )
+    rule = [element("td", name_shown(event["rule"]))] if several else []
+    return [now, until, element("td", who), *rule]

@@ -11,18 +11,27 @@ from typing import Any
 
 import numpy as np
 
+from clearance.report.actors import actors_of, carried_of, clock_of, paddings_of
 from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, not_listed, status_counts
+from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
+from clearance.report.rules import rules_of, told_moment
 from clearance.report.verdict import Verdict, verdict_of
 from clearance.simulate.moment import Moment
-from clearance.simulate.record import Certificate, CrossCheck, ProfileAnswer, Record
-from clearance.simulate.replay import link_label
+from clearance.simulate.names import LINK_AND_OBSTACLE
+from clearance.simulate.record import (
+    Certificate,
+    CrossCheck,
+    ProfileAnswer,
+    Record,
+)
 from clearance.simulate.standing import standing_hint
 from clearance.world.body import Body
 from clearance.world.motion import Motion
 
-FORMAT = 2
+FORMAT = 3
+"""Which keys there are: `NOTES.md`."""
 
 
 def summary_of(record: Record) -> dict[str, Any]:
@@ -34,7 +43,13 @@ def summary_of(record: Record) -> dict[str, Any]:
         "format": FORMAT,
         "name": case.name,
         **_verdict(verdict),
-        "limits": asdict(case.limits),
+        "limits": {name: getattr(case.limits, name) for name in ("fail", "warn", "joints")},
+        "rules": rules_of(record),
+        "actors": actors_of(record),
+        "carries": carried_of(record),
+        "clock": clock_of(record),
+        "paddings": paddings_of(record),
+        "sides": list(record.sides[:2]),
         "method": record.method,
         "paper_tolerance": record.paper_tolerance,
         "motion": record.motion_kind,
@@ -44,13 +59,14 @@ def summary_of(record: Record) -> dict[str, Any]:
         "end": float(times[-1]),
         "worst": _worst(record, record.worst),
         "worst_sample": _worst(record, record.worst_sample),
+        "nearest": told_moment(record, record.nearest),
         "status_counts": status_counts(record),
         "intervals": {
             level: [asdict(i) for i in found] for level, found in intervals(record).items()
         },
         "events": [asdict(event) for event in events(record)],
         "not_listed": not_listed(record),
-        "pairs": [asdict(minimum) for minimum in record.pair_minima],
+        "pairs": _pairs(record),
         "unmeasured": [asdict(pair) for pair in record.unmeasured],
         "contact": contact_of(record),
         "certified": None if certificate is None else certified_of(record, certificate),
@@ -84,26 +100,24 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "suspects": [{"kind": one.kind, "text": one.text} for one in verdict.suspects],
         "disputed_by": verdict.disputed_by,
         "not_checked": list(verdict.not_checked),
+        "nearer": verdict.nearest,
+        "clocks": verdict.clocks,
     }
+
+
+def _pairs(record: Record) -> list[dict[str, Any]]:
+    """The least clearance of each pair by each rule that judges it, with its status."""
+    judge = PairJudge.of(record)
+    return [asdict(one) | {"status": judge.status_of(one)} for one in record.pair_minima]
 
 
 def _worst(record: Record, worst: Moment) -> dict[str, Any]:
-    return {
-        "step": worst.step,
-        "time": worst.time,
-        "between": worst.between,
-        "clearance": worst.clearance,
-        "status": record.status_of(worst),
-        "link": worst.link,
-        "obstacle": worst.obstacle,
-        "point_link": list(worst.point_link),
-        "point_obstacle": list(worst.point_obstacle),
-        "joints": [
-            joint
-            for motion, positions in zip(record.motions, worst.positions, strict=True)
-            for joint in _joints(motion, positions)
-        ],
-    }
+    joints = [
+        joint
+        for motion, positions in zip(record.motions, worst.positions, strict=True)
+        for joint in _joints(motion, positions)
+    ]
+    return told_moment(record, worst) | {"joints": joints}
 
 
 def _joints(motion: Motion, positions: np.ndarray) -> list[dict[str, Any]]:
@@ -123,13 +137,11 @@ def _joints(motion: Motion, positions: np.ndarray) -> list[dict[str, Any]]:
 
 def _robot(record: Record, motion: Motion) -> dict[str, Any]:
     placed = motion.placed
+    before = f"{placed.robot.name}/" if len(record.motions) > 1 else ""
     return {
         "name": placed.robot.name,
         "excluded_links": list(placed.exclude_links),
-        "links": [
-            _body(record, body, link_label(record, motion, body.name))
-            for body in placed.robot.bodies
-        ],
+        "links": [_body(record, body, f"{before}{body.name}") for body in placed.robot.bodies],
         "links_without_shape": sorted(
             set(placed.robot.link_names) - {body.name for body in placed.robot.bodies}
         ),
@@ -165,9 +177,15 @@ def certified_of(record: Record, certificate: Certificate) -> dict[str, Any]:
         "start": float(times[step]),
         "end": float(times[min(step + 1, len(times) - 1)]),
         "allowed_gap": certificate.gap,
-        "greatest_gap": float((certificate.upper_bound - certificate.lower_bound).max()),
+        "greatest_gap": _greatest_gap(certificate),
         "tally": dict(certificate.tally),
     }
+
+
+def _greatest_gap(certificate: Certificate) -> float:
+    """[m] how far the two bounds are apart anywhere; intervals in which nothing is measured have none."""
+    bounded = np.isfinite(certificate.lower_bound)
+    return float((certificate.upper_bound[bounded] - certificate.lower_bound[bounded]).max())
 
 
 def _profile(answer: ProfileAnswer) -> dict[str, Any]:
@@ -194,7 +212,14 @@ def tessellation_bound(record: Record) -> float:
     pair."""
     links = [body.shape.excess for motion in record.motions for body in motion.placed.robot.bodies]
     obstacles = [obstacle.body.shape.excess for obstacle in record.case.obstacles]
-    return max(links, default=0.0) + max(obstacles, default=0.0)
+    if record.sides[:2] == LINK_AND_OBSTACLE and not _of_one_robot(record):
+        return max(links, default=0.0) + max(obstacles, default=0.0)
+    return sum(sorted([*links, *obstacles])[-2:])
+
+
+def _of_one_robot(record: Record) -> bool:
+    """True if links are measured against one another."""
+    return any(placed.self_clearance for placed in record.case.robots)
 
 
 def notes_of(record: Record) -> list[str]:

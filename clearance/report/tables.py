@@ -10,6 +10,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from clearance.simulate.contact_columns import with_contact_columns
+from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record, StepContact
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
@@ -19,19 +20,22 @@ CONTACTS = 10_000
 
 
 def contact_batches(record: Record) -> Iterator[pa.Table]:
-    """One row for each pair in contact at each step; lengths in metres, directions of the link, world frame; null
-    where the run has not worked out a pair at a step."""
+    """One row for each pair in contact at each step, under the names of bodies that the steps have; lengths in
+    metres, directions of the first body, world frame; null where the run has not worked out a pair at a step."""
     for start in range(0, max(1, len(record.contacts)), CONTACTS):
-        yield _contact_table(record.contacts[start : start + CONTACTS])
+        yield _contact_table(record.contacts[start : start + CONTACTS], record.sides[:2])
 
 
-def _contact_table(rows: Sequence[StepContact]) -> pa.Table:
+def _contact_table(rows: Sequence[StepContact], sides: Sequence[str]) -> pa.Table:
     found = [row.known for row in rows]
+    names = [
+        pa.array([getattr(row, side) for row in rows], pa.string()) for side in LINK_AND_OBSTACLE
+    ]
     columns = {
         "step": pa.array([row.step for row in rows], pa.int64()),
         "time": pa.array([row.time for row in rows], pa.float64()),
-        "link": pa.array([row.link for row in rows], pa.string()),
-        "obstacle": pa.array([row.obstacle for row in rows], pa.string()),
+        sides[0]: names[0],
+        sides[1]: names[1],
     }
     for name in ("penetration", "penetration_at_least", "volume", "volume_at_least"):
         columns[name] = pa.array([getattr(one, name, None) for one in found], pa.float64())
@@ -39,7 +43,7 @@ def _contact_table(rows: Sequence[StepContact]) -> pa.Table:
         for i, axis in enumerate("xyz"):
             values = [None if one is None else float(getattr(one, name)[i]) for one in found]
             columns[f"{name}_{axis}"] = pa.array(values, pa.float64())
-    return pa.table(columns)
+    return pa.table(columns | dict(zip(SIDES, names, strict=True)))
 
 
 def write_parquet(batches: Iterable[pa.Table], path: Path) -> None:

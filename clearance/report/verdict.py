@@ -8,12 +8,25 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from clearance.report.wording import count, gap_text, limit_mm, mm, moment_text, span_text
-from clearance.simulate.record import ProfileAnswer, Record
+import numpy as np
+
+from clearance.report.wording import (
+    clock_text,
+    count,
+    gap_text,
+    limit_mm,
+    mm,
+    moment_text,
+    of_rule,
+    span_text,
+)
+from clearance.simulate.moment import Moment
+from clearance.simulate.record import ProfileAnswer, Record, RuleAnswer
 from clearance.simulate.replay_frames import codes_of
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
+from clearance.world.rules import DEFAULT
 
 SUSPECT = "suspect"
 """The status where the input is in doubt, whatever was measured."""
@@ -42,6 +55,8 @@ class Verdict:
         disputed_by: the peer that disagrees, if one does.
         not_checked: what was not looked at.
         broken: rules of the case that are broken, beside its limits of clearance.
+        nearest: the moment of least clearance of all, in one line, where that is not the one that stands worst.
+        clocks: how far the actors' clocks may be apart for it to hold; empty for one clock.
     """
 
     status: str
@@ -54,6 +69,8 @@ class Verdict:
     disputed_by: str | None = None
     not_checked: tuple[str, ...] = ()
     broken: tuple[str, ...] = ()
+    nearest: str | None = None
+    clocks: str = ""
 
     @property
     def exit_code(self) -> int:
@@ -71,7 +88,9 @@ class Verdict:
 
     def text(self, shown: Callable[[str], str] = str) -> str:
         """The verdict in a few words, the status written as `shown` says."""
-        return verdict_text(self.status, self.measured, self.basis, self.disputed_by, shown)
+        return verdict_text(
+            self.status, self.measured, self.basis, self.disputed_by, self.clocks, shown
+        )
 
 
 def verdict_text(
@@ -79,12 +98,15 @@ def verdict_text(
     measured: str,
     basis: str,
     disputed_by: str | None,
+    clocks: str = "",
     shown: Callable[[str], str] = str,
 ) -> str:
     """A verdict in a few words; the arguments are as in `Verdict`."""
     text = shown(measured)
     if basis == SAMPLES:
         text += " at the samples only" if measured in _PASSING else ", looked at the samples only"
+    if clocks:
+        text += f", {clocks}"
     if status == SUSPECT:
         text = f"{shown(SUSPECT)} (would be {text})"
     return text if disputed_by is None else f"{text}, but {disputed_by} disagrees"
@@ -118,6 +140,8 @@ def verdict_of(record: Record) -> Verdict:
         disputed_by=None if disputing is None else disputing.peer,
         not_checked=tuple(_not_checked(record.case)),
         broken=tuple(broken),
+        nearest=_nearest(record),
+        clocks=clock_text(record.case.clock.slack),
     )
 
 
@@ -139,36 +163,63 @@ def _measured(record: Record) -> str:
     return str(STATUSES[worst])
 
 
-def _occurring(record: Record) -> str | None:
-    """The moment of least clearance, if it is below a limit."""
-    worst = record.worst
-    limits = record.rule(worst.rule).limits
-    where = f"{worst.link} - {worst.obstacle} at {moment_text(worst)}"
-    if worst.touches:
-        return f"contact: {where}"
+def moment_line(record: Record, moment: Moment) -> str:
+    """How near what comes to what and when, and the limit that it is below, if it is: with its rule."""
+    limits = record.rule(moment.rule).limits
+    where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
+    if moment.touches:
+        return f"contact{_judged_by(moment)}: {where}"
     for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
-        if worst.clearance < limit:
-            return (
-                f"{mm(worst.clearance)} mm, below the {name} limit of {limit_mm(limit)} mm: {where}"
-            )
-    return None
+        if moment.clearance < limit:
+            below = f"below the {name} limit of {limit_mm(limit)} mm{of_rule(moment.rule)}"
+            return f"{mm(moment.clearance)} mm, {below}: {where}"
+    if moment.clearance <= 0.0:
+        return f"{mm(moment.clearance)} mm less padding{_judged_by(moment)}: {where}"
+    return f"{mm(moment.clearance)} mm{_judged_by(moment)}: {where}"
+
+
+def _judged_by(moment: Moment) -> str:
+    return "" if moment.rule == DEFAULT else f", judged by rule {moment.rule!r}"
+
+
+def _occurring(record: Record) -> str | None:
+    """The moment that stands worst, if it is below a limit."""
+    worst = record.worst
+    return None if record.status_of(worst) == Status.CLEAR else moment_line(record, worst)
+
+
+def _nearest(record: Record) -> str | None:
+    """The moment of least clearance, where another stands worse."""
+    nearest = record.nearest
+    return None if nearest is record.worst else moment_line(record, nearest)
 
 
 def _unproven(record: Record) -> str | None:
     """The limit that the proof does not reach though nothing that was seen is below it."""
-    certificate, limits = record.certificate, record.case.limits
+    for name in ("fail", "warn"):
+        for rule in record.rules:
+            text = _not_reached(record, rule, name)
+            if text is not None:
+                return text
+    return None
+
+
+def _not_reached(record: Record, rule: RuleAnswer, name: str) -> str | None:
+    """That a rule's limit of a name is not proven, if nothing was seen below it."""
+    certificate = rule.certificate
     if certificate is None:
         return None
     step = certificate.worst_interval
-    least = float(certificate.lower_bound[step])
+    least, limit = float(certificate.lower_bound[step]), getattr(rule.limits, name)
+    seen = np.inf if rule.worst is None else rule.worst.clearance
+    if not least < limit <= seen:
+        return None
     times = record.motions[0].times[step : step + 2]
-    for name, limit in (("fail", limits.fail), ("warn", limits.warn)):
-        if least < limit <= record.worst.clearance:
-            return (
-                f"not proven to stay above the {name} limit of {limit_mm(limit)} mm: at least {mm(least)} mm, "
-                f"{span_text(float(times[0]), float(times[-1]))}; a finer proof takes a smaller --certify-mm"
-            )
-    return None
+    return (
+        f"not proven to stay above the {name} limit of {limit_mm(limit)} mm{of_rule(rule.name)}: at least "
+        f"{mm(least)} mm, {span_text(float(times[0]), float(times[-1]))}; a finer proof takes a smaller "
+        "--certify-mm"
+    )
 
 
 def profile_text(answer: ProfileAnswer) -> str:

@@ -7,6 +7,7 @@ import math
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 from clearance.simulate.moment import Moment
+from clearance.world.rules import DEFAULT
 
 
 def mm(metres: float) -> str:
@@ -108,10 +109,34 @@ def gap_text(gap: float) -> str:
 
 
 def moment_text(moment: Moment) -> str:
-    """When a moment is: `1.220 s, step 61`, or which steps it is between."""
+    """When a moment is: `1.220 s, step 61`, or which steps it is between; and when its second body is there, if
+    that has a clock of its own."""
+    where = f"step {moment.step}"
     if moment.between:
-        return f"{seconds(moment.time)}, between the steps {moment.step} and {moment.step + 1}"
-    return f"{seconds(moment.time)}, step {moment.step}"
+        where = f"between the steps {moment.step} and {moment.step + 1}"
+    return f"{seconds(moment.time)}, {where}{other_time(moment.obstacle, moment.time_b)}"
+
+
+def other_time(name: str, time: float | None) -> str:
+    """When a body with a clock of its own is there; empty where there is one clock."""
+    return "" if time is None else f", with {name} at {seconds(time)}"
+
+
+def of_rule(rule: str) -> str:
+    """` of rule 'fence'`; nothing for the limits that hold where no rule does."""
+    return "" if rule == DEFAULT else f" of rule {rule!r}"
+
+
+def limits_text(fail: float, warn: float) -> str:
+    """`fail below 5 mm, warn below 20 mm`."""
+    return f"fail below {limit_mm(fail)} mm, warn below {limit_mm(warn)} mm"
+
+
+def clock_text(slack: float) -> str:
+    """How far clocks may be apart; empty for one clock."""
+    if slack == 0.0:
+        return ""
+    return "clocks not tied" if math.isinf(slack) else f"clocks up to {slack:g} s apart"
 
 
 def span_text(start: float, end: float) -> str:

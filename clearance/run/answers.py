@@ -121,27 +121,25 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
 
 
 def _of_section(plan: MeasurementPlan, section: Section, resources: Resources) -> SectionAnswer:
-    own = resources.of_section(section.number, len(plan.sections.sections))
-    found = _measurement(plan.question, section, own)
-    certificate = (
-        _certificate(plan.question, section, found, own) if plan.question.certify else None
-    )
+    own, question = resources.of_section(section.number, len(plan.sections.sections)), plan.question
+    if not section.tied:
+        from clearance.simulate.two_clock_rows import measure_two_clocks
+
+        gap = question.certify_gap if question.certify else None
+        return SectionAnswer(section, *measure_two_clocks(section.of_two_clocks, gap, own))
+    found = _measurement(question, section, own)
+    certificate = _certificate(question, section, found, own) if question.certify else None
     return SectionAnswer(section, found, certificate)
 
 
 def _measurement(question: Question, section: Section, resources: Resources) -> Measurement:
-    what = section.case, section.motions, section.pairs
     if question.method == "exact":
-        return measure(*what, question.need, resources)
+        return measure(section.in_motion, question.need, resources)
     from clearance.query.paper import NO_TOLERANCE
     from clearance.simulate.measure_paper import measure_paper
 
-    return measure_paper(
-        *what,
-        resources.progress,
-        question.paper_tolerance or NO_TOLERANCE,
-        section.phase.first,
-    )
+    tolerance = question.paper_tolerance or NO_TOLERANCE
+    return measure_paper(section.in_motion, resources.progress, tolerance, section.phase.first)
 
 
 def _certificate(
@@ -149,15 +147,8 @@ def _certificate(
 ) -> Certificate:
     from clearance.simulate.certify import certify_motion
 
-    return certify_motion(
-        section.case,
-        section.motions,
-        section.pairs,
-        found,
-        question.certify_gap,
-        question.need,
-        resources,
-    )
+    gap, need = question.certify_gap, question.need
+    return certify_motion(section.in_motion, found, gap, need, resources)
 
 
 def _samples(plan: MeasurementPlan, judged: Judged, resources: Resources) -> Samples:
@@ -187,13 +178,21 @@ def _notices(plan: MeasurementPlan, certificate: Certificate | None) -> tuple[No
     measured = inside.notices(plan.sections) if question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [_nothing_measured(phase) for phase in plan.sections.empty]
-    return worst_first([*question.case.notices, *measured, *proven, *empty])
+    untied = _not_cross_checked(plan) if question.cross_check else ()
+    return worst_first([*question.case.notices, *measured, *proven, *empty, *untied])
 
 
 def _nothing_measured(phase: Phase) -> Notice:
     start, end = phase.span
     text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
     return Notice(Severity.WARNING, "pairs", text)
+
+
+def _not_cross_checked(plan: MeasurementPlan) -> Iterator[Notice]:
+    untied = {pair for one in plan.sections.sections if not one.tied for pair in one.pairs}
+    if untied:
+        text = f"{len(untied)} pairs whose clocks are not tied are not cross-checked: FCL is asked about one time"
+        yield Notice(Severity.WARNING, "cross-check", text)
 
 
 def _profiles(plan: MeasurementPlan) -> tuple[ProfileAnswer, ...]:
@@ -228,7 +227,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         paper_tolerance=question.paper_tolerance,
         motion_kind=question.motion,
         need=question.need,
-        every_pair=every_pair(case, pairs, judged.found),
+        every_pair=every_pair(case, pairs, judged),
         certificate=judged.certificate,
         notes=(*case.notes, *(note for made in motions for note in made.notes)),
         notices=answers.notices,

@@ -78,15 +78,11 @@ class Question:
                 f"method {self.method!r} measures every step",
                 valid="need 'steps', or method 'exact'",
             )
-        if self.method == "paper" and self.case.clock.slack > 0.0:
-            raise BadInput(
-                "method 'paper' measures bodies at one time, and the case's clocks are not tied",
-                valid="clock: common, or method 'exact'",
-            )
         if self.need in ("limit", "minimum") and self.cross_check:
             raise BadInput(
                 f"cross-check needs every step, not {self.need!r}", valid="need 'steps' or 'pairs'"
             )
+        _require_one_clock(self)
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
         object.__setattr__(self, "case", replace(self.case, notices=notices_of(self.case)))
 
@@ -101,6 +97,18 @@ class Question:
             self.certify_gap,
             self.paper_tolerance,
         )
+
+
+def _require_one_clock(question: Question) -> None:
+    """Nothing, if what is asked can be answered where clocks are not tied."""
+    if question.case.clock.slack == 0.0:
+        return
+    for what, given in (("need", "pairs"), ("method", "paper")):
+        if getattr(question, what) == given:
+            raise BadInput(
+                f"{what} {given!r} asks about one time, and the case's clocks are not tied",
+                valid=f"another {what}, or clock: common",
+            )
 
 
 def limited(case: Case, limits: Limits | None) -> Case:

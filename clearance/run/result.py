@@ -41,14 +41,15 @@ class Run:
 
     @property
     def pairs(self) -> pa.Table | None:
-        """One row a step and pair: step, link, obstacle, clearance [m]; None unless that was asked for."""
+        """One row a step and pair, columns as in `EveryPair.table`; None unless that was asked for."""
         every = self.record.every_pair
         return None if every is None else every.table
 
     @property
     def worst(self) -> dict:
-        """The moment of least clearance, as a row of `steps`; between two steps if the certificate has found a
-        lesser one there: then `between` is true, and `step` the one before it."""
+        """The moment that stands worst against its rule, without rules that of least clearance, as a row of
+        `steps`; between two steps if the certificate has found a worse one there: then `between` is true, and
+        `step` the one before it."""
         moment = self.record.worst
         row = self._row(moment.step)
         if moment is self.record.worst_sample:
@@ -56,11 +57,13 @@ class Run:
         told = {"time": moment.time, "clearance": moment.clearance, "rule": moment.rule}
         for sides in {SIDES, sides_of(self.record.case)}:
             told |= _told_of(sides, moment)
+        if "time_b" in row:
+            told["time_b"] = moment.time_b
         return row | told | {"between": True, "status": self.record.status_of(moment)}
 
     @property
     def worst_sample(self) -> dict:
-        """The row of the first step of least clearance, with the status of that step by itself."""
+        """The row of the first step that stands worst, with the status of that step by itself."""
         return self._row(self.record.worst_step)
 
     def _row(self, step: int) -> dict:

@@ -22,8 +22,7 @@ from clearance.kernels.motion.certify import (
 )
 from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
 from clearance.kernels.motion.kinematics import BALL, Links
-from clearance.kernels.motion.world import World
-from clearance.simulate.layout import lay_out
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
 from clearance.simulate.moment import Moment, Moments
 from clearance.simulate.parts import blocks, in_order, parts
@@ -36,7 +35,6 @@ from clearance.world.forest import joined_positions
 from clearance.world.kinematics import rates_by_link, values_by_link
 from clearance.world.motion import Motion
 from clearance.world.notice import Notice, Severity
-from clearance.world.pairs import Pair
 from clearance.world.reach import farthest_reach
 from clearance.world.slerp import arcs_between
 
@@ -49,9 +47,7 @@ takes 3,000 to a tenth of a millimetre."""
 
 
 def certify_motion(
-    case: Case,
-    motions: Sequence[Motion],
-    pairs: Sequence[Pair],
+    what: PairsInMotion,
     found: Measurement,
     gap: float,
     need: str = "steps",
@@ -64,9 +60,9 @@ def certify_motion(
             above the warn limit ("limit"), or above the least of all steps, less the gap ("minimum").
         resources: threads, progress, and where the bounds are kept.
     """
-    gap, notices = _no_finer_than_rounding(case, motions, gap)
-    work = _Work.of(case, motions, pairs, _Question.of(found, case.limits, need, gap))
-    n_steps = motions[0].n_steps
+    gap, notices = no_finer_than_rounding(what.case, what.motions, gap)
+    work = _Work(what, _Question.of(found, what.limits, need, gap))
+    n_steps = what.motions[0].n_steps
     log = _Log(resources.rows, "certify", n_steps, work.question)
     results = in_order(work.certify(log.bounds), log.spans[log.done :], resources.n_threads)
     for i_part, (done, counts) in enumerate(results, start=log.done + 1):
@@ -78,16 +74,16 @@ def certify_motion(
         *log.bounds,
         gap,
         dict(zip(COUNTERS, log.tally.tolist(), strict=True)),
-        _moment_of(Moments(case, motions, pairs), log.bounds, found),
+        _moment_of(Moments(what.case, what.motions, what.pairs), log.bounds, found),
         notices,
     )
 
 
-def _no_finer_than_rounding(
+def no_finer_than_rounding(
     case: Case, motions: Sequence[Motion], gap: float
 ) -> tuple[float, tuple[Notice, ...]]:
     """The gap that can be had, and a warning where that is not what was asked for."""
-    size = farthest_reach(case, motions)
+    size = farthest_reach(case, tuple(motions))
     finest = FINEST_CERTIFY_GAP * size
     if gap >= finest:
         return gap, ()
@@ -175,32 +171,22 @@ class _Log:
 class _Work:
     """What all parts of a certificate share."""
 
-    surface: Surface
-    world: World
-    case: Case
-    motions: Sequence[Motion]
+    what: PairsInMotion
     question: _Question
-
-    @staticmethod
-    def of(
-        case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], question: _Question
-    ) -> _Work:
-        layout = lay_out(case, pairs)
-        whole = _with_whole_faces(layout.surface)
-        return _Work(whole, layout.world, case, motions, question)
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
+        world, surface = self.what.layout.world, with_whole_faces(self.what.layout.surface)
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
             own = IntervalBounds(*(column[span] for column in bounds))
-            path = path_of(self.world.links, self.case, self.motions, ends)
-            motion = CertifiedMotion(self.world, path)
+            path = path_of(world.links, self.what.case, self.what.motions, ends)
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
-            call(certify, self.surface, motion, steps, self.question.aim, own, counts)
+            motion = CertifiedMotion(world, path)
+            call(certify, surface, motion, steps, self.question.aim, own, counts)
             return span.stop, counts
 
         return run_part
@@ -210,7 +196,7 @@ def _no_counts() -> np.ndarray:
     return np.zeros(len(COUNTERS), dtype=np.int64)
 
 
-def _with_whole_faces(surface: Surface) -> Surface:
+def with_whole_faces(surface: Surface) -> Surface:
     """The surface in which every face owns all its corners and edges, not only those it answers for."""
     starts, corners = surface.face_starts, surface.face_vertices
     return surface._replace(

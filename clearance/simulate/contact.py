@@ -29,6 +29,7 @@ from clearance.simulate.contact_events import (
     hull_depths,
 )
 from clearance.simulate.contact_rows import ContactRows
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import pairs_in_contact
 from clearance.simulate.names import pair_names
 from clearance.simulate.parts import blocks
@@ -87,7 +88,9 @@ class _OverlapFinder:
 
     def touching(self) -> tuple[np.ndarray, np.ndarray]:
         """(n,) steps and (n,) pairs in contact, steps first; the nearest pair of a step is one for sure."""
-        rows, pairs = pairs_in_contact(self.case, self.motions, self.pairs, self.steps)
+        rows, pairs = pairs_in_contact(
+            PairsInMotion(self.case, self.motions, self.pairs), self.steps
+        )
         sure = np.arange(len(self.steps)) * len(self.pairs) + self.nearest
         both = np.union1d(rows * len(self.pairs) + pairs, sure)
         rows, pairs = np.divmod(both, len(self.pairs))

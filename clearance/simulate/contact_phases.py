@@ -21,11 +21,15 @@ from clearance.world.case import Case
 
 def contacts_of(
     case: Case, answers: Sequence[SectionAnswer], times: np.ndarray, work_out: str
-) -> ContactSequence:
+) -> ContactSequence | tuple[()]:
     """The contacts of a run, of what its sections have found; `work_out` is as in `find_contacts`."""
     parts = [
-        _of_section(answer, work_out) for answer in answers if (answer.found.clearance <= 0.0).any()
+        _of_section(answer, work_out)
+        for answer in answers
+        if answer.section.tied and (answer.found.clearance <= 0.0).any()
     ]
+    if not parts:  # only pairs whose clocks are not tied touch: no one time has them
+        return ()
     if len(answers) == 1:
         return parts[0].rows
     return ContactsOfPhases(parts, times)
@@ -43,7 +47,12 @@ class _Part:
 def _of_section(answer: SectionAnswer, work_out: str) -> _Part:
     section, found = answer.section, answer.found
     rows = find_contacts(
-        section.case, section.motions, section.pairs, found.clearance, found.pair, work_out
+        section.phase.case,
+        section.phase.motions,
+        section.pairs,
+        found.clearance,
+        found.pair,
+        work_out,
     )
     return _Part(rows, section.phase.first, section.places)
 

@@ -30,6 +30,8 @@ def notices(plan: SectionPlan) -> tuple[Notice, ...]:
     """One notice for each pair of which it is open at some step whether one body is inside the other."""
     found: dict[int, Notice] = {}
     for section in plan.sections:
+        if section.other not in (None, section.phase):
+            continue  # what is apart at one time, and at all pairs of times, is inside at none
         for place, notice in _of_section(section):
             found.setdefault(place, notice)
     return tuple(notice for _, notice in sorted(found.items()))
@@ -37,7 +39,7 @@ def notices(plan: SectionPlan) -> tuple[Notice, ...]:
 
 def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
     """The same of a section, each with the place of the pair in the run."""
-    case, motions, pairs = section.case, section.motions, section.pairs
+    case, motions, pairs = section.phase.case, section.phase.motions, section.pairs
     names = pair_names(case, pairs)
     waiting = doubts_of(case, pairs)
     for start in range(0, section.phase.n_steps if waiting else 0, AT_ONCE):

@@ -87,7 +87,7 @@ def judged(
 ) -> Judged:
     """What a run comes to, of what its sections come to."""
     rules, limits, n_steps = [], case.limits, motions[0].n_steps
-    samples = _SampleMoments(pair_names(case, plan.pairs), motions)
+    samples = SampleMoments(pair_names(case, plan.pairs), motions)
     for rule in plan.rules:
         own = [answer for answer in answers if answer.section.rule == rule]
         found = joined(own, n_steps, len(plan.pairs))
@@ -106,7 +106,7 @@ def judged(
 
 
 @dataclass(frozen=True, eq=False)
-class _SampleMoments:
+class SampleMoments:
     """The moments of steps; names of the bodies of each pair, and the robots' motions."""
 
     names: tuple[list[str], list[str]]

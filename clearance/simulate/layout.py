@@ -7,13 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from clearance.geometry.tree import join
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.motion.world import World
-from clearance.world.case import Case
+from clearance.world.case import Case, Limits
 from clearance.world.forest import WORLD, carried_by, forest_of, joined_positions
 from clearance.world.kinematics import poses_by_link, seen_from
 from clearance.world.motion import Motion
@@ -62,8 +64,31 @@ class Layout:
         points[swapped] = points[swapped][:, ::-1]
 
 
-@dataclass(frozen=True, order=True)
-class _Place:
+@dataclass(frozen=True, eq=False)
+class PairsInMotion:
+    """Pairs of bodies of a case in which nothing changes hands, and how all moves.
+
+    Attributes:
+        motions: one for each robot of the case, with the same steps.
+        limits: of the pairs' distances; those of the case if not given.
+    """
+
+    case: Case
+    motions: Sequence[Motion]
+    pairs: Sequence[Pair]
+    limits: Limits = None  # type: ignore[assignment]  # always there once it is made
+
+    def __post_init__(self) -> None:
+        if self.limits is None:
+            object.__setattr__(self, "limits", self.case.limits)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """All bodies in one searchable surface."""
+        return lay_out(self.case, self.pairs)
+
+
+class _Place(NamedTuple):
     """A body as it is seen from a link, or in the world."""
 
     reference: int
@@ -73,16 +98,18 @@ class _Place:
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     """The layout of the bodies in `pairs`."""
     links = forest_of(case).links
-    frames = {body: body.frame_in(case) for pair in pairs for body in (pair.a, pair.b)}
+    bodies = {body for pair in pairs for body in pair}
+    frames = {body: body.frame_in(case) for body in bodies}
     references = [_reference_of(case, frames[pair.a], frames[pair.b]) for pair in pairs]
     places = _places(pairs, references)
     solids = sorted({place.body for place in places}, key=_links_first)
     link_of = {place: frames[place.body] for place in places if frames[place.body] != WORLD}
     wanted = {(p.reference, link_of[p]) for p in places if p.reference != IN_WORLD}
     links, seen = seen_from(links, sorted(wanted))
+    row_of = {tuple(place): row for row, place in enumerate(places)}
     measured = np.array(
         [
-            [places.index(_Place(reference, body)) for body in (pair.a, pair.b)]
+            [row_of[reference, body] for body in pair]
             for pair, reference in zip(pairs, references, strict=True)
         ],
         dtype=np.int64,
@@ -119,7 +146,7 @@ def _places(pairs: Sequence[Pair], references: Sequence[int]) -> list[_Place]:
     found = {
         _Place(reference, body)
         for pair, reference in zip(pairs, references, strict=True)
-        for body in (pair.a, pair.b)
+        for body in pair
     }
     return sorted(found, key=lambda place: (place.reference, _links_first(place.body)))
 

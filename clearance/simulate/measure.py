@@ -8,7 +8,7 @@ memory or on disk (`resumable_rows`). Not for: where the motion comes from (`kin
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -18,12 +18,9 @@ from clearance.compile.kernel_table import call
 from clearance.kernels.motion.sweep import NOT_LESS, sweep
 from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
-from clearance.simulate.layout import Layout, lay_out, positions_at
+from clearance.simulate.layout import PairsInMotion, positions_at
 from clearance.simulate.parts import blocks, in_order, parts
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
-from clearance.world.case import Case
-from clearance.world.motion import Motion
-from clearance.world.pairs import Pair
 
 NEEDS = ("steps", "pairs", "limit", "minimum")
 """What can be asked: the clearance of every step; of every pair as well; of the steps below the warn limit,
@@ -95,19 +92,17 @@ class Measurement:
 class _Sweep:
     """What all parts of one measurement share."""
 
-    case: Case
-    layout: Layout
-    motions: Sequence[Motion]
+    what: PairsInMotion
     resources: Resources
     tally: np.ndarray = field(default_factory=lambda: np.zeros(len(SWEEP_COUNTERS), dtype=np.int64))
 
     @property
     def n_steps(self) -> int:
-        return self.motions[0].n_steps
+        return self.what.motions[0].n_steps
 
     @property
     def n_pairs(self) -> int:
-        return len(self.layout.world.pairs)
+        return len(self.what.pairs)
 
     @property
     def quiet(self) -> _Sweep:
@@ -149,26 +144,27 @@ class _Sweep:
 
     def sweep_steps(self, steps: Steps, goal: Goal, rows: StepRows, found: PairRows) -> np.ndarray:
         """Fills the rows of a few steps in one go; the counters, as in `SWEEP_COUNTERS`."""
-        positions = positions_at(self.case, self.motions, steps)
+        layout = self.what.layout
+        positions = positions_at(self.what.case, self.what.motions, steps)
         numbers = np.arange(steps.start, steps.stop) if isinstance(steps, range) else steps
         counts = np.empty(len(SWEEP_COUNTERS), dtype=np.int64)
         least_only = goal.lasting and not goal.each and goal.within[0] == np.inf
         first = FirstLook(_first_steps(len(steps)) if least_only else _NO_STEPS, FIRST_EFFORT)
         call(
             sweep,
-            self.layout.surface,
-            self.layout.world,
+            layout.surface,
+            layout.world,
             SweptSteps(positions, numbers),
             goal,
             first,
             SweepRows(rows, found),
             counts,
         )
-        if not self.layout.is_in_world:
-            self.layout.to_world(positions, rows.pair, rows.points)
+        if not layout.is_in_world:
+            layout.to_world(positions, rows.pair, rows.points)
             met = np.where(found.step >= 0, np.arange(len(found.step)), -1)
-            where = positions_at(self.case, self.motions, np.maximum(found.step, 0))
-            self.layout.to_world(where, met, found.points)
+            where = positions_at(self.what.case, self.what.motions, np.maximum(found.step, 0))
+            layout.to_world(where, met, found.points)
         return counts
 
     def _run(
@@ -234,34 +230,28 @@ def _gathered(known: dict[str, np.ndarray], n_pairs: int) -> tuple[Minima, np.nd
 
 
 def measure(
-    case: Case,
-    motions: Sequence[Motion],
-    pairs: Sequence[Pair],
-    need: str = "steps",
-    resources: Resources = DEFAULT_RESOURCES,
+    what: PairsInMotion, need: str = "steps", resources: Resources = DEFAULT_RESOURCES
 ) -> Measurement:
-    """The exact clearances of `pairs` over `motions` (one for each robot, with the same steps).
+    """The exact clearances of pairs in motion.
 
     Args:
         need: one of `NEEDS`.
         resources: threads, progress, and where the rows are kept.
     """
-    work = _Sweep(case, lay_out(case, pairs), motions, resources)
+    work = _Sweep(what, resources)
     if need == "pairs":
         return _every_pair(work)
     if need == "minimum":
         return _minimum(work)
     if need == "limit":
-        return _within_limit(work, case.limits.warn)
+        return _within_limit(work, what.limits.warn)
     rows = work.step_rows("steps", range(work.n_steps))
     return _measurement(work, rows, lambda most: _pair_minima(work.quiet, rows, most))
 
 
-def pairs_in_contact(
-    case: Case, motions: Sequence[Motion], pairs: Sequence[Pair], steps: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
-    work = _Sweep(case, lay_out(case, pairs), motions, Resources(jobs=1))
+    work = _Sweep(what, Resources(jobs=1))
     goal = Goal(np.zeros(work.n_pairs), True, False)
     found = []
     for span in parts(len(steps), sparse=True):

@@ -14,10 +14,10 @@ from clearance.errors import NothingToMeasure
 from clearance.progress import Progress
 from clearance.query.paper import NO_TOLERANCE, distance_paper
 from clearance.query.result import Nearest
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import Measurement, Minima
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
-from clearance.world.motion import Motion
 from clearance.world.pairs import Pair
 
 CHUNK = 64
@@ -25,14 +25,12 @@ CHUNK = 64
 
 
 def measure_paper(
-    case: Case,
-    motions: Sequence[Motion],
-    pairs: Sequence[Pair],
+    what: PairsInMotion,
     progress: Progress | None = None,
     tolerance: float = NO_TOLERANCE,
     first_step: int = 0,
 ) -> Measurement:
-    """The paper's clearances of `pairs` over `motions`; those of pairs that its rules cut are infinite.
+    """The paper's clearances of pairs in motion; those of pairs that its rules cut are infinite.
 
     Args:
         tolerance: [m] of rule 1. first_step: the step of the run that the motions begin with.
@@ -40,6 +38,7 @@ def measure_paper(
     Raises:
         NothingToMeasure: the rules cut every polygon pair of a step.
     """
+    case, motions, pairs = what.case, what.motions, what.pairs
     n_steps = motions[0].n_steps
     clearance, points = np.full(n_steps, np.inf), np.full((n_steps, 2, 3), np.nan)
     winner = np.zeros(n_steps, dtype=np.int64)

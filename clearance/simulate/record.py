@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.simulate.moment import Moment
-from clearance.simulate.names import columns_of, sides_in
+from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of, sides_in
 from clearance.simulate.parts import BLOCK
 from clearance.simulate.status import STATUSES, Status, status_of
 from clearance.world.case import Case, Limits, Omission
@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PairMinimum:
-    """The least clearance of one link-obstacle pair over the whole run."""
+    """The least clearance of one pair over the whole run, as far as one rule judges it.
+
+    `link` and `obstacle` are its two bodies, whatever they are: a link, a part, an obstacle.
+    """
 
     link: str
     obstacle: str
@@ -42,10 +45,10 @@ class PairMinimum:
 
 @dataclass(frozen=True, eq=False)
 class StepContact:
-    """One link-obstacle pair that overlaps at one step.
+    """One pair that overlaps at one step; `link` and `obstacle` are its two bodies, whatever they are.
 
     Attributes:
-        known: the overlap in the world frame, the link its body a; without its region if there is `again`; None
+        known: the overlap in the world frame, `link` its body a; without its region if there is `again`; None
             where the run has not worked it out.
         again: finds all of it once more.
     """
@@ -256,17 +259,22 @@ class EveryPair:
     """The clearance of every pair at every step.
 
     Attributes:
-        links, obstacles: (p,) names of each pair.
-        clearance: (n, p) [m].
+        links, obstacles: (p,) names of the two bodies of each pair.
+        clearance: (n, p) [m]; NaN where a pair is not measured at a step.
+        sides: what the first columns of the run's tables call the two bodies.
+        by_rule: (n, p) [m] of each rule, by its name, the clearances that it judges, NaN elsewhere.
     """
 
     links: list[str]
     obstacles: list[str]
     clearance: np.ndarray
+    sides: tuple[str, str] = LINK_AND_OBSTACLE
+    by_rule: tuple[tuple[str, np.ndarray], ...] = ()
 
     @cached_property
     def table(self) -> pa.Table:
-        """One row a step and pair: step, link, obstacle, clearance [m]."""
+        """One row a step and pair: step, link and obstacle (where all steps have them), clearance [m] (null where
+        the pair is not measured), body_a, body_b, and the rule that judges it."""
         return pa.concat_tables(self.batches()).combine_chunks()
 
     def batches(self) -> Iterator[pa.Table]:
@@ -275,14 +283,26 @@ class EveryPair:
         size = max(1, BLOCK // n_pairs)
         for start in range(0, n_steps, size):
             part = self.clearance[start : start + size]
-            yield pa.table(
-                {
-                    "step": pa.array(np.repeat(np.arange(start, start + len(part)), n_pairs)),
-                    "link": _repeated(self.links, len(part)),
-                    "obstacle": _repeated(self.obstacles, len(part)),
-                    "clearance": pa.array(part.reshape(-1)),
-                }
-            )
+            names = [_repeated(each, len(part)) for each in (self.links, self.obstacles)]
+            columns = {
+                "step": pa.array(np.repeat(np.arange(start, start + len(part)), n_pairs)),
+                self.sides[0]: names[0],
+                self.sides[1]: names[1],
+                "clearance": pa.array(part.reshape(-1), from_pandas=True),
+            }
+            columns |= dict(zip(SIDES, names, strict=True))
+            yield pa.table(columns | {"rule": self._rules(slice(start, start + len(part)))})
+
+    def _rules(self, steps: slice) -> pa.DictionaryArray:
+        """What judges each row of some steps; of two the one of less clearance; null where nothing does."""
+        names = [name for name, _ in self.by_rule] or [DEFAULT]
+        part = self.clearance[steps]
+        codes = np.zeros(part.shape, dtype=np.int32)
+        if len(names) > 1:
+            own = np.array([clearance[steps] for _, clearance in self.by_rule])
+            codes = np.argmin(np.where(np.isnan(own), np.inf, own), axis=0).astype(np.int32)
+        indices = pa.array(codes.reshape(-1), mask=np.isnan(part).reshape(-1))
+        return pa.DictionaryArray.from_arrays(indices, pa.array(names, pa.string()))
 
 
 def _repeated(names: Sequence[str], times: int) -> pa.DictionaryArray:
@@ -360,8 +380,11 @@ class Record(Samples):
 
     Attributes:
         motions: one for each of `case.robots`.
-        steps: one row a step: step, time, clearance, link, obstacle, link_x … obstacle_z, status
-            ("clear" | "near" | "violated" | "contact", null where a bound does not decide),
+        steps: one row a step: step, time, clearance [m] (less padding, of the pair that stands worst against its
+            rule), body_a, body_b, a_x … b_z, the rule, status ("clear" | "near" | "violated" | "contact", null
+            where a bound does not decide); of one robot among obstacles that stand, link, obstacle, link_x …
+            obstacle_z as well, which come first; with several rules nearest_clearance, nearest_a, nearest_b of
+            the nearest pair whatever judges it; time_b where clocks are not tied;
             tracking_error when simulated; when certified, lower_bound and upper_bound of the motion from the step
             to the next, and `between`: the motion is worse there than at both of its ends, and the status is that
             of the motion, not of the step; else lower_bound of the step where `need` leaves clearances unknown

@@ -15,26 +15,31 @@ from numpy.typing import ArrayLike
 from clearance.simulate.moment import Moment
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
+from clearance.simulate.replay_bodies import FramePlace
 from clearance.simulate.resumable_rows import MeasuredRows
-from clearance.simulate.status import STATUSES, status_codes
+from clearance.simulate.row_status import RowStatus, codes_of_moments, rule_places
+from clearance.simulate.status import STATUSES
 from clearance.simulate.steps import between_of
-from clearance.world.motion import Motion
 
 MOST_MOMENTS = 500
 """Most moments between steps that are frames of their own, the least first."""
 
 
 def kept_moments(record: Record) -> list[Moment]:
-    """The moments between steps at which the motion is worse than at both, and that of its least clearance."""
-    certificate = record.certificate
-    if certificate is None:
+    """The moments between steps at which the motion is worse than at both, that which stands worst, and the
+    nearest of all."""
+    if record.certificate is None:
         return []
-    steps = np.flatnonzero(between_of(record.steps) & (certificate.pair >= 0))
-    least_first = steps[np.argsort(certificate.upper_bound[steps], kind="stable")][:MOST_MOMENTS]
-    chosen = set(least_first.tolist())
-    if record.worst is not record.worst_sample:
-        chosen.add(certificate.nearest_between)
-    return [certificate.moment_of(step) for step in sorted(chosen)]
+    rows = RowStatus(record)
+    seen = [one.certificate.pair for one in record.rules if one.certificate is not None]
+    seen_there = np.array(seen)[rows.rule_between, np.arange(record.steps.num_rows)] >= 0
+    steps = np.flatnonzero(rows.between & seen_there)
+    least_first = steps[np.argsort(rows.margin[steps], kind="stable")][:MOST_MOMENTS]
+    found = {int(step): rows.moment_between(int(step)) for step in least_first}
+    for moment in (record.nearest, record.worst):
+        if moment.between:
+            found[moment.step] = moment
+    return [found[step] for step in sorted(found)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,55 +47,78 @@ class ReplayFrames:
     """The kept steps and the moments between them, in order of time.
 
     Attributes:
-        arrays: by name as in `Replay`. pairs: link and obstacle of each frame, None where a bound decides.
-        positions: of each robot's joints, (frames, k).
+        arrays: by name as in `Replay`. places: when each frame is, and between whom what is told of it.
     """
 
     arrays: dict[str, np.ndarray]
-    pairs: list[tuple[str | None, str | None]]
-    positions: list[np.ndarray]
+    places: list[FramePlace]
 
     @staticmethod
     def of(
         record: Record, kept: np.ndarray, moments: Sequence[Moment], rows: MeasuredRows
     ) -> ReplayFrames:
-        table, limits = _rows_at(record, kept, rows), record.case.limits
+        table = _rows_at(record, kept, rows)
         known = table["clearance"].is_valid().to_numpy()
         after = np.searchsorted(kept, [moment.step for moment in moments], side="right")
         shown = {moment.step for moment in moments}
-        own = status_codes(table["clearance"].to_numpy(), limits).astype(np.uint8)
+        own = RowStatus(record).of_samples(kept).astype(np.uint8)
         is_shown = known & np.isin(kept, list(shown)) & between_of(table)
         clearances = np.array([moment.clearance for moment in moments])
         ends = [(*moment.point_link, *moment.point_obstacle) for moment in moments]
+        rule_names = [rule.name for rule in record.rules]
         joined: dict[str, tuple[np.ndarray, ArrayLike]] = {
             "steps": (kept, [moment.step for moment in moments]),
             "times": (
                 table["time"].to_numpy().astype(np.float64),
                 [moment.time for moment in moments],
             ),
+            "times_b": (_times_b(table), [_or_nan(moment.time_b) for moment in moments]),
             "clearances": (least_of(table), clearances),
             "between": (np.zeros(len(kept), dtype=np.uint8), 1),
             "known": (known.astype(np.uint8), 1),
-            "status": (np.where(is_shown, own, codes_of(table)), status_codes(clearances, limits)),
+            "status": (
+                np.where(is_shown, own, codes_of(table)),
+                codes_of_moments(record, list(moments)),
+            ),
+            "rule": (
+                rule_places(record)[kept].astype(np.int32),
+                [rule_names.index(moment.rule) for moment in moments],
+            ),
         }
         arrays = {name: np.insert(column, after, more) for name, (column, more) in joined.items()}
         lines = _lines(record, table)
         arrays["lines"] = np.insert(lines, after, np.array(ends).reshape(-1, 6), axis=0)
-        names = table["link"].to_pylist(), table["obstacle"].to_pylist()
-        pairs = list(zip(*names, strict=True))
-        for place, moment in reversed(list(zip(after, moments, strict=True))):
-            pairs.insert(place, (moment.link, moment.obstacle))
-        positions = [
-            np.insert(motion.positions[kept], after, _rows(moments, i, motion), axis=0)
-            for i, motion in enumerate(record.motions)
-        ]
-        return ReplayFrames(arrays, pairs, positions)
+        return ReplayFrames(
+            arrays, _places(record, kept, table, list(zip(after, moments, strict=True)))
+        )
 
 
-def _rows(moments: Sequence[Moment], i_robot: int, motion: Motion) -> np.ndarray:
-    """(moments, k) the positions of one robot's joints."""
-    n_joints = motion.positions.shape[1]
-    return np.array([moment.positions[i_robot] for moment in moments]).reshape(-1, n_joints)
+def _places(
+    record: Record, kept: np.ndarray, table: pa.Table, moments: Sequence[tuple[int, Moment]]
+) -> list[FramePlace]:
+    names = zip(*(table[name].to_pylist() for name in record.sides[:2]), strict=True)
+    clearances, times_b = table["clearance"].to_pylist(), _times_b(table)
+    rows = zip(kept.tolist(), clearances, names, times_b.tolist(), strict=True)
+    places = [
+        FramePlace(step, 0.0, clearance, pair, None if np.isnan(time_b) else time_b)
+        for step, clearance, pair, time_b in rows
+    ]
+    for place, moment in reversed(moments):
+        pair = moment.link, moment.obstacle
+        one = FramePlace(moment.step, moment.share, moment.clearance, pair, moment.time_b)
+        places.insert(place, one)
+    return places
+
+
+def _times_b(table: pa.Table) -> np.ndarray:
+    """(n,) [s] when the second body of each row is there, NaN where that is its time."""
+    if "time_b" not in table.column_names:
+        return np.full(table.num_rows, np.nan)
+    return table["time_b"].to_numpy().astype(np.float64)
+
+
+def _or_nan(value: float | None) -> float:
+    return np.nan if value is None else value
 
 
 def _rows_at(record: Record, kept: np.ndarray, on_disk: MeasuredRows) -> pa.Table:
@@ -104,9 +132,6 @@ def _rows_at(record: Record, kept: np.ndarray, on_disk: MeasuredRows) -> pa.Tabl
     return pa.concat_tables(taken).combine_chunks()
 
 
-_LINE = ("link_x", "link_y", "link_z", "obstacle_x", "obstacle_y", "obstacle_z")
-
-
 def least_of(steps: pa.Table) -> np.ndarray:
     """(n,) [m] the clearance of each step, or what it is at least."""
     clearances = steps["clearance"].to_numpy().astype(np.float64)
@@ -116,10 +141,10 @@ def least_of(steps: pa.Table) -> np.ndarray:
 
 
 def _lines(record: Record, steps: pa.Table) -> np.ndarray:
-    """(n, 6) [m] the witness points; where they are unknown, twice that of the worst step's link."""
-    lines = np.column_stack([steps[name].to_numpy() for name in _LINE]).astype(np.float64)
-    worst = [record.steps[name][record.worst_step].as_py() for name in _LINE[:3]]
-    return np.where(np.isnan(lines), np.tile(worst, 2), lines)
+    """(n, 6) [m] the witness points; where they are unknown, twice that of the worst step's first body."""
+    points = record.sides[2:]
+    lines = np.column_stack([steps[name].to_numpy() for name in points]).astype(np.float64)
+    return np.where(np.isnan(lines), np.tile(record.worst_sample.point_link, 2), lines)
 
 
 def codes_of(steps: pa.Table) -> np.ndarray:

@@ -7,14 +7,17 @@ the sections' answers come to together (`judged`).
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from clearance.simulate.layout import PairsInMotion
+from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.world.case import Case, Limits, Omission
-from clearance.world.clocks import are_tied
-from clearance.world.motion import Motion
+from clearance.world.clocks import clock_pair, clocks_of
 from clearance.world.pairs import Pair, Selection, nothing_to_measure, selected_pairs
 from clearance.world.timeline import Phase, Timeline
 
@@ -26,35 +29,44 @@ class Section:
     Attributes:
         number: of the section, from 0.
         rule: what judges them, as `Limits.rule_names` counts. padding: [m] of both bodies of each.
-        tied: False where the clocks of their two bodies are not those of one actor, and the case does not tie
-            them.
         pairs: those of the section. places: (p,) of each in the pairs of the run.
+        other: the phase that the second bodies are in, where their clock is not tied to that of the first; else
+            None.
     """
 
     number: int
     phase: Phase
     rule: int
     padding: float
-    tied: bool
     pairs: tuple[Pair, ...]
     places: np.ndarray
+    other: Phase | None = None
 
     @property
-    def case(self) -> Case:
-        """The case in this phase; its limits are those of the distances of the bodies without their padding."""
+    def tied(self) -> bool:
+        """True if both bodies of each pair are where they are at one time."""
+        return self.other is None
+
+    @cached_property
+    def limits(self) -> Limits:
+        """Those of the distances of the bodies without their padding."""
         limits = self.phase.case.limits.of_rule(self.rule)
-        if self.padding:
-            limits = Limits(limits.fail + self.padding, limits.warn + self.padding, limits.joints)
-        return (
-            self.phase.case
-            if limits is self.phase.case.limits
-            else replace(self.phase.case, limits=limits)
-        )
+        if not self.padding:
+            return limits
+        return Limits(limits.fail + self.padding, limits.warn + self.padding, limits.joints)
 
-    @property
-    def motions(self) -> tuple[Motion, ...]:
-        """Of the robots, in this phase."""
-        return self.phase.motions
+    @cached_property
+    def in_motion(self) -> PairsInMotion:
+        """Its pairs and how they move."""
+        return PairsInMotion(self.phase.case, self.phase.motions, self.pairs, self.limits)
+
+    @cached_property
+    def of_two_clocks(self) -> PairsOfTwoClocks:
+        """The same of pairs whose clocks are not tied: the first bodies in this phase, the second in the other."""
+        assert self.other is not None
+        a = ClockMotion(self.phase.case, self.phase.motions)
+        b = ClockMotion(self.other.case, self.other.motions)
+        return PairsOfTwoClocks(a, b, self.pairs, self.limits, self.phase.case.clock.slack)
 
     @property
     def steps(self) -> slice:
@@ -93,46 +105,96 @@ def section_plan(timeline: Timeline) -> SectionPlan:
     Raises:
         NothingToMeasure: no pair is left in any phase.
     """
-    selections = [selected_pairs(phase) for phase in timeline.phases]
+    phases = timeline.phases
+    selections = [selected_pairs(phase) for phase in phases]
+    found: list[Section] = []
     places: dict[Pair, int] = {}
-    for pair in (pair for selection in selections for pair in selection.pairs):
-        places.setdefault(pair, len(places))
+    for phase, selection in zip(phases, selections, strict=True):
+        _add(found, places, phase, selection, None)
+    if phases[0].case.clock.slack > 0.0:
+        for one, other in itertools.product(phases, repeat=2):
+            for clocks in _clock_pairs(one.case, selections):
+                _add(
+                    found, places, one, selected_pairs(_mixed(one, other, clocks[1])), other, clocks
+                )
     if not places:
         raise nothing_to_measure()
-    sections: list[Section] = []
-    for phase, selection in zip(timeline.phases, selections, strict=True):
-        for (rule, padding, tied), rows in sorted(_alike(phase.case, selection).items()):
-            pairs = tuple(selection.pairs[i] for i in rows)
-            own = np.array([places[pair] for pair in pairs], dtype=np.int64)
-            sections.append(Section(len(sections), phase, rule, padding, tied, pairs, own))
+    measured = {section.phase.first for section in found}
     return SectionPlan(
         tuple(places),
-        tuple(sections),
+        tuple(found),
         _each_once(one for selection in selections for one in selection.unmeasured),
-        tuple(
-            phase
-            for phase, selection in zip(timeline.phases, selections, strict=True)
-            if not selection.pairs
+        tuple(phase for phase in phases if phase.first not in measured),
+    )
+
+
+def _add(
+    found: list[Section],
+    places: dict[Pair, int],
+    phase: Phase,
+    selection: Selection,
+    other: Phase | None,
+    clocks: tuple[int, int] | None = None,
+) -> None:
+    """Adds the sections of a selection whose pairs are tied, or are of two clocks that are not."""
+    if other is not None and _apart(phase, other) > phase.case.clock.slack:
+        return
+    alike: dict[tuple[int, float], list[Pair]] = {}
+    for pair, rule, padding in zip(
+        selection.pairs, selection.rules, selection.paddings, strict=True
+    ):
+        if clock_pair(phase.case, pair.a, pair.b) == clocks:
+            alike.setdefault((rule, padding), []).append(pair)
+    for (rule, padding), pairs in sorted(alike.items()):
+        own = [places.setdefault(pair, len(places)) for pair in pairs]
+        numbered = len(found), phase, rule, padding, tuple(pairs)
+        found.append(Section(*numbered, np.array(own, dtype=np.int64), other))
+
+
+def _apart(phase: Phase, other: Phase) -> float:
+    """[s] How far apart the times of two phases are at least."""
+    return max(phase.span[0] - other.span[1], other.span[0] - phase.span[1], 0.0)
+
+
+def _clock_pairs(case: Case, selections: Sequence[Selection]) -> list[tuple[int, int]]:
+    """The two clocks of pairs that are not tied, each once."""
+    every = (clock_pair(case, pair.a, pair.b) for one in selections for pair in one.pairs)
+    return sorted({clocks for clocks in every if clocks is not None})
+
+
+def _mixed(phase: Phase, other: Phase, clock: int) -> Phase:
+    """A phase in which all that moves by one clock is as it is in another."""
+    if other is phase:
+        return phase
+    things = {thing for thing, own in clocks_of(phase.case).items() if own == clock}
+    names = {phase.case.obstacles[i].name for is_obstacle, i in things if is_obstacle}
+    obstacles = tuple(
+        theirs if here.name in names else here
+        for here, theirs in zip(phase.case.obstacles, other.case.obstacles, strict=True)
+    )
+    carried = {part: c for part, c in phase.carried.items() if part not in names}
+    carried |= {part: c for part, c in other.carried.items() if part in names}
+    return replace(
+        phase,
+        case=replace(phase.case, obstacles=obstacles),
+        carried=carried,
+        absent_robots=_absent(phase.absent_robots, other.absent_robots, things, of_obstacles=False),
+        absent_obstacles=_absent(
+            phase.absent_obstacles, other.absent_obstacles, things, of_obstacles=True
         ),
     )
 
 
-def _alike(case: Case, selection: Selection) -> dict[tuple[int, float, bool], list[int]]:
-    """The pairs of a selection by rule, padding and whether their clocks are tied."""
-    found: dict[tuple[int, float, bool], list[int]] = {}
-    for i, pair in enumerate(selection.pairs):
-        tied = are_tied(case, pair.a, pair.b)
-        found.setdefault((selection.rules[i], selection.paddings[i], tied), []).append(i)
-    return found
+def _absent(
+    here: frozenset[int],
+    there: frozenset[int],
+    things: set[tuple[bool, int]],
+    *,
+    of_obstacles: bool,
+) -> frozenset[int]:
+    own = {i for is_obstacle, i in things if is_obstacle is of_obstacles}
+    return frozenset((here - own) | (there & own))
 
 
 def _each_once(omissions: Iterable[Omission]) -> tuple[Omission, ...]:
     return tuple(dict.fromkeys(omissions))
-
-
-def by_phase(sections: Sequence[Section]) -> dict[int, list[Section]]:
-    """The sections of each phase, by its first step."""
-    found: dict[int, list[Section]] = {}
-    for section in sections:
-        found.setdefault(section.phase.first, []).append(section)
-    return found

@@ -1,6 +1,6 @@
 """Pairs that touch all the time, as an arm's foot and its table, or links drawn into one another: hints.
 
-Not for: pairs that touch for a while, which are what a run looks for.
+Not for: pairs that touch for a while, which are what a run looks for, but where a part changes hands (`handling`).
 """
 
 from __future__ import annotations
@@ -11,62 +11,96 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.query.distance import distance
+from clearance.simulate.contact_phases import ContactsOfPhases
 from clearance.simulate.contact_rows import ContactRows
+from clearance.simulate.handling import gap_between, handling_hints
 from clearance.simulate.record import Record
+from clearance.simulate.sections import SectionPlan, section_plan
 from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.mimics import followers
 from clearance.world.motion import Motion
-from clearance.world.pairs import BodyIndex, measured_pairs
+from clearance.world.pairs import BodyIndex
 
 
 def standing_contacts(record: Record) -> list[tuple[str, str]]:
-    """(link, obstacle) of the measured pairs that touch at every moment, since their link never moves."""
+    """The two bodies of the measured pairs that touch at every moment, since neither ever moves."""
     if (
         record.steps.num_rows < 2 or not (record.clearances <= 0.0).any()
     ):  # one step is not "at every moment"
         return []
     case = record.case
     standing = [_standing_links(motion) for motion in record.motions]
-    poses = link_poses_at(case, record.motions, slice(0, 1))
+    first = record.timeline.phases[0]
+    poses = link_poses_at(first.case, first.motions, slice(0, 1))
     touching = []
-    for pair in measured_pairs(case)[0]:
+    for pair in section_plan(record.timeline).pairs:
         if not all(_stands(case, body, standing) for body in (pair.a, pair.b)):
             continue
-        pose_a, pose_b = (body.poses_in(case, poses)[0] for body in (pair.a, pair.b))
+        pose_a, pose_b = (body.poses_in(first.case, poses)[0] for body in (pair.a, pair.b))
         if _touch(pair.a.shape_in(case), pose_a, pair.b.shape_in(case), pose_b):
             touching.append((pair.a.name_in(case), pair.b.name_in(case)))
     return touching
 
 
 def _stands(case: Case, body: BodyIndex, standing: list[set[str]]) -> bool:
-    """True for an obstacle, and for a link that no joint moves."""
+    """True for an obstacle that stands and is never carried, and for a link that no joint moves."""
     if body.is_obstacle:
-        return True
-    return case.robots[body.i_robot].robot.bodies[body.i_body].name in standing[body.i_robot]
+        carried = any(carry.part == body.name_in(case) for carry in case.carries)
+        return case.obstacles[body.i_body].stands and not carried
+    if case.robots[body.i_robot].mount is not None:
+        return False
+    return body.own_name_in(case) in standing[body.i_robot]
 
 
-def links_always_in_contact(record: Record) -> list[tuple[str, str]]:
-    """The measured pairs of two links that touch at every step of several."""
-    if record.steps.num_rows < 2 or not isinstance(record.contacts, ContactRows):
+def always_in_contact(record: Record) -> list[tuple[str, str]]:
+    """The pairs that touch at every step of several at which they are measured.
+
+    A link that a joint moves against an obstacle that stands is left out: that is what a run looks for.
+    """
+    rows = record.contacts
+    if record.steps.num_rows < 2 or not isinstance(rows, ContactRows | ContactsOfPhases):
         return []
-    measured, rows = measured_pairs(record.case)[0], record.contacts
-    of_links = [i for i, pair in enumerate(measured) if not pair.b.is_obstacle]
-    if not of_links or not (record.clearances <= 0.0).any():
-        return []
-    n_steps = np.bincount(rows.pairs, minlength=len(measured))
-    return [rows.names[i] for i in of_links if n_steps[i] == record.steps.num_rows]
+    case, plan = record.case, section_plan(record.timeline)
+    n_steps = np.bincount(rows.pairs, minlength=len(plan.pairs))
+    n_measured = _n_measured(plan)
+    standing: list[set[str]] = [set() for _ in case.robots]
+    return [
+        (pair.a.name_in(case), pair.b.name_in(case))
+        for pair, n_touching, n_all in zip(plan.pairs, n_steps, n_measured, strict=True)
+        if n_touching == n_all > 1 and (pair.a.is_obstacle or not _stands(case, pair.b, standing))
+    ]
+
+
+def _n_measured(plan: SectionPlan) -> np.ndarray:
+    """(p,) at how many steps each pair of a run is measured; a step where two phases meet is one."""
+    n_steps = np.zeros(len(plan.pairs), dtype=np.int64)
+    last = np.full(len(plan.pairs), -1, dtype=np.int64)
+    for section in sorted(plan.sections, key=lambda section: section.phase.first):
+        phase, own = section.phase, section.places
+        n_steps[own] += phase.n_steps - (last[own] == phase.first)
+        last[own] = phase.last
+    return n_steps
 
 
 def standing_hint(record: Record) -> list[str]:
-    """One hint for each kind of such pairs, with the line of the case file that leaves them out."""
+    """One hint for each kind of such pairs, and for parts that touch as they change hands, with the line of the
+    case file that leaves them out."""
     standing = standing_contacts(record)
-    links = [pair for pair in links_always_in_contact(record) if pair not in standing]
+    always = [pair for pair in always_in_contact(record) if pair not in standing]
+    known = {frozenset(pair) for pair in (*standing, *always)}
+    links = [pair for pair in always if _are_links(record.case, pair)]
     return [
         *_hint(standing, "all the time, since the link never moves"),
         *_hint(links, "at every step, link against link"),
+        *_hint([pair for pair in always if pair not in links], "whenever they are measured"),
+        *(str(hint) for hint in handling_hints(record) if hint.pair not in known),
     ]
+
+
+def _are_links(case: Case, pair: tuple[str, str]) -> bool:
+    """True if neither name is an obstacle's."""
+    return not any(obstacle.name in pair for obstacle in case.obstacles)
 
 
 def _hint(pairs: list[tuple[str, str]], when: str) -> Iterator[str]:
@@ -80,12 +114,7 @@ def _touch(
     a: Polyhedron, world_from_a: np.ndarray, b: Polyhedron, world_from_b: np.ndarray
 ) -> bool:
     """True if two bodies touch; balls about their boxes that are apart decide without a search."""
-    centres = [pose[:3, :3] @ shape.bounds.mean(axis=0) + pose[:3, 3]
-               for shape, pose in ((a, world_from_a), (b, world_from_b))]  # fmt: skip
-    radii = [np.linalg.norm(np.ptp(shape.bounds, axis=0)) / 2.0 for shape in (a, b)]
-    if np.linalg.norm(centres[0] - centres[1]) > 1.001 * sum(radii):
-        return False
-    return distance(a, b, pose_a=world_from_a, pose_b=world_from_b).distance <= 0.0
+    return gap_between(a, world_from_a, b, world_from_b, far=0.0) <= 0.0
 
 
 def _standing_links(motion: Motion) -> set[str]:

@@ -51,7 +51,7 @@ def status_of(clearance: float, limits: Limits, touches: bool | None = None) -> 
     return str(STATUSES[int(status_codes(np.array(clearance), limits, touches))])
 
 
-def sample_codes(found: Measurement, limits: Limits, steps: slice) -> np.ndarray:
+def sample_codes(found: Measurement, limits: Limits, steps: slice | np.ndarray) -> np.ndarray:
     """(k,) the status of each of `steps` by itself; -1 where its bound does not decide."""
     undecided = (found.pair[steps] < 0) & (found.lower_bound[steps] < limits.warn)
     touching = None if found.touching is None else found.touching[steps]

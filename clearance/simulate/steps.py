@@ -12,7 +12,7 @@ import pyarrow as pa
 from clearance.simulate.contact_columns import no_contact_columns
 from clearance.simulate.judged import Judged
 from clearance.simulate.measure import Measurement
-from clearance.simulate.names import SIDES, BodyNames, columns_of, pair_names
+from clearance.simulate.names import SIDES, BodyNames, columns_of, pair_names, sides_of
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Certificate, EveryPair, PairMinimum, RuleAnswer
 from clearance.simulate.status import STATUSES
@@ -183,9 +183,14 @@ class PairMinima(Sequence[PairMinimum]):
                 )
 
 
-def every_pair(case: Case, pairs: Sequence[Pair], found: Measurement) -> EveryPair | None:
+def every_pair(case: Case, pairs: Sequence[Pair], judged: Judged) -> EveryPair | None:
     """The clearance of every pair at every step; None if that was not asked for."""
-    return None if found.every is None else EveryPair(*pair_names(case, pairs), found.every)
+    every = judged.found.every
+    if every is None:
+        return None
+    own = [(rule.name, rule.measurement.every) for rule in judged.rules]
+    by_rule = tuple((name, found) for name, found in own if found is not None)
+    return EveryPair(*pair_names(case, pairs), every, sides_of(case), by_rule)
 
 
 def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> list[Omission]:

@@ -23,13 +23,20 @@ from clearance.errors import MissingFile
 from clearance.extras import importing
 from clearance.simulate.record import Record
 from clearance.simulate.replay import FILE_NAME, Replay, load_replay, replay_of
+from clearance.simulate.replay_bodies import LINK, MOVING, PART, STANDING, DrawnBody
 from clearance.simulate.status import STATUSES
 
 if TYPE_CHECKING:
     from clearance.view.viewer import Stage
 
 COLOURS = {"clear": 0x2B7A4B, "near": 0xC77D0A, "violated": 0xC0281C, "contact": 0x8A0F45}
-LINK, LINK_NOT_MEASURED, OBSTACLE = 0x5C7390, 0xA9B4C0, 0xB9B4A8
+ROBOTS, LINK_NOT_MEASURED = (0x5C7390, 0x7D6796, 0x4B7F78, 0x94705C), 0xA9B4C0
+OTHERS = {STANDING: (0xB9B4A8, 0.5), MOVING: (0x9C9480, 0.72), PART: (0xB3892F, 1.0)}
+"""Colour and opacity of what is no link."""
+
+FOLDERS = {LINK: "links", STANDING: "obstacles", MOVING: "moving", PART: "parts"}
+"""Where bodies of a kind are in meshcat's tree."""
+
 REGION, WAY_OUT = 0xE01010, 0x4A0008
 
 
@@ -117,19 +124,29 @@ def fill(stage: Stage, replay: Replay) -> None:
     box = _box(replay)
     size = float(np.linalg.norm(box[1] - box[0]))
     for i, body in enumerate(replay.bodies):
-        path = f"{body.kind}s/{i} {body.name.replace('/', ' ')}"
-        colour = (
-            OBSTACLE if body.kind == "obstacle" else LINK if body.measured else LINK_NOT_MEASURED
-        )
-        stage.mesh(
-            path, *replay.shapes[body.i_shape], colour, 0.5 if body.kind == "obstacle" else 1.0
-        )
+        path = f"{FOLDERS[body.kind]}/{i} {body.name.replace('/', ' ')}"
+        stage.mesh(path, *replay.shapes[body.i_shape], *_look(body))
         _place(stage, path, replay.poses[i], times)
+        _show(stage, path, replay.shown[i], times)
     _marks(stage, replay, times, size)
     _contacts(stage, replay, times, size)
     stage.look(box.mean(axis=0), box.mean(axis=0) + 1.5 * size * _free_side(replay))
     _controls(stage, replay, times)
     stage.finish()
+
+
+def _look(body: DrawnBody) -> tuple[int, float]:
+    """Colour and opacity of a body."""
+    if body.kind == LINK:
+        return (ROBOTS[body.i_robot % len(ROBOTS)] if body.measured else LINK_NOT_MEASURED), 1.0
+    return OTHERS[body.kind]
+
+
+def _show(stage: Stage, path: str, shown: np.ndarray, times: list[float]) -> None:
+    """Hides a body while it is not in the cell."""
+    if not shown.all():
+        seen = np.broadcast_to(shown, len(times)).astype(bool).tolist()
+        stage.animate(path, "visible", "bool", times, seen)
 
 
 def _place(stage: Stage, path: str, poses: np.ndarray, times: list[float]) -> None:
@@ -153,7 +170,7 @@ def _marks(stage: Stage, replay: Replay, times: list[float], size: float) -> Non
         stage.animate(f"{path}/line", "position", "vector3", times, positions)
         stage.animate(f"{path}/line", "quaternion", "quaternion", times, turns)
         stage.animate(f"{path}/line", "scale", "vector3", times, scales)
-        for name, columns in (("link", slice(0, 3)), ("obstacle", slice(3, 6))):
+        for name, columns in (("first", slice(0, 3)), ("second", slice(3, 6))):
             stage.ball(f"{path}/{name} point", size / 180, colour)
             stage.animate(
                 f"{path}/{name} point",
@@ -216,6 +233,10 @@ def _controls(stage: Stage, replay: Replay, times: list[float]) -> None:
     for code, name in ((1, "first near miss"), (2, "first violation"), (3, "first contact")):
         if (replay.status == code).any():
             jumps[name] = int(np.argmax(replay.status == code))
+    for carry in replay.carries:
+        jumps[f"{carry.by} takes {carry.part} at {carry.start:.3f} s"] = _frame_at(
+            replay, carry.start
+        )
     if replay.contacts:
         deepest = max(replay.contacts, key=lambda contact: contact.penetration)
         jumps[f"deepest contact: {math.ceil(deepest.penetration * 1e6) / 1000:.3f} mm"] = (
@@ -223,6 +244,11 @@ def _controls(stage: Stage, replay: Replay, times: list[float]) -> None:
         )
     for name, frame in jumps.items():
         stage.button(name, f"() => {{const t = {middles[frame]!r}; {_JUMP}}}")
+
+
+def _frame_at(replay: Replay, time: float) -> int:
+    """The first frame at a time or after it."""
+    return min(int(np.searchsorted(replay.times, time)), len(replay.times) - 1)
 
 
 # play first: only an animation that has started can be set to a time
@@ -246,10 +272,10 @@ def _free_side(replay: Replay) -> np.ndarray:
 
 
 def _box(replay: Replay) -> np.ndarray:
-    """(2, 3) [m] of where the links are over all frames and the witness points, a fifth wider."""
+    """(2, 3) [m] of where all that moves is over all frames and the witness points, a fifth wider."""
     points = [replay.lines.reshape(-1, 3)]
     for body, poses in zip(replay.bodies, replay.poses, strict=True):
-        if body.kind == "link":
+        if body.kind != STANDING:
             points.append(poses[:, :3])
     everything = np.concatenate(points)
     low, high = everything.min(axis=0), everything.max(axis=0)

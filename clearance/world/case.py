@@ -275,13 +275,25 @@ class Case:
         require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
         for placed in self.robots:
             require_own_names("link", list(placed.robot.link_names))
-        if len(self.robots) == 1 and self.robots[0].self_clearance:
+        if len(self.robots) > 1:
+            _require_names_apart(self.robots, self.obstacles)
+        elif self.robots[0].self_clearance or self._stand_on_others:
             _require_other_names(self.robots[0].robot, self.obstacles)
         require_one_carrier(self.carries)
         allow = (
             row if isinstance(row, Allowance) else Allowance((row[0], row[1])) for row in self.allow
         )
         object.__setattr__(self, "allow", tuple(allow))
+
+    def prefix_of(self, placed: PlacedRobot) -> str:
+        """What stands before the names of a robot's links in tables: nothing where there is one robot."""
+        return "" if len(self.robots) == 1 else f"{placed.robot.name}/"
+
+    @property
+    def _stand_on_others(self) -> bool:
+        """True if something is on a body that it gives by name."""
+        mounts = [*(one.mount for one in self.robots), *(one.mount for one in self.obstacles)]
+        return bool(self.carries) or any(mount is not None for mount in mounts)
 
     def with_trajectory(
         self,
@@ -318,11 +330,33 @@ def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
     return names.index(name)
 
 
+def _require_names_apart(robots: Sequence[PlacedRobot], obstacles: Sequence[Obstacle]) -> None:
+    """Refuses names by which links of several robots and obstacles could be taken for each other."""
+    for i, placed in enumerate(robots):
+        if "/" in placed.robot.name:
+            raise BadInput(
+                f"robot {placed.robot.name!r} has a '/' in its name",
+                where=f"robots[{i}]",
+                valid="another name, since links of several robots are called robot/link",
+            )
+    names = {placed.robot.name for placed in robots}
+    names |= {
+        f"{placed.robot.name}/{link}" for placed in robots for link in placed.robot.link_names
+    }
+    for i, obstacle in enumerate(obstacles):
+        if obstacle.name in names:
+            raise BadInput(
+                f"an obstacle and a robot or its link are both called {obstacle.name!r}",
+                where=f"obstacles[{i}]",
+                valid="another name for the obstacle",
+            )
+
+
 def _require_other_names(robot: Robot, obstacles: Sequence[Obstacle]) -> None:
-    """Refuses an obstacle with a link's name where a pair of it could be either."""
+    """Refuses an obstacle with a link's name where a name could be either's."""
     for obstacle in obstacles:
         if obstacle.name in robot.link_names:
             raise BadInput(
                 f"an obstacle and a link of robot {robot.name!r} are both called {obstacle.name!r}",
-                valid="another name for the obstacle, since links are measured against one another too",
+                valid="another name for the obstacle, since links are meant by their names too",
             )

@@ -18,13 +18,13 @@ _Thing = tuple[bool, int]
 """A robot (False, i) or an obstacle (True, i)."""
 
 
-def are_tied(case: Case, one: BodyIndex, other: BodyIndex) -> bool:
-    """True if two bodies are where they are at the same time: by one clock, or since one of them stands."""
+def clock_pair(case: Case, one: BodyIndex, other: BodyIndex) -> tuple[int, int] | None:
+    """The clocks of two bodies where nothing ties them; None where both move by one, or one of them stands."""
     if case.clock.slack == 0.0:
-        return True
+        return None
     clocks = clocks_of(case)
     a, b = clocks[one.is_obstacle, _index(one)], clocks[other.is_obstacle, _index(other)]
-    return NO_CLOCK in (a, b) or a == b
+    return None if NO_CLOCK in (a, b) or a == b else (a, b)
 
 
 def _index(body: BodyIndex) -> int:

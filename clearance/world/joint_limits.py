@@ -28,23 +28,26 @@ FAR_SLIDE = 0.05
 
 class _Excess(NamedTuple):
     joint: Joint
+    name: str
     beyond: float  # [rad or m]
     text: str
 
 
-def notices_on_joints(placed: PlacedRobot, rule: str) -> list[Notice]:
-    """What is beyond its limits, at the samples or between them.
+def notices_on_joints(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
+    """What is beyond its limits, at the samples or between them, or where the robot stands.
 
     Args:
-        rule: "warn" or "fail", as `Limits.joints`.
+        rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
 
     Raises:
         BadInput: another rule.
     """
     if rule not in ("warn", "fail"):
         raise BadInput(f"limits.joints is {rule!r}", valid="'warn' or 'fail'")
-    asked = placed.asked
-    found = [excess for course in joint_courses(placed) for excess in _excesses(course, asked)]
+    asked = placed.trajectory
+    found = [
+        excess for course in joint_courses(placed) for excess in _excesses(course, asked, before)
+    ]
     far = [excess for excess in found if _is_far(excess)]
     near = [excess for excess in found if not _is_far(excess)]
     notices = []
@@ -58,8 +61,8 @@ def notices_on_joints(placed: PlacedRobot, rule: str) -> list[Notice]:
     return notices
 
 
-def _excesses(course: JointCourse, asked: Trajectory) -> list[_Excess]:
-    joint = course.joint
+def _excesses(course: JointCourse, asked: Trajectory | None, before: str) -> list[_Excess]:
+    joint, name = course.joint, before + course.joint.name
     at_samples = _beyond(joint, course.at_samples, course.at_samples)
     n_beyond = int((at_samples > ROUNDING).sum())
     told = []
@@ -69,7 +72,7 @@ def _excesses(course: JointCourse, asked: Trajectory) -> list[_Excess]:
             if course.i_column is not None
             else "all the time"
         )
-        told.append(_excess(joint, at_samples, where))
+        told.append(_excess(joint, name, at_samples, where))
     reached = extremes_of(course, asked)
     if reached is None:
         return told
@@ -81,7 +84,7 @@ def _excesses(course: JointCourse, asked: Trajectory) -> list[_Excess]:
             "between two samples, on the cubic that its velocities make, "
             f"in {int(farther.sum())} of {len(between)} intervals"
         )
-        told.append(_excess(joint, between[farther], where))
+        told.append(_excess(joint, name, between[farther], where))
     return told
 
 
@@ -89,13 +92,14 @@ def _beyond(joint: Joint, least: np.ndarray, greatest: np.ndarray) -> np.ndarray
     return np.maximum(greatest - joint.upper, joint.lower - least)
 
 
-def _excess(joint: Joint, beyond: np.ndarray, where: str) -> _Excess:
+def _excess(joint: Joint, name: str, beyond: np.ndarray, where: str) -> _Excess:
     unit = "rad" if turns(joint) else "m"
     most = float(beyond.max())
     return _Excess(
         joint,
+        name,
         most,
-        f"joint {joint.name!r} leaves its limits {joint.lower:g} to {joint.upper:g} {unit} "
+        f"joint {name!r} leaves its limits {joint.lower:g} to {joint.upper:g} {unit} "
         f"by up to {most:.3g} {unit} {where}",
     )
 
@@ -109,9 +113,9 @@ def _is_far(excess: _Excess) -> bool:
 def _told(found: list[_Excess]) -> str:
     """One line; the joint that is farthest beyond comes first where there are several."""
     ordered = sorted(found, key=lambda excess: -excess.beyond)
-    names = {excess.joint.name for excess in found}
+    names = {excess.name for excess in found}
     if len(names) == 1:
         return "; ".join(excess.text for excess in found)
-    others = [repr(excess.joint.name) for excess in ordered]
+    others = [repr(excess.name) for excess in ordered]
     rest = listed(list(dict.fromkeys(others))[1:], 6)
     return f"{len(names)} joints leave their limits: {ordered[0].text}; also {rest}"

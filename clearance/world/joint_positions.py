@@ -32,20 +32,22 @@ class JointCourse(NamedTuple):
 
 def joint_courses(placed: PlacedRobot) -> Iterator[JointCourse]:
     """Where each joint goes; those that nobody gives a value stay at 0."""
-    asked = placed.asked
-    columns = {name: i for i, name in enumerate(asked.joint_names)}
+    asked = placed.trajectory
+    columns = {} if asked is None else {name: i for i, name in enumerate(asked.joint_names)}
     for joint, master, factor, offset in followers(placed.robot):
         i = columns.get(master)
-        if i is not None:
+        if asked is not None and i is not None:
             yield JointCourse(joint, factor * asked.positions[:, i] + offset, i, factor, offset)
         else:
             resting = placed.fixed_positions.get(master, 0.0)
             yield JointCourse(joint, np.array([factor * resting + offset]))
 
 
-def extremes_of(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, np.ndarray] | None:
+def extremes_of(
+    course: JointCourse, asked: Trajectory | None
+) -> tuple[np.ndarray, np.ndarray] | None:
     """(n - 1,) least and greatest position between samples; None where the joint moves linearly or rests."""
-    if asked.velocities is None or course.i_column is None:
+    if asked is None or asked.velocities is None or course.i_column is None:
         return None
     column = slice(course.i_column, course.i_column + 1)
     ends = extremes_between(asked.times, asked.positions[:, column], asked.velocities[:, column])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,8 +23,7 @@ OBSTACLE = -1
 """Stands for the robot of a body that is an obstacle."""
 
 
-@dataclass(frozen=True, order=True)
-class BodyIndex:
+class BodyIndex(NamedTuple):
     """A body of a case.
 
     Attributes:
@@ -50,9 +50,7 @@ class BodyIndex:
     def name_in(self, case: Case) -> str:
         """Its name; that of a link has its robot's before it where there are several."""
         name = self.own_name_in(case)
-        if self.is_obstacle or len(case.robots) == 1:
-            return name
-        return f"{case.robots[self.i_robot].robot.name}/{name}"
+        return name if self.is_obstacle else case.prefix_of(case.robots[self.i_robot]) + name
 
     def link_in(self, case: Case) -> int:
         """Which of its robot's links it is of."""
@@ -86,8 +84,7 @@ class BodyIndex:
         return case.robots[self.i_robot].robot.bodies[self.i_body]
 
 
-@dataclass(frozen=True)
-class Pair:
+class Pair(NamedTuple):
     """Two bodies whose clearance is wanted.
 
     Attributes:
@@ -277,7 +274,7 @@ def _links(case: Case, i_robot: int) -> list[BodyIndex]:
 
 def _links_left_out(case: Case, i_robot: int) -> list[Omission]:
     placed = case.robots[i_robot]
-    before = "" if len(case.robots) == 1 else f"{placed.robot.name}/"
+    before = case.prefix_of(placed)
     with_shape = {body.name for body in placed.robot.bodies}
     excluded = frozenset(placed.exclude_links)
     left_out = [

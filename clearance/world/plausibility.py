@@ -7,11 +7,14 @@ only a file shows (`load.plausibility`), and values that cannot be right.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from clearance.world.case import Case, Limits
 from clearance.world.joint_limits import notices_on_joints
-from clearance.world.notice import Notice, Severity, worst_first
+from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_sizes import notices_on_sizes
+from clearance.world.plausible_tables import notices_on_tables
 
 LARGE_LIMIT = 0.5
 """[m] A clearance limit above half a metre would forbid a robot most of its cell; in millimetres it
@@ -25,22 +28,60 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
     Raises:
         BadInput: `limits.joints` is neither "warn" nor "fail".
     """
-    found = [*case.notices]
-    for placed in case.robots:
-        found += placed.robot.notices
+    found = [*case.notices, *_notices_of_robots(case)]
     found += _notices_on_limits(case.limits)
+    found += _notices_on_padding(case)
     found += notices_on_sizes(case)
+    found += notices_on_tables(case)
+    moves = [placed.trajectory is not None for placed in case.robots]
+    moves += [obstacle.moves is not None for obstacle in case.obstacles]
     for placed in case.robots:
-        if placed.trajectory is not None:  # else nothing is asked of it
-            found += notices_on_motion(placed)
-            found += notices_on_joints(placed, case.limits.joints)
+        before = case.prefix_of(placed)
+        if placed.trajectory is not None:
+            found += notices_on_motion(placed, before)
+        if any(moves):  # else nothing is asked of it
+            found += notices_on_joints(placed, case.limits.joints, before)
     return worst_first(found)
 
 
+def _notices_of_robots(case: Case) -> list[Notice]:
+    """What loading found about the robots; of several it is said whose it is."""
+    whose: dict[Notice, list[str]] = {}
+    for placed in case.robots:
+        for notice in placed.robot.notices:
+            whose.setdefault(notice, []).append(repr(placed.robot.name))
+    if len(case.robots) == 1:
+        return list(whose)
+    return [
+        replace(notice, text=f"{notice.text} (robot {listed(names)})")
+        for notice, names in whose.items()
+    ]
+
+
 def _notices_on_limits(limits: Limits) -> list[Notice]:
-    given = {"fail": limits.fail, "warn": limits.warn}
-    large = [f"limits.{key} is {value:g} m" for key, value in given.items() if value > LARGE_LIMIT]
+    given = {"limits.fail": limits.fail, "limits.warn": limits.warn}
+    for i, rule in enumerate(limits.rules):
+        given |= {f"limits.rules[{i}].fail": rule.fail, f"limits.rules[{i}].warn": rule.warn}
+    large = [f"{key} is {value:g} m" for key, value in given.items() if value > LARGE_LIMIT]
+    return _in_millimetres(large, "limits are")
+
+
+def _notices_on_padding(case: Case) -> list[Notice]:
+    given = {f"obstacle {one.name!r}": one.padding for one in case.obstacles}
+    for placed in case.robots:
+        before = case.prefix_of(placed)
+        given |= {f"link {before + link!r}": padding for link, padding in placed.padding.items()}
+    large = [
+        f"the padding of {what} is {value:g} m"
+        for what, value in given.items()
+        if value > LARGE_LIMIT
+    ]
+    return _in_millimetres(large, "paddings are")
+
+
+def _in_millimetres(large: list[str], what: str) -> list[Notice]:
     if not large:
         return []
-    text = f"CHECK UNITS: {' and '.join(large)}; limits are in metres, is this millimetres?"
+    told = " and ".join(large) if len(large) < 3 else listed(large)
+    text = f"CHECK UNITS: {told}; {what} in metres, is this millimetres?"
     return [Notice(Severity.SUSPECT, "units", text)]

@@ -1,4 +1,7 @@
-"""Motions that look like degrees, millimetres or milliseconds. Not for: joint limits (`joint_limits`)."""
+"""Motions of robots that look like degrees, millimetres or milliseconds.
+
+Not for: joint limits (`joint_limits`), nor tables of poses (`plausible_tables`).
+"""
 
 from __future__ import annotations
 
@@ -32,20 +35,28 @@ LEAST_TURN, LEAST_SLIDE = 0.05, 5e-3
 """[rad], [m] A joint must go this far in sum before its speed says anything about the unit of time."""
 
 
-def notices_on_motion(placed: PlacedRobot) -> list[Notice]:
-    """What of a robot's motion looks like another unit."""
-    told = [*_large_positions(placed), *_odd_velocities(placed), *_creeping(placed)]
+def notices_on_motion(placed: PlacedRobot, before: str = "") -> list[Notice]:
+    """What of a robot's motion looks like another unit.
+
+    Args:
+        before: what stands before the names of joints.
+    """
+    told = [
+        *_large_positions(placed, before),
+        *_odd_velocities(placed, before),
+        *_creeping(placed, before),
+    ]
     return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
 
 
-def _large_positions(placed: PlacedRobot) -> list[str]:
+def _large_positions(placed: PlacedRobot, before: str) -> list[str]:
     angles: list[tuple[float, str]] = []
     lengths: list[tuple[float, str]] = []
     for course in joint_courses(placed):
         greatest = float(np.abs(course.at_samples).max(initial=0.0))
         large, most = (angles, LARGE_TURN) if turns(course.joint) else (lengths, LARGE_SLIDE)
         if greatest > most:
-            large.append((greatest, course.joint.name))
+            large.append((greatest, before + course.joint.name))
     told = []
     for large, unit, hint in (
         (angles, "rad", "angles are in radians, is this degrees?"),
@@ -57,7 +68,7 @@ def _large_positions(placed: PlacedRobot) -> list[str]:
     return told
 
 
-def _odd_velocities(placed: PlacedRobot) -> list[str]:
+def _odd_velocities(placed: PlacedRobot, before: str) -> list[str]:
     """Velocities that mean a way that is many times what the positions go."""
     asked = placed.asked
     if asked.velocities is None:
@@ -74,14 +85,15 @@ def _odd_velocities(placed: PlacedRobot) -> list[str]:
         return []
     joint, meant, gone = told[0]
     unit, other = ("rad/s", "degrees/s") if turns(joint) else ("m/s", "mm/s")
-    others = listed([repr(other_joint.name) for other_joint, *_ in told[1:]])
+    others = listed([repr(before + other_joint.name) for other_joint, *_ in told[1:]])
     return [
-        f"the velocities of joint {joint.name!r} mean a way of {meant:.3g} where its positions go {gone:.3g}"
+        f"the velocities of joint {before + joint.name!r} mean a way of {meant:.3g} where its positions go "
+        f"{gone:.3g}"
         f"{f' (likewise {others})' if others else ''}; velocities are in {unit}, is this {other}?"
     ]
 
 
-def _creeping(placed: PlacedRobot) -> list[str]:
+def _creeping(placed: PlacedRobot, before: str) -> list[str]:
     """A motion that gets somewhere, but never faster than creeping."""
     asked, joints = placed.asked, _moving(placed)
     if asked.n_steps < 2:
@@ -91,14 +103,15 @@ def _creeping(placed: PlacedRobot) -> list[str]:
         turning = turns(joints[name])
         least_way, creep = (LEAST_TURN, CREEP_TURN) if turning else (LEAST_SLIDE, CREEP_SLIDE)
         way, speed = _way_and_speed(asked, i)
-        if speed > creep:
+        if speed * placed.timing.rate > creep:
             return []
         moves = moves or way > least_way
     if not moves:
         return []
-    length = float(asked.times[-1] - asked.times[0])
+    length = float(asked.times[-1] - asked.times[0]) / placed.timing.rate
+    whose = f" of robot {before.rstrip('/')!r}" if before else ""
     return [
-        f"no joint moves faster than {CREEP_TURN:g} rad/s or {CREEP_SLIDE * 1000:g} mm/s in {length:g} s; "
+        f"no joint{whose} moves faster than {CREEP_TURN:g} rad/s or {CREEP_SLIDE * 1000:g} mm/s in {length:g} s; "
         "times are in seconds, is this milliseconds?"
     ]
 

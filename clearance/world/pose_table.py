@@ -41,7 +41,8 @@ class PoseTable:
         if len(self) < 1:
             raise BadShape("there is no sample", valid="at least one row")
         require_increasing(self.times)
-        lengths = np.linalg.norm(self.quaternions, axis=1)
+        with np.errstate(over="ignore"):
+            lengths = np.linalg.norm(self.quaternions, axis=1)
         off = np.flatnonzero(~(np.abs(lengths - 1.0) <= ROTATION))
         if len(off):
             row = int(off[0])

@@ -6,6 +6,7 @@ Both are unit mistakes or typing errors, and would end in overflow or in work wi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -27,7 +28,7 @@ ROOT_3 = 3.0**0.5
 
 def farthest_reach(case: Case, motions: Sequence[Motion]) -> float:
     """[m] no coordinate of any body is larger in magnitude at any moment."""
-    return max(reach for _, reach in _reaches(case, motions))
+    return max(reach for _, reach in _reaches(case, tuple(motions)))
 
 
 def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
@@ -38,7 +39,7 @@ def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
     """
     for motion in motions:
         require_few_turns(motion.placed.robot, motion.joint_names, motion)
-    for what, reach in _reaches(case, motions):
+    for what, reach in _reaches(case, tuple(motions)):
         if not reach <= REACH:
             raise BadDimension(
                 f"it reaches {reach:g} m from the origin",
@@ -47,8 +48,13 @@ def require_within_reach(case: Case, motions: Sequence[Motion]) -> None:
             )
 
 
-def _reaches(case: Case, motions: Sequence[Motion]) -> Iterator[tuple[str, float]]:
+@lru_cache(maxsize=16)  # asked for again by each section of a phase
+def _reaches(case: Case, motions: tuple[Motion, ...]) -> list[tuple[str, float]]:
     """Each body by name, and how far it gets from the origin along an axis at most [m]."""
+    return list(_each_reach(case, motions))
+
+
+def _each_reach(case: Case, motions: Sequence[Motion]) -> Iterator[tuple[str, float]]:
     frames = _Frames(case, motions)
     for i, obstacle in enumerate(case.obstacles):
         yield f"obstacle {obstacle.name!r}", _reach(obstacle.body, frames.of_obstacle(i))

@@ -118,9 +118,8 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
         own: the motion of each robot at the times of its own table.
 
     Raises:
-        NoTrajectory: nothing moves. BadTime: a window outside the run. UnknownObstacle, UnknownLink: a part, or
-        what
-            carries it, that is not there.
+        NoTrajectory: nothing moves. BadTime: a window outside the run, or a part that is carried while it is
+            absent. UnknownObstacle, UnknownLink: a part, or what carries it, that is not there.
     """
     _require_parts(case)
     robots = [_of_robot(motion) for motion in own]
@@ -144,6 +143,7 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
             frozenset(i for i, table in enumerate(robots) if table.is_absent(here)),
             frozenset(i for i, table in obstacles.items() if table.is_absent(here)),
         )
+        _require_carried_present(plain)
         phases.append(_with_absent(_with_parts(plain, phases)))
     return Timeline(_joined(own, phases), tuple(phases))
 
@@ -158,6 +158,23 @@ def _require_parts(case: Case) -> None:
                 )
         with at(f"carry[{i}].by"):
             require_known(case, carry.by)
+
+
+def _require_carried_present(phase: Phase) -> None:
+    """Nothing, if what is carried is in the cell.
+
+    Raises:
+        BadTime: a part whose own table says that it is not.
+    """
+    for i in phase.absent_obstacles:
+        carry = phase.carried.get(phase.case.obstacles[i].name)
+        if carry is not None:
+            start, end = phase.span
+            raise BadTime(
+                f"part {carry.part!r} is not in the cell from {start:g} s to {end:g} s (after: absent)",
+                where=f"carry[{phase.case.carries.index(carry)}]",
+                valid="a window in which it is, or after: hold",
+            )
 
 
 def _of_robot(motion: Motion) -> _Table:

@@ -42,10 +42,23 @@ class Timing:
             raise BadInput(f"after is {self.after!r:.60}", valid=f"one of {', '.join(AFTER)}")
 
     def run_times(self, times: np.ndarray) -> np.ndarray:
-        """(n,) [s] the run's times of a table's times; the same array where nothing changes."""
+        """(n,) [s] the run's times of a table's times; the same array where nothing changes.
+
+        Raises:
+            BadTime: they no longer increase, since doubles cannot hold them apart.
+        """
         if self.start == 0.0 and self.rate == 1.0:
             return times
-        return self.start + times / self.rate
+        with np.errstate(over="ignore", invalid="ignore"):
+            found = self.start + times / self.rate
+            apart = np.diff(found) > 0.0
+        if not (np.isfinite(found).all() and apart.all()):
+            raise BadTime(
+                f"times from {times[0]:g} s to {times[-1]:g} s cannot begin at {self.start:g} s and go "
+                f"{self.rate:g} times as fast",
+                valid="a start and a rate that leave samples apart",
+            )
+        return found
 
 
 AS_GIVEN = Timing()

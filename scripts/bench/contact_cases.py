@@ -11,6 +11,7 @@ import numpy as np
 from inputs import SHARED
 
 from clearance import Polyhedron, box, load_case
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.body import Body, Obstacle
@@ -38,7 +39,7 @@ def pushed(name: str) -> Case:
     case = load_case(SHARED / folder / "case.yaml")
     motions = tuple(kinematic_motion(placed) for placed in case.robots)
     pairs, _ = measured_pairs(case)
-    found = measure(case, motions, pairs, "minimum", Resources(jobs=1))
+    found = measure(PairsInMotion(case, motions, pairs), "minimum", Resources(jobs=1))
     worst = int(np.nanargmin(found.clearance))
     on_link, on_obstacle = found.points[worst]
     way = (on_link - on_obstacle) / np.linalg.norm(on_link - on_obstacle)

@@ -28,7 +28,7 @@ from rows import write_csv
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import Surface
-from clearance.simulate.layout import lay_out
+from clearance.simulate.layout import PairsInMotion, lay_out
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from tests.made_cases import arm_among_obstacles
@@ -97,7 +97,9 @@ def thread_rows(scene: Scene, passes: int) -> list[dict]:
 
 def run(scene: Scene, jobs: int) -> dict[str, int]:
     """Every step, and its counters."""
-    return measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=jobs)).tally
+    return measure(
+        PairsInMotion(scene.case, scene.motions, scene.pairs), resources=Resources(jobs=jobs)
+    ).tally
 
 
 def row_of(what: str, scene: Scene, threads: int, ms: float, ratio: float, tally: dict) -> dict:

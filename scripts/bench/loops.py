@@ -14,6 +14,7 @@ from inputs import Scene
 from peers import Coal, CoalShapes, Fcl, FclShapes, Klampt, PairPeer, available, silenced
 
 from clearance.crosscheck.bounds import greatest_displacements
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 
@@ -52,7 +53,9 @@ class OurSteps:
     def run(self, steps: np.ndarray) -> np.ndarray:
         """All steps."""
         scene = self._scene
-        found = measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=1))
+        found = measure(
+            PairsInMotion(scene.case, scene.motions, scene.pairs), resources=Resources(jobs=1)
+        )
         self.counters = found.tally
         return found.clearance[steps]
 
@@ -65,7 +68,9 @@ class OurPairs(OurSteps):
     def run(self, steps: np.ndarray) -> np.ndarray:
         """All steps."""
         scene = self._scene
-        found = measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=1))
+        found = measure(
+            PairsInMotion(scene.case, scene.motions, scene.pairs), resources=Resources(jobs=1)
+        )
         minima = found.measure_pair_minima(None)
         self.counters = {**found.tally, "pairs": len(minima.clearance)}
         return found.clearance[steps]

@@ -26,6 +26,7 @@ from loops import AllPairs
 from peers import Fcl, available
 
 from clearance.simulate.certify import certify_motion
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import NEEDS, measure
 from clearance.simulate.resources import Resources
 from clearance.tolerance import CERTIFY_GAP
@@ -97,20 +98,21 @@ def row_of(scene: Scene, what: str, spent: float, steps: float, tally: dict) -> 
     }
 
 
+def in_motion(scene: Scene) -> PairsInMotion:
+    """What is measured of a scene; its bodies are laid out each time."""
+    return PairsInMotion(scene.case, scene.motions, scene.pairs)
+
+
 def works_of(scene: Scene) -> dict[str, Callable[[], dict]]:
     """What is measured, by name; each answers its counters."""
 
     def ours(need: str, jobs: int) -> Callable[[], dict]:
-        return lambda: (
-            measure(scene.case, scene.motions, scene.pairs, need, Resources(jobs=jobs)).tally
-        )
+        return lambda: measure(in_motion(scene), need, Resources(jobs=jobs)).tally
 
-    found = measure(scene.case, scene.motions, scene.pairs, resources=Resources(jobs=1))
+    found = measure(in_motion(scene), resources=Resources(jobs=1))
 
     def certified() -> dict:
-        certify_motion(
-            scene.case, scene.motions, scene.pairs, found, CERTIFY_GAP, resources=Resources(jobs=1)
-        )
+        certify_motion(in_motion(scene), found, CERTIFY_GAP, resources=Resources(jobs=1))
         return {}
 
     works = {need: ours(need, 1) for need in NEEDS}

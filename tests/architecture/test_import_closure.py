@@ -108,7 +108,7 @@ def test_a_runs_fingerprint_covers_what_decides_its_rows():
         "sweep",
         "certify",
         "lanes",
-        "kinematic",
+        "motion",
         "bullet",
         "measure_paper",
     } <= names

@@ -20,7 +20,7 @@ from clearance.errors import (
     UnknownLink,
     UnknownObstacle,
 )
-from clearance.load import schema
+from clearance.load import obstacle_schema
 from tests.load.making import ARM, CASE
 from tests.load.making_case import TWO_JOINTS, changed, load_small, with_obstacle
 
@@ -218,7 +218,7 @@ FAULTS = [
     (
         "",
         BadInput,
-        "case.yaml: nothing is given; a mapping is needed, with keys name, robot, scene",
+        "case.yaml: nothing is given; a mapping is needed, with keys name, robot, robots, scene",
     ),
     ("- 1\n", BadInput, "case.yaml: [1] is given"),
     ("a: 1\n---\nb: 2\n", BadSyntax, "another document"),
@@ -287,4 +287,4 @@ def test_faults_of_the_trajectory_name_case_field_and_file(tmp_path, trajectory,
 def test_a_scale_beyond_doubles_is_refused():
     for scale in (10**400, [1.0, 1.0, -(10**400)]):
         with pytest.raises(BadDimension, match="a finite number, or three"):
-            schema.Mesh._number_or_three(scale)
+            obstacle_schema.Mesh._number_or_three(scale)

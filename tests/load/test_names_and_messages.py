@@ -4,7 +4,7 @@ import pytest
 
 from clearance.errors import BadInput, BadPose
 from clearance.geometry.pose import pose_from_quaternion
-from clearance.load.schema import Obstacle
+from clearance.load.obstacle_schema import Obstacle
 from clearance.load.schema_errors import validated
 from clearance.load.trajectory_file import parse_trajectory
 from clearance.load.urdf_elements import parse_document

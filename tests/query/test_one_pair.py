@@ -1,4 +1,4 @@
-"""`distance` keeps room for the pairs it was asked about: that changes no answer, and keeps no solid alive."""
+"""`distance` keeps arrays for the pairs it was asked about: that changes no answer, and keeps no solid alive."""
 
 import gc
 import threading
@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 import clearance as cl
-from clearance.query.one_pair import HELD, room_for
+from clearance.query.one_pair import HELD, kept_pair
 from tests.made_cases import at, ball
 from tests.strategies import rotations
 
@@ -58,11 +58,11 @@ def test_more_pairs_than_are_held_are_answered():
         )
 
 
-def test_a_solid_that_is_let_go_takes_its_room_along():
+def test_a_solid_that_is_let_go_takes_its_arrays_along():
     a, b = cl.box((1.0, 1.0, 1.0)), cl.box((2.0, 1.0, 1.0))
-    room = room_for(a, b)
-    assert room_for(a, b) is room and room_for(b, a) is not room
-    gone, solid = weakref.ref(room), weakref.ref(b)
-    del b, room
+    pair = kept_pair(a, b)
+    assert kept_pair(a, b) is pair and kept_pair(b, a) is not pair
+    gone, solid = weakref.ref(pair), weakref.ref(b)
+    del b, pair
     gc.collect()
     assert solid() is None and gone() is None

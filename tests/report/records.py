@@ -5,17 +5,24 @@ of the scene, so witness points and clearances fit together, and no engine is ne
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 
 import numpy as np
 import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
+from clearance.simulate.judged import SampleMoments
+from clearance.simulate.measure import Measurement
+from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
+from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record, RuleAnswer
 from clearance.simulate.status import STATUSES
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source
 from clearance.world.motion import Motion
+from clearance.world.pairs import measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.rules import DEFAULT
+from clearance.world.timeline import timeline_of
 from clearance.world.trajectory import Trajectory
 
 LIMITS = Limits(fail=0.01, warn=0.06)
@@ -114,22 +121,59 @@ def record(n_steps=240, limits=LIMITS, n_robots=1, **changes) -> Record:
         notes=("joint slide: no limit given for velocity",),
     )
     rows, minima = measure(motions, case)
+    steps = table(rows, limits)
     made = Record(
         case,
         motions,
-        table(rows, limits),
+        steps,
         (Omission("base", "*", "excluded: bolted"),),
         minima,
         {"pairs": 9 * n_steps, "polygon_tests": 36 * n_steps},
+        rules=rules_of(case, motions, steps),
+        timeline=timeline_of(case, motions),
     )
     return dataclasses.replace(made, **changes)
+
+
+def with_steps(made: Record, steps: pa.Table) -> Record:
+    """The record with other rows of steps, of as many of its steps, and what follows from them."""
+    n_steps = steps.num_rows
+    motions = tuple(
+        dataclasses.replace(
+            one,
+            times=one.times[:n_steps],
+            positions=one.positions[:n_steps],
+            tracking_error=one.tracking_error[:n_steps],
+        )
+        for one in made.motions
+    )
+    rules, timeline = rules_of(made.case, motions, steps), timeline_of(made.case, motions)
+    return dataclasses.replace(made, steps=steps, motions=motions, rules=rules, timeline=timeline)
+
+
+def rules_of(case, motions, steps: pa.Table) -> tuple[RuleAnswer, ...]:
+    """The one rule of a case without rules, with what the rows of its steps say."""
+    pairs = measured_pairs(case)[0]
+    names = pair_names(case, pairs)
+    places = {named: i for i, named in enumerate(zip(*names, strict=True))}
+    who = zip(steps["link"].to_pylist(), steps["obstacle"].to_pylist(), strict=True)
+    clearances = steps["clearance"].to_numpy()
+    points = np.stack([steps[name].to_numpy() for name in columns_of(LINK_AND_OBSTACLE)[2:]], 1)
+    found = Measurement(
+        clearances,
+        clearances,
+        np.array([places[pair] for pair in who]),
+        points.reshape(-1, 2, 3),
+        {},
+        None,
+    )
+    moment_at = partial(SampleMoments(names, motions).at, found, DEFAULT)
+    return (RuleAnswer(DEFAULT, case.limits, found, None, moment_at),)
 
 
 def with_contacts(made: Record, work_out: str = "every") -> Record:
     """The record with the overlaps of its steps at 0, as a run finds them."""
     from clearance.simulate.contact import find_contacts
-    from clearance.simulate.names import pair_names
-    from clearance.world.pairs import measured_pairs
 
     pairs = measured_pairs(made.case)[0]
     named = list(zip(*pair_names(made.case, pairs), strict=True))
@@ -196,7 +240,10 @@ def table(rows, limits: Limits) -> pa.Table:
     columns = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
     gaps = np.array(columns["clearance"])
     codes = np.select([gaps <= 0, gaps < limits.fail, gaps < limits.warn], [3, 2, 1], default=0)
-    return pa.table({**columns, "status": [str(STATUSES[code]) for code in codes]})
+    columns["status"] = [str(STATUSES[code]) for code in codes]
+    general = zip(columns_of(LINK_AND_OBSTACLE), columns_of(SIDES), strict=True)
+    columns |= {name: columns[own] for own, name in general}
+    return pa.table(columns | {"rule": [DEFAULT] * len(gaps)})
 
 
 def disagreeing() -> CrossCheck:

@@ -19,7 +19,7 @@ from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay import replay_of
 from clearance.world.case import Limits
 from clearance.world.notice import Notice, Severity
-from tests.report.records import disagreeing, record
+from tests.report.records import disagreeing, record, with_steps
 
 NO_LIMITS = Limits()
 UNITS = Notice(Severity.SUSPECT, "units", "post.stl: 589 m away; is its scale missing?")
@@ -35,16 +35,10 @@ def made(limits=NO_LIMITS, notices=(), accept=(), **changes) -> Record:
     whole = record(limits=limits, **changes)
     if limits.fail > 0.0:
         return whole
-    steps = whole.steps.slice(0, 8)
-    motions = tuple(
-        dataclasses.replace(one, times=one.times[:8], positions=one.positions[:8])
-        for one in whole.motions
-    )
     case = dataclasses.replace(whole.case, accept=tuple(accept))
     minima = tuple(one for one in whole.pair_minima if one.step < 8)
-    return dataclasses.replace(
-        whole, case=case, steps=steps, motions=motions, pair_minima=minima, notices=tuple(notices)
-    )
+    short = with_steps(whole, whole.steps.slice(0, 8))
+    return dataclasses.replace(short, case=case, pair_minima=minima, notices=tuple(notices))
 
 
 CASES = {
@@ -199,7 +193,7 @@ def test_facets_are_told_where_they_matter(shown):
     """0.1 mm: nothing beside 31 mm, and much beside contact."""
     one = record()
     if not shown:
-        one = dataclasses.replace(one, steps=one.steps.slice(0, 2))
+        one = with_steps(one, one.steps.slice(0, 2))
     bound = [line for line in printed(one) if line.startswith("  facets")]
     assert bool(bound) == (one.worst.clearance < 0.01) == shown
     assert not shown or "0.1 mm" in bound[0]
@@ -207,6 +201,6 @@ def test_facets_are_told_where_they_matter(shown):
 
 def test_a_single_step_is_at_a_time():
     whole = record()
-    one = dataclasses.replace(whole, steps=whole.steps.slice(0, 9))
+    one = with_steps(whole, whole.steps.slice(0, 9))
     (line,) = [line for line in printed(one) if line.startswith("  contact ")]
     assert line.split(None, 1)[1] == "1 step: at 0.201 s"

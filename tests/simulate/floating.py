@@ -27,7 +27,7 @@ from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.world import World
 from clearance.query.pair_query import Query
-from clearance.simulate.certify import _with_whole_faces, joint_path
+from clearance.simulate.certify import joint_path, with_whole_faces
 
 
 class Scene(NamedTuple):
@@ -108,7 +108,7 @@ def certified(scene: Scene, gap: float = 1e-4) -> IntervalBounds:
         np.full(n, np.nan), np.full(n, np.nan), np.empty(n), np.empty(n, np.int64)
     )
     call(
-        certify, _with_whole_faces(join(scene.shapes)), CertifiedMotion(scene.world, path),
+        certify, with_whole_faces(join(scene.shapes)), CertifiedMotion(scene.world, path),
         CertifiedSteps(0, n - 1, rows.pair, rows.clearance), CertificateGoal(gap, 0.0, 2**24), bounds,
         np.empty(4, dtype=np.int64),
     )  # fmt: skip

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.body import Body, Obstacle
@@ -26,7 +27,7 @@ FETCH = ROOT.parent / "shared" / "cases" / "fetch_cage_planned" / "case.yaml"
 def measured(case, motion, steps, need="steps"):
     """What is found of some steps of a motion that is nothing else."""
     part = Motion(motion.placed, motion.times[steps], motion.positions[steps], np.zeros(len(steps)))
-    return measure(case, (part,), measured_pairs(case)[0], need, Resources(jobs=1))
+    return measure(PairsInMotion(case, (part,), measured_pairs(case)[0]), need, Resources(jobs=1))
 
 
 def ball_through_wall():

@@ -33,6 +33,7 @@ from clearance.kernels.motion.kinematics import Links
 from clearance.kernels.motion.placed import new_placed_bodies, put_all
 from clearance.kernels.motion.world import World, box_bound
 from clearance.kernels.search.node_pairs import NodeGroup, bounds_of_group, views_along
+from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import measure
 from clearance.simulate.resources import Resources
 from clearance.world.case import Limits
@@ -308,7 +309,7 @@ def test_no_bound_carried_from_step_to_step_is_above_the_exact_distance(
         limits=Limits(0.0, float(random.choice([0.01, 1.0, 3.0]))),
     )
     motion = kinematic_motion(case.robots[0])
-    found = measure(case, [motion], measured_pairs(case)[0], need, Resources(jobs=1))
+    found = measure(PairsInMotion(case, [motion], measured_pairs(case)[0]), need, Resources(jobs=1))
     truth = [
         min(
             min(map(min, exact_distances_sq(link, shape, moved[-1], at)))

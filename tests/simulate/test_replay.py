@@ -71,11 +71,14 @@ def test_a_saved_replay_comes_back(tmp_path):
     replay = replay_of(record())
     replay.save(tmp_path / "replay.npz")
     back = load_replay(tmp_path / "replay.npz")
-    assert (back.name, back.limits, back.n_steps) == (replay.name, replay.limits, replay.n_steps)
+    assert (back.name, back.rules, back.n_steps) == (replay.name, replay.rules, replay.n_steps)
     assert back.bodies == replay.bodies
-    for name in ("steps", "times", "clearances", "status", "lines", "nearest"):
+    for name in ("steps", "times", "clearances", "status", "rule", "lines", "nearest"):
         assert np.array_equal(getattr(back, name), getattr(replay, name))
     for mine, theirs in zip(back.poses, replay.poses, strict=True):
+        assert np.array_equal(mine, theirs)
+    assert (back.carries, back.i_worst) == (replay.carries, replay.i_worst)
+    for mine, theirs in zip(back.shown, replay.shown, strict=True):
         assert np.array_equal(mine, theirs)
     for mine, theirs in zip(back.shapes, replay.shapes, strict=True):
         assert np.array_equal(mine[0], theirs[0])

@@ -19,6 +19,8 @@ from clearance.errors import (
     UnknownJoint,
     UnknownRobot,
 )
+from clearance.world.motion import kinematic_motion
+from clearance.world.timeline import timeline_of
 
 KUKA = "pybullet_data:kuka_iiwa/model.urdf"
 
@@ -138,11 +140,17 @@ def test_a_case_that_no_table_could_tell_apart_is_refused():
         cl.Case("twins", (still("left"), still("left")), posts("post"))
     with pytest.raises(DuplicateName, match="two obstacles have the name 'post'"):
         cl.Case("posts", (still("left"),), posts("post", "post"))
+    with pytest.raises(cl.BadInput, match="'a/b' has a '/' in its name"):
+        cl.Case("strokes", (still("left"), still("a/b")), posts("post"))
+    for name in ("left", "left/lbr_iiwa_link_0"):
+        with pytest.raises(cl.BadInput, match="another name for the obstacle"):
+            cl.Case("names", (still("left"), still("right")), posts(name))
 
 
-def test_robots_with_other_times_are_asked_at_all_of_them():
-    case = cl.Case("times", (still("left"), still("right", (0.5, 2.0))), posts("post"))
-    assert cl.check(case).steps["time"].to_pylist() == [0.0, 0.5, 1.0, 2.0]
+def test_robots_may_be_asked_at_different_times():
+    case = cl.Case("clocks", (still("left"), still("right", (0.5, 2.0))), posts("post"))
+    motions = [kinematic_motion(placed) for placed in case.robots]
+    assert timeline_of(case, motions).times.tolist() == [0.0, 0.5, 1.0, 2.0]
 
 
 @pytest.mark.parametrize("name", ["post\x1b[31m", "post\nCLEAR", "post\uffff"])

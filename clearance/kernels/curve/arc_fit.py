@@ -30,6 +30,7 @@ from clearance.kernels.curve.arc import (
     set_segment,
 )
 from clearance.kernels.curve.bezier import cut, hypotenuse, jet
+from clearance.kernels.curve.boxes import fill_inner_boxes
 
 BUCKET = 4
 DEEPEST = 48
@@ -230,16 +231,5 @@ def box_tree(arcs):
         box[1] = min(box[1], min(row[Y0], row[Y1]) - grow)
         box[2] = max(box[2], max(row[X0], row[X1]) + grow)
         box[3] = max(box[3], max(row[Y0], row[Y1]) + grow)
-    for node in range(size - 1, 0, -1):
-        for c in range(2):
-            boxes[node, c] = min(boxes[2 * node, c], boxes[2 * node + 1, c])
-            boxes[node, c + 2] = max(boxes[2 * node, c + 2], boxes[2 * node + 1, c + 2])
+    fill_inner_boxes(boxes)
     return boxes
-
-
-@kernel
-def box_gap_sq(boxes, node, x, y):
-    """The squared distance from (x, y) to a node's box: a lower bound for all the curve in it."""
-    dx = max(boxes[node, 0] - x, 0.0, x - boxes[node, 2])
-    dy = max(boxes[node, 1] - y, 0.0, y - boxes[node, 3])
-    return dx * dx + dy * dy

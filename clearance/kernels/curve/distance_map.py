@@ -13,8 +13,9 @@ import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import EPS, S0, S1, X0, X1, Y0, Y1, arc_distance
-from clearance.kernels.curve.arc_fit import BUCKET, box_gap_sq
+from clearance.kernels.curve.arc_fit import BUCKET
 from clearance.kernels.curve.bezier import hypotenuse, jet
+from clearance.kernels.curve.boxes import box_gap_sq
 
 
 class DistanceMap(NamedTuple):

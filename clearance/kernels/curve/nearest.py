@@ -13,9 +13,10 @@ import numpy as np
 
 from clearance.compile.jit import inline, kernel
 from clearance.kernels.curve.arc import EPS, ROUNDOFF, S0, S1, arc_distance
-from clearance.kernels.curve.arc_fit import BUCKET, box_gap_sq
+from clearance.kernels.curve.arc_fit import BUCKET
 from clearance.kernels.curve.bernstein import cubic_square
 from clearance.kernels.curve.bezier import CHOOSE, cut, hypotenuse, jet
+from clearance.kernels.curve.boxes import box_gap_sq
 from clearance.kernels.curve.scratch import MAP
 
 DEEPEST = 60

@@ -53,12 +53,12 @@ def _take(frames, one, two, feature, best, table):
 
 
 @inline
-def _corner_to_face(one, at, two, face, frames, is_a, ask, best, table):
+def _corner_to_face(one, at, two, face, frames, is_a, cutoff, best, table):
     """`best` with a vertex of one body against the triangles of the fan of a face of the other."""
     v = row(one.vertices, at)
     y = move_back(frames.m, v) if is_a else move(frames.m, v)
     if has_plane(two, face):
-        if abs(height(two, face, y)) > ask.limit or not may_be_over(two, face, y, ask.margin):
+        if abs(height(two, face, y)) > cutoff.limit or not may_be_over(two, face, y, cutoff.margin):
             return best
     x = row(one.exact, at)
     corner = Simplex(1, x, x, x)
@@ -72,7 +72,7 @@ def _corner_to_face(one, at, two, face, frames, is_a, ask, best, table):
 
 
 @inline
-def _corner_to_segments(one, at, two, face, frames, is_a, ask, best, table):
+def _corner_to_segments(one, at, two, face, frames, is_a, cutoff, best, table):
     """`best` with a vertex of one body against the segments of a face of the other."""
     v = row(one.vertices, at)
     y = move_back(frames.m, v) if is_a else move(frames.m, v)
@@ -81,9 +81,9 @@ def _corner_to_segments(one, at, two, face, frames, is_a, ask, best, table):
     for s in range(n_segments(two, face)):
         i0, i1 = segment(two, face, s)
         start, end = row(two.vertices, i0), row(two.vertices, i1)
-        if not may_be_inside(y, start, end, ask.margin):
+        if not may_be_inside(y, start, end, cutoff.margin):
             continue
-        if gap_sq(y, nearest_on_segment(y, start, end)) > ask.limit * ask.limit:
+        if gap_sq(y, nearest_on_segment(y, start, end)) > cutoff.limit * cutoff.limit:
             continue
         other = simplex(two, face, 2, s)
         if is_a:
@@ -108,21 +108,21 @@ def _far_apart(p0, p1, q0, q1, limit):
 
 
 @inline
-def _between_corners(a, face_a, b, face_b, frames, ask, best, table):
+def _between_corners(a, face_a, b, face_b, frames, cutoff, best, table):
     """`best` with corners against corners."""
     for n in range(b.vertex_starts[face_b], b.vertex_starts[face_b + 1]):
         j = b.owned_vertices[n]
         y = move(frames.m, row(b.vertices, j))
         for o in range(a.vertex_starts[face_a], a.vertex_starts[face_a + 1]):
             i = a.owned_vertices[o]
-            if gap_sq(row(a.vertices, i), y) <= ask.limit * ask.limit:
+            if gap_sq(row(a.vertices, i), y) <= cutoff.limit * cutoff.limit:
                 one, two = simplex(a, face_a, 1, i), simplex(b, face_b, 1, j)
                 best = _take(frames, one, two, Feature(1, i, 1, j), best, table)
     return best
 
 
 @inline
-def _between_segments(a, face_a, b, face_b, frames, ask, best, table):
+def _between_segments(a, face_a, b, face_b, frames, cutoff, best, table):
     """`best` with the insides of the segments of both faces."""
     for j in range(n_segments(b, face_b)):
         j0, j1 = segment(b, face_b, j)
@@ -130,16 +130,16 @@ def _between_segments(a, face_a, b, face_b, frames, ask, best, table):
         for i in range(n_segments(a, face_a)):
             i0, i1 = segment(a, face_a, i)
             p0, p1 = row(a.vertices, i0), row(a.vertices, i1)
-            if _far_apart(p0, p1, q0, q1, ask.limit):
+            if _far_apart(p0, p1, q0, q1, cutoff.limit):
                 continue
-            if may_be_inside_both(p0, p1, q0, q1, ask.margin):
+            if may_be_inside_both(p0, p1, q0, q1, cutoff.margin):
                 one, two = simplex(a, face_a, 2, i), simplex(b, face_b, 2, j)
                 best = _take(frames, one, two, Feature(2, i, 2, j), best, table)
     return best
 
 
 @kernel
-def nearest_of_every(a, face_a, b, face_b, frames, ask, table):
+def nearest_of_every(a, face_a, b, face_b, frames, cutoff, table):
     """The nearest feature pair of two faces among those within the limit; infinitely far if there is none."""
     best = NearestFeatures(wide(math.inf), Feature(1, 0, 1, 0), wide(math.inf))
     one, face_one, two, face_two = a, face_a, b, face_b
@@ -147,8 +147,8 @@ def nearest_of_every(a, face_a, b, face_b, frames, ask, table):
         is_a = side == 0
         for n in range(one.vertex_starts[face_one], one.vertex_starts[face_one + 1]):
             at = one.owned_vertices[n]
-            best = _corner_to_face(one, at, two, face_two, frames, is_a, ask, best, table)
-            best = _corner_to_segments(one, at, two, face_two, frames, is_a, ask, best, table)
+            best = _corner_to_face(one, at, two, face_two, frames, is_a, cutoff, best, table)
+            best = _corner_to_segments(one, at, two, face_two, frames, is_a, cutoff, best, table)
         one, face_one, two, face_two = b, face_b, a, face_a
-    best = _between_corners(a, face_a, b, face_b, frames, ask, best, table)
-    return _between_segments(a, face_a, b, face_b, frames, ask, best, table)
+    best = _between_corners(a, face_a, b, face_b, frames, cutoff, best, table)
+    return _between_segments(a, face_a, b, face_b, frames, cutoff, best, table)

@@ -2,7 +2,7 @@
 
 The minimum of two polygons is attained by a vertex and a face, a vertex and an edge, or two edges inside
 both; each is a candidate here, over the features that the two faces own. Not for: the answer itself
-(`refine`), contact (`predicates`), and which face pairs to ask (`descent`).
+(`refine`), contact (`predicates`), and which face pairs to measure (`descent`).
 """
 
 import math

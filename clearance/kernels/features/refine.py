@@ -102,11 +102,11 @@ def _better(best, pair, length, face_a, face_b, lower_bound, sure):
     REFINE_EVERY,
     lambda: (posed_pair_like(), FeatureCutoff(0.0, 0.0), NOTHING_REFINED, table_like()),
 )
-def refine_every(faces, ask, best, table):
+def refine_every(faces, cutoff, best, table):
     """`best`, or better: all features of two faces within the limit."""
     a, b = borrow(faces.surface_a), borrow(faces.surface_b)
     face_a, face_b, frames = faces.a, faces.b, faces.frames
-    chosen = nearest_of_every(a, face_a, b, face_b, frames, ask, table)
+    chosen = nearest_of_every(a, face_a, b, face_b, frames, cutoff, table)
     if chosen.gap_sq.hi == math.inf:
         return best
     feature = chosen.feature
@@ -114,8 +114,8 @@ def refine_every(faces, ask, best, table):
     two = simplex(b, face_b, feature.n_b, feature.j)
     sized = sized_of(table, frames, one, two)
     pair, length = sized.pair, sized.length
-    lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
-    enough = _enough(length, ask.margin)
+    lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, cutoff.margin)
+    enough = _enough(length, cutoff.margin)
     if less(lower_bound, enough) and (a.bent[face_a] or b.bent[face_b]):
         lower_bound = fans_lower_bound_of(table, faces, pair, enough, lower_bound)
     return _better(best, pair, length, face_a, face_b, minus(lower_bound, sized.off), chosen.sure)
@@ -131,7 +131,7 @@ def refine_every(faces, ask, best, table):
         table_like(),
     ),
 )
-def refine(faces, seen, ask, best, table):
+def refine(faces, seen, cutoff, best, table):
     """`best`, or better: two faces of which the search in doubles has seen the nearest features."""
     a, b = borrow(faces.surface_a), borrow(faces.surface_b)
     face_a, face_b, frames = faces.a, faces.b, faces.frames
@@ -141,20 +141,20 @@ def refine(faces, seen, ask, best, table):
         two = simplex_here(b, face_b, feature.n_b, feature.j)
         pair = wide_feature_here(frames, one, two)
         if pair.gap_sq.hi < math.inf:
-            lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, ask.margin)
+            lower_bound = lower_bound_of(a, face_a, b, face_b, frames, feature, pair, cutoff.margin)
             length = root(pair.gap_sq)
-            if not less(lower_bound, _enough(length, ask.margin)):
+            if not less(lower_bound, _enough(length, cutoff.margin)):
                 off = too_far(frames, one, two, pair, length)
                 return _better(
                     best, pair, length, face_a, face_b, minus(lower_bound, off), minus(length, off)
                 )
-    return at_address(table, REFINE_EVERY, NOTHING_REFINED, (faces, ask, best, table))
+    return at_address(table, REFINE_EVERY, NOTHING_REFINED, (faces, cutoff, best, table))
 
 
 @inline(one_caller=True)
-def refined_of(table, faces, seen, ask, best):
+def refined_of(table, faces, seen, cutoff, best):
     """The same by address."""
-    return at_address(table, REFINE, NOTHING_REFINED, (faces, seen, ask, best, table))
+    return at_address(table, REFINE, NOTHING_REFINED, (faces, seen, cutoff, best, table))
 
 
 class RefineQueue(NamedTuple):

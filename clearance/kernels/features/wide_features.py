@@ -1,6 +1,6 @@
 """Nearest points of two features in double-double: what the answer is made of.
 
-A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: which features to ask
+A feature is a `Simplex`: a corner, an edge or a triangle of a face. Not for: which features to measure
 (`face_pair`, `every_feature`) and whether the answer is the minimum (`refine`).
 """
 

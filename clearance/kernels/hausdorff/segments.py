@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.curve.boxes import box_gap_sq, fill_inner_boxes
 
 BUCKET = 8  # segments in a box
 STACK = 128  # nodes of a tree that may be open at once
@@ -46,10 +47,7 @@ def segment_boxes(control):
             x0, y0, x1, y1 = min(x0, x), min(y0, y), max(x1, x), max(y1, y)
         box = boxes[size + b]
         box[0], box[1], box[2], box[3] = x0, y0, x1, y1
-    for node in range(size - 1, 0, -1):
-        for c in range(2):
-            boxes[node, c] = min(boxes[2 * node, c], boxes[2 * node + 1, c])
-            boxes[node, c + 2] = max(boxes[2 * node, c + 2], boxes[2 * node + 1, c + 2])
+    fill_inner_boxes(boxes)
     return boxes
 
 
@@ -76,13 +74,6 @@ def distance_to(control, k, x, y):
     return math.sqrt(foot_on(control, k, x, y)[0])
 
 
-@inline
-def _box_sq(boxes, node, x, y):
-    dx = max(boxes[node, 0] - x, 0.0, x - boxes[node, 2])
-    dy = max(boxes[node, 1] - y, 0.0, y - boxes[node, 3])
-    return dx * dx + dy * dy
-
-
 @kernel(reference_counts=False)
 def nearest_segment(segments, x, y, hint, open_nodes):
     """The distance from (x, y) to the nearest segment, and its index; `hint` is tried first."""
@@ -102,7 +93,7 @@ def nearest_segment(segments, x, y, hint, open_nodes):
                 if square < best:
                     best, which = square, k
             continue
-        a, b = _box_sq(boxes, 2 * node, x, y), _box_sq(boxes, 2 * node + 1, x, y)
+        a, b = box_gap_sq(boxes, 2 * node, x, y), box_gap_sq(boxes, 2 * node + 1, x, y)
         nearer = 2 * node if a <= b else 2 * node + 1
         nodes[top], gaps[top] = 4 * node + 1 - nearer, max(a, b)
         nodes[top + 1], gaps[top + 1] = nearer, min(a, b)

@@ -98,14 +98,14 @@ def normal_cones_of(cones_p, group, cones_q, other, m, slack):
 
 
 @inline(force=True)
-def while_moving(facing, cos_turn, sin_turn, way):
+def while_moving(cones, cos_turn, sin_turn, way):
     """What holds of both at every instant of a motion.
 
     Args:
         cos_turn, sin_turn: of the angle that the bodies turn by at most, less than a right angle with `WIDEST`.
         way: [m] how far any point moves at most.
     """
-    u, cos_u, sin_u, v, cos_v, sin_v, reach = facing
+    u, cos_u, sin_u, v, cos_v, sin_v, reach = cones
     return NormalCones(
         u, cos_u * cos_turn - sin_u * sin_turn, sin_u * cos_turn + cos_u * sin_turn,
         v, cos_v * cos_turn - sin_v * sin_turn, sin_v * cos_turn + cos_v * sin_turn,
@@ -114,13 +114,13 @@ def while_moving(facing, cos_turn, sin_turn, way):
 
 
 @inline(force=True)
-def marks_turned_away(facing, d):
+def marks_turned_away(cones, d):
     """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with.
 
     Args:
         d: [m] from the centres of the group's boxes, in lanes, to that of the other node, in the frame of p.
     """
-    u, cos_u, sin_u, v, cos_v, sin_v, reach = facing
+    u, cos_u, sin_u, v, cos_v, sin_v, reach = cones
     onward_sq = dot(d, d) - reach * reach
     onward = square_root(larger(onward_sq, 0.0))
     reach = where_positive(onward_sq, reach, FARTHEST)

@@ -86,16 +86,22 @@ def _beyond(box, d, slack):
 
 @inline(force=True)
 def bound_of_bodies(boxes, a, b, enough):
-    """[m] a lower bound on the distance of two bodies; one above `enough` is not made tighter.
+    """[m] a lower bound on the distance of two bodies; one above `enough` is not made tighter."""
+    return bound_between(boxes, a, boxes, b, enough)
+
+
+@inline(force=True)
+def bound_between(boxes, a, others, b, enough):
+    """[m] the same of body `a` of some boxes and body `b` of others.
 
     The box of each against the ball about the other's; where that is not enough, both boxes.
     """
-    p, q = _box(boxes, a), _box(boxes, b)
+    p, q = _box(boxes, a), _box(others, b)
     d = sub(q.centre, p.centre)
-    slack = boxes.slacks[a] + boxes.slacks[b]
+    slack = boxes.slacks[a] + others.slacks[b]
     lean = slack + LEAN * (abs(d.x) + abs(d.y) + abs(d.z))
     by_balls = (
-        max(_beyond(p, d, lean) - boxes.radii[b], _beyond(q, d, lean) - boxes.radii[a])
+        max(_beyond(p, d, lean) - others.radii[b], _beyond(q, d, lean) - boxes.radii[a])
         - 2.0 * slack
     )
     if by_balls > enough:

@@ -162,7 +162,7 @@ def _begin_arcs(links, balls, step):
 
 
 @inline
-def _go_to(links, path, step, low, high, middle):
+def go_to_middle(links, path, step, low, high, middle):
     """Puts `middle` in the middle of the part `low` to `high` (0 to 1) of the interval after `step`."""
     for link in range(path.positions.shape[1]):
         part = part_of(path, step, link, low, high)
@@ -189,14 +189,14 @@ def _with_own_arcs(world):
 
 
 @inline
-def _new_middle(n_links):
+def new_middle(n_links):
     return IntervalMiddle(
         np.empty(n_links), np.empty(n_links), np.empty(n_links), np.empty((n_links, 4, 4))
     )
 
 
 @inline
-def _motion_bound_in(surface, world, body, middle):
+def motion_bound_in(surface, world, body, middle):
     """The motion bound of a body about `middle`."""
     link = world.frames[body]
     if link < 0:
@@ -209,7 +209,7 @@ def _motion_bound_in(surface, world, body, middle):
 
 
 @inline
-def _motion_bound_at(motion_bounds, body):
+def motion_bound_at(motion_bounds, body):
     d = motion_bounds[body]
     return MotionBound(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
 
@@ -218,9 +218,9 @@ def _motion_bound_at(motion_bounds, body):
 def _go_on(surface, world, path, step, state):
     """Goes to the interval after `step`: its middle, each body's motion about it, its displacement at the end."""
     _begin_arcs(world.links, path.balls, step)
-    _go_to(world.links, path, step, 0.0, 1.0, state.whole)
+    go_to_middle(world.links, path, step, 0.0, 1.0, state.whole)
     for body in range(len(world.frames)):
-        motion_bound = _motion_bound_in(surface, world, body, state.whole)
+        motion_bound = motion_bound_in(surface, world, body, state.whole)
         numbers = state.motion_bounds[body]
         numbers[0], numbers[1], numbers[2] = (
             motion_bound.velocity.x,
@@ -271,7 +271,7 @@ def certify(surface, motion, steps, aim, bounds, tally, table):
     motion = CertifiedMotion(world, motion.path)
     n_links, n_bodies, n_pairs = len(world.links.parents), len(world.frames), len(world.pairs)
     state = CertifyState(
-        _new_middle(n_links), _new_middle(n_links), np.empty((n_bodies, 8)),
+        new_middle(n_links), new_middle(n_links), np.empty((n_bodies, 8)),
         np.zeros(n_bodies), np.full(n_pairs, -np.inf), np.full((n_pairs, 2), -1), np.empty((DEPTH, 2)),
         new_scratch(),
     )  # fmt: skip
@@ -339,8 +339,8 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
     body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
     b_moves = world.frames[body_b] >= 0
     moving = PairMotion(
-        _motion_bound_at(state.motion_bounds, body_a),
-        _motion_bound_at(state.motion_bounds, body_b),
+        motion_bound_at(state.motion_bounds, body_a),
+        motion_bound_at(state.motion_bounds, body_b),
         b_moves,
     )
     held = _hold_pair(lent, world, pair, state.whole, moving, least, aim, state, tally, table)
@@ -360,10 +360,10 @@ def _hold_interval(lent, surface, motion, step, pair, least, aim, state, tally, 
         low, high = waiting[n_waiting, 0], waiting[n_waiting, 1]
         if n_parts % aim.most_parts == 0 or n_waiting + 2 > DEPTH:
             aim = CertificateGoal(WIDER * aim.gap, aim.fail, aim.most_parts)
-        _go_to(world.links, path, step, low, high, state.part)
+        go_to_middle(world.links, path, step, low, high, state.part)
         moving = PairMotion(
-            _motion_bound_in(surface, world, body_a, state.part),
-            _motion_bound_in(surface, world, body_b, state.part),
+            motion_bound_in(surface, world, body_a, state.part),
+            motion_bound_in(surface, world, body_b, state.part),
             b_moves,
         )
         held = _hold_pair(lent, world, pair, state.part, moving, least, aim, state, tally, table)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.compile.jit import inline, kernel
+from clearance.kernels.curve.boxes import box_gap_sq
 
 RUN = 16
 """Pieces that share a box."""
@@ -36,13 +37,6 @@ class FlatPieces(NamedTuple):
     sweep: np.ndarray
     box: np.ndarray
     run_box: np.ndarray
-
-
-@inline
-def _box_gap_sq(box, k, x, y):
-    dx = max(0.0, box[k, 0] - x, x - box[k, 2])
-    dy = max(0.0, box[k, 1] - y, y - box[k, 3])
-    return dx * dx + dy * dy
 
 
 @inline
@@ -99,7 +93,7 @@ def places_of(pieces, piece, share, out):
 def _nearest_run(pieces, x, y):
     nearest, least = 0, np.inf
     for run in range(len(pieces.run_box)):
-        gap = _box_gap_sq(pieces.run_box, run, x, y)
+        gap = box_gap_sq(pieces.run_box, run, x, y)
         if gap < least:
             nearest, least = run, gap
     return nearest
@@ -116,10 +110,10 @@ def nearest_places(pieces, points, piece, share, foot):
         first = _nearest_run(pieces, x, y)
         for k_run in range(n_runs):
             run = (first + k_run) % n_runs
-            if _box_gap_sq(pieces.run_box, run, x, y) > least * TIED:
+            if box_gap_sq(pieces.run_box, run, x, y) > least * TIED:
                 continue
             for k in range(RUN * run, min(n, RUN * run + RUN)):
-                if _box_gap_sq(pieces.box, k, x, y) > least * TIED:
+                if box_gap_sq(pieces.box, k, x, y) > least * TIED:
                     continue
                 at = _share_of(pieces, k, x, y)
                 px, py = _point_at(pieces, k, at)

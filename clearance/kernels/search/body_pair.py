@@ -117,9 +117,9 @@ NOTHING_MEASURED = PairDistance(
 
 
 def _like():
-    asked = PairQuestion(0.0, 0.0, 0, 0, False, 0, False)
+    question = PairQuestion(0.0, 0.0, 0, 0, False, 0, False)
     front = PairFront(no_fronts(1, 0), 0, 0.0)
-    return posed_pair_like(), asked, front, new_scratch(), table_like()
+    return posed_pair_like(), question, front, new_scratch(), table_like()
 
 
 @inline(force=True)
@@ -130,14 +130,16 @@ def _afresh(a, root_a, b, root_b, m):
 
 
 @inline(force=True)
-def _begin(a, root_a, b, root_b, m, margin, asked):
+def _begin(a, root_a, b, root_b, m, margin, question):
     """What a search begins with: the faces that were nearest and what is seen of them, or the bodies' centres."""
-    if asked.face_a >= 0:
-        near = nearest_of_faces(a, asked.face_a, b, asked.face_b, m, margin, nothing_yet(np.inf))
+    if question.face_a >= 0:
+        near = nearest_of_faces(
+            a, question.face_a, b, question.face_b, m, margin, nothing_yet(np.inf)
+        )
         if near.best.face_a != 2**62:
             return near
-        p = row(a.vertices, a.face_vertices[a.face_starts[asked.face_a]])
-        q = row(b.vertices, b.face_vertices[b.face_starts[asked.face_b]])
+        p = row(a.vertices, a.face_vertices[a.face_starts[question.face_a]])
+        q = row(b.vertices, b.face_vertices[b.face_starts[question.face_b]])
         return FacePairState(Hit(np.inf, 2**62, 2**62, p, move(m, q)), NOTHING_SEEN)
     return _afresh(a, root_a, b, root_b, m)
 
@@ -155,23 +157,23 @@ def _seek_planes(roots, best, limit, slack, front, scratch, table):
 
 
 @inline(one_caller=True)
-def _of_planes(planes, asked, slack, tally):
+def _of_planes(planes, question, slack, tally):
     """What planes say that are farther apart than the limit."""
-    nothing = nothing_yet(asked.wanted * asked.wanted)
+    nothing = nothing_yet(question.wanted * question.wanted)
     lower_bound = max(0.0, planes.lower_bound - slack - 2.0 * margin_of(slack))
     return PairDistance(nothing, lower_bound, 0.0, planes.face_a, planes.face_b, tally)
 
 
 @inline(one_caller=True)
-def _of_descent(found, asked, frames, slack, tally):
+def _of_descent(found, question, frames, slack, tally):
     """What a descent has come to that has found no contact."""
     lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin_of(slack))
     face_a, face_b = found.hit.face_a, found.hit.face_b
     if face_a == 2**62:
-        face_a, face_b = asked.face_a, asked.face_b
+        face_a, face_b = question.face_a, question.face_b
     refined = found.refined
     if refined.face_a == 2**62:
-        nothing = nothing_yet(asked.wanted * asked.wanted)
+        nothing = nothing_yet(question.wanted * question.wanted)
         return PairDistance(nothing, lower_bound, 0.0, face_a, face_b, tally)
     distance = refined.length.hi
     error = error_of(refined, distance) + PASSED_OVER * distance
@@ -182,12 +184,12 @@ def _of_descent(found, asked, frames, slack, tally):
 
 
 @apart(SEARCH, _like)
-def search(bodies, asked, front, scratch, table):
+def search(bodies, question, front, scratch, table):
     """The nearest points of two bodies, or a proof that they are farther apart than the limit.
 
     Args:
         bodies: their numbers in their surfaces.
-        asked: what is wanted and known, a `PairQuestion`.
+        question: what is wanted and known, a `PairQuestion`.
         front: a `PairFront`.
     """
     a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
@@ -196,19 +198,19 @@ def search(bodies, asked, front, scratch, table):
     slack = rounding_slack(a, roots.a, b, roots.b, frames)
     margin = margin_of(slack)
     n_nodes, n_faces, n_exact = 0, 0, 0
-    if asked.touches:
+    if question.touches:
         over = overlap_of(table, roots, slack, scratch)
         n_nodes, n_faces = over.n_nodes, over.n_faces
         if over.meeting.found:
             forget(fronts, pair)
             return _contact(bodies, over, Tally(n_nodes, n_faces, 0), table)
-    first = _begin(a, roots.a, b, roots.b, frames.m, margin, asked)
-    limit = asked.limit + margin
+    first = _begin(a, roots.a, b, roots.b, frames.m, margin, question)
+    limit = question.limit + margin
     planes = _seek_planes(roots, first.best, limit, slack, front, scratch, table)
     n_nodes += planes.n_nodes
     if planes.lower_bound > limit:
-        return _of_planes(planes, asked, slack, Tally(n_nodes, 0, 0))
-    limits = SearchLimits(limit, asked.wanted, slack, asked.effort)
+        return _of_planes(planes, question, slack, Tally(n_nodes, 0, 0))
+    limits = SearchLimits(limit, question.wanted, slack, question.effort)
     best = first.best
     for _ in range(2):
         found = descend(roots, best, first, limits, planes, front, scratch, table)
@@ -231,16 +233,16 @@ def search(bodies, asked, front, scratch, table):
             over = Overlap(found.meeting, found.hit.face_a, found.hit.face_b, 0, 0)
         return _contact(bodies, over, tally, table)
     tally = Tally(n_nodes, n_faces, n_exact)
-    if not (asked.apart or planes.n_waiting > 0):
+    if not (question.apart or planes.n_waiting > 0):
         inside, x = contained(a, bodies.a, b, bodies.b, frames, scratch, table)
         if inside:
             forget(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)
             return PairDistance(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
-    return _of_descent(found, asked, frames, slack, tally)
+    return _of_descent(found, question, frames, slack, tally)
 
 
 @inline(one_caller=True)
-def measure_pair(table, bodies, asked, front, scratch):
+def measure_pair(table, bodies, question, front, scratch):
     """The same by address."""
-    return at_address(table, SEARCH, NOTHING_MEASURED, (bodies, asked, front, scratch, table))
+    return at_address(table, SEARCH, NOTHING_MEASURED, (bodies, question, front, scratch, table))

@@ -252,8 +252,8 @@ def contained(a, body_a, b, body_b, frames, scratch, table):
             away = far + size(v)
             if in_box(two, two.roots[body_two], x, away):
                 probe = Probe(row(one.exact, one.probes[i]), x, away)
-                asked = (two, body_two, is_a, probe, frames, scratch.exact, scratch.nodes)
-                number = at_address(table, WINDING_NUMBER, 0, asked)
+                arguments = (two, body_two, is_a, probe, frames, scratch.exact, scratch.nodes)
+                number = at_address(table, WINDING_NUMBER, 0, arguments)
                 if number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL:
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a

@@ -56,9 +56,17 @@ def generalized_windings(surface, points, poses, poses_of_points, least, most, t
             away = size(frames.m.t) + size(v)
             number = 0.0
             if in_box(surface, surface.roots[0], x, away):
-                asked = (surface, 0, False, Probe(v, x, away), frames, scratch.exact, scratch.nodes)
+                arguments = (
+                    surface,
+                    0,
+                    False,
+                    Probe(v, x, away),
+                    frames,
+                    scratch.exact,
+                    scratch.nodes,
+                )
                 number = abs(
-                    at_address(table, WINDING_NUMBER, 0, asked)
+                    at_address(table, WINDING_NUMBER, 0, arguments)
                     - signed_turns_of_caps(surface, 0, x)
                 )
             least[i] = min(least[i], number)

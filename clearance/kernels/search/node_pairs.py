@@ -103,28 +103,28 @@ def between_centres(a, b, views, nodes):
 
 
 @inline(force=True)
-def _facing(a, b, views, nodes, slack):
+def _cones_and_centres(a, b, views, nodes, slack):
     """The normal cones of a group and of a node of the other body, and what is from centre to centre."""
     p, q, view = _seen(a, b, views, nodes)
     cones, cones_across = a.cones, b.cones
     if nodes.is_of_b:
         cones, cones_across = b.cones, a.cones
-    facing = normal_cones_of(cones, nodes.group, cones_across, nodes.other, view.m, slack)
-    return facing, _from_centres(p, q, view)
+    both = normal_cones_of(cones, nodes.group, cones_across, nodes.other, view.m, slack)
+    return both, _from_centres(p, q, view)
 
 
 @inline(force=True)
 def turned_away(a, b, views, nodes, slack):
     """Bits of the nodes of a group that hold no nearest points with a node they have no point in common with."""
-    facing, d = _facing(a, b, views, nodes, slack)
-    return marks_turned_away(facing, d)
+    cones, d = _cones_and_centres(a, b, views, nodes, slack)
+    return marks_turned_away(cones, d)
 
 
 @inline(force=True)
 def turned_away_while(a, b, views, nodes, slack, cos_turn, sin_turn, way):
     """The same at every instant of a motion about the views' `m`: see `while_moving`."""
-    facing, d = _facing(a, b, views, nodes, slack)
-    return marks_turned_away(while_moving(facing, cos_turn, sin_turn, way), d)
+    cones, d = _cones_and_centres(a, b, views, nodes, slack)
+    return marks_turned_away(while_moving(cones, cos_turn, sin_turn, way), d)
 
 
 @inline(force=True)

@@ -146,15 +146,15 @@ def _measure(a, b, lent_a, lent_b, state, scratch, pose_a, pose_b, table):
     frames = frames_of(rigid(pose_a), rigid(pose_b))
     moved = _accumulated_displacement(a, b, state, pose_a, pose_b, frames)
     state.carried[LOWER_BOUND] = -np.inf  # until the search has come to its end
-    asked = PairQuestion(
+    question = PairQuestion(
         np.inf, np.inf, state.witness_faces[0], state.witness_faces[1], True, TO_THE_END, False
     )
     if moved == np.inf:
         moved = 0.0
-        asked = PairQuestion(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
+        question = PairQuestion(np.inf, np.inf, NO_FACE, NO_FACE, False, TO_THE_END, False)
         forget(state.fronts, 0)
     bodies = PosedPair(lent_a, 0, lent_b, 0, frames)
-    measured = measure_pair(table, bodies, asked, PairFront(state.fronts, 0, moved), scratch)
+    measured = measure_pair(table, bodies, question, PairFront(state.fronts, 0, moved), scratch)
     state.carried[MOVED] = moved
     state.carried[LOWER_BOUND] = (measured.lower_bound + moved) * KEPT_DOWN
     state.witness_faces[0], state.witness_faces[1] = measured.face_a, measured.face_b

@@ -138,16 +138,6 @@ def residuals(code, var, coef, value, x):
 
 
 @kernel
-def gradients(code, var, coef, value, x):
-    """Residuals (m,) and derivatives (m, 8) by slot; slots of one variable are to be added up."""
-    out = np.empty(code.shape[0])
-    slots = np.empty((code.shape[0], 8))
-    for row in range(code.shape[0]):
-        out[row] = evaluate(code, var, coef, value, x, row, slots[row])
-    return out, slots
-
-
-@kernel
 def worst(code, var, coef, value, x, length_scale):
     """The largest |residual|, those of direction equations times `length_scale`, and its row (-1:
     none).

@@ -177,9 +177,12 @@ def edges(var, absolute, fate, vertex_of):
     return out
 
 
-@kernel
-def lists(ends, n_vertices):
-    """The edges of every vertex as (starts (v + 1,), rows)."""
+@inline
+def rows_of_each(ends, n_vertices):
+    """The rows of `ends` that name each vertex, as (starts (v + 1,), rows); -1 names none.
+
+    A row that names a vertex twice is listed twice.
+    """
     starts = np.zeros(n_vertices + 1, np.int64)
     for row in range(ends.shape[0]):
         for k in range(ends.shape[1]):
@@ -199,7 +202,7 @@ def lists(ends, n_vertices):
 @inline
 def graph_of(kind, ends, absolute, theta_of):
     """The constraint graph of these vertices and edges."""
-    start, rows = lists(ends, kind.shape[0])
+    start, rows = rows_of_each(ends, kind.shape[0])
     return ConstraintGraph(kind, ends, absolute, theta_of, start, rows)
 
 

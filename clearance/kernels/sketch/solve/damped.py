@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.compile.jit import inline
 from clearance.kernels.sketch.equations import evaluate
-from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN
+from clearance.kernels.sketch.graph.graph import POINT, SLIDE, TURN, rows_of_each
 from clearance.kernels.sketch.solve.motion import keep, move, new_kept_place, restore, total_of
 
 
@@ -86,27 +86,8 @@ def nodes_of(s, unknowns):
             i = s.var[rows[a], k]
             if i >= 0 and s.vertex_of[i] >= 0 and first[s.vertex_of[i]] >= 0:
                 of_row[a, k] = node_at[first[s.vertex_of[i]]]
-    start, mine = _incidence(of_row, count)
+    start, mine = rows_of_each(of_row, count)
     return ClusterNodes(node_at, width, is_turn, of_row, start, mine)
-
-
-@inline
-def _incidence(of_row, count):
-    """The rows of every node as (starts, rows); a row that names a node twice is listed twice."""
-    start = np.zeros(count + 1, np.int64)
-    for a in range(of_row.shape[0]):
-        for k in range(8):
-            if of_row[a, k] >= 0:
-                start[of_row[a, k] + 1] += 1
-    start = np.cumsum(start)
-    mine = np.empty(start[-1], np.int64)
-    fill = start[:-1].copy()
-    for a in range(of_row.shape[0]):
-        for k in range(8):
-            if of_row[a, k] >= 0:
-                mine[fill[of_row[a, k]]] = a
-                fill[of_row[a, k]] += 1
-    return start, mine
 
 
 @inline

@@ -1,0 +1,204 @@
+"""What moves by one clock, over spans of its time that are halved again and again: a tree of motion bounds.
+
+A leaf is a step, or the interval between two steps; a node is a span of leaves. Of each body a node knows the pose
+in its middle leaf and how far any point of the body gets from there over the whole span. All is made once, so
+that a search over the times of two clocks (`unsynchronised`) looks up what both bodies of a pair may do.
+Not for: parts of an interval (`certify`'s middle of a part).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel, shared
+from clearance.kernels.arithmetic.vec3 import Vec3, rigid
+from clearance.kernels.features.bounds import displacement
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes, place_box
+from clearance.kernels.motion.certify import (
+    go_to_middle,
+    motion_bound_at,
+    motion_bound_in,
+    new_middle,
+)
+from clearance.kernels.motion.joint_motion_bound import MotionBound, motion_bound_of_box
+from clearance.kernels.motion.kinematics import place_by_link
+from clearance.kernels.motion.placed import GROWTH
+
+ANY_TURN = math.pi
+"""[rad] No body turns farther from where it was."""
+
+
+class ClockTree(NamedTuple):
+    """Spans of one clock's time, the root first, both halves of a span behind one another.
+
+    Attributes:
+        start: the step or interval that is leaf 0.
+        first, last: (nodes,) the leaves of each node are those from `first` to before `last`.
+        left: (nodes,) its earlier half; the later one follows it. -1 for a leaf.
+        low, high: (nodes,) [s] when it begins and ends. middle: (nodes,) [s] the step, or the middle of the
+            interval, that is its middle leaf.
+        moved: (nodes, k) [m] how far each of the k bodies of the clock gets from its pose in the middle leaf.
+        poses: (leaves * k, 4, 4) `world_from_body` [m] at the step or in the middle of the interval.
+        motion_bounds: (leaves * k, 8) numbers of the `MotionBound` about it; zeros for a step.
+        boxes: (leaves * k) of the bodies there.
+    """
+
+    start: int
+    first: np.ndarray
+    last: np.ndarray
+    left: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    middle: np.ndarray
+    moved: np.ndarray
+    poses: np.ndarray
+    motion_bounds: np.ndarray
+    boxes: BodyBoxes
+
+
+@shared
+def new_clock_tree(start, n_leaves, n_bodies):
+    """A tree of so many leaves that nothing is known of."""
+    n_nodes, n_rows = 2 * n_leaves - 1, n_leaves * n_bodies
+    return ClockTree(
+        start, np.empty(n_nodes, dtype=np.int64), np.empty(n_nodes, dtype=np.int64),
+        np.empty(n_nodes, dtype=np.int64), np.empty(n_nodes), np.empty(n_nodes), np.empty(n_nodes),
+        np.empty((n_nodes, n_bodies)),
+        np.empty((n_rows, 4, 4)), np.zeros((n_rows, 8)), new_body_boxes(n_rows),
+    )  # fmt: skip
+
+
+@inline(force=True)
+def n_leaves_of(tree):
+    """How many steps, or intervals, it is of."""
+    return (len(tree.first) + 1) // 2
+
+
+@inline(force=True)
+def is_leaf_of_clock(tree, node):
+    """True if a node is one step or one interval."""
+    return tree.left[node] < 0
+
+
+@inline(force=True)
+def middle_leaf(tree, node):
+    """The leaf in whose pose the bodies of a node are."""
+    return (tree.first[node] + tree.last[node]) // 2
+
+
+@inline(force=True)
+def row_in_middle(tree, node, column):
+    """The row of a body in the middle leaf of a node."""
+    return middle_leaf(tree, node) * tree.moved.shape[1] + column
+
+
+@inline
+def motion_of_node(tree, node, column):
+    """The `MotionBound` of a body over a node, about its pose in the middle leaf."""
+    if is_leaf_of_clock(tree, node):
+        return motion_bound_at(tree.motion_bounds, row_in_middle(tree, node, column))
+    still = Vec3(0.0, 0.0, 0.0)
+    return MotionBound(still, still, tree.moved[node, column], ANY_TURN)
+
+
+@inline
+def _halve(tree, n_leaves):
+    """Fills which leaves each node has, the nodes level by level."""
+    tree.first[0], tree.last[0] = 0, n_leaves
+    n_nodes = 1
+    for node in range(len(tree.first)):
+        first, last = tree.first[node], tree.last[node]
+        tree.left[node] = -1
+        if last - first > 1:
+            tree.left[node] = n_nodes
+            middle = (first + last) // 2
+            tree.first[n_nodes], tree.last[n_nodes] = first, middle
+            tree.first[n_nodes + 1], tree.last[n_nodes + 1] = middle, last
+            n_nodes += 2
+
+
+@inline
+def _put(pose, out):
+    for i in range(4):
+        for k in range(4):
+            out[i, k] = pose[i, k]
+
+
+@inline
+def _note_motion_bound(bound, numbers):
+    v, w = bound.velocity, bound.spin
+    numbers[0], numbers[1], numbers[2] = v.x, v.y, v.z
+    numbers[3], numbers[4], numbers[5] = w.x, w.y, w.z
+    numbers[6], numbers[7] = bound.rest, bound.turn
+
+
+@inline
+def _fill_leaf(surface, world, bodies, leaf, middle, tree):
+    """Writes where the bodies are in the middle of a leaf, and their boxes there."""
+    for column in range(len(bodies)):
+        body = bodies[column]
+        row = leaf * len(bodies) + column
+        _put(middle.poses[world.frames[body]], tree.poses[row])
+        root = surface.roots[world.solids[body]]
+        place_box(surface, root, row, rigid(tree.poses[row]), tree.boxes)
+
+
+@inline
+def _fill_moved(surface, world, bodies, tree):
+    """Fills how far each body gets from the middle of each node: to the middle of a leaf, and within the leaf."""
+    k = len(bodies)
+    for node in range(len(tree.first)):
+        for column in range(k):
+            root = surface.roots[world.solids[bodies[column]]]
+            box = box_of(surface, root)
+            before = tree.poses[row_in_middle(tree, node, column)]
+            most = 0.0
+            for leaf in range(tree.first[node], tree.last[node]):
+                row = leaf * k + column
+                moved = motion_bound_of_box(box, motion_bound_at(tree.motion_bounds, row))
+                if not is_leaf_of_clock(tree, node):
+                    moved += displacement(surface, root, before, tree.poses[row])
+                most = max(most, moved)
+            tree.moved[node, column] = most * GROWTH
+
+
+@kernel
+def fill_steps_tree(surface, world, path, bodies, tree):
+    """Fills a tree whose leaves are steps.
+
+    Args:
+        path: a `JointPath` of all steps. bodies: (k,) those of the clock, each carried by a link.
+    """
+    n_leaves = len(tree.poses) // len(bodies)
+    middle = new_middle(len(world.links.parents))
+    _halve(tree, n_leaves)
+    for leaf in range(n_leaves):
+        place_by_link(world.links, path.positions[tree.start + leaf], middle.poses)
+        _fill_leaf(surface, world, bodies, leaf, middle, tree)
+    _fill_moved(surface, world, bodies, tree)
+    for node in range(len(tree.first)):
+        tree.low[node] = path.times[tree.start + tree.first[node]]
+        tree.high[node] = path.times[tree.start + tree.last[node] - 1]
+        tree.middle[node] = path.times[tree.start + middle_leaf(tree, node)]
+
+
+@kernel
+def fill_intervals_tree(surface, world, path, bodies, tree):
+    """Fills a tree whose leaves are the intervals between steps; arguments as above."""
+    n_leaves = len(tree.poses) // len(bodies)
+    middle = new_middle(len(world.links.parents))
+    _halve(tree, n_leaves)
+    for leaf in range(n_leaves):
+        go_to_middle(world.links, path, tree.start + leaf, 0.0, 1.0, middle)
+        _fill_leaf(surface, world, bodies, leaf, middle, tree)
+        for column in range(len(bodies)):
+            bound = motion_bound_in(surface, world, bodies[column], middle)
+            _note_motion_bound(bound, tree.motion_bounds[leaf * len(bodies) + column])
+    _fill_moved(surface, world, bodies, tree)
+    for node in range(len(tree.first)):
+        tree.low[node] = path.times[tree.start + tree.first[node]]
+        tree.high[node] = path.times[tree.start + tree.last[node]]
+        leaf = tree.start + middle_leaf(tree, node)
+        tree.middle[node] = 0.5 * (path.times[leaf] + path.times[leaf + 1])

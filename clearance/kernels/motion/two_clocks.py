@@ -1,0 +1,95 @@
+"""What moves by which of two clocks, and what is known of a pair at a time of each before any search.
+
+Not for: searches over both times (`unsynchronised`, `unsynchronised_steps`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.vec3 import dot, move, row, sub
+from clearance.kernels.features.bounds import margin_of, rounding_slack
+from clearance.kernels.features.face_pair import Hit
+from clearance.kernels.features.posed_pair import parts
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.certify_pair import CHAIN_SLACK
+from clearance.kernels.motion.clock_rectangles import Band
+from clearance.kernels.motion.clock_tree import ClockTree
+from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.world import World
+from clearance.kernels.search.separating_planes import separating_planes_of
+
+FEW = 4
+"""Corners of a face that are looked at."""
+
+
+class TwoClocks(NamedTuple):
+    """What moves by which clock.
+
+    Attributes:
+        world: the bodies; the first of each pair moves by clock a, the second by clock b.
+        path: how all joints move: first from step to step of clock b, then of clock a.
+        tree_a, tree_b: what is known of the spans of either clock.
+        columns: (bodies,) the place of each body among those of its clock.
+        band: which times occur together.
+    """
+
+    world: World
+    path: JointPath
+    tree_a: ClockTree
+    tree_b: ClockTree
+    columns: np.ndarray
+    band: Band
+
+
+@inline
+def corners_apart(surface, faces, pose_a, pose_b):
+    """[m] how far apart two faces' nearest corners are, of the first few of each; infinite without faces.
+
+    Their bodies are no farther apart, so what could only be proven if they were needs no search.
+
+    Args:
+        faces: (2,) or -1. pose_a, pose_b: `RigidMotion` of their bodies.
+    """
+    if faces[0] < 0:
+        return math.inf
+    starts, corners, vertices = surface.face_starts, surface.face_vertices, surface.vertices
+    first_a, first_b = starts[faces[0]], starts[faces[1]]
+    end_a = min(first_a + FEW, starts[faces[0] + 1])
+    end_b = min(first_b + FEW, starts[faces[1] + 1])
+    least_sq = math.inf
+    for i in range(first_a, end_a):
+        x = move(pose_a, row(vertices, corners[i]))
+        for k in range(first_b, end_b):
+            d = sub(x, move(pose_b, row(vertices, corners[k])))
+            least_sq = min(least_sq, dot(d, d))
+    return math.sqrt(least_sq)
+
+
+@inline
+def apart_by_planes(surface, bodies, faces, limit, scratch, table):
+    """[m] a lower bound beyond `limit` by two planes between the bodies' hulls, or -inf if that is not found.
+
+    Each tree is searched by itself: a few dozen nodes, where pairs of nodes take hundreds to thousands.
+
+    Args:
+        bodies: a `PosedPair`. faces: (2,) where to begin, or -1; those that touch the planes are put there.
+    """
+    roots = parts(bodies, surface.roots[bodies.a], surface.roots[bodies.b])
+    m = bodies.frames.m
+    slack = CHAIN_SLACK * rounding_slack(surface, roots.a, surface, roots.b, bodies.frames)
+    rest = 3.0 * margin_of(slack)
+    if faces[0] >= 0:
+        p = row(surface.vertices, surface.face_vertices[surface.face_starts[faces[0]]])
+        q = move(m, row(surface.vertices, surface.face_vertices[surface.face_starts[faces[1]]]))
+        d = sub(p, q)
+        best = Hit(dot(d, d), faces[0], faces[1], p, q)
+    else:
+        p, q = box_of(surface, roots.a).centre, move(m, box_of(surface, roots.b).centre)
+        best = Hit(math.inf, np.int64(2**62), np.int64(2**62), p, q)
+    planes = separating_planes_of(table, roots, best, limit + rest, slack, scratch)
+    if planes.face_a >= 0 and planes.face_b >= 0:
+        faces[0], faces[1] = planes.face_a, planes.face_b
+    return planes.lower_bound - rest if planes.lower_bound > limit + rest else -math.inf

@@ -1,0 +1,394 @@
+"""A proven lower bound on the clearance of motions by two clocks that nothing ties, or only to within a slack.
+
+For each interval of clock a: over all its times, all times of clock b within the band, and all pairs of a body of
+either clock. Rectangles of both times (`clock_rectangles`) are looked at with the motion bounds of both clocks'
+spans (`clock_tree`): a pair whose boxes stay apart, or that holds (`certify_pair.hold`) about the middle, is done
+there; with what is left the rectangle is halved in the time of the body that moves more.
+Not for: the steps (`unsynchronised_steps`), motion by one clock (`certify`).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+from clearance.compile.kernel_table import lend
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.motion.body_boxes import bound_between
+from clearance.kernels.motion.certify import (
+    ROUNDED_DOWN,
+    WIDER,
+    CertificateGoal,
+    IntervalMiddle,
+    go_to_middle,
+    motion_bound_in,
+    new_middle,
+)
+from clearance.kernels.motion.certify_pair import CHAIN_SLACK, allowed_gap, hold
+from clearance.kernels.motion.clock_rectangles import (
+    ALL_TIMES,
+    DEPTH,
+    Waiting,
+    clipped,
+    halves_of,
+    is_whole,
+    meets_band,
+    middle_occurs,
+    middle_of_side,
+    new_waiting,
+    put_rectangle,
+    take_rectangle,
+)
+from clearance.kernels.motion.clock_tree import (
+    is_leaf_of_clock,
+    middle_leaf,
+    motion_of_node,
+    n_leaves_of,
+    row_in_middle,
+)
+from clearance.kernels.motion.joint_motion_bound import PairMotion, motion_bound_of_box
+from clearance.kernels.motion.placed import GROWTH
+from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
+from clearance.kernels.search.scratch import Scratch, new_scratch
+
+OUTWARD = 1.0 + 1e-12
+"""Covers the rounding of a sum of a few lengths."""
+
+
+class TwoClockBounds(NamedTuple):
+    """What is found of each interval of clock a.
+
+    Attributes:
+        lower, upper: (m,) [m] proven, and the least distance seen.
+        share_a: (m,) where in the interval that was, 0 to 1. step_b, share_b: (m,) the interval of clock b, and
+            where in it. pair: (m,) which pair.
+    """
+
+    lower: np.ndarray
+    upper: np.ndarray
+    share_a: np.ndarray
+    step_b: np.ndarray
+    share_b: np.ndarray
+    pair: np.ndarray
+
+
+class StepsOfClock(NamedTuple):
+    """What is known of the steps of clock a.
+
+    Attributes:
+        clearance: (m + 1,) [m] the least over all steps of clock b in the band.
+        step_b: (m + 1,) the step of clock b at which it occurs. pair: (m + 1,) which pair.
+    """
+
+    clearance: np.ndarray
+    step_b: np.ndarray
+    pair: np.ndarray
+
+
+class RectangleState(NamedTuple):
+    """What a search over rectangles knows, and scratch.
+
+    Attributes:
+        gaps: (m,) [m] allowed in each interval. n_looked_at: (m,) rectangles that were.
+        lower_bounds: (nodes,) [m] proven for all that was closed at a node of clock a.
+        witness_faces: (p, 2) the faces that were nearest, or -1.
+        part_a, part_b: the middle of a part of an interval. at: (2, 3) which: leaf, low, high.
+    """
+
+    waiting: Waiting
+    gaps: np.ndarray
+    n_looked_at: np.ndarray
+    lower_bounds: np.ndarray
+    witness_faces: np.ndarray
+    part_a: IntervalMiddle
+    part_b: IntervalMiddle
+    at: np.ndarray
+    scratch: Scratch
+
+
+class RectangleGoal(NamedTuple):
+    """What is asked of a rectangle.
+
+    Attributes:
+        least: [m] the least distance seen in its intervals of clock a, the greatest of these.
+        target: [m] what is to be proven.
+        gap: [m] allowed below `least`.
+        is_fine: True if neither side is of several intervals.
+        counts: True if a distance in the middle is one of an only interval of clock a, at times in the band.
+    """
+
+    least: float
+    target: float
+    gap: float
+    is_fine: bool
+    counts: bool
+
+
+class PairLook(NamedTuple):
+    """What a look at a pair in a rectangle comes to: a bound and the least distance [m], True if that is enough,
+    and how far either body moves from the middle [m]."""
+
+    lower_bound: float
+    least: float
+    is_done: bool
+    moved_a: float
+    moved_b: float
+
+
+@inline
+def _bring(clocks, tree, node, low, high, at, part):
+    """Puts `part` in the middle of a part of an interval, if it is one and `part` is not there yet."""
+    leaf = tree.start + tree.first[node]
+    if is_whole(low, high) or (at[0] == leaf and at[1] == low and at[2] == high):
+        return
+    go_to_middle(clocks.world.links, clocks.path, leaf, low, high, part)
+    at[0], at[1], at[2] = leaf, low, high
+
+
+@inline
+def _side_of(surface, clocks, tree, body, node, whole, part):
+    """(where a body is in the middle of a side of a rectangle, its motion bound, [m] how far it moves)."""
+    world, column = clocks.world, clocks.columns[body]
+    if whole:
+        pose = rigid(tree.poses[row_in_middle(tree, node, column)])
+        return pose, motion_of_node(tree, node, column), tree.moved[node, column]
+    motion = motion_bound_in(surface, world, body, part)
+    box = box_of(surface, surface.roots[world.solids[body]])
+    return rigid(part.poses[world.frames[body]]), motion, GROWTH * motion_bound_of_box(box, motion)
+
+
+@inline
+def _bound_by_boxes(clocks, rectangle, pair, target):
+    """[m] a lower bound on the distance of a pair over a rectangle of whole nodes; one of `target` will do."""
+    tree_a, tree_b, pairs = clocks.tree_a, clocks.tree_b, clocks.world.pairs
+    column_a, column_b = clocks.columns[pairs[pair, 0]], clocks.columns[pairs[pair, 1]]
+    row_a = row_in_middle(tree_a, rectangle.node_a, column_a)
+    row_b = row_in_middle(tree_b, rectangle.node_b, column_b)
+    moved = tree_a.moved[rectangle.node_a, column_a] + tree_b.moved[rectangle.node_b, column_b]
+    moved += CHAIN_SLACK * (tree_a.boxes.slacks[row_a] + tree_b.boxes.slacks[row_b])
+    return bound_between(tree_a.boxes, row_a, tree_b.boxes, row_b, target + moved) - moved
+
+
+@inline
+def _settled_coarsely(surface, bodies, faces, moved, target, scratch, table):
+    """(a bound [m], True if it is enough or none can be) of a pair over spans of several intervals.
+
+    Args:
+        moved: [m] how far both bodies move from where they are.
+    """
+    limit = (target + moved) * OUTWARD
+    a, b = bodies.frames.a, bodies.frames.b
+    if corners_apart(surface, faces, a, b) < limit:
+        return 0.0, True
+    planes = apart_by_planes(surface, bodies, faces, limit, scratch, table)
+    if planes > limit:
+        return planes - moved, True
+    return 0.0, corners_apart(surface, faces, a, b) < limit
+
+
+@inline
+def _look_at_pair(lent, surface, clocks, rectangle, pair, goal, aim, state, tally, table):
+    """What holds of a pair over a rectangle, as a `PairLook`."""
+    r, world = rectangle, clocks.world
+    body_a, body_b = world.pairs[pair, 0], world.pairs[pair, 1]
+    whole_a, whole_b = is_whole(r.low_a, r.high_a), is_whole(r.low_b, r.high_b)
+    if whole_a and whole_b:
+        bound = _bound_by_boxes(clocks, r, pair, goal.target)
+        if bound >= goal.target:
+            tally[1] += 1
+            return PairLook(bound, goal.least, True, 0.0, 0.0)
+    pose_a, motion_a, moved_a = _side_of(
+        surface, clocks, clocks.tree_a, body_a, r.node_a, whole_a, state.part_a
+    )
+    pose_b, motion_b, moved_b = _side_of(
+        surface, clocks, clocks.tree_b, body_b, r.node_b, whole_b, state.part_b
+    )
+    bodies = PosedPair(
+        lent, world.solids[body_a], lent, world.solids[body_b], frames_of(pose_a, pose_b)
+    )
+    faces = state.witness_faces[pair]
+    one_a = is_leaf_of_clock(clocks.tree_a, r.node_a)
+    if not goal.is_fine and (moved_b > moved_a or not one_a):  # else it may be halved for ever
+        bound, settled = _settled_coarsely(
+            surface, bodies, faces, moved_a + moved_b, goal.target, state.scratch, table
+        )
+        if settled:
+            return PairLook(bound, goal.least, bound >= goal.target, moved_a, moved_b)
+    tally[2] += 1
+    motion = PairMotion(motion_a, motion_b, True)
+    aim = CertificateGoal(goal.gap, aim.fail, aim.most_parts)
+    held = hold(bodies, faces, motion, goal.least, aim, state.scratch, tally[1:], table)
+    faces[0], faces[1] = held.face_a, held.face_b
+    is_done = held.completed and (goal.counts or held.lower_bound >= goal.target)
+    return PairLook(held.lower_bound, held.least, is_done, moved_a, moved_b)
+
+
+@inline
+def _goal_of(clocks, rectangle, aim, bounds, state):
+    """What is to be proven in a rectangle; the target is 0 where nothing is."""
+    tree, node = clocks.tree_a, rectangle.node_a
+    least, target, gap = 0.0, 0.0, aim.gap
+    for row in range(tree.first[node], tree.last[node]):
+        upper = bounds.upper[row]
+        least = max(least, upper)
+        target = max(target, upper - allowed_gap(upper, state.gaps[row], aim.fail))
+        gap = state.gaps[row]
+    one = is_leaf_of_clock(tree, node)
+    counts = one and middle_occurs(tree, clocks.tree_b, rectangle, clocks.band)
+    is_fine = one and is_leaf_of_clock(clocks.tree_b, rectangle.node_b)
+    return RectangleGoal(least, target, gap if one else aim.gap, is_fine, counts)
+
+
+@inline
+def _note_seen(clocks, rectangle, pair, distance, bounds):
+    """Notes a distance that occurs in the middle of a rectangle [m], nearer than all before in its interval."""
+    r, tree_b = rectangle, clocks.tree_b
+    row = clocks.tree_a.first[r.node_a]
+    bounds.upper[row], bounds.pair[row] = distance, pair
+    bounds.share_a[row] = 0.5 * (r.low_a + r.high_a)
+    bounds.step_b[row] = tree_b.start + middle_leaf(tree_b, r.node_b)
+    bounds.share_b[row] = 0.5 * (r.low_b + r.high_b) if is_leaf_of_clock(tree_b, r.node_b) else 0.5
+
+
+@inline
+def _look(lent, surface, clocks, rectangle, count, aim, bounds, state, tally, table):
+    """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time).
+
+    Those that are left are listed.
+    """
+    r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
+    one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)
+    goal = _goal_of(clocks, r, aim, bounds, state)
+    most_a, most_b = 0.0, 0.0
+    n_left = 0
+    for place in range(count):
+        if goal.target <= 0.0:
+            state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], 0.0)
+            return 0, True
+        pair = listed[place]
+        seen = _look_at_pair(lent, surface, clocks, r, pair, goal, aim, state, tally, table)
+        if seen.is_done:
+            bound = seen.lower_bound
+            state.lower_bounds[r.node_a] = min(state.lower_bounds[r.node_a], bound)
+        else:
+            listed[n_left] = pair
+            n_left += 1
+            most_a, most_b = max(most_a, seen.moved_a), max(most_b, seen.moved_b)
+        if goal.counts and seen.least < goal.least:
+            _note_seen(clocks, r, pair, seen.least, bounds)
+            goal = _goal_of(clocks, r, aim, bounds, state)
+    in_a = most_a > most_b
+    if one_a and not one_b and not goal.counts:
+        in_a = False  # the times of clock b go beyond the band
+    elif not one_a and one_b:
+        in_a = True  # no distance counts before one interval of clock a is spoken of
+    return n_left, in_a
+
+
+@inline
+def _wait_halves(clocks, rectangle, in_a, count, n_waiting, bounds, waiting):
+    """Lets both halves of a rectangle wait, the one nearer to the least distance seen to be looked at first."""
+    tree_a, tree_b = clocks.tree_a, clocks.tree_b
+    row = middle_leaf(tree_a, rectangle.node_a)
+    step, share = bounds.step_b[row], bounds.share_b[row]
+    if in_a:
+        step, share = tree_a.start + row, bounds.share_a[row]
+    times = clocks.path.times
+    seen = times[step] + share * (times[step + 1] - times[step])
+    earlier, later = halves_of(tree_a, tree_b, rectangle, in_a)
+    if seen > middle_of_side(tree_a, tree_b, rectangle, in_a):
+        earlier, later = later, earlier
+    put_rectangle(later, count, waiting, n_waiting)
+    put_rectangle(earlier, count, waiting, n_waiting + 1)
+
+
+@inline
+def _begin(clocks, steps, aim, bounds, state):
+    """Takes the nearer end of each interval as what was seen, and lets all times of both clocks wait."""
+    n_steps = n_leaves_of(clocks.tree_b) + 1
+    for row in range(len(bounds.upper)):
+        end = 1 if steps.clearance[row + 1] < steps.clearance[row] else 0
+        step_b = steps.step_b[row + end]
+        bounds.upper[row], bounds.pair[row] = steps.clearance[row + end], steps.pair[row + end]
+        bounds.share_a[row] = end
+        bounds.step_b[row] = min(step_b, n_steps - 2)
+        bounds.share_b[row] = step_b - bounds.step_b[row]
+        state.gaps[row] = aim.gap
+    for pair in range(len(state.waiting.listed)):
+        state.waiting.listed[pair] = pair
+    put_rectangle(ALL_TIMES, len(state.waiting.listed), state.waiting, 0)
+
+
+@inline
+def _end(clocks, bounds, state):
+    """Hands the bounds of the nodes of clock a down to its intervals."""
+    tree, lower_bounds = clocks.tree_a, state.lower_bounds
+    for node in range(len(tree.first)):
+        left = tree.left[node]
+        if left < 0:
+            row = tree.first[node]
+            lower = min(lower_bounds[node], bounds.upper[row] * ROUNDED_DOWN)
+            bounds.lower[row] = max(0.0, lower)
+        else:
+            lower_bounds[left] = min(lower_bounds[left], lower_bounds[node])
+            lower_bounds[left + 1] = min(lower_bounds[left + 1], lower_bounds[node])
+
+
+@kernel
+def certify_unsynchronised(surface, clocks, steps, aim, bounds, tally, table):
+    """Fills `bounds` of the intervals of clock a that are the leaves of its tree.
+
+    Args:
+        surface: every face owns all its features.
+        clocks: `TwoClocks`, with trees of intervals. steps: `StepsOfClock`, a clearance of 0 for a contact.
+        aim: a `CertificateGoal`; its `most_parts` are rectangles of one interval of clock a.
+        tally: (5,) counts: rectangles, pairs that boxes keep apart, searches, nodes and faces looked at.
+    """
+    n_links, n_rows = len(clocks.world.links.parents), len(bounds.upper)
+    n_pairs = len(clocks.world.pairs)
+    state = RectangleState(
+        new_waiting(n_pairs), np.empty(n_rows), np.zeros(n_rows, dtype=np.int64),
+        np.full(len(clocks.tree_a.first), math.inf), np.full((n_pairs, 2), -1),
+        new_middle(n_links), new_middle(n_links), np.full((2, 3), -1.0), new_scratch(),
+    )  # fmt: skip
+    for i in range(len(tally)):
+        tally[i] = 0
+    _begin(clocks, steps, aim, bounds, state)
+    _certify(surface, clocks, aim, bounds, tally, state, table)
+    _end(clocks, bounds, state)
+
+
+@kernel(reference_counts=False)
+def _certify(surface, clocks, aim, bounds, tally, state, table):
+    """`certify_unsynchronised`, with the arrays of its state."""
+    lent = lend(surface)
+    tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
+    n_waiting = 1
+    while n_waiting > 0:
+        n_waiting -= 1
+        r, count = take_rectangle(waiting, n_waiting)
+        if not meets_band(tree_a, tree_b, r, clocks.band):
+            continue
+        tally[0] += 1
+        one_a = is_leaf_of_clock(tree_a, r.node_a)
+        if one_a:
+            row = tree_a.first[r.node_a]
+            state.n_looked_at[row] += 1
+            if state.n_looked_at[row] % aim.most_parts == 0:
+                state.gaps[row] *= WIDER
+            if is_leaf_of_clock(tree_b, r.node_b):
+                r = clipped(tree_a, tree_b, r, clocks.band)
+        _bring(clocks, tree_a, r.node_a, r.low_a, r.high_a, state.at[0], state.part_a)
+        _bring(clocks, tree_b, r.node_b, r.low_b, r.high_b, state.at[1], state.part_b)
+        n_left, in_a = _look(lent, surface, clocks, r, count, aim, bounds, state, tally, table)
+        if n_left == 0:
+            continue
+        if n_waiting + 2 > DEPTH:
+            state.lower_bounds[r.node_a] = 0.0
+            continue
+        _wait_halves(clocks, r, in_a, n_left, n_waiting, bounds, waiting)
+        n_waiting += 2

@@ -1,0 +1,342 @@
+"""The least clearance of each step of one clock over all steps of another that can occur with it, exactly.
+
+As in `unsynchronised`, rectangles of both clocks' steps are looked at: a pair is measured in the middle, and what
+both bodies move in the rectangle is taken off. So a distance that was measured speaks for many steps at once, and
+it is the distance of two steps. Nothing is left out unless it is farther than the best strictly: ties go to the
+least pair, then to the least step of the other clock. Not for: what happens between the steps.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+from clearance.compile.kernel_table import lend
+from clearance.kernels.arithmetic.double_double import frames_of
+from clearance.kernels.arithmetic.vec3 import rigid
+from clearance.kernels.features.face_pair import write_points
+from clearance.kernels.features.posed_pair import PosedPair
+from clearance.kernels.motion.body_boxes import bound_between
+from clearance.kernels.motion.certify_pair import CHAIN_SLACK
+from clearance.kernels.motion.clock_rectangles import (
+    ALL_TIMES,
+    DEPTH,
+    Waiting,
+    halves_of,
+    meets_band,
+    middle_occurs,
+    middle_of_side,
+    new_waiting,
+    put_rectangle,
+    take_rectangle,
+)
+from clearance.kernels.motion.clock_tree import is_leaf_of_clock, middle_leaf, n_leaves_of
+from clearance.kernels.motion.sweep import NOT_LESS
+from clearance.kernels.motion.two_clocks import apart_by_planes, corners_apart
+from clearance.kernels.search.body_pair import (
+    NO_FACE,
+    NOTHING_MEASURED,
+    TO_THE_END,
+    PairQuestion,
+    measure_pair,
+)
+from clearance.kernels.search.front import Fronts, PairFront, no_fronts
+from clearance.kernels.search.scratch import Scratch, new_scratch
+
+FIRST_LOOK = 16
+"""Steps of the other clock, evenly spread, at which all pairs are looked at before the first step is decided."""
+
+WALK = 16
+"""Steps of the other clock at most from the last best one to where the next begins."""
+
+
+class StepsFound(NamedTuple):
+    """What is found of each step of clock a.
+
+    Attributes:
+        clearance: (m,) [m] the least distance. step_b: (m,) the step of clock b. pair: (m,) which pair.
+        points: (m, 2, 3) witness points in the world, each of its body at its own time [m].
+        gaps_sq: (m,) [m^2] room for the squares.
+    """
+
+    clearance: np.ndarray
+    step_b: np.ndarray
+    pair: np.ndarray
+    points: np.ndarray
+    gaps_sq: np.ndarray
+
+
+class StepsState(NamedTuple):
+    """Scratch: rectangles that wait, the faces of each pair that were nearest, and that of a search."""
+
+    waiting: Waiting
+    witness_faces: np.ndarray
+    fronts: Fronts
+    scratch: Scratch
+
+
+class StepsPair(NamedTuple):
+    """A pair at one step of each clock.
+
+    Attributes:
+        bodies: a `PosedPair`. apart: True if boxes say so. within: [m] how near is asked about.
+    """
+
+    pair: int
+    bodies: PosedPair
+    apart: bool
+    within: float
+
+
+@inline
+def _rows_of(clocks, pair, leaf_a, leaf_b):
+    """The rows of a pair's bodies in both trees."""
+    tree_a, tree_b, pairs = clocks.tree_a, clocks.tree_b, clocks.world.pairs
+    row_a = leaf_a * tree_a.moved.shape[1] + clocks.columns[pairs[pair, 0]]
+    return row_a, leaf_b * tree_b.moved.shape[1] + clocks.columns[pairs[pair, 1]]
+
+
+@inline
+def _bodies_at(lent, clocks, pair, row_a, row_b):
+    """A pair's bodies at one step of each clock."""
+    solids, pairs = clocks.world.solids, clocks.world.pairs
+    pose_a, pose_b = rigid(clocks.tree_a.poses[row_a]), rigid(clocks.tree_b.poses[row_b])
+    return PosedPair(
+        lent, solids[pairs[pair, 0]], lent, solids[pairs[pair, 1]], frames_of(pose_a, pose_b)
+    )
+
+
+@inline
+def _measured(asked, state, tally, table):
+    """A `StepsPair` as `measure_pair` finds it."""
+    faces = state.witness_faces[asked.pair]
+    question = PairQuestion(
+        asked.within, asked.within, faces[0], faces[1], asked.apart, TO_THE_END, False
+    )
+    front = PairFront(state.fronts, 0, 0.0)
+    found = measure_pair(table, asked.bodies, question, front, state.scratch)
+    faces[0], faces[1] = found.face_a, found.face_b
+    tally[2] += 1
+    tally[3] += found.tally.nodes
+    tally[4] += found.tally.faces
+    return found
+
+
+@inline
+def _note(row, step_b, pair, hit, found):
+    """Notes a distance at a step of clock a, if it is the least so far; True if it is.
+
+    Ties go to the least pair, then to the least step of clock b.
+    """
+    best = found.gaps_sq[row]
+    is_before = pair < found.pair[row] or (pair == found.pair[row] and step_b < found.step_b[row])
+    if hit.face_a == 2**62 or hit.gap_sq == np.inf:
+        return False
+    if hit.gap_sq > best or (hit.gap_sq == best and not is_before):
+        return False
+    found.gaps_sq[row], found.pair[row], found.step_b[row] = hit.gap_sq, pair, step_b
+    found.clearance[row] = np.sqrt(hit.gap_sq)
+    write_points(hit, found.points[row])
+    return True
+
+
+@inline
+def _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table):
+    """Measures a pair at a step of either clock, if it can be the least there; True if it is."""
+    row_a, row_b = _rows_of(clocks, pair, row, step_b)
+    within = found.clearance[row] * NOT_LESS
+    bound = bound_between(clocks.tree_a.boxes, row_a, clocks.tree_b.boxes, row_b, within)
+    if bound > within:
+        return False
+    bodies = _bodies_at(lent, clocks, pair, row_a, row_b)
+    hit = _measured(StepsPair(pair, bodies, bound > 0.0, within), state, tally, table).hit
+    return _note(row, step_b, pair, hit, found)
+
+
+@inline
+def _occur(clocks, row, step_b):
+    """True if two steps can occur together."""
+    times = clocks.path.times
+    apart = abs(times[clocks.tree_a.start + row] - times[step_b])
+    return apart <= clocks.band.slack + 2.0 * clocks.band.rounding
+
+
+@inline
+def _nearest_step(clocks, row):
+    """The step of clock b that is nearest in time to a step of clock a; it occurs with it if any does."""
+    times = clocks.path.times
+    time, low, high = times[clocks.tree_a.start + row], 0, n_leaves_of(clocks.tree_b) - 1
+    while low < high:
+        middle = (low + high) // 2
+        if times[middle] < time:
+            low = middle + 1
+        else:
+            high = middle
+    return low - 1 if low > 0 and time - times[low - 1] < times[low] - time else low
+
+
+@inline
+def _first_look(lent, clocks, row, state, found, tally, table):
+    """Some distance at a step of clock a that is near the least."""
+    n_b = n_leaves_of(clocks.tree_b)
+    own = _nearest_step(clocks, row)
+    if not _occur(clocks, row, own):
+        return
+    for pair in range(len(clocks.world.pairs)):
+        _at_steps(lent, clocks, pair, row, own, state, found, tally, table)
+    for k in range(FIRST_LOOK):
+        step_b = (n_b - 1) * k // (FIRST_LOOK - 1)
+        if _occur(clocks, row, step_b):
+            for pair in range(len(clocks.world.pairs)):
+                _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table)
+
+
+@inline
+def _walk(lent, clocks, row, state, found, tally, table):
+    """From the best of the step before, some distance at the next that is near the least."""
+    n_b = n_leaves_of(clocks.tree_b)
+    pair, step_b = found.pair[row - 1], found.step_b[row - 1]
+    own = _nearest_step(clocks, row)
+    if step_b < 0 or not _occur(clocks, row, own):
+        _first_look(lent, clocks, row, state, found, tally, table)
+        return
+    while not _occur(clocks, row, step_b):
+        step_b += 1 if step_b < own else -1
+    _at_steps(lent, clocks, pair, row, step_b, state, found, tally, table)
+    for way in (-1, 1):
+        at = step_b
+        for _ in range(WALK):
+            at += way
+            if at < 0 or at >= n_b or not _occur(clocks, row, at):
+                break
+            if not _at_steps(lent, clocks, pair, row, at, state, found, tally, table):
+                break
+
+
+@inline
+def _is_settled(clocks, rectangle, pair, found):
+    """True if a contact is known at the only step of clock a that comes before all that a pair can add."""
+    row = clocks.tree_a.first[rectangle.node_a]
+    if found.gaps_sq[row] > 0.0 or not is_leaf_of_clock(clocks.tree_a, rectangle.node_a):
+        return False
+    first = clocks.tree_b.first[rectangle.node_b]
+    return pair > found.pair[row] or (pair == found.pair[row] and first >= found.step_b[row])
+
+
+@inline
+def _within(clocks, node, found):
+    """[m] the least distance seen at the steps of a node, the greatest of these."""
+    within = 0.0
+    for row in range(clocks.tree_a.first[node], clocks.tree_a.last[node]):
+        within = max(within, found.clearance[row])
+    return within
+
+
+@inline
+def _look_at_pair(surface, asked, seen_enough, state, tally, table):
+    """(what is known of a pair in the middle of a rectangle, True if it is farther than was asked).
+
+    Args:
+        seen_enough: [m] what comes nearer is to be measured; of what does not it is enough to know that it is not
+            farther than was asked.
+    """
+    faces, bodies = state.witness_faces[asked.pair], asked.bodies
+    a, b = bodies.frames.a, bodies.frames.b
+    seen = corners_apart(surface, faces, a, b) * NOT_LESS
+    if seen_enough < seen < asked.within:
+        return NOTHING_MEASURED, False
+    planes = apart_by_planes(surface, bodies, faces, asked.within, state.scratch, table)
+    if planes > asked.within:
+        return NOTHING_MEASURED, True
+    seen = corners_apart(surface, faces, a, b) * NOT_LESS
+    if seen_enough < seen < asked.within:
+        return NOTHING_MEASURED, False
+    near = _measured(asked, state, tally, table)
+    return near, near.lower_bound > asked.within
+
+
+@inline
+def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
+    """Looks at the listed pairs in a rectangle: (how many are left, True if it is to be halved in a's time)."""
+    r, tree_a, tree_b, listed = rectangle, clocks.tree_a, clocks.tree_b, state.waiting.listed
+    pairs, columns = clocks.world.pairs, clocks.columns
+    leaf_a, leaf_b = middle_leaf(tree_a, r.node_a), middle_leaf(tree_b, r.node_b)
+    one_a, one_b = is_leaf_of_clock(tree_a, r.node_a), is_leaf_of_clock(tree_b, r.node_b)
+    occurs = middle_occurs(tree_a, tree_b, r, clocks.band)
+    most_a, most_b = 0.0, 0.0
+    n_left = 0
+    for place in range(count):
+        pair = listed[place]
+        if _is_settled(clocks, r, pair, found):
+            continue
+        moved_a = tree_a.moved[r.node_a, columns[pairs[pair, 0]]]
+        moved_b = tree_b.moved[r.node_b, columns[pairs[pair, 1]]]
+        row_a, row_b = _rows_of(clocks, pair, leaf_a, leaf_b)
+        slack = CHAIN_SLACK * (tree_a.boxes.slacks[row_a] + tree_b.boxes.slacks[row_b])
+        within = (_within(clocks, r.node_a, found) + moved_a + moved_b) * NOT_LESS + slack
+        bound = bound_between(tree_a.boxes, row_a, tree_b.boxes, row_b, within)
+        if bound > within:
+            tally[1] += 1
+            continue
+        asked = StepsPair(pair, _bodies_at(lent, clocks, pair, row_a, row_b), bound > 0.0, within)
+        seen_enough = found.clearance[leaf_a] if occurs else 0.0
+        if one_a and one_b:
+            seen_enough = np.inf
+        near, is_far = _look_at_pair(surface, asked, seen_enough, state, tally, table)
+        if occurs:
+            _note(leaf_a, tree_b.start + leaf_b, pair, near.hit, found)
+        if not (is_far or (one_a and one_b)):
+            listed[n_left] = pair
+            n_left += 1
+            most_a, most_b = max(most_a, moved_a), max(most_b, moved_b)
+    return n_left, one_b or (most_a > most_b and not one_a)
+
+
+@kernel
+def least_of_unsynchronised_steps(surface, clocks, found, tally, table):
+    """Fills `found` of the steps of clock a that are the leaves of its tree.
+
+    Args:
+        clocks: `TwoClocks`, with trees of steps; that of b has all steps.
+        tally: (5,) as in `certify_unsynchronised`.
+    """
+    n_pairs = len(clocks.world.pairs)
+    state = StepsState(
+        new_waiting(n_pairs), np.full((n_pairs, 2), NO_FACE), no_fronts(1, 0), new_scratch()
+    )
+    for i in range(len(tally)):
+        tally[i] = 0
+    for row in range(len(found.clearance)):
+        found.clearance[row], found.gaps_sq[row] = np.inf, np.inf
+        found.pair[row], found.step_b[row] = n_pairs, -1
+    _least_of_steps(surface, clocks, state, found, tally, table)
+
+
+@kernel(reference_counts=False)
+def _least_of_steps(surface, clocks, state, found, tally, table):
+    """The same, with the arrays of its state."""
+    lent = lend(surface)
+    tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
+    _first_look(lent, clocks, 0, state, found, tally, table)
+    for row in range(1, len(found.clearance)):
+        _walk(lent, clocks, row, state, found, tally, table)
+    put_rectangle(ALL_TIMES, len(waiting.listed), waiting, 0)
+    n_waiting = 1
+    while n_waiting > 0:
+        n_waiting -= 1
+        r, count = take_rectangle(waiting, n_waiting)
+        if not meets_band(tree_a, tree_b, r, clocks.band):
+            continue
+        tally[0] += 1
+        n_left, in_a = _look(lent, surface, clocks, r, count, state, found, tally, table)
+        if n_left == 0:
+            continue
+        assert n_waiting + 2 <= DEPTH
+        earlier, later = halves_of(tree_a, tree_b, r, in_a)
+        row = middle_leaf(tree_a, r.node_a)
+        seen = tree_a.start + row if in_a else found.step_b[row]
+        if seen >= 0 and clocks.path.times[seen] > middle_of_side(tree_a, tree_b, r, in_a):
+            earlier, later = later, earlier
+        put_rectangle(later, n_left, waiting, n_waiting)
+        put_rectangle(earlier, n_left, waiting, n_waiting + 1)
+        n_waiting += 2

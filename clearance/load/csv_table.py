@@ -1,0 +1,231 @@
+"""CSV tables of numbers: a header with a `time` column [s] and others, by name, in any order.
+
+The table is parsed by pyarrow in one pass, block by block, so that memory holds its numbers and never
+its text; only when something is wrong is the text gone through again, slowly, to name the line. Not
+for: what the columns are (`trajectory_csv`, `pose_table_file`).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, BinaryIO
+
+import numpy as np
+
+from clearance.errors import (
+    BadShape,
+    BadSyntax,
+    BadTime,
+    ClearanceError,
+    DuplicateName,
+    MissingKey,
+    NotFinite,
+)
+from clearance.world.names import checked_name
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+TIME = "time"
+
+Opener = Callable[[], BinaryIO]
+"""Opens a file for reading from its start."""
+
+
+def header_of(opened: Opener, others: str) -> list[str]:
+    """The names of the columns, one of which is `time`.
+
+    Args:
+        others: what the other columns are, for errors.
+
+    Raises:
+        BadSyntax, DuplicateName, MissingKey: with the column.
+    """
+    _, cells = next(_rows(opened), (0, []))
+    if not any(cell.strip() for cell in cells):
+        raise BadSyntax("the file is empty", valid=f"a header with {TIME!r} and {others} is needed")
+    names = [cell.strip() for cell in cells]
+    seen: set[str] = set()
+    for i, name in enumerate(names):
+        if not name:
+            raise BadSyntax(f"column {i + 1} of the header has no name")
+        if name in seen:
+            raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
+        seen.add(name)
+        checked_name(name)
+    if TIME not in names:
+        raise MissingKey(
+            f"there is no column {TIME!r} in the header {','.join(names)!r:.80}",
+            valid=f"the header names the columns, separated by commas: time and {others}",
+        )
+    return names
+
+
+def columns_of(
+    opened: Opener, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
+) -> list[np.ndarray]:
+    """For each of `parts` the (n, len(part)) columns of its names.
+
+    Args:
+        n_bytes: length of the file. names: of all its columns.
+
+    Raises:
+        BadShape, BadSyntax, NotFinite: with the line in the file.
+    """
+    most = (
+        n_bytes // (2 * len(names)) + 2
+    )  # a cell is a digit and a comma; what is not filled takes no memory
+    tables = [np.empty((most, len(part))) for part in parts]
+    n_rows = 0
+    for batch in _batches(opened, names):
+        rows = slice(n_rows, n_rows + batch.num_rows)
+        for table, part in zip(tables, parts, strict=True):
+            for i, name in enumerate(part):
+                table[rows, i] = batch.column(names.index(name)).to_numpy()
+        n_rows = rows.stop
+    if not n_rows:
+        raise _no_rows()
+    for table in tables:
+        table.resize(
+            (n_rows, table.shape[1]), refcheck=False
+        )  # gives the rest back, without a copy
+    _refuse_not_finite(tables, parts, names, opened)
+    return tables
+
+
+def _batches(opened: Opener, names: list[str]) -> Iterator[pa.RecordBatch]:
+    """All rows, a few megabytes at a time; columns as in the header."""
+    import pyarrow as pa
+    from pyarrow import csv as arrow_csv
+
+    keys = [str(i) for i in range(len(names))]
+    types = arrow_csv.ConvertOptions(
+        column_types=dict.fromkeys(keys, pa.float64()), null_values=[], strings_can_be_null=False
+    )
+    reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(opened))
+    try:
+        with opened() as file, _native(file) as stream:
+            yield from arrow_csv.open_csv(stream, reading, convert_options=types)
+    except pa.ArrowException as error:
+        raise _fault_in_rows(opened, names) or BadSyntax(
+            f"not a table of numbers: {error}"
+        ) from None
+
+
+def _native(file: BinaryIO) -> pa.NativeFile:
+    """The same file, read without Python: pyarrow reads ahead in threads of its own.
+
+    One that is still inside a Python file when the interpreter ends takes the whole process with it
+    ("terminate called without an active exception").
+    """
+    import pyarrow as pa
+
+    name = getattr(file, "name", None)
+    if isinstance(name, str | bytes):
+        return pa.OSFile(os.fsdecode(name), "rb")
+    content = file.read()
+    held = pa.allocate_buffer(len(content))
+    np.frombuffer(held, dtype=np.uint8)[:] = np.frombuffer(content, dtype=np.uint8)
+    return pa.BufferReader(held)
+
+
+def _no_rows() -> ClearanceError:
+    return BadShape("there are no rows below the header", valid="at least one row is needed")
+
+
+def _fault_in_rows(opened: Opener, names: list[str]) -> ClearanceError | None:
+    """The first row that is not as many numbers as the header has names."""
+    rows = _rows(opened)
+    next(rows)
+    n_rows = 0
+    for line, cells in rows:
+        n_rows += 1
+        where = f"line {line}"
+        if len(cells) != len(names):
+            return BadShape(
+                f"{len(cells)} columns", where=where, valid=f"the header has {len(names)}"
+            )
+        for name, cell in zip(names, cells, strict=True):
+            if not _is_number(cell):
+                return BadSyntax(
+                    f"{cell.strip()!r} in column {name!r} is not a number", where=where
+                )
+    return None if n_rows else _no_rows()
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return "_" not in cell
+
+
+def _refuse_not_finite(
+    tables: list[np.ndarray], parts: Sequence[Sequence[str]], names: list[str], opened: Opener
+) -> None:
+    bad = []
+    for table, part in zip(tables, parts, strict=True):
+        least = np.flatnonzero(~np.isfinite(table).all(axis=1))[:1].tolist()
+        bad += [
+            (row, names.index(part[i]), table[row, i]) for row in least for i in range(len(part))
+        ]
+    wrong = [(row, column, value) for row, column, value in bad if not np.isfinite(value)]
+    if not wrong:
+        return
+    i_row, i_column, value = min(wrong, key=lambda cell: cell[:2])
+    raise NotFinite(
+        f"{value} in column {names[i_column]!r}",
+        where=f"line {line_of_row(opened, i_row)}",
+        valid="a finite number is needed",
+    )
+
+
+def refuse_standing_time(times: np.ndarray, opened: Opener) -> None:
+    """Nothing, if times increase from row to row.
+
+    Raises:
+        BadTime: with the line in the file.
+    """
+    late = np.flatnonzero(np.diff(times) <= 0)
+    if not len(late):
+        return
+    i_row = int(late[0]) + 1
+    raise BadTime(
+        f"time {float(times[i_row])} follows {float(times[i_row - 1])}",
+        where=f"line {line_of_row(opened, i_row)}",
+        valid="time must increase from row to row",
+    )
+
+
+def _rows(opened: Opener) -> Iterator[tuple[int, list[str]]]:
+    """(line number, cells) of every row that is not blank; lines count from 1."""
+    with opened() as file:
+        reader = csv.reader(io.TextIOWrapper(file, encoding="utf-8-sig", newline=""))
+        try:
+            for cells in reader:
+                if cells:
+                    yield reader.line_num, cells
+        except UnicodeDecodeError:
+            raise BadSyntax("the file is not UTF-8 text", valid="a CSV file is needed") from None
+        except csv.Error as error:
+            raise BadSyntax(f"not CSV: {error}", where=f"line {reader.line_num}") from None
+
+
+def _header_line(opened: Opener) -> int:
+    """Number of lines up to and with the header."""
+    line, _ = next(_rows(opened))
+    return line
+
+
+def line_of_row(opened: Opener, i_row: int) -> int:
+    """The line of the file that a row, counted from 0, is on."""
+    rows = _rows(opened)
+    next(rows)
+    for i, (line, _) in enumerate(rows):
+        if i == i_row:
+            return line
+    raise AssertionError("a row that was parsed is gone")

@@ -1,0 +1,113 @@
+"""The schema of a scene: obstacles, their shapes, and what moves them. Lengths in metres, angles in radians.
+
+Not for: reading mesh files (`scene_file`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from pydantic import field_validator, model_validator
+
+from clearance.errors import BadDimension, BadInput
+from clearance.geometry import shapes
+from clearance.load.pose_schema import Pose, TimedFile
+from clearance.load.shape_schema import Triple, with_shapes
+from clearance.load.strict_model import Level, Name, StrictModel
+
+
+def _is_double(number: int | float) -> bool:
+    """True for a finite number that doubles can hold; whole numbers in a file may be longer."""
+    try:
+        return math.isfinite(number)
+    except OverflowError:
+        return False
+
+
+class Mesh(StrictModel):
+    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
+
+    file: Name
+    scale: Triple = [1.0, 1.0, 1.0]
+
+    @field_validator("scale", mode="before")
+    @classmethod
+    def _number_or_three(cls, scale: Any) -> Any:
+        factors = scale if isinstance(scale, list) else [scale]
+        numbers = all(isinstance(f, int | float) and not isinstance(f, bool) for f in factors)
+        if not numbers or len(factors) not in (1, 3) or not all(_is_double(f) for f in factors):
+            raise BadDimension(
+                f"{scale!r:.60} is given", valid="a finite number, or three, is needed"
+            )
+        if 0 in factors:
+            raise BadDimension(f"{scale!r:.60} is given", valid="a scale is not zero")
+        return [float(f) for f in factors] * (3 if len(factors) == 1 else 1)
+
+    @property
+    def factors(self) -> tuple[float, float, float]:
+        """The scale of each axis."""
+        x, y, z = self.scale
+        return x, y, z
+
+
+SHAPES = (*shapes.SHAPES, "mesh")
+
+
+class NamedPose(StrictModel):
+    """A name, and where what has it stands."""
+
+    name: Name
+    pose: Pose = Pose()
+
+
+if TYPE_CHECKING:
+    _Shaped = NamedPose
+else:  # the keys come from a table, which a type checker cannot follow
+    _Shaped = with_shapes(NamedPose, StrictModel)
+
+
+class Obstacle(_Shaped):
+    """A named solid: it stands at `pose`, rides `on` a link or an obstacle at `pose`, or goes where the table of
+    `moves` says. Its clearance is lessened by `padding`.
+    """
+
+    FILLED = frozenset({"on", "moves"})
+
+    mesh: Mesh | None = None
+    on: Name | None = None
+    moves: TimedFile | None = None
+    padding: Level = 0.0
+
+    @property
+    def kind(self) -> str:
+        """Which of `SHAPES` it is."""
+        return next(key for key in SHAPES if getattr(self, key) is not None)
+
+    @property
+    def dimensions(self) -> dict[str, Any]:
+        """What is given of its shape, by name."""
+        return getattr(self, self.kind).model_dump(exclude_none=True)
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Obstacle:
+        given = [key for key in SHAPES if getattr(self, key) is not None]
+        if len(given) != 1:
+            what = f"{' and '.join(given)} are given" if given else "it has no shape"
+            raise BadInput(what, valid=f"give exactly one of {', '.join(SHAPES)}")
+        return self
+
+    @model_validator(mode="after")
+    def _one_place(self) -> Obstacle:
+        if self.moves is not None and self.on is None and "pose" in self.model_fields_set:
+            raise BadInput(
+                "both pose and moves are given",
+                valid="the table of `moves` has its poses in the world; or `on: what it moves on`, at `pose`",
+            )
+        return self
+
+
+class Scene(StrictModel):
+    """What stands around the robots, or moves there."""
+
+    obstacles: list[Obstacle]

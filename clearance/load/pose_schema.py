@@ -1,0 +1,108 @@
+"""The schema of where something is: poses, what it stands on, and files that say where it goes.
+
+Not for: reading those files (`trajectory_file`, `pose_table_file`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from clearance.errors import BadInput
+from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.load.shape_schema import Triple
+from clearance.load.strict_model import Name, StrictModel
+from clearance.world.timing import Timing, Window
+
+Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
+
+
+class Pose(StrictModel):
+    """Where something stands: a point and a rotation (quaternion xyzw, or roll, pitch, yaw about
+    fixed axes).
+    """
+
+    xyz: Triple = [0.0, 0.0, 0.0]
+    quat_xyzw: Quadruple | None = None
+    rpy: Triple | None = None
+
+    @model_validator(mode="after")
+    def _is_rotation(self) -> Pose:
+        if self.quat_xyzw is not None and self.rpy is not None:
+            raise BadInput("both quat_xyzw and rpy are given", valid="give one of them")
+        self.matrix()
+        return self
+
+    def matrix(self) -> np.ndarray:
+        """The (4, 4) pose [m].
+
+        Raises:
+            BadPose: the quaternion is not of length one.
+        """
+        if self.quat_xyzw is not None:
+            return pose_from_quaternion(self.xyz, self.quat_xyzw)
+        return pose_from_rpy(self.xyz, self.rpy or [0.0, 0.0, 0.0])
+
+
+class Base(Pose):
+    """Where a robot's root link stands, in the world or on a link or an obstacle."""
+
+    FILLED = frozenset({"on"})
+
+    on: Name | None = None
+
+
+class TimedFile(StrictModel):
+    """A table of samples and when it is followed: `{file: t.csv, start: 1.0}`, or the path alone. It begins at
+    `start` [s], `rate` times as fast as written; after its last sample it holds, loops, or is absent.
+    """
+
+    file: Name
+    start: float = 0.0
+    rate: Annotated[float, Field(gt=0)] = 1.0
+    after: Literal["hold", "loop", "absent"] = "hold"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _path_alone(cls, data: Any) -> Any:
+        return {"file": data} if isinstance(data, str) else data
+
+    @property
+    def timing(self) -> Timing:
+        """When the table is followed."""
+        return Timing(self.start, self.rate, self.after)
+
+
+class Windowed(StrictModel):
+    """What is so from a time until a time of the run [s], or always."""
+
+    FILLED = frozenset({"from", "until"})
+
+    from_: Annotated[float | None, Field(alias="from")] = None
+    until: float | None = None
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Windowed:
+        _ = self.window
+        return self
+
+    @property
+    def window(self) -> Window:
+        """The stretch of time.
+
+        Raises:
+            BadTime: it ends before it begins.
+        """
+        return window_of(self.from_, self.until)
+
+
+def window_of(start: float | None, end: float | None) -> Window:
+    """The stretch between two times [s], either of which may be left open.
+
+    Raises:
+        BadTime: it ends before it begins.
+    """
+    return Window(-math.inf if start is None else start, math.inf if end is None else end)

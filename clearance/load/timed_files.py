@@ -1,0 +1,88 @@
+"""The files that say how a robot or an obstacle moves, found and read. Not for: their format (`trajectory_file`,
+`pose_table_file`), nor which joints there are (`robots`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+from clearance.errors import BadInput, at
+from clearance.load.csv_table import Opener
+from clearance.load.foreign_files import refuse_foreign
+from clearance.load.input_files import InputFiles, resolved
+from clearance.load.pose_schema import TimedFile
+from clearance.load.pose_table_file import read_pose_table
+from clearance.load.trajectory_file import read_trajectory
+from clearance.world.moving_joints import require_moving_joints
+from clearance.world.pose_table import PoseTable, require_samples_to_loop
+from clearance.world.reach import require_few_turns
+from clearance.world.robot import Robot
+from clearance.world.trajectory import Trajectory
+
+Table = TypeVar("Table")
+
+
+def trajectory_of(
+    given: TimedFile, field: str, folder: Path, robot: Robot, files: InputFiles
+) -> Trajectory:
+    """The trajectory that a case file names for a robot.
+
+    Args:
+        field: where it is named. folder: against which the path is looked up.
+
+    Raises:
+        BadInput: with the field and the file.
+    """
+
+    def read(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
+        needed = bool(robot.moving_joints)
+        return read_trajectory(opened, n_bytes, shown, joints_needed=needed)
+
+    path = resolved(given.file, folder)
+    with at(f"{field}.file"):
+        trajectory = _read(path, files, read, "a trajectory")
+        with at(files.shown(path)):
+            require_moving_joints(robot, trajectory.joint_names)
+            require_few_turns(robot, trajectory.joint_names, trajectory)
+    with at(field), at(files.shown(path)):
+        require_samples_to_loop(trajectory.n_steps, given.timing)
+        given.timing.run_times(trajectory.times)
+    return trajectory
+
+
+def pose_table_of(given: TimedFile, field: str, folder: Path, files: InputFiles) -> PoseTable:
+    """The table of poses that a case file names for an obstacle.
+
+    Args:
+        field: where it is named. folder: against which the path is looked up.
+
+    Raises:
+        BadInput: with the field and the file.
+    """
+
+    def read(opened: Opener, n_bytes: int, shown: str) -> PoseTable:
+        return read_pose_table(opened, n_bytes, shown)
+
+    path = resolved(given.file, folder)
+    with at(f"{field}.file"):
+        table = _read(path, files, read, "a table of poses")
+    with at(field), at(files.shown(path)):
+        given.timing.run_times(table.times)
+        return replace(table, timing=given.timing)
+
+
+def _read(
+    path: Path, files: InputFiles, read: Callable[[Opener, int, str], Table], wanted: str
+) -> Table:
+    """What is in a file, which is not kept; where it cannot be read, its content may say why."""
+    shown = files.shown(path)
+    opened, n_bytes = files.unread(path)
+    try:
+        return read(opened, n_bytes, shown)
+    except BadInput:
+        with opened() as file:
+            refuse_foreign(file.read(65536), shown, wanted)
+        raise

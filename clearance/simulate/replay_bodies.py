@@ -1,0 +1,258 @@
+"""The bodies of a replay: what each is, where it is at every frame, and when it is not in the cell.
+
+Poses are those of the phase that a frame is in, so a part that is carried moves with what carries it, and what
+stands on something that moves rides with it. Not for: which frames there are (`replay_frames`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.query.distance import distance
+from clearance.simulate.record import Record
+from clearance.world.case import Case
+from clearance.world.clocks import clocks_of
+from clearance.world.forest import forest_of, positions_between
+from clearance.world.pairs import OBSTACLE, BodyIndex
+from clearance.world.timeline import Phase
+
+LINK, STANDING, MOVING, PART = "link", "obstacle", "moving", "part"
+"""Kinds of bodies as they are drawn: links, obstacles that stand, that move, and parts that are carried at some
+time."""
+
+SAME_PLACE = 1e-6
+"""[m] A clearance that differs by less is that of the poses drawn."""
+
+
+@dataclass(frozen=True)
+class DrawnBody:
+    """A body as it is drawn: `kind` is one of those above, `i_shape` its place in the shapes, `i_robot` its
+    robot's or -1."""
+
+    name: str
+    kind: str
+    measured: bool
+    i_shape: int
+    i_robot: int = OBSTACLE
+
+
+@dataclass(frozen=True)
+class DrawnCarry:
+    """A part in the hands of a body from a time to another [s]; `i_part`, `i_by` are their places in the bodies,
+    `i_by` -1 where what carries it is not drawn."""
+
+    part: str
+    by: str
+    i_part: int
+    i_by: int
+    start: float
+    end: float
+
+
+@dataclass(frozen=True, eq=False)
+class FramePlace:
+    """When a frame is.
+
+    Attributes:
+        step: the step or the one before. share: how much of the way to the next has passed, 0 to 1.
+        clearance: [m] what is told of it, or None.
+        pair: the names of its two bodies, None where a bound decides.
+        time_b: [s] when the second body is there, if its clock is another.
+    """
+
+    step: int
+    share: float
+    clearance: float | None
+    pair: tuple[str | None, str | None]
+    time_b: float | None = None
+
+
+def bodies_of(case: Case) -> list[BodyIndex]:
+    """All bodies of a case: links robot by robot, then obstacles."""
+    links = [
+        BodyIndex(i, k)
+        for i, placed in enumerate(case.robots)
+        for k in range(len(placed.robot.bodies))
+    ]
+    return links + [BodyIndex(OBSTACLE, i) for i in range(len(case.obstacles))]
+
+
+def kind_of(case: Case, body: BodyIndex) -> str:
+    """What a body is drawn as."""
+    if not body.is_obstacle:
+        return LINK
+    if any(carry.part == body.name_in(case) for carry in case.carries):
+        return PART
+    return STANDING if case.obstacles[body.i_body].stands else MOVING
+
+
+def carries_of(record: Record, bodies: Sequence[BodyIndex]) -> tuple[DrawnCarry, ...]:
+    """Who carries what from when until when, in order of time."""
+    case, times = record.case, record.timeline.times
+    places = {name: i for i, name in enumerate(body.name_in(case) for body in bodies)}
+    found = []
+    for carry in case.carries:
+        by = (
+            carry.by.removeprefix(f"{case.robots[0].robot.name}/")
+            if len(case.robots) == 1
+            else carry.by
+        )
+        end = min(carry.window.end, float(times[-1]))
+        start = max(carry.window.start, float(times[0]))
+        found.append(DrawnCarry(carry.part, by, places[carry.part], places.get(by, -1), start, end))
+    return tuple(sorted(found, key=lambda one: (one.start, one.part)))
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedBodies:
+    """Where all bodies of a record are at some frames.
+
+    Attributes:
+        poses: of each body (frames, 4, 4) [m]. shown: of each body (frames,) False while it is not in the cell.
+    """
+
+    poses: list[np.ndarray]
+    shown: list[np.ndarray]
+
+
+def placed_bodies(
+    record: Record, bodies: Sequence[BodyIndex], frames: Sequence[FramePlace]
+) -> PlacedBodies:
+    """The poses of all bodies at the frames."""
+    poses = np.empty((len(bodies), len(frames), 4, 4))
+    shown = np.ones((len(bodies), len(frames)), dtype=bool)
+    for phase, own in _by_phase(record, frames):
+        link_poses = _link_poses(phase, [frames[i] for i in own])
+        for k, body in enumerate(bodies):
+            poses[k, own] = body.poses_in(phase.case, link_poses)
+            shown[k, own] = not _is_absent(phase, body)
+    for i, frame in enumerate(frames):
+        before = _phase_before(record, frame)
+        if before is not None and not _is_seen(record, bodies, frame, poses[:, i], shown[:, i]):
+            _put(bodies, before, frame, poses[:, i], shown[:, i])
+        if frame.time_b is not None:
+            _put_second(record, bodies, frame, poses[:, i])
+    return PlacedBodies(list(poses), list(shown))
+
+
+def _by_phase(record: Record, frames: Sequence[FramePlace]) -> Iterator[tuple[Phase, np.ndarray]]:
+    """The phases with the places of their frames; a step where two meet is of the later one."""
+    firsts = [phase.first for phase in record.timeline.phases]
+    owners = np.searchsorted(firsts, [frame.step for frame in frames], side="right") - 1
+    for i, phase in enumerate(record.timeline.phases):
+        own = np.flatnonzero(owners == i)
+        if len(own):
+            yield phase, own
+
+
+def _link_poses(phase: Phase, frames: Sequence[FramePlace]) -> np.ndarray:
+    """(k, links, 4, 4) of a phase's forest at frames of it."""
+    forest = forest_of(phase.case)
+    columns = [_columns(phase, frame.step, frame.share) for frame in frames]
+    return forest.poses(np.array(columns).reshape(len(frames), -1))
+
+
+def _columns(phase: Phase, step: int, share: float) -> np.ndarray:
+    """(columns,) of a phase's forest at one moment of it."""
+    own = step - phase.first
+    if share > 0.0:
+        return positions_between(phase.case, phase.motions, own, share)
+    moving = [o.moves.columns[own] for o in phase.case.obstacles if o.moves is not None]
+    return np.concatenate([*(motion.positions[own] for motion in phase.motions), *moving])
+
+
+def _is_absent(phase: Phase, body: BodyIndex) -> bool:
+    if body.is_obstacle:
+        return body.i_body in phase.absent_obstacles
+    return body.i_robot in phase.absent_robots
+
+
+def _phase_before(record: Record, frame: FramePlace) -> Phase | None:
+    """The phase that ends at the step of a frame, where another begins."""
+    if frame.share > 0.0:
+        return None
+    ended = [phase for phase in record.timeline.phases if phase.last == frame.step]
+    return None if not ended or ended[0] is record.timeline.phases[-1] else ended[0]
+
+
+def _is_seen(
+    record: Record,
+    bodies: Sequence[BodyIndex],
+    frame: FramePlace,
+    poses: np.ndarray,
+    shown: np.ndarray,
+) -> bool:
+    """True if what is told of a frame is so with all bodies where they are drawn."""
+    case = record.case
+    pair = [i for name in frame.pair for i, body in enumerate(bodies) if body.name_in(case) == name]
+    if len(pair) != 2 or frame.clearance is None or frame.time_b is not None:
+        return True
+    if not shown[pair].all():
+        return False
+    a, b = (bodies[i] for i in pair)
+    shapes = a.shape_in(case), b.shape_in(case)
+    reached = distance(*shapes, pose_a=poses[pair[0]], pose_b=poses[pair[1]]).distance
+    padding = a.padding_in(case) + b.padding_in(case)
+    return abs(reached - padding - frame.clearance) < SAME_PLACE
+
+
+def _put(
+    bodies: Sequence[BodyIndex],
+    phase: Phase,
+    frame: FramePlace,
+    poses: np.ndarray,
+    shown: np.ndarray,
+) -> None:
+    """Puts all bodies where they are in another phase that the frame belongs to."""
+    link_poses = _link_poses(phase, [frame])
+    for k, body in enumerate(bodies):
+        poses[k] = body.poses_in(phase.case, link_poses)[0]
+        shown[k] = not _is_absent(phase, body)
+
+
+def _put_second(
+    record: Record, bodies: Sequence[BodyIndex], frame: FramePlace, poses: np.ndarray
+) -> None:
+    """Puts what moves by the clock of the frame's second body where that is then."""
+    case, times = record.case, record.timeline.times
+    assert frame.time_b is not None
+    clocks = clocks_of(case)
+    clock = {
+        body: clocks[body.is_obstacle, body.i_body if body.is_obstacle else body.i_robot]
+        for body in bodies
+    }
+    second = next((body for body in bodies if body.name_in(case) == frame.pair[1]), None)
+    step = int(np.clip(np.searchsorted(times, frame.time_b, side="right") - 1, 0, len(times) - 1))
+    length = times[step + 1] - times[step] if step + 1 < len(times) else 0.0
+    share = float((frame.time_b - times[step]) / length) if length > 0.0 else 0.0
+    phase = record.timeline.phase_of(step)
+    link_poses = _link_poses(phase, [FramePlace(step, share, None, (None, None))])
+    for k, body in enumerate(bodies):
+        if second is not None and clock[body] == clock[second]:
+            poses[k] = body.poses_in(phase.case, link_poses)[0]
+
+
+def packed(poses: np.ndarray) -> np.ndarray:
+    """(n, 7) float32 xyz and quat_xyzw, one row where nothing moves."""
+    from scipy.spatial.transform import Rotation
+
+    if (poses == poses[0]).all():
+        poses = poses[:1]
+    rotations = Rotation.from_matrix(poses[:, :3, :3]).as_quat(canonical=True)
+    return np.column_stack([poses[:, :3, 3], rotations]).astype(np.float32)
+
+
+def shape_index(
+    shape: Polyhedron, shapes: list[tuple[np.ndarray, np.ndarray]], seen: dict[bytes, int]
+) -> int:
+    """The place of a shape among those that are drawn, each of which is there once."""
+    vertices, triangles = shape.vertices.astype(np.float32), shape.triangles().astype(np.int32)
+    key = vertices.tobytes() + triangles.tobytes()
+    if key not in seen:
+        seen[key] = len(shapes)
+        shapes.append((vertices, triangles))
+    return seen[key]

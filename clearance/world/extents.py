@@ -1,0 +1,48 @@
+"""How long bodies are, how far robots reach, and lengths as they are told: what sizes and places are held against.
+
+Not for: what is odd about them (`plausible_sizes`, `plausible_places`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from clearance.world.body import Body
+from clearance.world.case import PlacedRobot
+from clearance.world.robot import JointKind
+
+
+def reach_of(placed: PlacedRobot) -> float:
+    """[m] length of its longest chain of joints, slides included, and of its median body."""
+    lengths = [length_of(body) for body in placed.robot.bodies]
+    return chain_of(placed) + (float(np.median(lengths)) if lengths else 0.0)
+
+
+def chain_of(placed: PlacedRobot) -> float:
+    """[m] the longest way from the root over joints' origins, sliding joints as far as they go."""
+    asked = placed.trajectory
+    columns = {} if asked is None else {name: i for i, name in enumerate(asked.joint_names)}
+    way = {placed.robot.link_names[0]: 0.0}
+    for joint in placed.robot.joints:
+        step = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
+        if asked is not None and joint.kind is JointKind.PRISMATIC and joint.name in columns:
+            step += float(np.abs(asked.positions[:, columns[joint.name]]).max(initial=0.0))
+        way[joint.child] = way[joint.parent] + step
+    return max(way.values())
+
+
+def length_of(body: Body) -> float:
+    """[m] the longest side of a body's box."""
+    return float(np.ptp(body.shape.bounds, axis=0).max())
+
+
+def greatest(found: Iterable[tuple[float, str]]) -> list[tuple[float, str]]:
+    """What was found, the greatest number first."""
+    return sorted(found, key=lambda item: -item[0])
+
+
+def metres(length: float) -> str:
+    """A length [m] in three digits, never in powers of ten for what is long."""
+    return f"{length:.3g}" if length < 1000.0 else f"{length:.0f}"

@@ -1,0 +1,49 @@
+"""Tables of poses that look like millimetres or milliseconds. Not for: joints (`plausible_motion`)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from clearance.world.case import Case
+from clearance.world.extents import metres
+from clearance.world.notice import Notice, Severity
+from clearance.world.plausible_motion import CREEP_SLIDE, CREEP_TURN, LEAST_SLIDE, LEAST_TURN
+from clearance.world.pose_table import PoseTable
+
+LARGE_TRAVEL = 100.0
+"""[m] Nothing in a cell goes so far; in millimetres it is usual."""
+
+
+def notices_on_tables(case: Case) -> list[Notice]:
+    """What of the tables of obstacles looks like another unit."""
+    told = []
+    for obstacle in case.obstacles:
+        if obstacle.moves is not None:
+            told += _odd(f"obstacle {obstacle.name!r}", obstacle.moves)
+    return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
+
+
+def _odd(what: str, table: PoseTable) -> list[str]:
+    told = []
+    travel = float(np.linalg.norm(np.ptp(table.positions, axis=0)))
+    if travel > LARGE_TRAVEL:
+        told.append(f"{what} moves {metres(travel)} m; lengths are in metres, is this millimetres?")
+    if _creeps(table):
+        length = float(table.times[-1] - table.times[0]) / table.timing.rate
+        told.append(
+            f"{what} moves no faster than {CREEP_SLIDE * 1000:g} mm/s and {CREEP_TURN:g} rad/s in {length:g} s; "
+            "times are in seconds, is this milliseconds?"
+        )
+    return told
+
+
+def _creeps(table: PoseTable) -> bool:
+    """True for a motion that gets somewhere, but never faster than creeping."""
+    if len(table) < 2:
+        return False
+    ways = np.linalg.norm(np.diff(table.positions, axis=0), axis=1)
+    apart = np.linalg.norm(np.diff(table.quaternions, axis=0), axis=1)
+    turns = 4.0 * np.arcsin(np.minimum(1.0, apart / 2.0))
+    lengths = np.diff(table.times) / table.timing.rate
+    slow = (ways / lengths).max() <= CREEP_SLIDE and (turns / lengths).max() <= CREEP_TURN
+    return bool(slow and (ways.sum() > LEAST_SLIDE or turns.sum() > LEAST_TURN))

@@ -1,0 +1,315 @@
+"""A cell of several actors and rules: every answer names the rule that judges, and what moves by which hand."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+import json
+import re
+from xml.etree import ElementTree
+
+import pyarrow.csv
+import pyarrow.parquet
+import pytest
+from rich.console import Console
+
+import clearance as cl
+from clearance.cli.verdict import print_verdict
+from clearance.report import json_text, summary_of, write_junit
+from clearance.report.page import page_of
+from clearance.report.pair_curves import pair_curves
+from clearance.report.pair_judge import PairJudge
+from clearance.simulate.replay import replay_of
+from clearance.world.case import Clock, Limits, SelfClearance
+from clearance.world.rules import Allowance, Rule
+from clearance.world.timing import Window
+from tests.made_cases import at
+from tests.report.cells import RULES, box, cell, sliding
+from tests.report.records import record as plain_record
+
+FENCE = (
+    "1.999 mm, below the fail limit of 5 mm of rule 'fence': left/tool - fence at 0.000 s, step 0"
+)
+
+
+@pytest.fixture(scope="module")
+def run():
+    return cl.check(cell(), need="pairs")
+
+
+@pytest.fixture(scope="module")
+def summary(run):
+    return json.loads(json_text(run.summary))
+
+
+@pytest.fixture(scope="module")
+def page(run) -> str:
+    found = page_of(run.summary, replay_of(run.record), {}, pair_curves(run.record))
+    return re.sub(r"<script.*?</script>", "", found, flags=re.DOTALL)
+
+
+def printed(run) -> str:
+    console = Console(file=io.StringIO(), width=240)
+    print_verdict(run, None, console)
+    return console.file.getvalue()
+
+
+def test_the_headline_says_which_rule_is_broken_by_what_and_what_is_nearest(run, page):
+    verdict = run.verdict
+    assert (verdict.status, verdict.reasons[0]) == ("violated", FENCE)
+    first, _, third, *_ = printed(run).splitlines()
+    assert first.startswith(f"VIOLATED: {FENCE}")
+    head = page.split("<main>")[0].replace("&#39;", "'")
+    assert FENCE in head and "Worst against its rule" in head
+    for told in (verdict.nearest, third, head):
+        assert "judged by rule 'handover': right/tool - part at 2.000 s" in told
+    assert (
+        "violated, 1.999 mm (rule &#x27;fence&#x27;)" in run._repr_html_()
+        or "fence" in run._repr_html_()
+    )
+
+
+def test_without_rules_the_headline_is_as_ever():
+    run = cl.check(cell(rules=()))
+    assert run.verdict.nearest is None
+    assert (
+        printed(run)
+        .splitlines()[0]
+        .startswith("NEAR  two <sliders> & a door: least clearance 0.500")
+    )
+
+
+def test_the_summary_has_each_rule_with_its_worst_moment(run, summary):
+    assert summary["format"] == 3
+    told = {rule["name"]: rule for rule in summary["rules"]}
+    assert list(told) == ["default", "fence", "held <part>", "handover"]
+    assert {name: rule["status"] for name, rule in told.items()} == {
+        "default": "clear", "fence": "violated", "held <part>": "clear", "handover": "clear",
+    }  # fmt: skip
+    assert (told["handover"]["from"], told["handover"]["until"]) == (1.5, 2.5)
+    assert told["held <part>"]["while_carried"] == "part"
+    assert told["fence"]["worst"]["clearance"] == summary["worst"]["clearance"]
+    assert summary["worst"]["rule"] == "fence" and summary["nearest"]["rule"] == "handover"
+    assert summary["nearest"]["body_a"] == summary["nearest"]["link"] == "right/tool"
+    for name, rule in told.items():
+        own = [pair["clearance"] for pair in summary["pairs"] if pair["rule"] == name]
+        assert min(own) == rule["worst_sample"]["clearance"]
+        assert rule["lower_bound"] <= rule["worst"]["clearance"]
+
+
+def test_the_summary_says_what_moves_and_who_carries(summary):
+    actors = {actor["name"]: actor for actor in summary["actors"]}
+    assert {name: actor["kind"] for name, actor in actors.items()} == {
+        "left": "robot", "right": "robot", "part": "part", "door": "obstacle", "cart": "obstacle",
+        "crate": "obstacle",
+    }  # fmt: skip
+    assert actors["crate"]["on"] == "cart"
+    assert actors["cart"]["absent"] == actors["crate"]["absent"] == [[0.0, 1.0], [3.0, 4.0]]
+    assert "constant speed" in actors["door"]["between_samples"]
+    assert [(one["part"], one["by"], one["from"], one["until"]) for one in summary["carries"]] == [
+        ("part", "left/tool", 1.0, 2.0), ("part", "right/tool", 2.0, 4.0),
+    ]  # fmt: skip
+    assert summary["clock"] == {"kind": "common", "slack": 0.0}
+    assert summary["paddings"] == {"left/tool": 0.002}
+
+
+def test_a_rule_that_judges_nothing_is_listed_without_a_status():
+    covered = (*RULES[:1], Rule(("*", "*"), name="all", fail=0.001))
+    summary = summary_of(cl.check(cell(rules=covered)).record)
+    assert {rule["name"]: rule["status"] for rule in summary["rules"]} == {
+        "default": None, "fence": None, "all": "violated" if summary["verdict"] == "violated" else "clear",
+    }  # fmt: skip
+    assert "judges nothing" in page_of(summary, replay_of(cl.check(cell(rules=covered)).record))
+
+
+def test_the_page_has_rules_hands_and_groups(page):
+    for title in ("Rules", "Who holds what, and when", "Not measured", "Worst moment"):
+        assert f"<h2>{title}</h2>" in page
+    assert "held &lt;part&gt;" in page and "held <part>" not in page
+    bars = re.findall(
+        r'class="bar (\w+)" style="left:([\d.]+)%;width:([\d.]+)%" title="([^"]+)"', page
+    )
+    assert ("hand0", "25.000", "25.000", "left/tool: 1.000 s to 2.000 s") in bars
+    assert ("hand1", "50.000", "50.000", "right/tool: 2.000 s to 4.000 s") in bars
+    assert ("absent", "75.000", "25.000", "not in the cell: 3.000 s to 4.000 s") in bars
+    assert ("window", "37.500", "25.000", "holds: 1.500 s to 2.500 s") in bars
+    groups = re.findall(r'class="group">([^<]+)<', page)
+    assert groups == ["left", "right", "carried", "moving", "standing"]
+    assert "moves with it while part is carried from 1 s until 2 s" in page
+
+
+def test_a_cell_of_the_matrix_has_the_colour_of_its_rule(page):
+    """0.5 mm at the handover is clear by its rule; 2 mm at the fence is violated by its own."""
+    found = re.findall(r'class="cell (\w+)"[^>]*title="([^:"]+):', page)
+    cells = {pair: shade for shade, pair in found}
+    assert cells["left/tool - fence"] == "violated"
+    assert cells["right/tool - part"] == "far0"
+
+
+def test_each_event_names_the_rule(run, summary):
+    entered = [event for event in run.events if event.what == "fail limit entered"]
+    assert {event.rule for event in entered} == {"fence"}
+    found = summary["intervals"]["below_fail"]
+    assert [(one["link"], one["obstacle"], one["rule"]) for one in found] == [
+        ("left/tool", "fence", "fence")
+    ] * len(found)
+
+
+def test_junit_has_a_case_for_each_rule_and_for_each_pair_by_each_rule(run, tmp_path):
+    write_junit(run.record, tmp_path / "junit.xml")
+    suite = ElementTree.parse(tmp_path / "junit.xml").find("testsuite")
+    cases = {case.get("name"): case for case in suite.findall("testcase")}
+    failed = {name for name, case in cases.items() if case.find("failure") is not None}
+    assert failed == {"verdict", "fence", "left/tool - fence [fence]", "motion between the samples"}
+    rules = [c.get("name") for c in suite.findall("testcase[@classname='rule']")]
+    assert rules == ["default", "fence", "held <part>", "handover"]
+    assert {"right/tool - part", "right/tool - part [handover]"} <= set(cases)
+    assert "of rule 'fence' is 5 mm" in cases["left/tool - fence [fence]"].find("failure").get(
+        "message"
+    )
+
+
+def test_tables_have_the_sides_of_any_two_bodies_and_the_rule(run, tmp_path):
+    run.save(tmp_path / "out")
+    steps = pyarrow.csv.read_csv(tmp_path / "out" / "steps.csv")
+    assert {"body_a", "body_b", "a_x", "b_z", "rule", "nearest_clearance"} <= set(
+        steps.column_names
+    )
+    assert not {"link", "obstacle"} & set(steps.column_names)
+    contacts = pyarrow.csv.read_csv(tmp_path / "out" / "contacts.csv")
+    assert contacts.column_names[:4] == ["step", "time", "body_a", "body_b"]
+    pairs = pyarrow.parquet.read_table(tmp_path / "out" / "pairs.parquet").to_pylist()
+    least = {}
+    for row in pairs:
+        assert (row["clearance"] is None) == (row["rule"] is None)
+        if row["rule"] is not None:
+            key = row["body_a"], row["body_b"], row["rule"]
+            least[key] = min(least.get(key, row["clearance"]), row["clearance"])
+    minima = {(one.link, one.obstacle, one.rule): one.clearance for one in run.record.pair_minima}
+    assert least.items() <= minima.items()
+    assert {key[:2] for key in minima} == {key[:2] for key in least}
+
+
+def test_one_robot_among_what_stands_keeps_its_names_first_and_has_the_others_too(tmp_path):
+    robots = (sliding("left", [(0, 0), (1, 1)]),)
+    obstacles = (box("post", (0.2, 0.2, 2)),)
+    run = cl.check(cell((), robots, obstacles, ()), need="pairs")
+    run.save(tmp_path / "out")
+    old = [
+        "link",
+        "obstacle",
+        "link_x",
+        "link_y",
+        "link_z",
+        "obstacle_x",
+        "obstacle_y",
+        "obstacle_z",
+    ]
+    new = ["body_a", "body_b", "a_x", "a_y", "a_z", "b_x", "b_y", "b_z"]
+    steps = pyarrow.csv.read_csv(tmp_path / "out" / "steps.csv")
+    assert steps.column_names[:11] == ["step", "time", "clearance", *old]
+    assert [steps[name] for name in old] == [steps[name] for name in new]
+    pairs = pyarrow.parquet.read_table(tmp_path / "out" / "pairs.parquet")
+    assert pairs.column_names[:4] == ["step", "link", "obstacle", "clearance"]
+    contacts = pyarrow.csv.read_csv(tmp_path / "out" / "contacts.csv")
+    assert contacts.column_names[:4] == ["step", "time", "link", "obstacle"]
+    assert len(contacts) and contacts["link"] == contacts["body_a"]
+
+
+@pytest.mark.parametrize("need", ["steps", "limit", "minimum"])
+def test_every_need_has_its_report(need, tmp_path):
+    run = cl.check(cell(), need=need)
+    run.save(tmp_path / "out")
+    write_junit(run.record, tmp_path / "junit.xml")
+    assert run.status == "violated" and FENCE in printed(run)
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["need"] == need
+
+
+def test_padding_alone_is_no_contact_anywhere(tmp_path):
+    """The bodies are 1 mm apart and padded by 3 mm: violated by 2 mm, in contact nowhere."""
+    robots = (sliding("left", [(0, 0), (1, 0)], padding={"tool": 0.003}),)
+    obstacles = (
+        box(
+            "post",
+            (0.1, 0.1, 1),
+            pose=[[1, 0, 0, 0.101], [0, 1, 0, 0], [0, 0, 1, 0.5], [0, 0, 0, 1]],
+        ),
+    )
+    run = cl.check(cell((), robots, obstacles, ()))
+    assert run.status == "violated" and run.worst["clearance"] == pytest.approx(-0.002)
+    (minimum,) = run.record.pair_minima
+    assert PairJudge.of(run.record).status_of(minimum) == "violated"
+    assert summary_of(run.record)["status_counts"]["contact"] == 0
+    replay = replay_of(run.record)
+    assert set(replay.status.tolist()) == {2}
+    text = re.sub(r"<script.*?</script>", "", page_of(run.summary, replay), flags=re.DOTALL)
+    assert 'class="cell violated"' in text and 'class="cell contact"' not in text
+    assert (
+        "below the fail limit" not in run.verdict.reasons[0]
+        or "contact" not in run.verdict.reasons[0]
+    )
+    assert "-2.000 mm" in run.verdict.reasons[0].replace("-2.001", "-2.000")
+
+
+def test_self_collision_is_said_robot_by_robot():
+    robots = (
+        sliding("left", [(0, 0), (1, 1)], self_clearance=SelfClearance()),
+        sliding("right", [(0, 3), (1, 3)]),
+    )
+    run = cl.check(cell((), robots, (box("table", (4, 4, 0.1)),), ()))
+    assert run.verdict.not_checked == ("self-collision of right",)
+    assert "self-collision of right not checked" in printed(run)
+
+
+@pytest.mark.parametrize(
+    ("slack", "told"), [(float("inf"), "clocks not tied"), (0.25, "clocks up to 0.25 s apart")]
+)
+def test_the_verdict_says_how_far_clocks_may_be_apart_and_both_times(slack, told):
+    """The times are written into the record by hand: what is said of them is asked here."""
+    record = cl.check(cell((), carries=())).record
+    worst = dataclasses.replace(record.worst, time_b=2.5)
+    record = dataclasses.replace(record, case=dataclasses.replace(record.case, clock=Clock(slack)))
+    record.__dict__["worst"] = record.__dict__["worst_sample"] = worst
+    run = cl.Run(record)
+    assert run.verdict.text().endswith(told)
+    summary = summary_of(record)
+    assert summary["clocks"] == told and summary["worst"]["time_b"] == 2.5
+    text = printed(run)
+    assert f"with {worst.obstacle} at 2.500 s" in text and told.upper() not in text
+    html = page_of(summary, replay_of(record))
+    assert f"with {worst.obstacle} at 2.500 s" in html and told in html
+
+
+def test_a_record_without_rules_says_nothing_of_rules():
+    summary = summary_of(plain_record())
+    html = re.sub(
+        r"<script.*?</script>", "", page_of(summary, replay_of(plain_record())), flags=re.DOTALL
+    )
+    assert "<h2>Rules</h2>" not in html and "Who holds what" not in html
+    assert summary["limits"] == {"fail": 0.01, "warn": 0.06, "joints": "warn"}
+    assert Limits(fail=0.01, warn=0.06).rule_names == ("default",)
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_while_nothing_is_measured_the_report_says_so_and_stands(certify, tmp_path):
+    robots = (
+        sliding("left", [(0, 0), (1, 0.1), (2, 0.2), (3, 0.3)]),
+        sliding("right", [(0, 3), (3, 3)]),
+    )
+    allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
+    obstacles = (box("post", (0.1, 0.1, 2), at(0.6)),)
+    run = cl.check(cell((), robots, obstacles, (), allow=allow), certify=certify)
+    assert any(
+        "nothing is measured from 1.000 s to 2.500 s" in text for text in run.verdict.warnings
+    )
+    run.save(tmp_path / "out")
+    json.loads((tmp_path / "out" / "summary.json").read_text())
+    replay = replay_of(run.record)
+    assert [i for i, known in enumerate(replay.known) if not known] == [2]
+    assert replay.nearest[2].tolist() == [-1, -1]
+    assert (
+        "Infinity"
+        not in page_of(run.summary, replay).split('<script id="data"')[1].split("</script>")[0]
+    )
+    write_junit(run.record, tmp_path / "junit.xml")
+    assert printed(run)

@@ -1,0 +1,129 @@
+"""The page of a cell in a real browser: all that moves is drawn where it is, hands and rules are said."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.world.rules import Allowance
+from clearance.world.timing import Window
+from tests.made_cases import at
+from tests.report.browser import Page, chromium, executable
+from tests.report.cells import box, cell, sliding
+
+pytestmark = pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory) -> Page:
+    folder = tmp_path_factory.mktemp("cell") / "out"
+    cl.check(cell(), need="pairs").save(folder)
+    with chromium() as page:
+        page.report = (folder / "report.html").as_uri()
+        page.open(page.report, "window.clearance", width=1400, height=900)
+        page.settle()
+        yield page
+
+
+def show(page: Page, step: int) -> dict:
+    page.run(f"window.clearance.showFrame(window.clearance.frameOfStep({step}))")
+    page.settle()
+    return page.run("window.clearance.state()")
+
+
+def readout(page: Page) -> str:
+    return page.run("document.getElementById('readout').innerText")
+
+
+def test_parts_go_with_the_hand_that_holds_them_and_the_page_says_so(page):
+    held = {}
+    for step in (0, 2, 3, 5):  # 0, 1.5, 2 and 3 s
+        state = show(page, step)
+        held[step] = readout(page)
+        part = state["bodies"]["part"]
+        by = "right/tool" if step >= 3 else "left/tool"
+        if step >= 1:
+            offset = np.subtract(part, state["bodies"][by])
+            assert offset == pytest.approx([0.16 if by == "left/tool" else -0.0755, 0, 0], abs=1e-6)
+    assert "holds" not in held[0]
+    assert "left/tool holds part" in held[2]
+    assert "right/tool holds part" in held[3] and "left/tool holds" not in held[3]
+    assert page.errors == []
+
+
+def test_what_is_not_in_the_cell_is_not_drawn(page):
+    assert sorted(show(page, 0)["hidden"]) == ["cart", "crate"]
+    assert show(page, 2)["hidden"] == []
+    assert sorted(show(page, 6)["hidden"]) == ["cart", "crate"]
+
+
+def test_the_readout_and_the_hover_name_the_rule(page):
+    show(page, 0)
+    assert "by rule fence" in readout(page)
+    texts = page.run("document.getElementById('curve').data[0].text")
+    assert "by rule fence: fail 5 mm, warn 500 mm" in texts[0]
+
+
+def test_the_limit_lines_go_in_steps_with_the_rule_that_judges(page):
+    lines = page.run(
+        "document.getElementById('curve').data.filter((t) => t.line && t.line.shape === 'hv')"
+        ".map((t) => [t.x, t.y])"
+    )
+    assert len(lines) == 2
+    for (x, y), fence in zip(lines, (5.0, 500.0), strict=True):
+        assert x == sorted(x) and y[0] == y[-1] == fence
+        assert min(y) < fence
+
+
+def test_a_click_on_a_hand_moves_the_replay_to_where_it_takes_the_part(page):
+    page.run("document.querySelector('.bar.hand1').click()")
+    page.settle()
+    assert page.run("window.clearance.state().step") == 3
+    page.run("document.querySelector('.rules tbody tr[data-step]').click()")
+    assert page.errors == []
+
+
+def test_a_click_on_a_cell_shows_the_pair_with_its_rule(page):
+    page.run(
+        "Array.from(document.querySelectorAll('.cell'))"
+        ".find((c) => c.title.startsWith('right/tool - part')).click()"
+    )
+    page.settle()
+    text = readout(page)
+    assert "0.500 mm clear" in text and "by rule handover" in text
+    curve = page.run("document.getElementById('curve').data.at(-2).y")
+    assert len(curve) == 7
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("width", [420, 800, 1400, 2000])
+def test_nothing_is_clipped(page, width, theme):
+    page.call(
+        "Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}]
+    )
+    page.open(page.report, "window.clearance", width=width, height=900)
+    page.settle()
+    beyond = page.run(
+        "Array.from(document.querySelectorAll('body *'))"
+        ".filter((e) => !e.closest('.scroll, .track, #pane, #curve')"
+        " && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.outerHTML.slice(0, 80))"
+    )
+    assert beyond == [] and page.errors == []
+
+
+def test_a_page_with_steps_at_which_nothing_is_measured_draws_its_curve(tmp_path):
+    robots = (
+        sliding("left", [(0, 0), (1, 0.1), (2, 0.2), (3, 0.3)]),
+        sliding("right", [(0, 3), (3, 3)]),
+    )
+    allow = (Allowance(("*", "*"), Window(1.0, 2.5)),)
+    case = cell((), robots, (box("post", (0.1, 0.1, 2), at(0.6)),), (), allow=allow)
+    cl.check(case).save(tmp_path / "out")
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        show(page, 2)
+        assert "nothing measured" in readout(page) and "no pair is left" in readout(page)
+        low, high = page.run("document.getElementById('curve')._fullLayout.yaxis.range")
+        assert low == 0.0 and 500.0 < high < 550.0
+        assert page.errors == []

@@ -1,0 +1,133 @@
+"""Cells whose actors' clocks are not tied: all pairs of times against single questions on a grid of both."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput
+from clearance.simulate.sections import section_plan
+from clearance.world.carry import Carry
+from clearance.world.case import Clock
+from clearance.world.timing import Window
+from tests.cells import cell, pose_at
+
+CLOCK = {
+    "left": 0,
+    "part": 0,
+    "lid": 0,
+    "right": 1,
+    "track": 1,
+    "door": 2,
+    "crate": 2,
+    "post": None,
+}
+
+
+def loose(seed: int, slack: float) -> cl.Case:
+    """A cell in which only the left arm carries the part; three clocks."""
+    case = cell(seed, apart=2.0)
+    carries = (
+        Carry("part", "left/tool", Window(1.0, 2.5)),
+        Carry("part", "left/boom", Window(4.0)),
+    )
+    return replace(case, carries=carries, clock=Clock(slack))
+
+
+def clock_of(name: str) -> int | None:
+    return CLOCK[name.split("/")[0]]
+
+
+def grid_of(case, run, times_a, times_b):
+    """(len(times_a), len(times_b)) [m] the least of all pairs of two clocks, each body at its own time."""
+    pairs = {
+        (p.a.name_in(case), p.b.name_in(case)): (p.a.shape_in(case), p.b.shape_in(case))
+        for p in section_plan(run.record.timeline).pairs
+    }
+    least = np.full((len(times_a), len(times_b)), np.inf)
+    poses = {}
+    for (a, b), shapes in pairs.items():
+        if None in (clock_of(a), clock_of(b)) or clock_of(a) == clock_of(b):
+            continue
+        for name, times in ((a, times_a), (b, times_b)):
+            for t in times:
+                if (name, t) not in poses:
+                    poses[name, t] = pose_at(case, name, float(t))
+        for i, k in np.argwhere(np.abs(times_a[:, None] - times_b[None]) <= case.clock.slack):
+            pose_a, pose_b = poses[a, times_a[i]], poses[b, times_b[k]]
+            near = cl.distance(*shapes, pose_a=pose_a, pose_b=pose_b).distance
+            least[i, k] = min(least[i, k], near)
+    return least
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("slack", [np.inf, 0.7])
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_no_pair_of_times_is_nearer(seed, slack):
+    case = loose(seed, slack)
+    run = cl.check(case)
+    times = run.steps["time"].to_numpy()
+    between = np.sort(np.concatenate([times[1:-1] + 1e-9, np.linspace(times[0], times[-1], 23)]))
+    finer = 0.5 * (times[1:] + times[:-1])
+    grid = grid_of(case, run, finer, between)
+    lower = run.certificate.lower_bound
+    assert (lower[:-1] <= grid.min(axis=1) + 1e-9).all()
+    assert lower.min() >= run.record.worst.clearance - 1.001e-4
+
+
+def test_a_step_has_the_least_over_the_other_clock_and_says_when():
+    case = loose(4, np.inf)
+    run = cl.check(case, certify=False)
+    rows, tied = run.steps.to_pylist(), cl.check(replace(case, clock=Clock()), certify=False)
+    assert (run.steps["clearance"].to_numpy() <= tied.steps["clearance"].to_numpy() + 1e-12).all()
+    told = [row for row in rows if row["time_b"] is not None]
+    assert told
+    for row in told:
+        poses = (
+            pose_at(case, row["body_a"], row["time"]),
+            pose_at(case, row["body_b"], row["time_b"]),
+        )
+        pair = next(
+            p
+            for p in section_plan(run.record.timeline).pairs
+            if (p.a.name_in(case), p.b.name_in(case)) == (row["body_a"], row["body_b"])
+        )
+        near = cl.distance(
+            pair.a.shape_in(case), pair.b.shape_in(case), pose_a=poses[0], pose_b=poses[1]
+        )
+        assert near.distance == pytest.approx(row["clearance"], abs=1e-9)
+
+
+def test_more_slack_is_no_farther():
+    least = [cl.check(loose(5, slack)).record.worst.clearance for slack in (0.0, 0.3, 2.0, np.inf)]
+    assert all(b <= a + 1.001e-4 for a, b in zip(least, least[1:], strict=False))
+
+
+def test_what_needs_one_time_is_refused():
+    case = loose(1, 0.5)
+    with pytest.raises(BadInput, match="clocks are not tied"):
+        cl.check(case, need="pairs")
+    handed = replace(case, carries=(case.carries[0], Carry("part", "right/tool", Window(4.0))))
+    with pytest.raises(BadInput, match="changes hands between actors whose clocks are not tied"):
+        cl.check(handed)
+
+
+@pytest.mark.peer
+def test_the_cross_check_says_what_it_leaves_out():
+    run = cl.check(loose(2, 0.5), cross_check=True)
+    assert run.cross_check.agrees
+    assert any("not cross-checked" in notice.text for notice in run.record.notices)
+
+
+def test_every_pair_has_its_least():
+    case = loose(3, np.inf)
+    run = cl.check(case, certify=False)
+    told = {(row.link, row.obstacle): row.clearance for row in run.record.pair_minima}
+    names = {
+        (p.a.name_in(case), p.b.name_in(case)) for p in section_plan(run.record.timeline).pairs
+    }
+    assert set(told) == names
+    assert min(told.values()) == pytest.approx(run.record.worst_sample.clearance, abs=1e-12)

@@ -1,0 +1,108 @@
+"""A part that touches what it stood on, or fingers, as it changes hands: a hint with the line that excuses it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import yaml
+
+import clearance as cl
+from clearance.report import notes_of
+from clearance.simulate.handling import handling_hints
+from clearance.simulate.standing import always_in_contact, standing_hint
+from clearance.world.carry import Carry
+from clearance.world.mount import Mount
+from clearance.world.rules import Allowance
+from clearance.world.timing import Window
+from tests.made_cases import at
+from tests.report.cells import box, cell, slider, sliding
+
+UP = np.array([[0.0, 0, -1, 0], [0, 1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1]])
+"""What slides along x slides up."""
+
+
+def lifting(**changes):
+    """A tool comes down on a part on a pad, lifts it from 2 s on, sets it down at 4 s, and leaves it."""
+    tool = sliding("left", [(0, 1), (1, 0.5), (2, 0.25), (3, 0.75), (4, 0.25), (5, 1)], base=UP)
+    other = sliding("right", [(0, 3), (5, 3)])
+    obstacles = (box("part", (0.1, 0.1, 0.1), at(z=0.14)), box("pad", (1, 1, 0.18)))
+    return cell(
+        (), (tool, other), obstacles, (Carry("part", "left/tool", Window(2.0, 4.0)),), **changes
+    )
+
+
+@pytest.fixture(scope="module")
+def record():
+    return cl.check(lifting()).record
+
+
+def test_the_part_and_what_it_stands_on_are_named_with_the_time_of_contact(record):
+    hints = [(one.part, one.mate, one.when, one.start, one.end) for one in handling_hints(record)]
+    assert hints == [
+        ("part", "pad", "picked up by left/tool at 2 s", 2.0, 3.0),
+        ("part", "pad", "let go by left/tool at 4 s", 3.0, 4.0),
+    ]
+    notes = notes_of(record)
+    assert any(
+        "part touches pad when it is picked up by left/tool at 2 s" in note for note in notes
+    )
+
+
+def test_the_line_of_each_hint_excuses_it(record):
+    allow = []
+    for hint in handling_hints(record):
+        (row,) = yaml.safe_load(hint.line)["allow"]
+        window = Window(row.get("from", -np.inf), row.get("until", np.inf))
+        allow.append(Allowance(tuple(row["between"]), window))
+    again = cl.check(lifting(allow=tuple(allow)))
+    assert handling_hints(again.record) == []
+    assert again.status != "contact" and again.worst["clearance"] > 0.005
+
+
+def test_fingers_that_hold_a_part_before_they_carry_it_are_named_too():
+    """The tool stands against the part from 1 s, carries it from 2 s on, and then moves with it."""
+    robots = (
+        sliding("left", [(0, 0), (1, 1), (2, 1), (3, 0)]),
+        sliding("right", [(0, 1.5), (1, 1.2), (2, 1.2), (3, 1.2)]),
+    )
+    obstacles = (box("part", (0.1, 0.1, 0.1), at(1.1, 0, 0.5)), box("table", (4, 4, 0.1)))
+    carries = (Carry("part", "left/tool", Window(2.0), touch=("right/*",)),)
+    hints = handling_hints(cl.check(cell((), robots, obstacles, carries)).record)
+    told = [(one.mate, one.start, one.end) for one in hints]
+    assert told == [("left/tool", 0.0, 2.0), ("right/tool", 0.0, 2.0)]
+
+
+def test_a_run_without_carried_parts_has_no_such_hint():
+    assert handling_hints(cl.check(cell((), carries=())).record) == []
+
+
+def test_pairs_in_contact_whenever_they_are_measured_are_named_over_all_phases():
+    """A cart rides on the robot, in contact with a second one's tool that moves with it all the time."""
+    robots = (
+        sliding("left", [(0, 0), (4, 1)]),
+        replace(sliding("right", [(0, 0), (4, 1)]), world_from_base=at(y=0.05, z=0.5)),
+    )
+    obstacles = (
+        box("part", (0.1, 0.1, 0.1), at(2, 0, 2)),
+        box("tray", (0.05, 0.05, 0.05), mount=Mount("right/tool", at(y=-0.1))),
+    )
+    carries = (Carry("part", "left/tool", Window(1.0, 2.0)),)
+    record = cl.check(cell((), robots, obstacles, carries)).record
+    assert len(record.timeline.phases) == 3
+    found = always_in_contact(record)
+    assert sorted(found) == [("left/tool", "right/tool"), ("left/tool", "tray")]
+    links, riding = standing_hint(record)
+    assert '["left/tool", "right/tool"]' in links and "link against link" in links
+    assert '["left/tool", "tray"]' in riding and "whenever they are measured" in riding
+    excused = tuple(Allowance(pair) for pair in found)
+    assert standing_hint(cl.check(cell((), robots, obstacles, carries, allow=excused)).record) == []
+
+
+def test_a_link_that_moves_through_what_stands_is_what_a_run_looks_for():
+    robots = (sliding("left", [(0, 0), (4, 0.01)]), sliding("right", [(0, 3), (4, 3)]))
+    record = cl.check(cell((), robots, (box("post", (0.5, 0.5, 2)),), ())).record
+    assert record.worst.touches
+    assert standing_hint(record) == []
+    assert slider("left").name == "left"

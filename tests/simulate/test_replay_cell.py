@@ -1,0 +1,171 @@
+"""The replay of a cell in which everything moves: bodies are where hands, tables and carriers put them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.simulate.replay import load_replay, replay_of
+from clearance.simulate.replay_bodies import FramePlace, bodies_of, placed_bodies
+from clearance.world.carry import Carry
+from clearance.world.case import Clock
+from clearance.world.mount import Mount
+from clearance.world.timing import Timing, Window
+from tests.made_cases import at
+from tests.report.cells import box, cell, sliding, table_of
+
+
+@pytest.fixture(scope="module")
+def record():
+    return cl.check(cell()).record
+
+
+@pytest.fixture(scope="module")
+def replay(record):
+    return replay_of(record)
+
+
+def frame_at(replay, time: float) -> int:
+    return int(np.argmin(np.abs(replay.times - time) + replay.between))
+
+
+def place(replay, name: str, time: float) -> list[float]:
+    """(3,) where a body is drawn at a time."""
+    (i,) = [i for i, body in enumerate(replay.bodies) if body.name == name]
+    poses = replay.poses[i]
+    return poses[frame_at(replay, time) if len(poses) > 1 else 0, :3].tolist()
+
+
+def shown(replay, name: str) -> list[float]:
+    """The times at which a body is drawn."""
+    (i,) = [i for i, body in enumerate(replay.bodies) if body.name == name]
+    flags = np.broadcast_to(replay.shown[i], len(replay.times))
+    return sorted(set(replay.times[flags == 1].tolist()))
+
+
+@pytest.mark.parametrize(
+    ("name", "time", "expected"),
+    [
+        ("left/tool", 1, [1, 0, 0.5]),
+        ("right/tool", 2, [1.2355, 0, 0.5]),
+        ("part", 0, [1.16, 0, 0.5]),
+        ("part", 2, [1.16, 0, 0.5]),
+        ("part", 3, [1.16 + 3 - 1.2355, 0, 0.5]),
+        ("part", 4, [1.16 + 3 - 1.2355, 0, 0.5]),
+        ("door", 2, [1.4, 0.5, 0.6]),
+        ("cart", 2, [0.9, -1, 0.2]),
+        ("crate", 2, [0.9, -1, 0.37]),
+        ("fence", 2, [-0.104, 0, 0.6]),
+    ],
+)
+def test_every_body_is_where_its_carrier_or_its_table_puts_it(replay, name, time, expected):
+    assert place(replay, name, time) == pytest.approx(expected, abs=1e-6)
+
+
+def test_what_is_absent_is_hidden_and_so_is_what_stands_on_it(replay):
+    everything = sorted(set(replay.times.tolist()))
+    assert shown(replay, "cart") == shown(replay, "crate")
+    assert min(shown(replay, "cart")) == 1.0 and max(shown(replay, "cart")) < 4.0
+    assert shown(replay, "door") == everything
+
+
+def test_the_replay_knows_who_holds_what_and_what_judges_each_frame(replay):
+    hands = [(one.part, one.by, one.start, one.end) for one in replay.carries]
+    assert hands == [("part", "left/tool", 1.0, 2.0), ("part", "right/tool", 2.0, 4.0)]
+    names = [replay.bodies[one.i_by].name for one in replay.carries]
+    assert names == ["left/tool", "right/tool"]
+    assert replay.rules[replay.rule[replay.i_worst]].name == "fence"
+    kinds = {body.name: body.kind for body in replay.bodies}
+    assert (kinds["part"], kinds["door"], kinds["crate"]) == ("part", "moving", "moving")
+
+
+def test_it_comes_back_from_its_file(replay, tmp_path):
+    replay.save(tmp_path / "replay.npz")
+    back = load_replay(tmp_path / "replay.npz")
+    assert (back.rules, back.carries, back.bodies) == (replay.rules, replay.carries, replay.bodies)
+    for name in ("rule", "times_b", "nearest", "status"):
+        assert np.array_equal(getattr(back, name), getattr(replay, name), equal_nan=True), name
+    assert all(map(np.array_equal, back.shown, replay.shown))
+
+
+def test_the_line_ends_on_the_bodies_drawn(record, replay):
+    """Also at the step at which something goes, where the row can be of what is there until then."""
+    for i in range(len(replay.times)):
+        for k, end in zip(replay.nearest[i], replay.lines[i].reshape(2, 3), strict=True):
+            flags = replay.shown[k]
+            assert flags[i if len(flags) > 1 else 0], replay.bodies[k].name
+            poses = replay.poses[k]
+            low, high = (
+                np.array([-1, 1])[:, None]
+                * np.ptp(replay.shapes[replay.bodies[k].i_shape][0], axis=0)
+                / 2
+            )
+            inside = end - poses[i if len(poses) > 1 else 0, :3]
+            assert (inside > low - 1e-6).all() and (inside < high + 1e-6).all()
+
+
+def test_a_robot_on_a_moving_base_is_drawn_on_it():
+    robots = (
+        sliding("left", [(0, 0), (2, 1)], mount=Mount("cart", at(z=0.4))),
+        sliding("right", [(0, 3), (2, 3)]),
+    )
+    obstacles = (box("cart", (0.2, 0.2, 0.2), moves=table_of([(0, 0, 0, 0), (2, 0, 1, 0)])),)
+    replay = replay_of(cl.check(cell((), robots, obstacles, ())).record)
+    assert place(replay, "left/tool", 0) == pytest.approx([0, 0, 0.4])
+    assert place(replay, "left/tool", 2) == pytest.approx([1, 1, 0.4])
+
+
+def test_moments_between_steps_are_drawn_where_things_are_then():
+    """The cart passes below the tool between two steps; the part it carries goes with it."""
+    robots = (sliding("left", [(0, 0), (1, 0)]), sliding("right", [(0, 3), (1, 3)]))
+    obstacles = (
+        box("cart", (0.2, 0.2, 0.2), moves=table_of([(0, -1, 0.0, 0.2), (1, 1.5, 0.0, 0.2)])),
+        box("part", (0.1, 0.1, 0.1), at(-1, 0, 0.38)),
+    )
+    carries = (Carry("part", "cart", Window(0.0)),)
+    record = cl.check(cell((), robots, obstacles, carries)).record
+    assert record.worst.between
+    replay = replay_of(record)
+    i = replay.i_worst
+    assert replay.between[i] and replay.times[i] == record.worst.time
+    share = record.worst.time
+    (part,) = [k for k, body in enumerate(replay.bodies) if body.name == "part"]
+    assert replay.poses[part][i, :3] == pytest.approx([-1 + 2.5 * share, 0, 0.38], abs=1e-6)
+
+
+def test_where_clocks_are_not_tied_the_second_body_is_drawn_at_its_own_time(record):
+    bodies = bodies_of(record.case)
+    names = [body.name_in(record.case) for body in bodies]
+    loose = replace(record, case=replace(record.case, clock=Clock(np.inf)))
+    frame = FramePlace(0, 0.0, None, ("left/tool", "door"), 2.0)
+    drawn = placed_bodies(loose, bodies, [frame])
+    where = {name: pose[0, :3, 3].tolist() for name, pose in zip(names, drawn.poses, strict=True)}
+    assert where["door"] == pytest.approx([1.4, 0.5, 0.6])
+    assert where["left/tool"] == pytest.approx([0, 0, 0.5])
+    assert where["right/tool"] == pytest.approx([3, 0, 0.5])
+
+
+def test_a_robot_that_comes_and_goes_is_hidden_before_and_after():
+    robots = (
+        sliding("left", [(0, 0), (3, 0)]),
+        sliding("right", [(1, 3), (2, 1)], timing=Timing(after="absent")),
+    )
+    replay = replay_of(cl.check(cell((), robots, (box("table", (4, 4, 0.1)),), ())).record)
+    assert shown(replay, "right/tool")[0] == 1.0
+    assert max(shown(replay, "right/tool")) <= 2.0
+
+
+@pytest.mark.parametrize("after", ["absent", "loop"])
+def test_a_step_at_which_something_goes_shows_what_was_nearest_until_then(after):
+    """The cart comes to 10 mm from the tool at 2 s, and is gone, or back where it began, from then on."""
+    robots = (sliding("left", [(0, 0), (4, 0)]), sliding("right", [(0, 3), (4, 3)]))
+    ways = table_of([(0, 0.5, 0, 0.5), (2, 0.11, 0, 0.5)], after=after)
+    obstacles = (box("cart", (0.1, 0.1, 0.1), moves=ways), box("table", (4, 4, 0.1)))
+    replay = replay_of(cl.check(cell((), robots, obstacles, ())).record)
+    assert replay.times[replay.i_worst] == 2.0
+    assert 2.0 in shown(replay, "cart")
+    assert place(replay, "cart", 2.0) == pytest.approx([0.11, 0, 0.5], abs=1e-6)
+    assert replay.clearances[replay.i_worst] == pytest.approx(0.01)
