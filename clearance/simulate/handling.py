@@ -148,12 +148,12 @@ class _PairGaps:
     def _is_clear(self, section: Section, step: int) -> bool:
         """True if they are apart, and not below the fail limit of the rule that judges them there."""
         gap = self._gap(section, step)
-        return gap > TOUCHING and gap >= section.case.limits.fail
+        return gap > TOUCHING and gap >= section.limits.fail
 
     def _gap(self, section: Section, step: int) -> float:
         """[m] at one of a section's steps, paddings left out."""
         case, own = section.phase.case, step - section.phase.first
-        poses = link_poses_at(case, section.motions, slice(own, own + 1))
+        poses = link_poses_at(case, section.phase.motions, slice(own, own + 1))
         a, b = self.pair.a, self.pair.b
         return gap_between(
             a.shape_in(case),

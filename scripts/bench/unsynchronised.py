@@ -28,12 +28,11 @@ import clearance as cl
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.urdf import UrdfRequest, read_robot
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.resources import Resources
 from clearance.simulate.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
-from clearance.world.motion import Motion
+from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.pairs import Pair, measured_pairs
 from clearance.world.trajectory import Trajectory
 
