@@ -10,6 +10,7 @@ from clearance.cli import run
 from clearance.geometry import boolean
 from clearance.load import case_file
 from tests import cells
+from tests.load.making_cell import write_cell
 
 
 @pytest.fixture
@@ -53,3 +54,24 @@ def test_an_unknown_link_is_one_line_with_the_nearest(cell, tmp_path, capsys):
     error = capsys.readouterr().err
     assert "unknown link 'left/tol'; did you mean 'left/tool'?" in error
     assert len([line for line in error.splitlines() if "unknown" in line]) == 1
+
+
+def test_a_case_file_of_two_robots(tmp_path, capsys):
+    case, out = write_cell(tmp_path), tmp_path / "left.yaml"
+    arguments = [
+        "profile",
+        "sweep",
+        str(case),
+        "--links",
+        "left/*",
+        "--per-link",
+        "--out",
+        str(out),
+    ]
+    assert run(arguments) == 0
+    told = capsys.readouterr().out
+    bodies = [line.split(":")[0].strip() for line in told.splitlines() if line.startswith("  ")]
+    assert "workpiece" in bodies and all(b.startswith("left/") for b in bodies if b != "workpiece")
+    if boolean.available():
+        assert run(["workspace", str(case), "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["robots"] == ["left", "right"]

@@ -14,7 +14,7 @@ from clearance.profiles.plane import Plane
 from clearance.profiles.swept_bodies import over_time, swept_bodies
 from clearance.world.body import Body, Obstacle
 from clearance.world.carry import Carry
-from clearance.world.case import Case, PlacedRobot
+from clearance.world.case import Case, PlacedRobot, ReservedSpace
 from clearance.world.mount import Mount
 from clearance.world.pose_table import PoseTable
 from clearance.world.rules import matches
@@ -237,6 +237,26 @@ def test_steps_of_a_sweep_are_those_of_the_run():
     makers = [found.maker(i) for i in range(found.n_pieces)]
     assert {step for name, step in makers if name == "part"} <= {1, 2}
     assert found.n_steps == 3
+
+
+@pytest.mark.parametrize(("top", "kept"), [(1.15, True), (1.05, False)])
+def test_a_reserved_outline_is_held_against_what_is_in_hand_too(top, kept):
+    """The part reaches y = 1.1 while it is carried."""
+    corners = [(-0.3, -0.3), (1.5, -0.3), (1.5, top), (-0.3, top)]
+    sketch = cl.Sketch()
+    names = [sketch.point(*corner) for corner in corners]
+    for one, other in zip(names, [*names[1:], names[0]], strict=True):
+        sketch.segment(one, other)
+    space = ReservedSpace("zone", sketch, "xy", mode="outside")
+    wall = Obstacle(
+        Body("wall", cl.box((0.1, 0.1, 0.1))), cells.pose(np.random.default_rng(1), 9.0)
+    )
+    case = carrying(end=1.5)
+    case = replace(case, obstacles=(*case.obstacles, wall), profiles=(space,))
+    (answer,) = cl.check(case).record.profiles
+    assert answer.passed == answer.contained == kept
+    assert (answer.link, answer.step) in {("part", 1), ("part", 2)}
+    assert answer.gap == pytest.approx(top - 1.1, abs=1e-3)
 
 
 def test_patterns_of_links_and_what_they_carry():

@@ -66,7 +66,5 @@ def test_a_step_of_which_it_says_nothing_is_named_as_the_run_counts_it():
 
 def test_clocks_that_are_not_tied_are_refused():
     case = replace(cells.cell(0), clock=Clock(np.inf), carries=())
-    with pytest.raises(
-        BadInput, match="method 'paper' asks about one time"
-    ):
+    with pytest.raises(BadInput, match="method 'paper' asks about one time"):
         cl.Question(case, method="paper")
