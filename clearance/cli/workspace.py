@@ -52,8 +52,9 @@ def workspace(
 ) -> int:
     """The region that more than one robot passes through, whatever the timing of their trajectories.
 
-    Each CASE.yaml has its robot with its own base; all are of one cell, in one world frame. The
-    volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
+    The robots are those of one CASE.yaml, or of several that are of one cell, in one world frame.
+    What a robot carries belongs to it; what it shares with a robot that it stands on is not
+    counted. The volume is an upper bound. Exit code: 0 done, 1 above the limit given, 2 bad input.
     """
     from clearance.cli.notices import say_notices
     from clearance.cli.places import refuse_inputs_of_cases, require_folder_place
@@ -94,10 +95,10 @@ def _print(found: Workspace, out: Path | None, as_json: bool) -> None:
 
 def _lines(found: Workspace, out: Path | None) -> list[str]:
     pieces = ", ".join(
-        f"{n} of {name}" for n, name in zip(found.n_pieces, found.robots, strict=True)
+        f"{n} of {name}" for n, name in zip(found.n_pieces, found.names, strict=True)
     )
     if found.region.is_empty:
-        lines = [f"nothing is shared by {', '.join(found.robots)}"]
+        lines = [f"nothing is shared by {', '.join(found.names)}"]
     else:
         import numpy as np
 
@@ -117,6 +118,9 @@ def _lines(found: Workspace, out: Path | None) -> list[str]:
         f"an upper bound: convex pieces ({pieces}) hold the sweeps, "
         f"made wider by up to {found.leaves * 1e3:.3g} mm for the motion between the samples"
     )
+    lines += [
+        f"not counted: what {a} shares with {b}, on which it stands" for a, b in found.carried
+    ]
     if found.excluded:
         lines.append(f"left out, as the cases say: {', '.join(found.excluded)}")
     return lines if out is None else [*lines, f"written to {out}"]

@@ -19,21 +19,26 @@ from clearance.profiles.picture import picture_bytes
 from clearance.profiles.profile import Profile
 from clearance.profiles.region import holds
 from clearance.profiles.sweep import swept_profile
-from clearance.simulate.record import ProfileAnswer, Samples
-from clearance.world.case import ReservedSpace
+from clearance.profiles.swept_bodies import TimedCase
+from clearance.simulate.record import ProfileAnswer
+from clearance.world.case import Case, ReservedSpace
+from clearance.world.timeline import Timeline
 
 
-def answer_profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
+def answer_profiles(case: Case, timeline: Timeline) -> tuple[ProfileAnswer, ...]:
     """One answer for each of the case's profiles, in their order.
 
     Raises:
         BadInput: not a plane, an open contour; with the profile's name.
     """
     found = []
-    for i, space in enumerate(samples.case.profiles):
+    for i, space in enumerate(case.profiles):
         with at(f"profiles[{i}] {space.name}"):
             swept = swept_profile(
-                samples, space.plane, links=space.links or None, section=space.section
+                TimedCase(case, timeline),
+                space.plane,
+                links=space.links or None,
+                section=space.section,
             )
             found.append(_answer(space, swept))
     return tuple(found)

@@ -9,12 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.geometry.polyhedron import Polyhedron
+from clearance.profiles.chain import Chain
 from clearance.profiles.chain_bounds import ChainBounds
-from clearance.profiles.course import positions_at
 from clearance.profiles.plane import Plane
-from clearance.world.body import Body
-from clearance.world.kinematics import link_poses
-from clearance.world.motion import Motion
 
 MOST_PARTS = 4096
 """Parts of one step: a motion that needs more turns about more than a thousand times."""
@@ -26,7 +24,7 @@ class Knots:
 
     Attributes:
         instant: (k,) in steps, increasing; whole numbers are the steps themselves.
-        poses: (k, 4, 4) world_from_link [m] there.
+        poses: (k, 4, 4) world_from_body [m] there.
         moves: (k - 1,) whether the body moves from each to the next.
         chord: (k - 1,) [m] proven bound of the distance of its points from their chords, in the plane.
         turn: (k - 1,) [rad] how far the direction of view turns in the body either way from the middle.
@@ -41,36 +39,40 @@ class Knots:
     middle: np.ndarray
 
 
-def knots_of(motion: Motion, body: Body, plane: Plane, limit: float, *, solid: bool) -> Knots:
+def knots_of(
+    chain: Chain, shape: Polyhedron, plane: Plane, limit: float, *, solid: bool, first: int = 0
+) -> Knots:
     """The steps, and instants between them, so that no chord is left by more than `limit` [m].
 
     Args:
+        chain: down to the link that carries the shape, at the link's own pose.
+        first: the step of the run that the chain's phase begins with.
         solid: bound the distance in space, not in the plane.
     """
-    chain = ChainBounds(motion.placed, body, plane, solid)
-    instants = np.arange(motion.n_steps, dtype=float)
+    bounds = ChainBounds(chain, shape, plane, solid)
+    instants = np.arange(chain.n_steps, dtype=float)
     low, high = instants[:-1], instants[1:]
     done: list[tuple[np.ndarray, ...]] = []
     while len(low):
-        chord, turn, middle, moves = chain.of(motion, low, high)
+        chord, turn, middle, moves = bounds.of(low, high)
         fine = (chord <= limit) | (high - low <= 1.0 / MOST_PARTS)
         done.append((low[fine], high[fine], chord[fine], turn[fine], middle[fine], moves[fine]))
         low, high = _split(low[~fine], high[~fine], chord[~fine], limit)
     if not done:
-        return standing(motion.poses(0, 1)[0, chain.link])
+        return standing(chain.poses_at(np.zeros(1))[0, -1], first)
     low, high, chord, turn, middle, moves = (
         np.concatenate(part) for part in zip(*done, strict=True)
     )
     order = np.argsort(low, kind="stable")
     instant = np.append(low[order], high[order[-1]])
-    poses = link_poses(motion.placed, positions_at(motion, instant))[:, chain.link]
-    return Knots(instant, poses, moves[order], chord[order], turn[order], middle[order])
+    poses = np.ascontiguousarray(chain.poses_at(instant)[:, -1])
+    return Knots(first + instant, poses, moves[order], chord[order], turn[order], middle[order])
 
 
-def standing(pose: np.ndarray) -> Knots:
-    """The one instant of a body that never moves, at a (4, 4) pose [m]."""
-    none = np.zeros(0)
-    return Knots(np.zeros(1), pose[None], none.astype(bool), none, none, np.zeros((0, 4, 4)))
+def standing(pose: np.ndarray, first: int = 0) -> Knots:
+    """The one instant of a body that never moves, at a (4, 4) pose [m], from a step on."""
+    none, instant = np.zeros(0), np.full(1, float(first))
+    return Knots(instant, pose[None], none.astype(bool), none, none, np.zeros((0, 4, 4)))
 
 
 def _split(low: np.ndarray, high: np.ndarray, chord: np.ndarray, limit: float):

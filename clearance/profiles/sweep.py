@@ -21,14 +21,13 @@ from clearance.profiles.profile import Profile
 from clearance.profiles.region import covered_region
 from clearance.profiles.silhouette import Silhouette
 from clearance.profiles.swept_bodies import (
-    MovingBody,
+    CaseOverTime,
     RecordHolder,
-    chosen_links,
-    motions_of,
-    standing_obstacles,
+    SweptBody,
+    over_time,
+    swept_bodies,
 )
 from clearance.progress import Progress
-from clearance.simulate.record import Samples
 from clearance.world.case import Case
 
 if TYPE_CHECKING:
@@ -54,7 +53,7 @@ CUT_SHARE = 0.15
 
 
 def swept_profile(
-    run: Case | Samples | RecordHolder,
+    run: Case | CaseOverTime | RecordHolder,
     plane: str = "xy",
     *,
     links: Sequence[str] | None = None,
@@ -64,21 +63,24 @@ def swept_profile(
     per_link: bool = False,
     progress: Progress | None = None,
 ) -> Profile:
-    """The outline in a plane of everything that the robot's links sweep, with its holes.
+    """The outline in a plane of everything that the robots' links sweep, with its holes.
+
+    A part is swept by the link that carries it while it does; so is what stands on the part.
 
     Args:
-        run: a `Run` or `Record` (its motions), or a `Case` (the trajectory itself).
+        run: a `Run` or `Record` (its motions), or a `Case` (the trajectories themselves).
         plane: xy, xz, yz, or a point and a normal as six numbers; the projection is along the normal.
-        links: names; None for all links with geometry.
-        obstacles: names of obstacles to be drawn as well, e.g. with no links a wall and its openings.
+        links: names or patterns, `robot/link` where there are several robots; None for all.
+        obstacles: names or patterns of obstacles to be drawn as well, wherever they are during the run, e.g.
+            with no links a wall and its openings.
         section: [m] cut at this height along the plane's normal instead of projecting.
         tolerance: [m] how far the profile may exceed what is swept.
-        per_link: also each link's own profile, in `parts`.
+        per_link: also each body's own profile, in `parts`.
         progress: called with links done and all links.
 
-    Exactness: contains what the faceted links sweep, joints moving linearly between steps or on their cubics; no
-        point is farther than `Profile.bound` <= `tolerance` from a swept point. Holes narrower than that may be
-        filled.
+    Exactness: contains what the faceted links sweep, joints moving linearly between steps or on their cubics, and
+        obstacles straight and about one axis; no point is farther than `Profile.bound` <= `tolerance` from a swept
+        point. Holes narrower than that may be filled.
     Raises:
         BadInput: not a plane. BadDimension: not a tolerance.
         UnknownLink, UnknownObstacle.
@@ -88,36 +90,41 @@ def swept_profile(
         raise BadDimension(
             f"{tolerance:g} m", where="tolerance", valid="at least 1e-6 m (0.001 mm)"
         )
-    name, motions = motions_of(run)
-    seen_on = Plane.of(plane, section)
-    moving = [*chosen_links(motions, links), *standing_obstacles(run, obstacles)]
-    if not moving:
+    seen_on, moved = Plane.of(plane, section), over_time(run)
+    name, bodies = moved.case.name, swept_bodies(moved, links, obstacles)
+    if not bodies:
         raise NothingToMeasure("no link and no obstacle is asked for", where="links")
     parts = {}
     if per_link:
-        for one in moving:
-            parts[one.label] = _swept(name, [one], seen_on, section, tolerance, None, None)
-    return _swept(name, moving, seen_on, section, tolerance, progress, parts)
+        for label in _labels(bodies):
+            own = [one for one in bodies if one.label == label]
+            parts[label] = _swept(name, own, seen_on, section, tolerance, None, None)
+    return _swept(name, bodies, seen_on, section, tolerance, progress, parts)
+
+
+def _labels(bodies: Sequence[SweptBody]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(one.label for one in bodies))
 
 
 def _swept(
     name: str,
-    moving: Sequence[MovingBody],
+    bodies: Sequence[SweptBody],
     plane: Plane,
     section: float | None,
     tolerance: float,
     progress: Progress | None,
     parts: dict[str, Profile] | None,
 ) -> Profile:
-    views = _views(moving, plane, section, tolerance)
+    views = _views(bodies, plane, section, tolerance)
     raster = _page(views)
     for view in views:
         view.cover(raster)
     collected = PolygonCollection(covered_region(raster))
     sums = row_sums(raster.covered)
-    for i, view in enumerate(views):
+    labels = _labels(bodies)
+    for i, (view, one) in enumerate(zip(views, bodies, strict=True)):
         for hulls in view.hulls(raster, sums, WIDTH, TWIST * tolerance):
-            collected.add(hulls, i)
+            collected.add(hulls, labels.index(one.label))
         if progress:
             progress(i + 1, len(views))
     region = collected.region()
@@ -139,16 +146,20 @@ def _swept(
         section=section,
         tolerance=tolerance,
         bound=outline.outer + excess,
-        facets=max(one.body.shape.excess for one in moving),
-        n_steps=max(one.n_steps for one in moving),
-        origin=collected.origin(outline.contours, tuple(one.label for one in moving)),
+        facets=max(one.body.shape.excess for one in bodies),
+        n_steps=_last_step(bodies) + 1,
+        origin=collected.origin(outline.contours, labels),
         parts=parts or {},
-        notes=tuple(note for view in views for note in view.notes),
+        notes=tuple(dict.fromkeys(note for view in views for note in view.notes)),
     )
 
 
+def _last_step(bodies: Sequence[SweptBody]) -> int:
+    return max(0 if one.chain is None else one.first + one.chain.n_steps - 1 for one in bodies)
+
+
 def _views(
-    moving: Sequence[MovingBody], plane: Plane, section: float | None, tolerance: float
+    bodies: Sequence[SweptBody], plane: Plane, section: float | None, tolerance: float
 ) -> list[Silhouette | Section]:
     if section is None:
         return [
@@ -157,7 +168,7 @@ def _views(
                 one.knots(plane, SHARE * tolerance, solid=False),
                 plane,
             )
-            for one in moving
+            for one in bodies
         ]
     from clearance.profiles.section import Section
 
@@ -168,7 +179,7 @@ def _views(
             one.knots(plane, CUT_SHARE * tolerance, solid=True),
             plane,
         )
-        for one in moving
+        for one in bodies
     ]
 
 

@@ -1,91 +1,197 @@
-"""The bodies that a profile is swept by: links of the robots with their motions, and obstacles that stand.
+"""The bodies that a profile is swept by: links of robots, parts while they are carried, and obstacles by name.
 
 Not for: sweeping them (`sweep`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from clearance.errors import UnknownLink, UnknownObstacle, nearest_name
+from clearance.profiles.chain import Chain, chain_of
 from clearance.profiles.chords import Knots, knots_of, standing
 from clearance.profiles.plane import Plane
-from clearance.simulate.record import Samples
+from clearance.simulate.holders import holding_link
 from clearance.world.body import Body
 from clearance.world.case import Case
-from clearance.world.motion import Motion, kinematic_motion
+from clearance.world.forest import WORLD
+from clearance.world.motion import kinematic_motion
+from clearance.world.pairs import OBSTACLE, BodyIndex, names_of
+from clearance.world.rules import matches
+from clearance.world.timeline import Phase, Timeline, timeline_of
 
 
-@dataclass(frozen=True, eq=False)
-class MovingBody:
-    """A body of one of the motions, or one that stands at a pose."""
-
-    label: str
-    body: Body
-    motion: Motion | None
-    pose: np.ndarray | None = None
+class CaseOverTime(Protocol):
+    """A case and when what of it moves how, as a record."""
 
     @property
-    def n_steps(self) -> int:
-        return 1 if self.motion is None else self.motion.n_steps
+    def case(self) -> Case: ...
 
-    def knots(self, plane: Plane, limit: float, *, solid: bool) -> Knots:
-        """The instants at which it is looked at."""
-        if self.motion is None:
-            assert self.pose is not None, "what has no motion stands at a pose"
-            return standing(self.pose)
-        return knots_of(self.motion, self.body, plane, limit, solid=solid)
+    @property
+    def timeline(self) -> Timeline: ...
 
 
 class RecordHolder(Protocol):
     """What has a record, as a run."""
 
     @property
-    def record(self) -> Samples: ...
+    def record(self) -> CaseOverTime: ...
 
 
-def motions_of(run: Case | Samples | RecordHolder) -> tuple[str, tuple[Motion, ...]]:
+@dataclass(frozen=True, eq=False)
+class TimedCase:
+    """A case and when what of it moves how."""
+
+    case: Case
+    timeline: Timeline
+
+
+@dataclass(frozen=True, eq=False)
+class SweptBody:
+    """A body in one phase of a run; `chain` carries it, or it stands at `pose`."""
+
+    label: str
+    body: Body
+    first: int
+    chain: Chain | None
+    pose: np.ndarray | None = None
+
+    def knots(self, plane: Plane, limit: float, *, solid: bool) -> Knots:
+        """The instants at which it is looked at, in steps of the run."""
+        if self.chain is None:
+            assert self.pose is not None, "what nothing carries stands at a pose"
+            return standing(self.pose, self.first)
+        return knots_of(self.chain, self.body.shape, plane, limit, solid=solid, first=self.first)
+
+
+def over_time(run: Case | CaseOverTime | RecordHolder) -> CaseOverTime:
+    """The case, and when what moves how: as its trajectories say, or as it was in a run.
+
+    Raises:
+        NoTrajectory and what else `timeline_of` raises.
+    """
     if isinstance(run, Case):
-        return run.name, tuple(kinematic_motion(placed) for placed in run.robots)
-    record = run if isinstance(run, Samples) else run.record
-    return record.case.name, record.motions
+        return TimedCase(run, timeline_of(run, [kinematic_motion(one) for one in run.robots]))
+    return run if hasattr(run, "timeline") else run.record  # type: ignore[return-value]
 
 
-def chosen_links(motions: Sequence[Motion], links: Sequence[str] | None) -> list[MovingBody]:
-    several = len(motions) > 1
-    found = [
-        MovingBody(
-            f"{motion.placed.robot.name}/{body.name}" if several else body.name, body, motion
-        )
-        for motion in motions
-        for body in motion.placed.robot.bodies
+def swept_bodies(
+    run: CaseOverTime, links: Sequence[str] | None, obstacles: Sequence[str]
+) -> list[SweptBody]:
+    """The links with all that they carry, then the obstacles: body by body, and of each phase by phase.
+
+    Args:
+        links: patterns of links, as in tables or without their robot's name; None for all.
+        obstacles: patterns of obstacles, which are swept wherever they are.
+
+    Raises:
+        UnknownLink, UnknownObstacle: a pattern of none.
+    """
+    case = run.case
+    chosen = _chosen_links(run, links)
+    named = _chosen_obstacles(case, obstacles)
+    found: list[SweptBody] = []
+    for i, placed in enumerate(case.robots):
+        for k in range(len(placed.robot.bodies)):
+            index = BodyIndex(i, k)
+            if index.name_in(case) in chosen:
+                found += _over_phases(run, index, partial(_has_robot, i))
+    for i, obstacle in enumerate(case.obstacles):
+        if obstacle.name not in named:
+            found += _over_phases(run, BodyIndex(OBSTACLE, i), partial(_is_held_by, chosen, i))
+    places = {obstacle.name: i for i, obstacle in enumerate(case.obstacles)}
+    for name in named:
+        i = places[name]
+        found += _over_phases(run, BodyIndex(OBSTACLE, i), partial(_has_obstacle, i))
+    return found
+
+
+def _has_robot(i_robot: int, phase: Phase) -> bool:
+    return i_robot not in phase.absent_robots
+
+
+def _has_obstacle(i_obstacle: int, phase: Phase) -> bool:
+    return i_obstacle not in phase.absent_obstacles
+
+
+def _is_held_by(links: Collection[str], i_obstacle: int, phase: Phase) -> bool:
+    return _holder(phase, i_obstacle) in links
+
+
+def _chosen_links(run: CaseOverTime, links: Sequence[str] | None) -> Collection[str]:
+    """Names of links as in tables: those with a shape, and those that hold a part that is carried."""
+    case = run.case
+    bodies = [
+        BodyIndex(i, k) for i, p in enumerate(case.robots) for k in range(len(p.robot.bodies))
     ]
+    known = {body.name_in(case): names_of(case, body) for body in bodies}
+    for phase in run.timeline.phases:
+        for i in range(len(case.obstacles)):
+            holder = _holder(phase, i)
+            if holder is not None:
+                known.setdefault(holder, tuple(dict.fromkeys((holder, holder.split("/", 1)[-1]))))
     if links is None:
-        return found
-    known = {one.label: one for one in found}
-    for label in links:
-        if label not in known:
+        return frozenset(known)
+    found: set[str] = set()
+    for pattern in links:
+        fitting = [n for n, names in known.items() if any(matches(own, pattern) for own in names)]
+        if not fitting:
             raise UnknownLink(
-                f"unknown link {label!r}", where="links", valid=nearest_name(label, known)
+                f"unknown link {pattern!r}", where="links", valid=nearest_name(pattern, known)
             )
-    return [one for one in found if one.label in set(links)]
+        found.update(fitting)
+    return found
 
 
-def standing_obstacles(
-    run: Case | Samples | RecordHolder, names: Sequence[str]
-) -> list[MovingBody]:
-    if isinstance(run, Case):
-        case = run
-    else:
-        case = run.case if isinstance(run, Samples) else run.record.case
-    known = {obstacle.name: obstacle for obstacle in case.obstacles}
-    for name in names:
-        if name not in known:
+def _chosen_obstacles(case: Case, patterns: Sequence[str]) -> list[str]:
+    known = [obstacle.name for obstacle in case.obstacles]
+    found: dict[str, None] = {}
+    for pattern in patterns:
+        fitting = [name for name in known if matches(name, pattern)]
+        if not fitting:
             raise UnknownObstacle(
-                f"unknown obstacle {name!r}", where="obstacles", valid=nearest_name(name, known)
+                f"unknown obstacle {pattern!r}",
+                where="obstacles",
+                valid=nearest_name(pattern, known),
             )
-    return [MovingBody(name, known[name].body, None, known[name].world_from_body) for name in names]
+        found.update(dict.fromkeys(fitting))
+    return list(found)
+
+
+def _holder(phase: Phase, i_obstacle: int) -> str | None:
+    """The name as in tables of the robot's link that a carried part is on in the end, or None."""
+    held = holding_link(phase, i_obstacle)
+    if held is None:
+        return None
+    i_robot, link = held
+    case = phase.case
+    robot = case.robots[i_robot].robot
+    name = robot.link_names[link]
+    return name if len(case.robots) == 1 else f"{robot.name}/{name}"
+
+
+def _over_phases(
+    run: CaseOverTime, index: BodyIndex, is_swept: Callable[[Phase], bool]
+) -> Iterator[SweptBody]:
+    """The body in each phase in which it is swept; where it stands on at one pose, once."""
+    label, body = index.name_in(run.case), index.body_in(run.case)
+    last: np.ndarray | None = None
+    for phase in run.timeline.phases:
+        if not is_swept(phase):
+            last = None
+            continue
+        frame = index.frame_in(phase.case)
+        if frame != WORLD:
+            chain = chain_of(phase.case, phase.motions, frame)
+            yield SweptBody(label, body, phase.first, chain)
+            last = None
+            continue
+        pose = phase.case.obstacles[index.i_body].world_from_body
+        if last is None or not np.array_equal(last, pose):
+            yield SweptBody(label, body, phase.first, None, pose)
+        last = pose

@@ -21,7 +21,7 @@ def workspace_summary(workspace: Workspace) -> dict[str, Any]:
     """The figures as JSON-ready values: lengths in metres, volume in cubic metres."""
     region = workspace.region
     return {
-        "robots": list(workspace.robots),
+        "robots": list(workspace.names),
         "volume": workspace.volume,
         "volume_is": "upper bound",
         "centroid": None if region.is_empty else region.centroid.tolist(),
@@ -33,6 +33,7 @@ def workspace_summary(workspace: Workspace) -> dict[str, Any]:
         "within": workspace.within,
         "leaves": workspace.leaves,
         "excluded": list(workspace.excluded),
+        "not_counted": [list(pair) for pair in workspace.carried],
         "triangles": len(region.triangles),
     }
 

@@ -53,7 +53,7 @@ def picture_of(workspace: Workspace) -> str:
 
 def _axes(workspace: Workspace) -> np.ndarray:
     """(3, 3) rows right, up, towards us: from the side of the line between the first two robots."""
-    feet = [motion.placed.world_from_base[:3, 3] for motion in workspace.motions]
+    feet = [robot.poses(0)[0, :3, 3] for robot in workspace.robots]
     along = (feet[1] - feet[0]) * [1.0, 1.0, 0.0]
     length = np.linalg.norm(along)
     along = along / length if length > 1e-9 else np.array([1.0, 0.0, 0.0])
@@ -72,14 +72,14 @@ def _axes(workspace: Workspace) -> np.ndarray:
 
 def _robot_faces(workspace: Workspace) -> Iterator[tuple[np.ndarray, tuple[int, int, int]]]:
     """The faces (k, 3) [m] of the hulls of all links at the first, middle and last step, paler and paler."""
-    for i, motion in enumerate(workspace.motions):
-        robot = motion.placed.robot
+    for i, one in enumerate(workspace.robots):
+        robot = one.placed.robot
         hulls = {
             body.name: Polytope(body.shape.vertices[np.unique(body.shape.face_vertices)])
             for body in robot.bodies
         }
-        for paler, step in enumerate(sorted({0, motion.n_steps // 2, motion.n_steps - 1})):
-            poses = motion.poses(step, step + 1)[0]
+        for paler, step in enumerate(sorted({0, one.n_steps // 2, one.n_steps - 1})):
+            poses = one.poses(step)
             r, g, b = (int(c + (255 - c) * 0.28 * paler) for c in COLOURS[i % len(COLOURS)])
             for name, hull in hulls.items():
                 pose = poses[robot.link_names.index(name)]
@@ -112,7 +112,7 @@ def _head() -> str:
 def _words(workspace: Workspace, scale: float) -> Iterator[str]:
     said = f"Shared workspace: at most {litres(workspace.volume)} litres"
     yield f'<text x="{MARGIN}" y="38" font-size="22" fill="#17202b">{said}</text>'
-    for i, name in enumerate(workspace.robots):
+    for i, name in enumerate(workspace.names):
         r, g, b = COLOURS[i % len(COLOURS)]
         y = 64 + 20 * i
         yield f'<rect x="{MARGIN}" y="{y - 11}" width="12" height="12" fill="rgb({r},{g},{b})"/>'

@@ -100,12 +100,9 @@ def _motions(question: Question) -> tuple[Motion, ...]:
     case = question.case
     if question.motion == "kinematic":
         return tuple(kinematic_motion(placed) for placed in case.robots)
-    from clearance.simulate.bullet import simulated_motion
+    from clearance.simulate.simulated import simulated_motions
 
-    return tuple(
-        simulated_motion(placed, case.obstacles, contact_response=case.contact_response)
-        for placed in case.robots
-    )
+    return simulated_motions(case)
 
 
 def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
@@ -118,7 +115,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         samples,
         _contacts(plan, found),
         _notices(plan, all_judged.certificate),
-        _profiles(samples),
+        _profiles(plan),
         _peer(samples, found, resources) if question.cross_check else None,
     )
 
@@ -142,7 +139,7 @@ def _measurement(question: Question, section: Section, resources: Resources) -> 
     from clearance.simulate.measure_paper import measure_paper
 
     tolerance = question.paper_tolerance or NO_TOLERANCE
-    return measure_paper(section.in_motion, resources.progress, tolerance)
+    return measure_paper(section.in_motion, resources.progress, tolerance, section.phase.first)
 
 
 def _certificate(
@@ -198,12 +195,12 @@ def _not_cross_checked(plan: MeasurementPlan) -> Iterator[Notice]:
         yield Notice(Severity.WARNING, "cross-check", text)
 
 
-def _profiles(samples: Samples) -> tuple[ProfileAnswer, ...]:
-    if not samples.case.profiles:
+def _profiles(plan: MeasurementPlan) -> tuple[ProfileAnswer, ...]:
+    if not plan.question.case.profiles:
         return ()
     from clearance.profiles.answer import answer_profiles
 
-    return answer_profiles(samples)
+    return answer_profiles(plan.question.case, plan.timeline)
 
 
 def _peer(samples: Samples, found: Sequence[SectionAnswer], resources: Resources) -> CrossCheck:

@@ -12,7 +12,7 @@ import ctypes
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,19 +45,23 @@ def simulated_motion(
     obstacles: Sequence[Obstacle] = (),
     contact_response: bool = False,
     settle_time: float = SETTLE_TIME,
+    gravity_at: Callable[[np.ndarray], np.ndarray] | None = None,
 ) -> Motion:
     """The motion of the position-controlled robot at 240 Hz, starting at rest at the first sample.
 
     The states are those after each simulation step, the first one included; they go on for
     `settle_time` after the last sample, while the robot arrives. Asked positions between samples
-    are linear, or on cubics where the trajectory has velocities.
+    are linear, or on cubics where the trajectory has velocities. Where the trajectory is followed at
+    another rate, the physics are those of the robot that is so fast; times are the trajectory's.
 
     Args:
         placed: its trajectory is what is asked; joints it does not name are held at their fixed
         value. obstacles: push back only if `contact_response`; then the links' shapes are taken as
         their convex
             hulls by the engine (obstacles stay as they are). The robot does not push itself.
-        settle_time: [s].
+        settle_time: [s] of the run.
+        gravity_at: (n, 3) [m/s^2] at (n,) times of the trajectory, as the base sees it; `GRAVITY` in
+            the world if it is not given.
 
     Raises:
         BadInput: the engine cannot load the robot. NotFinite: the simulation diverged.
@@ -71,7 +75,10 @@ def simulated_motion(
         notes = (*notes_on_masses(placed), *world.notes_on_efforts())
         positions = np.empty_like(asked)
         positions[0] = asked[0]
+        pulls = None if gravity_at is None else gravity_at(times)
         for i_step in range(1, len(times)):
+            if pulls is not None:
+                world.pull(pulls[i_step])
             positions[i_step] = world.step_towards(asked[i_step], rates[i_step])
     _require_finite(times, positions)
     error = np.abs(positions - asked).max(axis=1, initial=0.0)
@@ -92,11 +99,11 @@ def bullet_link_poses(placed: PlacedRobot, positions: np.ndarray) -> np.ndarray:
 
 
 def _asked(placed: PlacedRobot, settle_time: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(n,) times [s], (n, k) positions and (n, k) rates asked for at each simulation step."""
-    trajectory = placed.asked
+    """(n,) times [s] of the trajectory, (n, k) positions and (n, k) rates asked for at each simulation step."""
+    trajectory, rate = placed.asked, placed.timing.rate
     start, end = trajectory.times[0], trajectory.times[-1]
-    n_steps = int(np.ceil((end - start + settle_time) * STEPS_PER_SECOND - 1e-9)) + 1
-    times = start + np.arange(n_steps) / STEPS_PER_SECOND
+    n_steps = int(np.ceil(((end - start) / rate + settle_time) * STEPS_PER_SECOND - 1e-9)) + 1
+    times = start + rate * (np.arange(n_steps) / STEPS_PER_SECOND)
     asked = moving_positions(placed, trajectory.joint_names, asked_at(trajectory, times))
     rates = np.diff(asked, axis=0, prepend=asked[:1]) * STEPS_PER_SECOND
     return times, asked, rates
@@ -178,6 +185,10 @@ class _World:
                 self._body, i_joint, controlMode=engine.VELOCITY_CONTROL, force=0.0
             )
         self._place(positions, np.zeros(len(positions)))
+
+    def pull(self, gravity: np.ndarray) -> None:
+        """Sets the gravity (3,) [m/s^2] of the steps to come."""
+        self._engine.setGravity(*gravity.tolist())
 
     def step_towards(self, asked: np.ndarray, rates: np.ndarray) -> np.ndarray:
         """The (k,) positions after one simulation step with the motors set to what is asked."""

@@ -183,7 +183,7 @@ class _Work:
             counts = _no_counts()
             ends = slice(span.start, span.stop + 1)
             own = IntervalBounds(*(column[span] for column in bounds))
-            path = _path_of(world.links, self.what.case, self.what.motions, ends)
+            path = path_of(world.links, self.what.case, self.what.motions, ends)
             order = np.maximum(self.question.found.pair[span], 0)
             steps = CertifiedSteps(0, span.stop - span.start, order, self.question.distances(ends))
             motion = CertifiedMotion(with_turning_balls(world), path)  # no two threads share it
@@ -209,7 +209,7 @@ def with_whole_faces(surface: Surface) -> Surface:
     )
 
 
-def _path_of(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:
+def path_of(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:
     """The motion of the joints above all links at `steps`."""
     positions = joined_positions(case, motions, steps)
     cubic = np.zeros(positions.shape[1], dtype=bool)

@@ -6,6 +6,7 @@ Kept beside `measure` so that a whole run can be held against it; its answers ca
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -24,12 +25,15 @@ CHUNK = 64
 
 
 def measure_paper(
-    what: PairsInMotion, progress: Progress | None = None, tolerance: float = NO_TOLERANCE
+    what: PairsInMotion,
+    progress: Progress | None = None,
+    tolerance: float = NO_TOLERANCE,
+    first_step: int = 0,
 ) -> Measurement:
     """The paper's clearances of pairs in motion; those of pairs that its rules cut are infinite.
 
     Args:
-        tolerance: [m] of rule 1.
+        tolerance: [m] of rule 1. first_step: the step of the run that the motions begin with.
 
     Raises:
         NothingToMeasure: the rules cut every polygon pair of a step.
@@ -56,7 +60,8 @@ def measure_paper(
             if near.distance < minima.clearance[i_pair]:
                 minima.clearance[i_pair], minima.step[i_pair] = near.distance, step
                 minima.points[i_pair] = witnesses
-        _require_measured(clearance, step, tolerance)
+        if np.isinf(clearance[step]):
+            raise _nothing_said(first_step + step, case, pairs, tolerance)
         if progress:
             progress(step + 1, n_steps)
     return Measurement(
@@ -70,14 +75,17 @@ def measure_paper(
     )
 
 
-def _require_measured(clearance: np.ndarray, step: int, tolerance: float) -> None:
+def _nothing_said(
+    step: int, case: Case, pairs: Sequence[Pair], tolerance: float
+) -> NothingToMeasure:
     """An infinite answer is no clearance: it says that nothing was measured, which overlap can cause."""
-    if np.isinf(clearance[step]):
-        larger = "" if tolerance == NO_TOLERANCE else f"a tolerance above {tolerance:g} m may do; "
-        raise NothingToMeasure(
-            f"method 'paper' says nothing of step {step}: its rules cut every polygon pair",
-            valid=f"{larger}method 'exact' measures every step",
-        )
+    larger = "" if tolerance == NO_TOLERANCE else f"a tolerance above {tolerance:g} m may do; "
+    of = pairs[0].a.name_in(case), pairs[0].b.name_in(case)
+    which = f" of {' and '.join(of)}" if len(pairs) == 1 else ""
+    return NothingToMeasure(
+        f"method 'paper' says nothing of step {step}: its rules cut every polygon pair{which}",
+        valid=f"{larger}method 'exact' measures every step",
+    )
 
 
 def _measured(case: Case, pair: Pair, poses: np.ndarray, tolerance: float) -> Nearest:

@@ -1,13 +1,13 @@
-"""What a robot's links pass through, as convex pieces that hold all of it.
+"""What a robot's links and what it has in hand pass through, as convex pieces that hold all of it.
 
-A piece is the hull of one convex part of a link at the samples of a stretch of the trajectory, made wider by
-what a point can leave its chord between two samples. Not for: distance between the samples (`certify`), which
+A piece is the hull of one convex part of a body at the samples of a stretch of a run, made wider by what a point
+can leave its chord between two samples. Not for: distance between the samples (`certify`), which
 is far tighter.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -18,10 +18,13 @@ import numpy as np
 from clearance.geometry.convex_parts import convex_parts
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
-from clearance.kernels.motion.kinematics import SLIDING, TURNING
+from clearance.kernels.motion.joint_path import JointPath
+from clearance.kernels.motion.kinematics import BALL, SLIDING, TURNING, Links
+from clearance.simulate.certify import path_of
+from clearance.simulate.holders import holding_link
 from clearance.world.cubic import cubics_of, extremes_between
-from clearance.world.kinematics import kinematic_tree_arrays, positions_by_link, velocities_by_link
-from clearance.world.motion import Motion
+from clearance.world.forest import carried_by, forest_of, link_poses_at
+from clearance.world.timeline import Phase, Timeline
 
 ROUNDING = 1e-9
 """[m] By how much every piece is wider still: far more than poses and hulls are rounded by."""
@@ -29,9 +32,10 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SweptPiece:
-    """A convex part of a link over the steps `first` to `last`.
+    """A convex part of a body over the steps `first` to `last` of a run.
 
     Attributes:
+        link: the name of a link of the robot, or of a part that it has in hand.
         points: (n, 3) [m] the part's corners at those steps, world frame.
         leaves: [m] how far a point can be from the hull of `points` between two steps.
     """
@@ -57,37 +61,68 @@ class SweptPiece:
 
 
 def swept_pieces(
-    motion: Motion, within: float, cut_links: Collection[str] = ()
+    timeline: Timeline, i_robot: int, within: float, cut_links: Collection[str] = ()
 ) -> list[SweptPiece]:
-    """Pieces that together hold every measured link at every moment, at the steps and between them.
+    """Pieces that together hold every measured link of a robot, and what it has in hand, at every moment.
 
     Args:
-        within: [m] a stretch ends before a point of the link can leave the chord over it by more.
-        cut_links: links to take by their convex parts instead of their hull; takes seconds a link.
+        within: [m] a stretch ends before a point of the body can leave the chord over it by more.
+        cut_links: bodies to take by their convex parts instead of their hull; takes seconds a body.
 
-    Exactness: an upper bound. Over one interval, of length 1, a point leaves its chord by at most
+    Exactness: an upper bound, at the steps and between them. Over one interval, of length 1, a point leaves its
+        chord by at most
         1/8 max |x''| <= 1/8 (sum_k rho_k (w_k^2 + v_k + 2 w_k sum_{j above k} w_j) + sum_{k sliding} (v_k + 2 w_k
         sum_{j above k} w_j)), k turning in the first sum and j in both, with w_k and v_k bounds of the first two
-        derivatives of joint k (`_Rates`), rho_k the motion radius of the link about joint k.
+        derivatives of joint k (`_Rates`), rho_k the motion radius of the body about joint k. The joints are all
+        that move the body, down to what stands in the world; a ball joint turns about one axis in an interval.
         Source: as `certify` (Schwarzer, Saha & Latombe 2005), second derivatives of the chain.
     """
-    placed = motion.placed
-    rates = _Rates.of(motion)
-    poses = motion.poses()
+    present = [phase for phase in timeline.phases if i_robot not in phase.absent_robots]
     pieces: list[SweptPiece] = []
+    for phase in present:
+        pieces += _pieces_of_phase(phase, list(_held_bodies(phase, i_robot)), within, cut_links)
+    return pieces
+
+
+class _HeldBody(NamedTuple):
+    """A body at the pose of a link of the forest."""
+
+    name: str
+    shape: Polyhedron
+    link: int
+
+
+def _held_bodies(phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
+    """The measured links of a robot, then what it has in hand."""
+    placed, forest = phase.case.robots[i_robot], forest_of(phase.case)
     for body in placed.robot.bodies:
-        if body.name in placed.exclude_links:
-            continue
-        i_link = placed.robot.link_names.index(body.name)
-        bend = _Bend.of(motion, i_link, body.shape)
+        if body.name not in placed.exclude_links:
+            link = forest.robot_starts[i_robot] + placed.robot.link_names.index(body.name)
+            yield _HeldBody(body.name, body.shape, link)
+    for i, obstacle in enumerate(phase.case.obstacles):
+        held = holding_link(phase, i)
+        if held is not None and held[0] == i_robot:
+            yield _HeldBody(obstacle.name, obstacle.body.shape, forest.obstacle_links[i])
+
+
+def _pieces_of_phase(
+    phase: Phase, bodies: list[_HeldBody], within: float, cut_links: Collection[str]
+) -> Iterator[SweptPiece]:
+    case, motions, every = phase.case, phase.motions, slice(None)
+    links = forest_of(case).links
+    path = path_of(links, case, motions, every)
+    rates, slides = _Rates.of(path), _farthest(path)
+    poses = link_poses_at(case, motions, every)
+    for body in bodies:
+        bend = _Bend.of(list(carried_by(forest_of(case), body.link)), links, slides, body.shape)
         parts = _parts(body.shape, body.name in cut_links)
         for first, last in _stretches(rates, bend, within):
             leaves = max((bend.at_most(rates.at(i)) for i in range(first, last)), default=0.0)
-            chosen = poses[first : last + 1, i_link]
+            chosen = poses[first : last + 1, body.link]
             for part in parts:
                 points = np.einsum("nij,kj->nki", chosen[:, :3, :3], part) + chosen[:, None, :3, 3]
-                pieces.append(SweptPiece(body.name, first, last, points.reshape(-1, 3), leaves))
-    return pieces
+                steps = phase.first + first, phase.first + last
+                yield SweptPiece(body.name, *steps, points.reshape(-1, 3), leaves)
 
 
 def _corners_of_hull(points: np.ndarray) -> np.ndarray:
@@ -101,7 +136,7 @@ def _corners_of_hull(points: np.ndarray) -> np.ndarray:
 
 
 def _parts(shape: Polyhedron, cut: bool) -> list[np.ndarray]:
-    """The corners (k, 3) [m] of convex bodies that hold a link."""
+    """The corners (k, 3) [m] of convex bodies that hold a shape."""
     if cut:
         return [part.vertices for part in convex_parts(shape).outer]
     return [Polytope(shape.vertices[np.unique(shape.face_vertices)]).vertices]
@@ -118,17 +153,18 @@ class _Rates(NamedTuple):
     bend: np.ndarray
 
     @classmethod
-    def of(cls, motion: Motion) -> _Rates:
+    def of(cls, path: JointPath) -> _Rates:
         """On a cubic the speed is a quadratic: it lies within its Bernstein coefficients; the bend is linear."""
-        robot = motion.placed.robot
-        positions = positions_by_link(robot, motion.positions)
-        if motion.velocities is None:
-            steps = np.abs(np.diff(positions, axis=0))
-            return cls(steps, np.zeros_like(steps))
-        velocities = velocities_by_link(robot, motion.velocities)
-        _, step, e0, e1 = cubics_of(motion.times, positions, velocities)
-        most = np.abs([step + e0, step - e0 - e1, step + e1]).max(axis=0)
-        return cls(most, np.abs([4.0 * e0 + 2.0 * e1, 2.0 * e0 + 4.0 * e1]).max(axis=0))
+        most = np.abs(np.diff(path.positions, axis=0))
+        bend = np.zeros_like(most)
+        if len(path.balls.links):
+            most[:, path.balls.links] = path.balls.arcs[:, :, 7]
+        if path.is_cubic.any():
+            on = path.is_cubic
+            _, step, e0, e1 = cubics_of(path.times, path.positions[:, on], path.velocities[:, on])
+            most[:, on] = np.abs([step + e0, step - e0 - e1, step + e1]).max(axis=0)
+            bend[:, on] = np.abs([4.0 * e0 + 2.0 * e1, 2.0 * e0 + 4.0 * e1]).max(axis=0)
+        return cls(most, bend)
 
     def at(self, i: int) -> _Rates:
         """Those of one interval."""
@@ -169,21 +205,19 @@ class _Bend:
     reach: np.ndarray
 
     @classmethod
-    def of(cls, motion: Motion, i_link: int, shape: Polyhedron) -> _Bend:
-        robot = motion.placed.robot
-        parents, kinds, fixed_parts, _ = kinematic_tree_arrays(robot)
-        slides = _farthest(motion)
+    def of(cls, above: list[int], links: Links, slides: np.ndarray, shape: Polyhedron) -> _Bend:
+        """Of a shape on the first of some links that are above one another, nearest first."""
         reach = float(np.linalg.norm(shape.vertices[shape.face_vertices], axis=1).max())
         rows: list[tuple[int, bool, float]] = []
-        while i_link != 0:
-            if kinds[i_link] == SLIDING:
-                reach += float(slides[i_link])
-            if kinds[i_link] in (TURNING, SLIDING):
-                rows.append((i_link, bool(kinds[i_link] == TURNING), reach))
-            reach += float(np.linalg.norm(fixed_parts[i_link, :3, 3]))
-            i_link = int(parents[i_link])
-        links, turning, reaches = zip(*rows[::-1], strict=True) if rows else ((), (), ())
-        return cls(np.array(links, dtype=int), np.array(turning, dtype=bool), np.array(reaches))
+        for link in above[:-1]:  # the last is a root, which stands
+            kind = links.kinds[link]
+            if kind == SLIDING:
+                reach += float(slides[link])
+            if kind in (TURNING, BALL, SLIDING):
+                rows.append((link, bool(kind != SLIDING), reach))
+            reach += float(np.linalg.norm(links.parent_from_joint[link, :3, 3]))
+        found, turning, reaches = zip(*rows[::-1], strict=True) if rows else ((), (), ())
+        return cls(np.array(found, dtype=int), np.array(turning, dtype=bool), np.array(reaches))
 
     def at_most(self, rates: _Rates) -> float:
         """[m] no point leaves its chord by more when the joints above the links move like this."""
@@ -195,11 +229,11 @@ class _Bend:
         return float((around + along).sum() / 8.0)
 
 
-def _farthest(motion: Motion) -> np.ndarray:
-    """(n_links,) the greatest position that the joint above each link has, either way, also between the steps."""
-    robot = motion.placed.robot
-    positions = positions_by_link(robot, motion.positions)
-    if motion.velocities is not None and len(positions) > 1:
-        velocities = velocities_by_link(robot, motion.velocities)
-        positions = np.concatenate(extremes_between(motion.times, positions, velocities))
-    return np.abs(positions).max(axis=0)
+def _farthest(path: JointPath) -> np.ndarray:
+    """(links,) the greatest position that the joint above each link has, either way, also between the steps."""
+    farthest = np.abs(path.positions).max(axis=0)
+    if path.is_cubic.any() and len(path.positions) > 1:
+        on = path.is_cubic
+        reached = extremes_between(path.times, path.positions[:, on], path.velocities[:, on])
+        farthest[on] = np.abs(np.concatenate(reached)).max(axis=0)
+    return farthest

@@ -1,8 +1,8 @@
 """The region that more than one robot of a cell passes through, whatever their timing.
 
-Each case brings its robots; all stand in one world frame. The links' swept pieces are convex; pairs of pieces
-that overlap are found by common points, their unions and what these share by manifold3d. Not for: whether the
-robots collide at one time.
+Each case brings its robots, with what they have in hand; all are in one world frame. The swept pieces are
+convex; pairs of pieces that overlap are found by common points, their unions and what these share by manifold3d.
+Not for: whether the robots collide at one time.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import solid_of
 from clearance.query.common_point import common_point
+from clearance.simulate.robot_in_cell import RobotInCell, robots_in_cell
 from clearance.simulate.swept_pieces import SweptPiece, swept_pieces
-from clearance.world.case import Case, PlacedRobot
-from clearance.world.motion import Motion, kinematic_motion
+from clearance.world.case import Case
 
 WITHIN = 0.005
 """[m] Stretches of the sweep, by default: the pieces then stand out of the sweep by about as much."""
@@ -30,7 +30,7 @@ WITHIN = 0.005
 
 @dataclass(frozen=True)
 class SharedLinks:
-    """Two links of different robots with swept pieces in common."""
+    """Two links of different robots, or parts that they have in hand, with swept pieces in common."""
 
     robot_a: str
     link_a: str
@@ -43,20 +43,26 @@ class Workspace:
     """What robots share.
 
     Attributes:
-        robots: a name for each. region: the surface of what more than one passes through, world frame.
+        robots: each with its name. region: the surface of what more than one passes through, world frame.
         volume: [m^3] of the region: an upper bound. links: which links meet there.
         n_pieces: convex pieces of each robot's sweep. leaves: [m] the most a piece was made wider by.
-        motions: the robots' motions. excluded: links that were left out, `robot/link`.
+        excluded: links that were left out, `robot/link`.
+        carried: names of robots that stand on another one, and of that: what such two share is not counted.
     """
 
-    robots: tuple[str, ...]
+    robots: tuple[RobotInCell, ...]
     region: ClosedMesh
     links: tuple[SharedLinks, ...]
     n_pieces: tuple[int, ...]
     leaves: float
     within: float
-    motions: tuple[Motion, ...]
     excluded: tuple[str, ...]
+    carried: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """A name for each robot."""
+        return tuple(robot.name for robot in self.robots)
 
     @property
     def volume(self) -> float:
@@ -69,14 +75,17 @@ def shared_workspace(
 ) -> Workspace:
     """The region that more than one robot of `cases` passes through during its trajectory.
 
+    What a robot has in hand belongs to it. A robot that stands on another one moves with it, whatever its timing;
+    what these two share is not counted.
+
     Args:
         within: [m] see `swept_pieces`; smaller is tighter and slower.
         cut_concave: links whose hulls meet by their convex parts.
 
     Raises:
         BadInput: fewer than two robots; an obstacle of one name stands elsewhere in another case (another
-            frame); two robots on one spot. BadDimension: `within` is no length. Unavailable: manifold3d is
-            missing.
+            frame); two robots on one spot; no two robots of which neither stands on the other.
+        BadDimension: `within` is no length. Unavailable: manifold3d is missing.
 
     Exactness: an upper bound: the pieces hold the links at every moment, and between the samples.
     """
@@ -84,53 +93,55 @@ def shared_workspace(
         raise BadDimension(f"within is {within!r} m", valid="a length above 0")
     if not boolean.available():
         raise Unavailable("manifold3d is not installed", valid=install("contact"))
-    named = _named_robots(cases)
+    robots = robots_in_cell(cases)
     _require_one_cell(cases)
-    _require_different_places(named)
-    motions = tuple(kinematic_motion(placed) for _, placed in named)
-    names = [name for name, _ in named]
-    swept = [swept_pieces(motion, within) for motion in motions]
-    meeting, links = _meeting(names, swept)
+    _require_different_places(robots)
+    carried = [(a, b) for a in robots for b in robots if a.stands_on(b)]
+    pairs = _pairs_apart(robots, carried)
+    swept = [swept_pieces(one.timeline, one.i_robot, within) for one in robots]
+    meeting, links = _meeting(robots, swept, pairs)
     if cut_concave and links:  # only what meets as hulls
         meet = [{piece.link for piece in pieces} for pieces in meeting]
-        swept = [swept_pieces(m, within, cut) for m, cut in zip(motions, meet, strict=True)]
-        meeting, links = _meeting(names, swept)
+        swept = [
+            swept_pieces(one.timeline, one.i_robot, within, cut)
+            for one, cut in zip(robots, meet, strict=True)
+        ]
+        meeting, links = _meeting(robots, swept, pairs)
     return Workspace(
-        robots=tuple(name for name, _ in named),
-        region=_shared_region([[solid_of(piece.body) for piece in rows] for rows in meeting]),
+        robots=tuple(robots),
+        region=_shared_region([[solid_of(p.body) for p in rows] for rows in meeting], pairs),
         links=links,
         n_pieces=tuple(len(pieces) for pieces in swept),
         leaves=max((piece.leaves for pieces in swept for piece in pieces), default=0.0),
         within=within,
-        motions=motions,
-        excluded=tuple(f"{name}/{link}" for name, one in named for link in one.exclude_links),
+        excluded=tuple(f"{one.name}/{n}" for one in robots for n in one.placed.exclude_links),
+        carried=tuple((a.name, b.name) for a, b in carried),
     )
 
 
-def _named_robots(cases: Sequence[Case]) -> list[tuple[str, PlacedRobot]]:
-    """All robots, each with a name of its own: the robot's, with its case's where that is not enough."""
-    found = [(case.name, placed) for case in cases for placed in case.robots]
-    if len(found) < 2:
+def _pairs_apart(
+    robots: Sequence[RobotInCell], carried: Sequence[tuple[RobotInCell, RobotInCell]]
+) -> list[tuple[int, int]]:
+    """The pairs of robots of which neither stands on the other."""
+    joined = {(id(a), id(b)) for a, b in carried} | {(id(b), id(a)) for a, b in carried}
+    every = combinations(range(len(robots)), 2)
+    pairs = [(a, b) for a, b in every if (id(robots[a]), id(robots[b])) not in joined]
+    if not pairs:
         raise BadInput(
-            f"{len(found)} robot is given", valid="cases with two or more robots in all are needed"
+            f"each of {', '.join(robot.name for robot in robots)} stands on the other",
+            valid="two robots of which neither stands on the other",
         )
-    names = [placed.robot.name for _, placed in found]
-    full = [
-        name if names.count(name) == 1 else f"{case}/{name}"
-        for (case, _), name in zip(found, names, strict=True)
-    ]
-    told = [
-        name if full.count(name) == 1 else f"{name}#{full[: i + 1].count(name)}"
-        for i, name in enumerate(full)
-    ]
-    return [(name, placed) for name, (_, placed) in zip(told, found, strict=True)]
+    return pairs
 
 
 def _require_one_cell(cases: Sequence[Case]) -> None:
-    """Obstacles of one name stand at one place; else the cases have different world frames."""
+    """Obstacles of one name stand at one place; else the cases have different world frames.
+
+    Of those that move, nothing is known that must be alike.
+    """
     seen: dict[str, tuple[str, np.ndarray]] = {}
     for case in cases:
-        for obstacle in case.obstacles:
+        for obstacle in (one for one in case.obstacles if one.stands):
             before = seen.setdefault(obstacle.name, (case.name, obstacle.world_from_body))
             off = float(np.abs(before[1] - obstacle.world_from_body).max())
             if off > 1e-6:
@@ -141,22 +152,25 @@ def _require_one_cell(cases: Sequence[Case]) -> None:
                 )
 
 
-def _require_different_places(named: Sequence[tuple[str, PlacedRobot]]) -> None:
-    for (name_a, a), (name_b, b) in combinations(named, 2):
-        if np.abs(a.world_from_base - b.world_from_base).max() < 1e-6:
+def _require_different_places(robots: Sequence[RobotInCell]) -> None:
+    for a, b in combinations(robots, 2):
+        if np.abs(a.poses(0)[0] - b.poses(0)[0]).max() < 1e-6:
             raise BadInput(
-                f"robots {name_a!r} and {name_b!r} stand on the same spot",
+                f"robots {a.name!r} and {b.name!r} stand on the same spot",
                 valid="give each its own robot.base in one world frame",
             )
 
 
 def _meeting(
-    names: Sequence[str], swept: Sequence[list[SweptPiece]]
+    robots: Sequence[RobotInCell],
+    swept: Sequence[list[SweptPiece]],
+    pairs: Sequence[tuple[int, int]],
 ) -> tuple[list[list[SweptPiece]], tuple[SharedLinks, ...]]:
     """Of each robot the pieces that overlap a piece of another, and the pairs of links they are of."""
+    names = [robot.name for robot in robots]
     kept: list[set[int]] = [set() for _ in swept]
     links: dict[SharedLinks, None] = {}
-    for a, b in combinations(range(len(swept)), 2):
+    for a, b in pairs:
         for i, j in _boxes_that_meet(swept[a], swept[b]):
             shared = SharedLinks(names[a], swept[a][i].link, names[b], swept[b][j].link)
             if i in kept[a] and j in kept[b] and shared in links:
@@ -181,8 +195,8 @@ def _boxes_that_meet(a: list[SweptPiece], b: list[SweptPiece]) -> list[tuple[int
     return [(int(i), int(j)) for i, j in np.argwhere(~apart.any(axis=2))]
 
 
-def _shared_region(solids: Sequence[list[Any]]) -> ClosedMesh:
-    """What lies in the unions of two or more of the groups."""
-    unions = [boolean.union(group) for group in solids if group]
-    shared = [a ^ b for a, b in combinations(unions, 2)]
+def _shared_region(solids: Sequence[list[Any]], pairs: Sequence[tuple[int, int]]) -> ClosedMesh:
+    """What lies in the unions of both groups of a pair."""
+    unions = {i: boolean.union(group) for i, group in enumerate(solids) if group}
+    shared = [unions[a] ^ unions[b] for a, b in pairs if a in unions and b in unions]
     return boolean.mesh_of(boolean.union(shared)) if shared else ClosedMesh.empty()

@@ -21,6 +21,7 @@ import numpy as np
 import shapely
 
 import clearance as cl
+from clearance.profiles.chain import chain_of
 from clearance.profiles.chords import knots_of
 from clearance.profiles.compare import compare
 from clearance.profiles.contour import Contour
@@ -53,8 +54,10 @@ def plain_union(case, plane: Plane, samples: int) -> tuple[float, int]:
     """CPU time [s] of shapely's union of all projected triangles at all inserted instants, and their number."""
     motion = kinematic_motion(case.robots[0])
     took, instants = 0.0, 0
+    links = case.robots[0].robot.link_names
     for body in case.robots[0].robot.bodies:
-        knots = knots_of(motion, body, plane, SHARE * TOLERANCE, solid=False)
+        chain = chain_of(case, (motion,), links.index(body.name))
+        knots = knots_of(chain, body.shape, plane, SHARE * TOLERANCE, solid=False)
         corners = body.shape.vertices[body.shape.triangles()]
         chosen = np.linspace(0, len(knots.instant) - 1, samples).astype(int)
         before = time.process_time()

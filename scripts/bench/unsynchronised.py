@@ -28,13 +28,13 @@ import clearance as cl
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.urdf import UrdfRequest, read_robot
-from clearance.simulate.kinematic import kinematic_motion
 from clearance.simulate.resources import Resources
+from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
-from clearance.world.motion import Motion
-from clearance.world.pairs import Pair, measured_pairs
+from clearance.world.motion import Motion, kinematic_motion
+from clearance.world.pairs import BodyIndex, Pair, measured_pairs
 from clearance.world.trajectory import Trajectory
 
 ARMS = {
@@ -102,11 +102,18 @@ def arm(
     )
 
 
+def two_clocks(scene: Scene, slack: float) -> PairsOfTwoClocks:
+    """The pairs of both arms, the second arm on its own clock."""
+    side = ClockMotion(scene.case, scene.motions)
+    second = frozenset([BodyIndex(1, 0)])
+    return PairsOfTwoClocks(side, side, second, scene.pairs, scene.case.limits, slack)
+
+
 def least_of_grid(scene: Scene, slack: float, n: int) -> float:
     """[m] the least over a grid of both times, of those pairs whose boxes of corners come near enough."""
     times = scene.motions[0].times
     shares = np.linspace(0.0, times[-1], n)
-    poses = [poses_at(motion, shares) for motion in scene.motions]
+    poses = np.concatenate([poses_at(motion, shares) for motion in scene.motions], axis=1)
     best = np.inf
     for pair in scene.pairs:
         a, b = pair.a.shape_in(scene.case), pair.b.shape_in(scene.case)
@@ -156,9 +163,7 @@ def measured(scene: Scene, slack: float, jobs: int) -> tuple[UnsynchronisedAnswe
             if done == n_steps:
                 marks.append(time.process_time())
 
-        found = least_unsynchronised(
-            scene.case, scene.motions, scene.pairs, slack, GAP, Resources(jobs, note)
-        )
+        found = least_unsynchronised(two_clocks(scene, slack), GAP, Resources(jobs, note))
         runs.append((marks[0] - start, time.process_time() - marks[0]))
     steps, proof = (statistics.median(column) for column in zip(*runs[1:], strict=True))
     return found, steps, proof

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from clearance.profiles.chain import chain_of
 from clearance.profiles.chords import knots_of
 from clearance.profiles.plane import Plane
 from clearance.world.kinematics import link_poses
@@ -15,7 +16,7 @@ def assert_within_chord_and_turn(case, motion, positions_at, slack):
         slack: [m] rounding.
     """
     plane, body = Plane.of("xz"), case.robots[0].robot.bodies[1]
-    knots = knots_of(motion, body, plane, 1.0, solid=False)
+    knots = knots_of(chain_of(case, (motion,), 2), body.shape, plane, 1.0, solid=False)
     for k in range(len(knots.chord)):
         share = np.linspace(0.0, 1.0, 21)
         instants = knots.instant[k] + share * (knots.instant[k + 1] - knots.instant[k])

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
+from clearance.profiles.chain import chain_of
 from clearance.profiles.chords import knots_of
-from clearance.profiles.course import course_of, positions_at
+from clearance.profiles.course import positions_at
 from clearance.profiles.plane import Plane
 from clearance.world.kinematics import link_poses
 from clearance.world.motion import kinematic_motion
@@ -110,7 +111,7 @@ def test_the_course_is_the_motion(seed, bent):
     motion = kinematic_motion(case.robots[0])
     low = np.array([0.0, 0.25, 1.0, 1.5])
     high = low + np.array([1.0, 0.25, 0.5, 0.125])
-    course = course_of(motion, low, high)
+    course = chain_of(case, (motion,), 2).course(low, high)
     for s in (-1.0, -0.3, 0.0, 0.7, 1.0):
         told = course.position + s * (course.speed + s * (course.bend / 2 + s * course.jerk / 6))
         at = 0.5 * (low + high) + 0.5 * s * (high - low)
@@ -130,6 +131,7 @@ def test_what_alone_bends_or_alone_jerks_is_in_the_bound(kind, speeds, bulge):
         np.array(speeds)[:, None],
     )
     motion, body = kinematic_motion(case.robots[0]), case.robots[0].robot.bodies[0]
-    knots = knots_of(motion, body, Plane.of("xy"), 1.0, solid=False)
+    chain = chain_of(case, (motion,), 1)
+    knots = knots_of(chain, body.shape, Plane.of("xy"), 1.0, solid=False)
     assert len(knots.chord) == 1 and knots.moves.all()
     assert 0.01 * bulge <= knots.chord[0] <= 0.01 * 2.7 * bulge

@@ -17,6 +17,7 @@ from clearance.world.case import Case, PlacedRobot
 from clearance.world.cubic import asked_at
 from clearance.world.motion import kinematic_motion
 from clearance.world.robot import Joint, JointKind, Robot
+from clearance.world.timeline import timeline_of
 from clearance.world.trajectory import Trajectory
 from tests.report.records import arm, moved
 
@@ -76,6 +77,11 @@ def test_timing_does_not_matter_and_apart_is_empty():
     assert far.volume == 0.0 and far.region.is_empty and far.links == ()
 
 
+def pieces_of(motion, within):
+    """The pieces of a robot that is alone."""
+    return swept_pieces(timeline_of(Case("alone", (motion.placed,), ()), (motion,)), 0, within)
+
+
 def between_the_steps(motion, n_parts):
     """(instants in steps, the motion at these): each interval in `n_parts`."""
     n = motion.n_steps
@@ -109,7 +115,7 @@ def greatest_escape(pieces, motion, n_parts):
 @pytest.mark.parametrize("within", [1e-4, 5e-3, 0.2])
 def test_the_pieces_hold_the_links_between_the_samples(within):
     motion = kinematic_motion(swinging("arm", moved(0.3, -0.2, 0.1), n_steps=6).robots[0])
-    assert greatest_escape(swept_pieces(motion, within), motion, 20) <= 0.0
+    assert greatest_escape(pieces_of(motion, within), motion, 20) <= 0.0
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -119,8 +125,8 @@ def test_the_pieces_hold_motion_on_cubics_sampled_100_times_finer(seed):
     random = np.random.default_rng(seed)
     wild = random.normal(size=motion.positions.shape) * random.uniform(5.0, 20.0)
     on_cubics = dataclasses.replace(motion, velocities=wild)
-    assert greatest_escape(swept_pieces(on_cubics, 0.01), on_cubics, 100) <= 0.0
-    assert greatest_escape(swept_pieces(motion, 0.01), on_cubics, 100) > 0.0
+    assert greatest_escape(pieces_of(on_cubics, 0.01), on_cubics, 100) <= 0.0
+    assert greatest_escape(pieces_of(motion, 0.01), on_cubics, 100) > 0.0
 
 
 @pytest.mark.parametrize("share", [0.0, 1.0])
@@ -128,7 +134,7 @@ def test_the_velocities_of_linear_motion_change_nothing(share):
     motion = kinematic_motion(swinging("arm", np.eye(4), n_steps=2).robots[0])
     slope = np.diff(motion.positions, axis=0) / np.diff(motion.times)[:, None]
     on_cubics = dataclasses.replace(motion, velocities=share * np.tile(slope, (2, 1)))
-    linear, cubic = (max(p.leaves for p in swept_pieces(m, 0.01)) for m in (motion, on_cubics))
+    linear, cubic = (max(p.leaves for p in pieces_of(m, 0.01)) for m in (motion, on_cubics))
     assert cubic == pytest.approx(linear, rel=1e-12) if share else cubic > 1.2 * linear
 
 
@@ -137,7 +143,7 @@ def test_a_slider_on_a_cubic_swings_beyond_its_samples():
     case = slider("one", (1, 0, 0), 0.0, 0.0, n_steps=2)
     motion = kinematic_motion(case.robots[0])
     motion = dataclasses.replace(motion, velocities=np.array([[8.0], [-8.0]]))
-    (piece,) = swept_pieces(motion, 0.01)
+    (piece,) = pieces_of(motion, 0.01)
     assert piece.leaves == pytest.approx(2.0, rel=1e-12)
     assert greatest_escape([piece], motion, 100) <= 0.0
 
@@ -145,17 +151,17 @@ def test_a_slider_on_a_cubic_swings_beyond_its_samples():
 def test_finer_stretches_are_shorter_and_never_leave_a_gap():
     motion = kinematic_motion(swinging("arm", np.eye(4)).robots[0])
     for within in (1e-5, 5e-3, 0.5):
-        pieces = [p for p in swept_pieces(motion, within) if p.link == "gripper"]
+        pieces = [p for p in pieces_of(motion, within) if p.link == "gripper"]
         assert pieces[0].first == 0 and pieces[-1].last == motion.n_steps - 1
         assert all(a.last == b.first for a, b in zip(pieces, pieces[1:], strict=False))
-    assert len(swept_pieces(motion, 1e-5)) > len(swept_pieces(motion, 0.5))
+    assert len(pieces_of(motion, 1e-5)) > len(pieces_of(motion, 0.5))
 
 
 @WITH_MANIFOLD
 def test_the_region_of_two_arms_is_what_pairs_of_pieces_share():
     one, two = swinging("left", moved(0.0)), swinging("right", moved(0.2, 1.0))
     found = shared_workspace([one, two], within=0.05)
-    swept = [swept_pieces(kinematic_motion(c.robots[0]), 0.05) for c in (one, two)]
+    swept = [pieces_of(kinematic_motion(c.robots[0]), 0.05) for c in (one, two)]
     pieces = [cl.intersect([p.body, q.body]) for p in swept[0] for q in swept[1]]
     parts = [shared for shared in pieces if shared.volume > 0.0]
     assert found.volume <= sum(part.volume for part in parts) * (1 + 1e-9)

@@ -1,0 +1,77 @@
+"""Commands that take cases, with a case of several robots: one stands on another, one carries a part."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from clearance.cli import run
+from clearance.geometry import boolean
+from clearance.load import case_file
+from tests import cells
+from tests.load.making_cell import write_cell
+
+
+@pytest.fixture
+def cell(tmp_path, monkeypatch):
+    """A path that reads as a cell."""
+    monkeypatch.setattr(case_file, "load_case", lambda path: cells.cell(0))
+    path = tmp_path / "cell.yaml"
+    path.write_text("name: cell\n")
+    return path
+
+
+@pytest.mark.skipif(not boolean.available(), reason="manifold3d is not installed")
+def test_a_workspace_of_one_case(cell, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(["workspace", str(cell), "--within-mm", "100", "--out", str(out)]) == 0
+    told = capsys.readouterr().out
+    assert "not counted: what right shares with track, on which it stands" in told
+    assert json.loads((out / "workspace.json").read_text())["robots"] == ["left", "right", "track"]
+
+
+def test_a_profile_of_the_links_of_one_robot_and_what_it_carries(cell, tmp_path, capsys):
+    out = tmp_path / "left.yaml"
+    options = ["--plane", "xz", "--tolerance", "10", "--per-link"]
+    arguments = ["profile", "sweep", str(cell), *options, "--links", "left/*", "--out", str(out)]
+    assert run(arguments) == 0
+    told = capsys.readouterr().out
+    bodies = [line.split(":")[0].strip() for line in told.splitlines() if line.startswith("  ")]
+    assert bodies == ["left/boom", "left/tool", "part", "lid"]
+
+
+def test_a_profile_of_an_obstacle_that_moves(cell, tmp_path):
+    options = ["--plane", "xz", "--tolerance", "10", "--links", "", "--obstacles", "door,crate"]
+    out = tmp_path / "door.yaml"
+    assert run(["profile", "sweep", str(cell), *options, "--out", str(out)]) == 0
+    assert out.exists()
+
+
+def test_an_unknown_link_is_one_line_with_the_nearest(cell, tmp_path, capsys):
+    arguments = ["profile", "sweep", str(cell), "--links", "left/tol", "--out", "x.yaml"]
+    assert run(arguments) == 2
+    error = capsys.readouterr().err
+    assert "unknown link 'left/tol'; did you mean 'left/tool'?" in error
+    assert len([line for line in error.splitlines() if "unknown" in line]) == 1
+
+
+def test_a_case_file_of_two_robots(tmp_path, capsys):
+    case, out = write_cell(tmp_path), tmp_path / "left.yaml"
+    arguments = [
+        "profile",
+        "sweep",
+        str(case),
+        "--links",
+        "left/*",
+        "--per-link",
+        "--out",
+        str(out),
+    ]
+    assert run(arguments) == 0
+    told = capsys.readouterr().out
+    bodies = [line.split(":")[0].strip() for line in told.splitlines() if line.startswith("  ")]
+    assert "workpiece" in bodies and all(b.startswith("left/") for b in bodies if b != "workpiece")
+    if boolean.available():
+        assert run(["workspace", str(case), "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["robots"] == ["left", "right"]

@@ -1,0 +1,309 @@
+"""Sweeps of cells in which everything moves: against where their bodies are by formulas of their own."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import clearance as cl
+from clearance.errors import UnknownLink, UnknownObstacle
+from clearance.profiles.chords import knots_of
+from clearance.profiles.plane import Plane
+from clearance.profiles.swept_bodies import over_time, swept_bodies
+from clearance.world.body import Body, Obstacle
+from clearance.world.carry import Carry
+from clearance.world.case import Case, PlacedRobot, ReservedSpace
+from clearance.world.mount import Mount
+from clearance.world.pose_table import PoseTable
+from clearance.world.rules import matches
+from clearance.world.timing import Timing, Window
+from clearance.world.trajectory import Trajectory
+from tests import cells
+from tests.examples import examples
+from tests.oracle.outlines import inside
+from tests.profiles.moving import rows
+
+shapely = pytest.importorskip("shapely")
+
+PLANE = Plane.of("xz")
+
+
+def body_of(case, name):
+    """The shape of a body by its name in tables."""
+    for obstacle in case.obstacles:
+        if obstacle.name == name:
+            return obstacle.body.shape
+    robot, link = name.split("/")
+    placed = next(one for one in case.robots if one.robot.name == robot)
+    return next(body.shape for body in placed.robot.bodies if body.name == link)
+
+
+def seen(case, name, times):
+    """(k, v, 2) [m] the corners of a body in the plane at some times."""
+    poses = np.array([cells.pose_at(case, name, t) for t in times])
+    corners = body_of(case, name).vertices
+    world = corners @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]
+    return PLANE.coordinates(world)
+
+
+def end_of(case):
+    """[s] when the run ends."""
+    return float(over_time(case).timeline.times[-1])
+
+
+def held(case):
+    """The windows in which a robot holds the part; the lid stands on the part."""
+    return [c.window for c in case.carries if "/" in c.by]
+
+
+def assert_holds(profile, points, rng):
+    """Nothing of (n, 2) points is outside; some of them by rational arithmetic."""
+    points = points.reshape(-1, 2)
+    region = profile.region
+    shapely.prepare(region)
+    assert shapely.distance(region, shapely.points(points)).max() <= 1e-6
+    chosen = rows(profile)
+    assert all(inside(point, chosen) for point in points[rng.integers(len(points), size=10)])
+
+
+LINKS = [f"{robot}/{link}" for robot in ("left", "right", "track") for link in ("boom", "tool")]
+
+
+@examples(3)
+@given(st.integers(0, 2**32 - 1))
+def test_links_on_links_and_parts_in_hand_are_within_the_outline(seed):
+    case, rng = cells.cell(seed), np.random.default_rng(seed)
+    found = cl.swept_profile(case, "xz", tolerance=1e-2)
+    assert found.bound <= 1e-2
+    for name in LINKS:
+        assert_holds(found, seen(case, name, np.linspace(0.0, end_of(case), 300)), rng)
+    for window in held(case):
+        times = np.linspace(window.start, window.end, 100)[1:-1]
+        for name in ("part", "lid"):
+            assert_holds(found, seen(case, name, times), rng)
+
+
+def within_intervals(case, start, end, n):
+    """(k, n) [s] times inside each interval between two steps of a run, from `start` to `end`."""
+    times = over_time(case).timeline.times
+    times = times[(times >= start) & (times <= end)]
+    share = np.linspace(1e-9, 1.0 - 1e-9, n)
+    return times[:-1, None] + np.diff(times)[:, None] * share
+
+
+@pytest.mark.parametrize("seed", [0, 5])
+def test_the_outline_is_nowhere_far_from_what_is_swept(seed):
+    """Hulls from each of many instants to the next are all that is swept, and little more."""
+    case = cells.cell(seed)
+    found = cl.swept_profile(case, "xz", links=["right/tool"], tolerance=1e-2)
+    spans = [("right/tool", 0.0, end_of(case))]
+    spans += [
+        (name, c.window.start, c.window.end)
+        for c in case.carries
+        for name in ("part", "lid")
+        if c.by == "right/tool"
+    ]
+    hulls = []
+    for name, start, end in spans:
+        for times in within_intervals(case, start, end, 40):
+            at = seen(case, name, times)
+            pairs = np.concatenate([at[:-1], at[1:]], axis=1)
+            hulls.append(shapely.convex_hull(shapely.multipoints(pairs)))
+    truth = shapely.unary_union(np.concatenate(hulls))
+    outline = np.concatenate([contour.flattened(1e-6) for contour in found.contours])
+    assert (
+        shapely.distance(truth, shapely.points(outline)).max() <= found.bound + 2e-3
+    )  # the samples' own steps
+
+
+@examples(3)
+@given(st.integers(0, 2**32 - 1))
+def test_what_moves_by_itself_is_swept_where_it_is_named_and_only_there(seed):
+    case, rng = cells.cell(seed), np.random.default_rng(seed)
+    found = cl.swept_profile(case, "xz", links=[], obstacles=["door", "crate"], tolerance=1e-2)
+    for name in ("door", "crate"):
+        assert_holds(found, seen(case, name, np.linspace(0.0, end_of(case), 300)), rng)
+    assert set(found.origin.links) == {"door", "crate"}
+    of_robots = {one.label for one in swept_bodies(over_time(case), None, [])}
+    assert of_robots == {*LINKS, "part", "lid"}
+
+
+@examples(20)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate", "part", "lid"]))
+def test_points_stay_within_the_chord_bound_and_the_view_within_its_turn(seed, name):
+    case = cells.cell(seed)
+    names = ["right/*"] if name in ("part", "lid") else [name] if name in LINKS else []
+    obstacles = [name] if name in ("door", "crate") else []
+    over = over_time(case)
+    for one in swept_bodies(over, names, obstacles):
+        if one.label != name or one.chain is None:
+            continue
+        knots = knots_of(one.chain, one.body.shape, PLANE, 0.5, solid=False)
+        share = np.linspace(0.0, 1.0, 21)
+        for k in range(len(knots.chord)):
+            instants = knots.instant[k] + share * (knots.instant[k + 1] - knots.instant[k])
+            poses = one.chain.poses_at(instants)[:, -1]
+            path = PLANE.coordinates(
+                one.body.shape.vertices @ poses[:, :3, :3].transpose(0, 2, 1)
+                + poses[:, None, :3, 3]
+            )
+            chord = path[0] + share[:, None, None] * (path[-1] - path[0])
+            assert (
+                np.linalg.norm(path - chord, axis=2).max() <= knots.chord[k] * (1 + 1e-12) + 1e-13
+            )
+            toward = poses[:, :3, :3].transpose(0, 2, 1) @ np.cross(*PLANE.axes)
+            turned = np.arccos(np.clip(toward @ toward[10], -1, 1)).max()
+            assert turned <= knots.turn[k] + 1e-7
+
+
+@examples(10)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([*LINKS, "door", "crate"]))
+def test_a_chain_is_where_its_body_is(seed, name):
+    case = cells.cell(seed)
+    names, obstacles = ([name], []) if name in LINKS else ([], [name])
+    for one in swept_bodies(over_time(case), names, obstacles):
+        if one.label != name or one.chain is None:
+            continue
+        instants = np.linspace(0.0, one.chain.n_steps - 1, 37)
+        steps = np.arange(one.chain.n_steps)
+        times = np.interp(instants, steps, one.chain.motions[0].times)
+        poses = one.chain.poses_at(instants)[1:-1, -1]
+        for t, pose in zip(times[1:-1], poses, strict=True):
+            assert pose == pytest.approx(cells.pose_at(case, name, t), abs=1e-9)
+
+
+def standing_and_mounted(seed):
+    """A robot on an obstacle that stands, and the same robot where that puts it."""
+    rng = np.random.default_rng(seed)
+    below, on = cells.pose(rng), cells.pose(rng, 0.5)
+    robot, asked = cells.arm("arm", rng), cells.trajectory(rng, 3.0)
+    plate = Obstacle(Body("plate", cl.box((0.1, 0.1, 0.1))), below)
+    return (
+        Case("made", (PlacedRobot(robot, asked, mount=Mount("plate", on)),), (plate,)),
+        Case("made", (PlacedRobot(robot, asked, below @ on),), (plate,)),
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_robot_on_what_stands_sweeps_what_it_would_standing_there(seed):
+    mounted, standing = (cl.swept_profile(case, "xz") for case in standing_and_mounted(seed))
+    assert rows(mounted) == rows(standing) and mounted.bound == standing.bound
+
+
+def test_several_robots_sweep_the_union_of_what_each_sweeps():
+    _, one = standing_and_mounted(1)
+    _, two = standing_and_mounted(2)
+    renamed = [
+        replace(c.robots[0], robot=replace(c.robots[0].robot, name=name))
+        for c, name in ((one, "a"), (two, "b"))
+    ]
+    both = cl.swept_profile(Case("made", tuple(renamed), ()), "xz")
+    alone = [cl.swept_profile(case, "xz") for case in (one, two)]
+    union = shapely.union_all([p.region for p in alone])
+    assert both.region.symmetric_difference(union).area <= both.length * (
+        both.bound + alone[0].bound
+    )
+    assert union.buffer(1e-3).covers(both.region) and both.region.buffer(1e-3).covers(union)
+    assert set(both.origin.links) == {"a/boom", "a/tool", "b/boom", "b/tool"}
+
+
+def carrying(**changes):
+    """A slider along x with a cube of 0.2 that picks a part up at half way, 1 m to its side."""
+    from tests.simulate.test_workspace import slider
+
+    made = slider("made", (1, 0, 0), 0.0, 1.0, n_steps=3)
+    at = np.eye(4)
+    at[1, 3] = 1.0
+    part = Obstacle(Body("part", cl.box((0.2, 0.2, 0.2))), at)
+    return replace(
+        made, obstacles=(part,), carries=(Carry("part", "cube", Window(1.0, **changes)),)
+    )
+
+
+def test_a_part_is_swept_only_while_it_is_carried():
+    found = cl.swept_profile(carrying(end=1.5))
+    boxes = [shapely.box(-0.1, -0.1, 1.1, 0.1), shapely.box(-0.1, 0.9, 0.35, 1.1)]
+    truth = shapely.union_all(boxes)
+    assert found.region.buffer(1e-9).covers(truth)
+    assert truth.buffer(found.bound + 1e-9).covers(found.region)
+    whole = cl.swept_profile(carrying(end=1.5), links=[], obstacles=["part"])
+    assert whole.area == pytest.approx(0.2 * 0.45, abs=1e-3)
+
+
+def test_steps_of_a_sweep_are_those_of_the_run():
+    found = cl.swept_profile(carrying())
+    makers = [found.maker(i) for i in range(found.n_pieces)]
+    assert {step for name, step in makers if name == "part"} <= {1, 2}
+    assert found.n_steps == 3
+
+
+@pytest.mark.parametrize(("top", "kept"), [(1.15, True), (1.05, False)])
+def test_a_reserved_outline_is_held_against_what_is_in_hand_too(top, kept):
+    """The part reaches y = 1.1 while it is carried."""
+    corners = [(-0.3, -0.3), (1.5, -0.3), (1.5, top), (-0.3, top)]
+    sketch = cl.Sketch()
+    names = [sketch.point(*corner) for corner in corners]
+    for one, other in zip(names, [*names[1:], names[0]], strict=True):
+        sketch.segment(one, other)
+    space = ReservedSpace("zone", sketch, "xy", mode="outside")
+    wall = Obstacle(
+        Body("wall", cl.box((0.1, 0.1, 0.1))), cells.pose(np.random.default_rng(1), 9.0)
+    )
+    case = carrying(end=1.5)
+    case = replace(case, obstacles=(*case.obstacles, wall), profiles=(space,))
+    (answer,) = cl.check(case).record.profiles
+    assert answer.passed == answer.contained == kept
+    assert (answer.link, answer.step) in {("part", 1), ("part", 2)}
+    assert answer.gap == pytest.approx(top - 1.1, abs=1e-3)
+
+
+def test_patterns_of_links_and_what_they_carry():
+    case = cells.cell(3)
+    over = over_time(case)
+
+    def labels(links, obstacles=()):
+        return {one.label for one in swept_bodies(over, links, obstacles)}
+
+    assert labels(["left/*"]) == {"left/boom", "left/tool", "part", "lid"}
+    assert labels(["left/boom"]) == {"left/boom"}
+    assert labels(["*/boom"]) == labels(["boom"]) == {n for n in LINKS if matches(n, "*/boom")}
+    assert labels([], ["d*"]) == {"door"}
+    with pytest.raises(
+        UnknownLink, match="links: unknown link 'left/bom'; did you mean 'left/boom'"
+    ):
+        labels(["left/bom"])
+    with pytest.raises(
+        UnknownObstacle, match="obstacles: unknown obstacle 'dor'; did you mean 'door'"
+    ):
+        labels([], ["dor"])
+
+
+def test_what_is_absent_sweeps_nothing():
+    case = carrying()
+    times, turned = np.array([0.0, 1.0]), np.array([[0, 0, 0, 1.0]] * 2)
+    table = PoseTable(times, np.array([[0, 3.0, 0], [1.0, 3, 0]]), turned, Timing(after="absent"))
+    door = Obstacle(Body("door", cl.box((0.2, 0.2, 0.2))), moves=table)
+    found = cl.swept_profile(
+        replace(case, obstacles=(*case.obstacles, door)), links=[], obstacles=["door"]
+    )
+    assert found.area == pytest.approx(0.2 * 1.2, abs=1e-3)
+    assert {found.maker(i)[1] for i in range(found.n_pieces)} == {0}
+
+
+def test_a_turntable_carries_its_robot_round():
+    """A bar on an arm that stands still, on a plate that turns: a sector."""
+    from tests.profiles.moving import slab, turning
+
+    plate = turning(slab([0, 0, 0], [0.1, 0.1, 0.1]), [0.0, 1.3]).robots[0]
+    plate = replace(plate, robot=replace(plate.robot, name="plate"))
+    bar = turning(slab([0.2, -0.05, 0], [1.0, 0.05, 0.1]), [0.0]).robots[0]
+    still = Trajectory(np.array([0.0]), ("j0",), np.zeros((1, 1)))
+    bar = replace(
+        bar, robot=replace(bar.robot, name="bar"), trajectory=still, mount=Mount("plate/l1")
+    )
+    found = cl.swept_profile(Case("made", (plate, bar), ()), links=["bar/l1"])
+    corner_sq = 1.0 + 0.05**2
+    area = 0.8 * 0.1 + 0.5 * 1.3 * (corner_sq - 0.2**2)
+    assert area <= found.area <= area + found.bound * found.length
