@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 from clearance.run.question import Question
 from clearance.simulate import inside
@@ -107,7 +108,11 @@ def _motions(question: Question) -> tuple[Motion, ...]:
 
 def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
     question = plan.question
-    found = [_of_section(plan, section, resources) for section in plan.sections.sections]
+    parts = _resources_of(plan.sections.sections, resources)
+    found = [
+        _of_section(question, section, own)
+        for section, own in zip(plan.sections.sections, parts, strict=True)
+    ]
     all_judged = judged(plan.sections, found, question.case, plan.motions)
     samples = _samples(plan, all_judged, resources)
     return Answers(
@@ -120,8 +125,21 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
     )
 
 
-def _of_section(plan: MeasurementPlan, section: Section, resources: Resources) -> SectionAnswer:
-    own, question = resources.of_section(section.number, len(plan.sections.sections)), plan.question
+def _resources_of(sections: Sequence[Section], resources: Resources) -> list[Resources]:
+    """What each section may use: all of it where there is one, else with its own rows and its part of the
+    progress.
+    """
+    if len(sections) == 1:
+        return [resources]
+    ends = list(accumulate(section.phase.n_steps for section in sections))
+    before = [0, *ends[:-1]]
+    return [
+        resources.of_section(section.number, start, ends[-1])
+        for section, start in zip(sections, before, strict=True)
+    ]
+
+
+def _of_section(question: Question, section: Section, own: Resources) -> SectionAnswer:
     if not section.tied:
         from clearance.simulate.two_clock_rows import measure_two_clocks
 

@@ -32,11 +32,15 @@ class Resources:
         if self.jobs is not None and (not isinstance(self.jobs, int) or self.jobs < 1):
             raise BadInput(f"{self.jobs} jobs", valid="1 or more")
 
-    def of_section(self, number: int, of: int) -> Resources:
-        """The same for one of so many sections of a run, whose rows have names of their own."""
-        if of == 1:
-            return self
-        return replace(self, rows=self.rows.named(f"{number}-"))
+    def of_section(self, number: int, before: int, of: int) -> Resources:
+        """The same for one section of several, whose rows have names of their own.
+
+        Args:
+            before: steps of all sections before it. of: of all sections.
+        """
+        tell = self.progress
+        shifted = None if tell is None else lambda done, _: tell(before + done, of)
+        return replace(self, progress=shifted, rows=self.rows.named(f"{number}-"))
 
     @property
     def n_threads(self) -> int:

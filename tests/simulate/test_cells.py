@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.simulate import resumable_rows
 from clearance.simulate.sections import section_plan
 from clearance.world.case import Limits
 from clearance.world.rules import Rule
@@ -138,3 +139,31 @@ def test_threads_change_no_byte(seed):
     one, two = (cl.check(case, resources=cl.Resources(jobs=jobs)) for jobs in (1, 2))
     assert one.steps.equals(two.steps)
     assert one.certificate.lower_bound.tobytes() == two.certificate.lower_bound.tobytes()
+
+
+class Broken(Exception):
+    """What breaks a run off."""
+
+
+@pytest.mark.parametrize("after", [1, 5, 17, 40])
+def test_a_run_that_was_broken_off_goes_on_to_the_same_bytes(tmp_path, after, monkeypatch):
+    monkeypatch.setattr(resumable_rows, "SAVE_AFTER", 0.0)
+    case, left = ruled(2), [after]
+    whole = cl.check(case)
+
+    def progress(done, of):
+        left[0] -= 1
+        if left[0] < 0:
+            raise Broken
+
+    place, told = tmp_path / "rows", []
+    with pytest.raises(Broken), resumable_rows.open_resumable_rows(place, told.append) as rows:
+        cl.check(case, resources=cl.Resources(1, progress, rows))
+    with resumable_rows.open_resumable_rows(place, told.append) as rows:
+        again = cl.check(case, resources=cl.Resources(1, None, rows))
+        assert again.steps.equals(whole.steps)
+        for name in ("lower_bound", "upper_bound", "share", "pair"):
+            assert np.array_equal(
+                getattr(again.certificate, name), getattr(whole.certificate, name)
+            )
+    assert after < 5 or any("resuming" in line for line in told)
