@@ -13,7 +13,8 @@ import pyarrow as pa
 from clearance.crosscheck.compare import cross_check
 from clearance.simulate.judged import Judged, SectionAnswer
 from clearance.simulate.moment import Moment
-from clearance.simulate.record import CrossCheck, RuleAnswer, Samples
+from clearance.simulate.record import CrossCheck, Samples
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.steps import step_table
 
 

@@ -12,7 +12,8 @@ from markupsafe import Markup
 
 from clearance.report.markup import element, section, step_link, table
 from clearance.report.wording import contact_text, depth_mm, least_cm3, mm, seconds, volume_cm3
-from clearance.simulate.record import Record, StepContact
+from clearance.simulate.contact_sequence import StepContact
+from clearance.simulate.record import Record
 
 
 def contact_of(record: Record) -> dict[str, Any] | None:

@@ -22,8 +22,10 @@ from clearance.report.wording import (
     of_rule,
     seconds,
 )
+from clearance.simulate.certificate import motion_codes
 from clearance.simulate.moment import Moment
-from clearance.simulate.record import PairMinimum, Record, RuleAnswer, motion_codes
+from clearance.simulate.record import PairMinimum, Record
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.notice import Severity
 from clearance.world.rules import DEFAULT

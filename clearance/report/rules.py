@@ -14,7 +14,8 @@ from markupsafe import Markup
 from clearance.report.markup import element, moment_link, section, table
 from clearance.report.wording import limit_mm, mm, other_time, seconds
 from clearance.simulate.moment import Moment
-from clearance.simulate.record import Record, RuleAnswer
+from clearance.simulate.record import Record
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.world.rules import DEFAULT, Rule
 
 

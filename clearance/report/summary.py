@@ -18,14 +18,10 @@ from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.rules import rules_of, told_moment
 from clearance.report.verdict import Verdict, verdict_of
+from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import LINK_AND_OBSTACLE
-from clearance.simulate.record import (
-    Certificate,
-    CrossCheck,
-    ProfileAnswer,
-    Record,
-)
+from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
 from clearance.simulate.standing import standing_hint
 from clearance.world.body import Body
 from clearance.world.motion import Motion

@@ -10,9 +10,10 @@ from pathlib import Path
 import pyarrow as pa
 
 from clearance.simulate.contact_columns import with_contact_columns
+from clearance.simulate.contact_sequence import StepContact
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import Record, StepContact
+from clearance.simulate.record import Record
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 
 CONTACTS = 10_000

@@ -21,8 +21,9 @@ from clearance.report.wording import (
     span_text,
 )
 from clearance.simulate.moment import Moment
-from clearance.simulate.record import ProfileAnswer, Record, RuleAnswer
+from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay_frames import codes_of
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity

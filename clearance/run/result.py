@@ -11,9 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput
+from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import SIDES, columns_of, sides_of
-from clearance.simulate.record import Certificate, CrossCheck, Record
+from clearance.simulate.record import CrossCheck, Record
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 
 if TYPE_CHECKING:

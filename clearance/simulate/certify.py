@@ -23,11 +23,11 @@ from clearance.kernels.motion.certify import (
 from clearance.kernels.motion.joint_path import NO_BALLS, BallPath, JointPath
 from clearance.kernels.motion.kinematics import BALL, TURNING, Links
 from clearance.kernels.motion.world import World
+from clearance.simulate.certificate import Certificate
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import COUNTERS, HELD, Measurement
 from clearance.simulate.moment import Moment, Moments
 from clearance.simulate.parts import blocks, in_order, parts
-from clearance.simulate.record import Certificate
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.resumable_rows import MeasuredRows
 from clearance.tolerance import FINEST_CERTIFY_GAP

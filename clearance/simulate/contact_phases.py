@@ -14,8 +14,8 @@ import numpy as np
 from clearance.progress import Progress
 from clearance.simulate.contact import find_contacts
 from clearance.simulate.contact_rows import ContactRows
+from clearance.simulate.contact_sequence import ContactSequence, StepContact
 from clearance.simulate.judged import SectionAnswer
-from clearance.simulate.record import ContactSequence, StepContact
 from clearance.world.case import Case
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from clearance.geometry.boolean import ClosedMesh
 from clearance.progress import Progress
 from clearance.query.contact import Contact
-from clearance.simulate.record import ContactSequence, StepContact
+from clearance.simulate.contact_sequence import ContactSequence, StepContact
 
 MOST_REGIONS = 2000
 """Regions that are kept; one takes some 2 to 10 kB."""

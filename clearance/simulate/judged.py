@@ -12,10 +12,11 @@ from functools import partial
 
 import numpy as np
 
+from clearance.simulate.certificate import Certificate, motion_codes
 from clearance.simulate.measure import Measurement, Minima
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
-from clearance.simulate.record import Certificate, RuleAnswer, motion_codes
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.sections import Section, SectionPlan
 from clearance.simulate.status import RowLimits, sample_codes
 from clearance.world.case import Case, Limits

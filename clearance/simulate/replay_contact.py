@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.simulate.record import Record, StepContact
+from clearance.simulate.contact_sequence import StepContact
+from clearance.simulate.record import Record
 
 MOST_CONTACTS = 600
 """Most overlaps drawn: each is an object of its own in the viewer."""

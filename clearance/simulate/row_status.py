@@ -11,8 +11,9 @@ from functools import cached_property
 import numpy as np
 import pyarrow as pa
 
+from clearance.simulate.certificate import motion_codes
 from clearance.simulate.moment import Moment
-from clearance.simulate.record import Record, motion_codes
+from clearance.simulate.record import Record
 from clearance.simulate.status import STATUSES, Status, sample_codes
 from clearance.simulate.steps import between_of
 

@@ -9,12 +9,15 @@ from typing import overload
 import numpy as np
 import pyarrow as pa
 
+from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_columns import no_contact_columns
+from clearance.simulate.every_pair import EveryPair
 from clearance.simulate.judged import Judged
 from clearance.simulate.measure import Measurement
 from clearance.simulate.names import SIDES, BodyNames, columns_of, pair_names, sides_of
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import Certificate, EveryPair, PairMinimum, RuleAnswer
+from clearance.simulate.record import PairMinimum
+from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.status import STATUSES
 from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from clearance.simulate.certificate import Certificate
 from clearance.simulate.measure import SWEEP_COUNTERS, Measurement, Minima
-from clearance.simulate.record import Certificate
 from clearance.simulate.resources import Resources
 from clearance.simulate.two_clocks import PairsOfTwoClocks
 from clearance.simulate.unsynchronised import (

@@ -17,10 +17,10 @@ from inputs import Solid
 from peers import Fcl, available, silenced
 
 from clearance.kernels.motion.kinematics import FIXED, NO_PARENT, SLIDING, TURNING
+from clearance.simulate.certificate import Certificate
 from clearance.simulate.certify import certify_motion
 from clearance.simulate.layout import PairsInMotion
 from clearance.simulate.measure import Measurement, measure
-from clearance.simulate.record import Certificate
 from clearance.simulate.resources import Resources
 from clearance.simulate.sections import SectionPlan, section_plan
 from clearance.world.case import Case
