@@ -212,6 +212,15 @@ def loosened_motion_bound_in(surface, world, balls, body, middle):
 
 
 @inline
+def note_motion_bound(bound, numbers):
+    """Keeps a motion bound as eight numbers."""
+    v, w = bound.velocity, bound.spin
+    numbers[0], numbers[1], numbers[2] = v.x, v.y, v.z
+    numbers[3], numbers[4], numbers[5] = w.x, w.y, w.z
+    numbers[6], numbers[7] = bound.rest, bound.turn
+
+
+@inline
 def motion_bound_at(motion_bounds, body):
     d = motion_bounds[body]
     return MotionBound(Vec3(d[0], d[1], d[2]), Vec3(d[3], d[4], d[5]), d[6], d[7])
@@ -232,17 +241,7 @@ def _go_on(surface, world, path, step, state):
             )
         about_middle = motion_bound_in(surface, world, body, state.whole)
         motion_bound = loosened(about_middle, numbers[8])
-        numbers[0], numbers[1], numbers[2] = (
-            motion_bound.velocity.x,
-            motion_bound.velocity.y,
-            motion_bound.velocity.z,
-        )
-        numbers[3], numbers[4], numbers[5] = (
-            motion_bound.spin.x,
-            motion_bound.spin.y,
-            motion_bound.spin.z,
-        )
-        numbers[6], numbers[7] = motion_bound.rest, motion_bound.turn
+        note_motion_bound(motion_bound, numbers)
         if world.frames[body] >= 0:
             box = box_of(surface, surface.roots[world.solids[body]])
             state.displacements[body] += 2.0 * GROWTH * motion_bound_of_box(box, motion_bound)

@@ -22,6 +22,7 @@ from clearance.kernels.motion.certify import (
     loosened_motion_bound_in,
     motion_bound_at,
     new_middle,
+    note_motion_bound,
 )
 from clearance.kernels.motion.joint_motion_bound import MotionBound, motion_bound_of_box
 from clearance.kernels.motion.kinematics import place_by_link
@@ -128,14 +129,6 @@ def _put(pose, out):
 
 
 @inline
-def _note_motion_bound(bound, numbers):
-    v, w = bound.velocity, bound.spin
-    numbers[0], numbers[1], numbers[2] = v.x, v.y, v.z
-    numbers[3], numbers[4], numbers[5] = w.x, w.y, w.z
-    numbers[6], numbers[7] = bound.rest, bound.turn
-
-
-@inline
 def _fill_leaf(surface, world, bodies, leaf, middle, tree):
     """Writes where the bodies are in the middle of a leaf, and their boxes there."""
     for column in range(len(bodies)):
@@ -200,7 +193,7 @@ def fill_intervals_tree(surface, world, path, bodies, tree):
         _fill_leaf(surface, world, bodies, leaf, middle, tree)
         for column in range(len(bodies)):
             bound = loosened_motion_bound_in(surface, world, path.balls, bodies[column], middle)
-            _note_motion_bound(bound, tree.motion_bounds[leaf * len(bodies) + column])
+            note_motion_bound(bound, tree.motion_bounds[leaf * len(bodies) + column])
     _fill_moved(surface, world, bodies, tree)
     for node in range(len(tree.first)):
         tree.low[node] = path.times[tree.start + tree.first[node]]

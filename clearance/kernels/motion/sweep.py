@@ -21,10 +21,7 @@ from clearance.kernels.motion.answer_cache import (
     still_holds,
     was_contact,
 )
-from clearance.kernels.motion.body_boxes import (
-    BodyBoxes,
-    new_body_boxes,
-)
+from clearance.kernels.motion.body_boxes import BodyBoxes, new_body_boxes
 from clearance.kernels.motion.interval_motion_bound import fill_motion_radii
 from clearance.kernels.motion.pair_order import (
     PairOrder,
