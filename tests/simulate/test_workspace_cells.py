@@ -35,6 +35,13 @@ def timeline(case):
     return timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
 
 
+def on_the_door(case):
+    """The case with its first robot on the obstacle that moves by itself."""
+    left, *others = case.robots
+    there = Mount("door", left.world_from_base)
+    return replace(case, robots=(replace(left, world_from_base=np.eye(4), mount=there), *others))
+
+
 def escape(pieces, name, corners, pose, step):
     """[m] how far a corner of a body stands out of the pieces that hold it after a step; below 0 if inside."""
     world = corners @ pose[:3, :3].T + pose[:3, 3]
@@ -47,7 +54,7 @@ def escape(pieces, name, corners, pose, step):
 @examples(4)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1e-3, 0.05, 1.0]))
 def test_pieces_hold_links_on_links_and_parts_in_hand_between_the_steps(seed, within):
-    case = cells.cell(seed)
+    case = on_the_door(cells.cell(seed))
     run = timeline(case)
     for i, placed in enumerate(case.robots):
         pieces = swept_pieces(run, i, within)
