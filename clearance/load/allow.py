@@ -76,6 +76,18 @@ def require_patterns(given: Sequence[str], names: BodyNames) -> None:
             _refuse_unmatched(pattern, names.links + names.obstacles, "body", UnknownLink)
 
 
+def require_link_patterns(given: Sequence[str], links: Iterable[str]) -> None:
+    """Nothing, if each pattern matches a link.
+
+    Raises:
+        UnknownLink: nothing matches, with the nearest name.
+    """
+    known = tuple(links)
+    for i, pattern in enumerate(given):
+        with at(f"[{i}]"):
+            _refuse_unmatched(pattern, known, "link", UnknownLink)
+
+
 def checked_links(given: Sequence[str], links: Iterable[str]) -> tuple[str, ...]:
     """The given link names, once all are there.
 

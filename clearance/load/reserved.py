@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from clearance.errors import BadShape, DuplicateName, at
 from clearance.load import schema
-from clearance.load.allow import checked_links
+from clearance.load.allow import require_link_patterns
 from clearance.load.input_files import InputFiles, resolved
 from clearance.world.case import ReservedSpace
 
@@ -32,11 +32,17 @@ def reserved_spaces(
             if entry.name in [space.name for space in made]:
                 raise DuplicateName(f"the name {entry.name!r} is taken", where="name")
             with at("links"):
-                chosen = checked_links(entry.links, links)
+                require_link_patterns(entry.links, links)
             sketch = _sketch(resolved(entry.sketch, folder), files)
             made.append(
                 ReservedSpace(
-                    entry.name, sketch, entry.plane, entry.section, entry.mode, entry.limit, chosen
+                    entry.name,
+                    sketch,
+                    entry.plane,
+                    entry.section,
+                    entry.mode,
+                    entry.limit,
+                    tuple(entry.links),
                 )
             )
     return tuple(made)
