@@ -60,6 +60,6 @@ def door() -> PoseTable:
 
 
 def parts() -> PoseTable:
-    """Of a part that goes along the line by the distance between two parts, so that it ends where the next began."""
+    """Of a part that goes on by the distance between two, so that it ends where the next one began."""
     ends = np.array([[0.0, -0.5 * APART, 0.0], [0.0, 0.5 * APART, 0.0]])
     return PoseTable(np.array([0.0, 2.0]), ends, np.tile([0.0, 0.0, 0.0, 1.0], (2, 1)))

@@ -42,7 +42,7 @@ def tables() -> dict[str, Table]:
 def left() -> Program:
     """Takes the bar up, holds it in the middle until the right hand has it, goes home."""
     program = Program(_arm(), LEFT, HOME, OPEN, STEP)
-    down, tilted = _hand("left", 0.0), _hand("left", TILT)
+    down, tilted = _Hand("left", 0.0), _Hand("left", TILT)
     program.move(1.8, down(FIXTURE, away=0.10))
     program.line(2.6, down(FIXTURE))
     program.grip(3.0, SHUT)
@@ -58,7 +58,7 @@ def left() -> Program:
 def right() -> Program:
     """Comes to the middle, takes the bar over, puts it on the tray, goes home."""
     program = Program(_arm(), RIGHT, HOME, OPEN, STEP)
-    down, tilted = _hand("right", 0.0), _hand("right", TILT)
+    down, tilted = _Hand("right", 0.0), _Hand("right", TILT)
     program.wait(4.0)
     program.move(6.0, tilted(MEETING, away=0.12))
     program.line(7.0, tilted(MEETING))
@@ -75,7 +75,7 @@ def right() -> Program:
 def tray() -> PoseTable:
     """Drives in along x, stands while the bar is put down, drives on."""
     times = np.arange(0.0, 15.21, 0.16)
-    x = TRAY[0] + 0.9 * (ease((times - 6.0) / 4.0) - 1.0 + ease((times - 13.0) / 2.0))
+    x = TRAY[0] + 0.75 * (ease((times - 6.0) / 4.0) - 1.0 + ease((times - 13.0) / 2.0))
     places = np.column_stack([x, np.full_like(x, TRAY[1]), np.full_like(x, TRAY[2] - 0.0193)])
     return PoseTable(times, places, np.tile([0.0, 0.0, 0.0, 1.0], (len(x), 1)))
 
@@ -84,7 +84,7 @@ def _arm() -> Arm:
     return Arm(stock("franka_panda/panda.urdf"), JOINTS, "panda_grasptarget")
 
 
-class _hand:
+class _Hand:
     """Poses of a hand that has the bar, leaning towards the other arm by an angle, or is `away` from there."""
 
     def __init__(self, side: str, tilt: float) -> None:

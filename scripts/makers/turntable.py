@@ -5,6 +5,8 @@ Axis, turntable and arm have tables of their own, with sample times of their own
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from makers.paths import Arm, JointTable, Table, ToolPose, stock
@@ -63,6 +65,6 @@ def over(tower: float, t: float, away: float) -> ToolPose:
     return ToolPose(tuple(place), DOWN)
 
 
-def _of(joints: tuple[str, ...], law: object, step: float) -> JointTable:
+def _of(joints: tuple[str, ...], law: Callable[[float], float], step: float) -> JointTable:
     times = np.arange(0.0, END + 1e-9, step)
     return JointTable(joints, np.array([[law(t)] for t in times]), step)
