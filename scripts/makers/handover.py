@@ -43,14 +43,14 @@ def left() -> Program:
     """Takes the bar up, holds it in the middle until the right hand has it, goes home."""
     program = Program(_arm(), LEFT, HOME, OPEN, STEP)
     down, tilted = _Hand("left", 0.0), _Hand("left", TILT)
-    program.move(1.8, down(FIXTURE, away=0.10))
-    program.line(2.6, down(FIXTURE))
+    program.move(1.6, down(FIXTURE, away=0.10))
+    program.line(2.4, down(FIXTURE))
     program.grip(3.0, SHUT)
     program.line(3.8, down(FIXTURE, away=0.12))
     program.move(6.0, tilted(MEETING))
     program.wait(7.6)
-    program.grip(8.0, OPEN)
-    program.line(8.8, tilted(MEETING, away=0.12))
+    program.grip(8.2, OPEN)
+    program.line(9.0, tilted(MEETING, away=0.12))
     program.move(11.0, HOME)
     return program
 
@@ -61,13 +61,13 @@ def right() -> Program:
     down, tilted = _Hand("right", 0.0), _Hand("right", TILT)
     program.wait(4.0)
     program.move(6.0, tilted(MEETING, away=0.12))
-    program.line(7.0, tilted(MEETING))
+    program.line(6.8, tilted(MEETING))
     program.grip(7.4, SHUT)
     program.wait(8.8)
     program.move(11.0, down(TRAY, away=0.12))
     program.line(12.0, down(TRAY))
-    program.grip(12.4, OPEN)
-    program.line(13.2, down(TRAY, away=0.12))
+    program.grip(12.6, OPEN)
+    program.line(13.4, down(TRAY, away=0.12))
     program.move(15.2, HOME)
     return program
 
@@ -75,7 +75,7 @@ def right() -> Program:
 def tray() -> PoseTable:
     """Drives in along x, stands while the bar is put down, drives on."""
     times = np.arange(0.0, 15.21, 0.16)
-    x = TRAY[0] + 0.75 * (ease((times - 6.0) / 4.0) - 1.0 + ease((times - 13.0) / 2.0))
+    x = TRAY[0] + 0.75 * (ease((times - 6.0) / 4.0) - 1.0 + ease((times - 13.2) / 2.0))
     places = np.column_stack([x, np.full_like(x, TRAY[1]), np.full_like(x, TRAY[2] - 0.0193)])
     return PoseTable(times, places, np.tile([0.0, 0.0, 0.0, 1.0], (len(x), 1)))
 
@@ -90,7 +90,7 @@ class _Hand:
     def __init__(self, side: str, tilt: float) -> None:
         to = 1.0 if side == "left" else -1.0
         z = np.array([to * np.sin(tilt), 0.0, -np.cos(tilt)])
-        y = -np.array([to * np.cos(tilt), 0.0, np.sin(tilt)])
+        y = np.array([to * np.cos(tilt), 0.0, np.sin(tilt)])
         self._turn = Rotation.from_matrix(np.column_stack([np.cross(y, z), y, z]))
         self._z, self._hold = z, HOLD[side]
 
