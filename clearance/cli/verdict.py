@@ -244,7 +244,7 @@ def _cross_check(check: CrossCheck) -> list[Text]:
     if check.agrees:
         told = f"{check.peer} agrees at {_agreeing(check)}: {figures}"
         return [_row("cross-check", told)]
-    n_bad = len(check.disagreements)
+    n_bad = len({row.step for row in check.disagreements})
     lines = [_row("cross-check", f"{check.peer} DISAGREES at {count(n_bad, 'step')}: {figures}")]
     return lines + [_row("", _told(row)) for row in check.disagreements[:_MOST_DISAGREEMENTS]]
 

@@ -37,6 +37,18 @@ def cross_check(
     Raises:
         Unavailable: python-fcl cannot be imported.
     """
+    return compared(record, progress, measured)[0]
+
+
+def compared(
+    record: Samples,
+    progress: Callable[[int, int], None] | None = None,
+    measured: Sequence[Pair] | None = None,
+) -> tuple[CrossCheck, np.ndarray]:
+    """The comparison, and the steps at which exact arithmetic settles it for us.
+
+    Args, Raises: as `cross_check`.
+    """
     run = PeerRun(record, measured)
     answers = run.measure(progress)
     tolerance = CROSS_CHECK * answers.diagonal
@@ -48,7 +60,7 @@ def cross_check(
     bad = np.flatnonzero(~(differences <= tolerance) | ~(errors <= tolerance))
     settled = _settled(witnesses, answers, bad[errors[bad] <= tolerance], tolerance)
     bad = np.setdiff1d(bad, settled)
-    return CrossCheck(
+    check = CrossCheck(
         peer=peer_name(),
         n_steps=len(differences),
         greatest_difference=float(differences.max()),
@@ -62,6 +74,7 @@ def cross_check(
         n_settled=len(settled),
         greatest_settled=float(differences[settled].max(initial=0.0)),
     )
+    return check, settled
 
 
 def _settled(

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import pyarrow as pa
 
-from clearance.crosscheck.compare import cross_check
+from clearance.crosscheck.compare import compared
 from clearance.simulate.judged import Judged, SectionAnswer
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import CrossCheck, Samples
@@ -28,27 +28,38 @@ def cross_check_sections(
     Raises:
         Unavailable: python-fcl cannot be imported.
     """
-    checks = [_of_section(answer, progress) for answer in answers if answer.section.tied]
+    tied = [answer for answer in answers if answer.section.tied]
+    found = [_of_section(answer, progress) for answer in tied]
+    checks = [check for check, _ in found]
     worst = max(checks, key=lambda check: check.greatest_difference)
     return replace(
         worst,
-        n_steps=sum(check.n_steps for check in checks),
+        n_steps=len({step for answer in tied for step in _steps_of(answer)}),
         worst_witness_error=max(check.worst_witness_error for check in checks),
         disagreements=tuple(row for check in checks for row in check.disagreements),
-        n_settled=sum(check.n_settled for check in checks),
+        n_settled=len({step for _, settled in found for step in settled}),
         greatest_settled=max(check.greatest_settled for check in checks),
     )
 
 
-def _of_section(answer: SectionAnswer, progress: Callable[[int, int], None] | None) -> CrossCheck:
+def _steps_of(answer: SectionAnswer) -> range:
+    steps = answer.section.steps
+    return range(steps.start, steps.stop)
+
+
+def _of_section(
+    answer: SectionAnswer, progress: Callable[[int, int], None] | None
+) -> tuple[CrossCheck, list[int]]:
+    """The comparison of a section, and the steps of the run that are settled for us."""
     section, first = answer.section, answer.section.phase.first
     alone = RuleAnswer("", section.in_motion.limits, answer.found, None, _no_moment)
     judged = Judged((alone,), answer.found, None, answer.found, None)
     tables = step_table(section.phase.case, section.phase.motions, section.pairs, judged)
     samples = Samples(section.phase.case, section.phase.motions, pa.concat_tables(tables), ())
-    found = cross_check(samples, progress, section.pairs)
+    found, settled = compared(samples, progress, section.pairs)
     rows = tuple(replace(row, step=row.step + first) for row in found.disagreements)
-    return replace(found, worst_step=found.worst_step + first, disagreements=rows)
+    moved = replace(found, worst_step=found.worst_step + first, disagreements=rows)
+    return moved, (settled + first).tolist()
 
 
 def _no_moment(step: int) -> Moment:

@@ -11,61 +11,94 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.world.case import Case
+from clearance.world.notice import listed
 from clearance.world.timing import Timing
+
+MOST_NAMES = 8
+"""Of things that do the same, how many a note names."""
 
 
 class _Table(NamedTuple):
     """What moves, and when its table is followed: its first and last sample [s] of the run."""
 
-    what: str
+    what: _Thing
     first: float
     last: float
     timing: Timing
 
 
+class _Thing(NamedTuple):
+    """A robot or an obstacle, and its name."""
+
+    kind: str
+    name: str
+
+
+class _Deed(NamedTuple):
+    """What is said of one thing, and what of several."""
+
+    one: str
+    several: str
+
+
+_HOW = "by straight translation, and rotation about one axis at constant speed"
+BETWEEN_POSES = _Deed(
+    f"moves between the poses of its table {_HOW}", f"move between the poses of their tables {_HOW}"
+)
+
+
 def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
-    """One line for each thing that a reader could take to be otherwise.
+    """One line for each kind of motion that a reader could take to be otherwise.
 
     Args:
         start, end: [s] of the run.
     """
-    notes = [
-        f"obstacle {obstacle.name!r} moves between the poses of its table by straight translation, and rotation "
-        "about one axis at constant speed"
-        for obstacle in case.obstacles
-        if obstacle.moves is not None
-    ]
+    moving = [obstacle for obstacle in case.obstacles if obstacle.moves is not None]
+    told = [(_Thing("obstacle", obstacle.name), BETWEEN_POSES) for obstacle in moving]
     for table in _tables(case):
-        notes += _before_and_after(table, start, end)
-    return tuple(notes)
+        told += [(table.what, deed) for deed in _before_and_after(table, start, end)]
+    alike: dict[tuple[str, _Deed], list[str]] = {}
+    for thing, deed in told:
+        alike.setdefault((thing.kind, deed), []).append(repr(thing.name))
+    return tuple(_line(kind, names, deed) for (kind, deed), names in alike.items())
+
+
+def _line(kind: str, names: list[str], deed: _Deed) -> str:
+    if len(names) == 1:
+        return f"{kind} {names[0]} {deed.one}"
+    return f"{kind}s {listed(names, MOST_NAMES)} {deed.several}"
 
 
 def _tables(case: Case) -> Iterator[_Table]:
     for placed in case.robots:
         if placed.trajectory is not None:
             times = placed.trajectory.times
-            yield _table(f"robot {placed.robot.name!r}", times, placed.timing)
+            yield _table(_Thing("robot", placed.robot.name), times, placed.timing)
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
-            name = f"obstacle {obstacle.name!r}"
-            yield _table(name, obstacle.moves.times, obstacle.moves.timing)
+            thing = _Thing("obstacle", obstacle.name)
+            yield _table(thing, obstacle.moves.times, obstacle.moves.timing)
 
 
-def _table(what: str, times: np.ndarray, timing: Timing) -> _Table:
+def _table(what: _Thing, times: np.ndarray, timing: Timing) -> _Table:
     first, last = timing.run_times(times[[0, -1]] if len(times) > 1 else times)[[0, -1]].tolist()
     return _Table(what, first, last, timing)
 
 
-def _before_and_after(table: _Table, start: float, end: float) -> Iterator[str]:
-    what, first, last, timing = table
+def _before_and_after(table: _Table, start: float, end: float) -> Iterator[_Deed]:
+    _, first, last, timing = table
     early, late = start < first, last < end
     if timing.after == "absent":
         if early or late:
-            yield f"{what} is in the cell from {first:g} s to {last:g} s only (after: absent)"
+            when = f"in the cell from {first:g} s to {last:g} s only (after: absent)"
+            yield _Deed(f"is {when}", f"are {when}")
         return
     if early:
-        yield f"{what} stands at its first sample until {first:g} s"
+        when = f"until {first:g} s"
+        yield _Deed(f"stands at its first sample {when}", f"stand at their first samples {when}")
     if late and timing.after == "loop":
-        yield f"{what} goes through its table again and again, every {last - first:g} s (after: loop)"
+        how = f"again and again, every {last - first:g} s (after: loop)"
+        yield _Deed(f"goes through its table {how}", f"go through their tables {how}")
     elif late:
-        yield f"{what} stands at its last sample from {last:g} s"
+        when = f"from {last:g} s"
+        yield _Deed(f"stands at its last sample {when}", f"stand at their last samples {when}")

@@ -15,7 +15,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.axis_check import axis_notices
 from clearance.load.collada_file import UpAxis
 from clearance.load.foreign_files import refuse_foreign
-from clearance.load.input_files import InputFiles
+from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joints import joints_of
 from clearance.load.mesh_store import MeshStore
 from clearance.load.plausibility import angle_notices
@@ -42,12 +42,13 @@ def load_urdf(
     """The robot in a URDF file, for cases that are made in memory.
 
     Args:
+        path: or `pybullet_data:…`, as in a case file.
         package_dirs, geometry, collada_up_axis: as in `UrdfRequest`.
 
     Raises:
         BadInput: with the file and the element.
     """
-    path = Path(path)
+    path = resolved(str(path), Path())
     request = UrdfRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
     return read_robot(request, MeshStore(InputFiles(path.parent)))
 

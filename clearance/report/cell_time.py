@@ -53,13 +53,14 @@ def _row(name: str, bars: list[Markup]) -> Markup:
 def _hands(summary: dict[str, Any], part: str) -> list[Markup]:
     """The bars of a part: one for each that carries it, and where it is not in the cell."""
     robots = [robot["name"] for robot in summary["robots"]]
+    things = {obstacle["name"] for obstacle in summary["obstacles"]}
     bars = []
     for carry in summary["carries"]:
         if carry["part"] == part:
             owner = carry["by"].split("/")[0]
             colour = robots.index(owner) % N_COLOURS if owner in robots else 0
-            hand = f"hand{colour}", carry["by"]
-            bars.append(_bar(summary, carry["from"], carry["until"], *hand))
+            kind = "thing" if carry["by"] in things else f"hand{colour}"
+            bars.append(_bar(summary, carry["from"], carry["until"], kind, carry["by"]))
     own = next(actor for actor in summary["actors"] if actor["name"] == part)
     return bars + _absences(summary, own)
 

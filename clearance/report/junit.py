@@ -195,8 +195,9 @@ def _cross_check(suite: ElementTree.Element, record: Record) -> None:
         return
     case = _case(suite, "cross_check", f"agrees with {check.peer}")
     if not check.agrees:
+        n_bad = len({row.step for row in check.disagreements})
         message = (
-            f"{len(check.disagreements)} of {check.n_steps} steps differ by more than "
+            f"{n_bad} of {check.n_steps} steps differ by more than "
             f"{check.tolerance:g} m; "
             f"greatest difference {check.greatest_difference:g} m at step {check.worst_step}"
         )

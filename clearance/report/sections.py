@@ -145,7 +145,8 @@ _EXTENTS = {
 
 
 def _extent(summary: dict[str, Any]) -> str:
-    pairs = f", {count(len(summary['pairs']), 'pair')}" if summary["pairs"] else ""
+    measured = {(pair["link"], pair["obstacle"]) for pair in summary["pairs"]}  # a row a rule
+    pairs = f", {count(len(measured), 'pair')}" if measured else ""
     return count(summary["n_steps"], "step") + pairs + _EXTENTS[summary["need"]]
 
 

@@ -115,8 +115,9 @@ def round_shape(body: Body) -> Round | None:
 
 
 def case_files() -> list[Path]:
-    """The case files of the shared cases, if they are there, and of our scenes."""
-    return sorted(SHARED.glob("*/case.yaml")) + sorted(SCENES.glob("*/case.yaml"))
+    """The shared cases, if they are there, and our scenes of one robot among standing things."""
+    ours = (path.with_name("case.yaml") for path in SCENES.glob("*/trajectory.csv"))
+    return sorted(SHARED.glob("*/case.yaml")) + sorted(ours)
 
 
 def absent_inputs() -> list[str]:

@@ -6,11 +6,12 @@ that the files are the same bytes everywhere. Not for: collision checks; those a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import pybullet_data
 import yourdfpy
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
@@ -109,14 +110,60 @@ def smooth(waypoints: np.ndarray, n_steps: int) -> np.ndarray:
     return CubicSpline(knots / knots[-1], waypoints, bc_type="natural")(profile)
 
 
-def write_trajectory(path: Path, joints: Sequence[str], positions: np.ndarray, step: float) -> None:
-    """Writes `time` [s] and one column a joint, six decimals."""
-    lines = [",".join(["time", *joints])]
-    for i, row in enumerate(positions):
-        lines.append(
-            ",".join(
-                [f"{i * step:.3f}", *(f"{value + 0.0:.6f}" for value in np.round(row, 6) + 0.0)]
-            )
-        )
+@dataclass(frozen=True, eq=False)
+class JointTable:
+    """Joint names, (n, k) positions and the time between samples [s]."""
+
+    joints: tuple[str, ...]
+    positions: np.ndarray
+    step: float = 0.01
+
+    def lines(self) -> list[str]:
+        """`time` [s] and one column a joint, six decimals."""
+        times = self.step * np.arange(len(self.positions))
+        return _lines(["time", *self.joints], times, self.positions)
+
+
+@dataclass(frozen=True, eq=False)
+class PoseTable:
+    """(n,) times [s], (n, 3) places [m] and (n, 4) quaternions x, y, z, w."""
+
+    times: np.ndarray
+    places: np.ndarray
+    quaternions: np.ndarray
+
+    def lines(self) -> list[str]:
+        """`time` and the pose; six decimals, nine of the quaternion so that its length is 1."""
+        header = ["time", "x", "y", "z", "qx", "qy", "qz", "qw"]
+        turns = (",".join(_decimals(row, 9)) for row in self.quaternions)
+        first, *rows = _lines(header, self.times, self.places)
+        return [first, *(f"{row},{turn}" for row, turn in zip(rows, turns, strict=True))]
+
+
+Table = JointTable | PoseTable
+
+
+def write_table(path: Path, table: Table) -> None:
+    """Writes a table's lines."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    path.write_text("\n".join(table.lines()) + "\n", encoding="utf-8")
+
+
+def stock(path: str) -> Path:
+    """A file that pybullet_data brings."""
+    return Path(pybullet_data.getDataPath()) / path
+
+
+def repository() -> Path:
+    """The folder that holds `robots` and `scenes`."""
+    return Path(__file__).parents[2]
+
+
+def _lines(header: Sequence[str], times: np.ndarray, rows: np.ndarray) -> list[str]:
+    pairs = zip(times, rows, strict=True)
+    return [",".join(header), *(",".join([f"{t:.3f}", *_decimals(row, 6)]) for t, row in pairs)]
+
+
+def _decimals(row: Iterable[float], n: int) -> list[str]:
+    """Numbers with `n` decimals, none of them -0."""
+    return [f"{value:.{n}f}" for value in np.round(np.asarray(row), n) + 0.0]

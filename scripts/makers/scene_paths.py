@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-import pybullet_data
 
-from makers.paths import Arm, ToolPose, smooth, solved
+from makers import door, handover, turntable
+from makers.paths import (
+    Arm,
+    JointTable,
+    Table,
+    ToolPose,
+    repository,
+    smooth,
+    solved,
+    stock,
+)
 
-ROBOTS = Path(__file__).parents[2] / "robots"
 GANTRY = ("slide_x", "slide_y", "slide_z", "yaw", "pitch", "roll")
 HERON = tuple(f"joint_{i}" for i in range(1, 7))
 IIWA = tuple(f"lbr_iiwa_joint_{i}" for i in range(1, 8))
@@ -22,16 +28,7 @@ UPRIGHT = (np.pi, -np.pi / 2, 0.0)
 """The same, turned about its z axis so that its x axis points up."""
 
 
-@dataclass(frozen=True, eq=False)
-class JointPath:
-    """Joint names, (n, k) positions and the time between samples [s]."""
-
-    joints: tuple[str, ...]
-    positions: np.ndarray
-    step: float = 0.01
-
-
-def box_box() -> JointPath:
+def box_box() -> JointTable:
     """The box tumbles round the fixed one: faces, edges and corners take turns at being nearest."""
     waypoints = [
         (-0.80, 0.34, 0.45, 0.0, 0.0, 0.0),
@@ -42,10 +39,10 @@ def box_box() -> JointPath:
         (-0.15, -0.33, 0.66, 2.6, -0.3, 2.2),
         (-0.60, -0.45, 0.45, 3.0, 0.0, 2.6),
     ]
-    return JointPath(GANTRY, smooth(np.array(waypoints), 301), 0.02)
+    return JointTable(GANTRY, smooth(np.array(waypoints), 301), 0.02)
 
 
-def box_pipe() -> JointPath:
+def box_pipe() -> JointTable:
     """The box goes through the bore, turning and swaying, round the end, and back along the outside."""
     waypoints = [
         (-0.90, 0.00, 0.50, 0.0, 0.0, 0.0),
@@ -58,12 +55,12 @@ def box_pipe() -> JointPath:
         (0.00, 0.32, 0.58, 2.0, 0.1, 2.6),
         (-0.60, 0.42, 0.50, 2.6, 0.0, 3.0),
     ]
-    return JointPath(GANTRY, smooth(np.array(waypoints), 361), 0.02)
+    return JointTable(GANTRY, smooth(np.array(waypoints), 361), 0.02)
 
 
-def iiwa_pipe_rack() -> JointPath:
+def iiwa_pipe_rack() -> JointTable:
     """In between two risers to look at the pipes behind, out, and in again through the next, lower gap."""
-    arm = Arm(_stock("kuka_iiwa/model.urdf"), IIWA, "lbr_iiwa_link_7")
+    arm = Arm(stock("kuka_iiwa/model.urdf"), IIWA, "lbr_iiwa_link_7")
     home = (0.0, 0.2, 0.0, -1.9, 0.0, 0.53, 0.0)
     targets = [
         ToolPose((0.52, -0.14, 0.55), FORWARD),
@@ -78,12 +75,12 @@ def iiwa_pipe_rack() -> JointPath:
         ToolPose((0.52, 0.10, 0.50), FORWARD),
         home,
     ]
-    return JointPath(IIWA, smooth(solved(arm, home, targets), 401), 0.02)
+    return JointTable(IIWA, smooth(solved(arm, home, targets), 401), 0.02)
 
 
-def panda_shelf() -> JointPath:
+def panda_shelf() -> JointTable:
     """Into the middle bay, against a carton that it pushes, and out again past the cans."""
-    arm = Arm(_stock("franka_panda/panda.urdf"), PANDA, "panda_grasptarget")
+    arm = Arm(stock("franka_panda/panda.urdf"), PANDA, "panda_grasptarget")
     home = (0.0, -0.9, 0.0, -2.4, 0.0, 3.05, 0.785)
     targets = [
         ToolPose((0.55, -0.02, 0.66), UPRIGHT),
@@ -96,12 +93,12 @@ def panda_shelf() -> JointPath:
         ToolPose((0.57, -0.14, 0.66), UPRIGHT),
         home,
     ]
-    return JointPath(PANDA, smooth(solved(arm, home, targets), 321), 0.02)
+    return JointTable(PANDA, smooth(solved(arm, home, targets), 321), 0.02)
 
 
-def hot_cell() -> JointPath:
+def hot_cell() -> JointTable:
     """Through the port, round a bent pipe to the trough, up to look at the vessel, and back out."""
-    arm = Arm(ROBOTS / "heron6" / "heron6.urdf", HERON, "tool_tip")
+    arm = Arm(repository() / "robots" / "heron6" / "heron6.urdf", HERON, "tool_tip")
     home = (0.0, -0.75, 0.85, 0.0, -0.1, 0.0)
     targets = [
         ToolPose((0.62, 0.00, 0.75), (0.0, 0.0, 0.0)),
@@ -114,15 +111,21 @@ def hot_cell() -> JointPath:
         ToolPose((0.62, 0.00, 0.75), (0.0, 0.0, 0.0)),
         home,
     ]
-    return JointPath(HERON, smooth(solved(arm, home, targets), 401), 0.02)
+    return JointTable(HERON, smooth(solved(arm, home, targets), 401), 0.02)
 
 
-def _stock(path: str) -> Path:
-    return Path(pybullet_data.getDataPath()) / path
+def _alone(path: Callable[[], JointTable]) -> Callable[[], dict[str, Table]]:
+    """The tables of a scene with one robot among standing things."""
+    return lambda: {"trajectory.csv": path()}
 
 
-PATHS: dict[str, Callable[[], JointPath]] = {
-    function.__name__: function
-    for function in (box_box, box_pipe, iiwa_pipe_rack, panda_shelf, hot_cell)
+TABLES: dict[str, Callable[[], dict[str, Table]]] = {
+    **{
+        path.__name__: _alone(path)
+        for path in (box_box, box_pipe, iiwa_pipe_rack, panda_shelf, hot_cell)
+    },
+    "dual_arm_handover": handover.tables,
+    "turntable_cell": turntable.tables,
+    "door_and_arm": door.tables,
 }
-"""Scene name to the function that plans its path."""
+"""Scene name to the function that makes its tables, by file name."""

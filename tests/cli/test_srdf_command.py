@@ -1,12 +1,15 @@
 """`clearance srdf` from outside: what it tells, proposes, refuses, and its exit codes."""
 
 import json
+from pathlib import Path
 
 import pytest
 
 from clearance.cli import run
 from clearance.load.srdf import load_srdf
 from clearance.load.urdf import load_urdf
+
+ROOT = Path(__file__).parents[2]
 
 
 def _box(name, x, size):
@@ -102,6 +105,13 @@ def test_the_same_robot_gives_the_same_bytes(robot, capsys):
         run(["srdf", "audit", urdf, srdf])
         told.append(capsys.readouterr().out)
     assert told[0] == told[1]
+
+
+def test_a_robot_of_a_package_is_named_as_in_a_case_file(tmp_path):
+    brought = "pybullet_data:franka_panda/panda.urdf"
+    out = tmp_path / "panda.srdf"
+    assert run(["srdf", "make", brought, "--out", str(out)]) == 0
+    assert out.read_bytes() == (ROOT / "robots" / "panda" / "panda.srdf").read_bytes()
 
 
 def test_bad_input_is_one_line_and_2(robot, tmp_path, capsys):

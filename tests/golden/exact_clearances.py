@@ -1,8 +1,8 @@
 """The exact least clearance of a case at one step, by the oracle: what the references of this folder are made of.
 
-Shapes are the polyhedra that the case is loaded to. Where the links are and how far they are from the obstacles
-is rational arithmetic. Only the order in which pairs are taken comes from floats, each bound less a micrometre,
-so that no pair is left out that could be the nearest.
+Shapes are the polyhedra that the case is loaded to, pairs those that are measured then. Where the bodies are and
+how far they are from each other is rational arithmetic. Only the order in which pairs are taken comes from floats,
+each bound less a micrometre, so that no pair is left out that could be the nearest.
 """
 
 from __future__ import annotations
@@ -12,58 +12,61 @@ from fractions import Fraction
 import numpy as np
 
 from clearance.world.case import Case
-from clearance.world.pairs import measured_pairs
+from clearance.world.motion import kinematic_motion
+from clearance.world.pairs import Pair, selected_pairs
+from clearance.world.timeline import timeline_of
 from tests import oracle
-from tests.oracle.kinematics import link_poses, placed
+from tests.golden.exact_places import Places
+from tests.oracle.kinematics import placed
 
 SLACK = 1e-6
 """[m] Taken off the gap of two boxes, which floats have to 1e-12."""
 
 
 def least_clearance_sq(case: Case, step: int) -> tuple[Fraction, list[list[str]]]:
-    """The exact squared clearance [m^2] of a step, and the link and obstacle of each pair that has it.
+    """The exact squared clearance [m^2] of a step, and the two bodies of each pair that has it.
 
-    Of pairs in contact, the first that is found.
+    Of pairs in contact, the first that is found. Limits change no distance, and so are left aside, rules too.
     """
-    links, obstacles = _links(case, step), _obstacles(case)
+    timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
+    phase = timeline.phase_of(step)
+    pairs = selected_pairs(phase).pairs
+    bodies = _bodies(case, pairs, Fraction(float(timeline.times[step])))
     found: dict[tuple[str, str], Fraction] = {}
-    for bound, link, obstacle in _by_bound(case, links, obstacles):
+    for bound, one, other in _by_bound(case, pairs, bodies):
         least = min(found.values(), default=None)
         if least is not None and (least == 0 or (bound > 0 and bound * bound > least)):
             break
-        found[link, obstacle] = _distance_sq(*links[link], *obstacles[obstacle])
+        found[one, other] = _distance_sq(*bodies[one], *bodies[other])
     least = min(found.values())
     return least, [list(pair) for pair, sq in found.items() if sq == least]
 
 
-def _links(case: Case, step: int) -> dict:
-    """Each link's shape and its vertices in the world."""
-    (robot,) = case.robots
-    given = dict(zip(robot.trajectory.joint_names, robot.trajectory.positions[step], strict=True))
-    poses = link_poses(robot.robot, robot.fixed_positions | given, robot.world_from_base)
+def clearance_sq_of(case: Case, step: int, one: str, other: str) -> Fraction:
+    """The exact squared clearance [m^2] of two bodies at a step, as tables call them."""
+    timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
+    pairs = selected_pairs(timeline.phase_of(step)).pairs
+    asked = [p for p in pairs if (p.a.name_in(case), p.b.name_in(case)) == (one, other)]
+    bodies = _bodies(case, asked, Fraction(float(timeline.times[step])))
+    return _distance_sq(*bodies[one], *bodies[other])
+
+
+def _bodies(case: Case, pairs: list[Pair], time: Fraction) -> dict:
+    """The shape of each body of some pairs, and its vertices in the world."""
+    places = Places(case)
+    bodies = {body for pair in pairs for body in (pair.a, pair.b)}
+    shapes = {body.name_in(case): body.shape_in(case) for body in bodies}
     return {
-        body.name: (body.shape, placed(body.shape.vertices, poses[body.name]))
-        for body in robot.robot.bodies
+        name: (shape, placed(shape.vertices, places.of(name, time)))
+        for name, shape in shapes.items()
     }
 
 
-def _obstacles(case: Case) -> dict:
-    return {
-        one.name: (one.body.shape, placed(one.body.shape.vertices, one.world_from_body))
-        for one in case.obstacles
-    }
-
-
-def _by_bound(case: Case, links: dict, obstacles: dict) -> list[tuple[Fraction, str, str]]:
+def _by_bound(case: Case, pairs: list[Pair], bodies: dict) -> list[tuple[Fraction, str, str]]:
     """The measured pairs and a lower bound of each, the least first."""
-    pairs = [(case.robots[0].robot.bodies[p.i_body].name, case.obstacles[p.i_obstacle].name)
-             for p in measured_pairs(case)[0]]  # fmt: skip
-    boxes = {
-        name: _box(vertices)
-        for group in (links, obstacles)
-        for name, (_, vertices) in group.items()
-    }
-    return sorted((_gap(boxes[link], boxes[obstacle]), link, obstacle) for link, obstacle in pairs)
+    boxes = {name: _box(vertices) for name, (_, vertices) in bodies.items()}
+    names = [(pair.a.name_in(case), pair.b.name_in(case)) for pair in pairs]
+    return sorted((_gap(boxes[one], boxes[other]), one, other) for one, other in names)
 
 
 def _box(vertices: list) -> tuple[np.ndarray, np.ndarray]:

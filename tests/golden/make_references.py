@@ -9,19 +9,24 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 import clearance as cl
+from clearance.simulate.record import PairMinimum, Record
+from clearance.world.motion import kinematic_motion
+from clearance.world.timeline import timeline_of
 from tests import oracle
-from tests.golden.exact_clearances import least_clearance_sq
+from tests.golden.exact_clearances import clearance_sq_of, least_clearance_sq
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 CASES = sorted([*ROOT.glob("scenes/*/case.yaml"), *HERE.glob("cells/*.yaml")])
 DIGITS = 30
 SPREAD = 4
+N_PARTS = 8
 
 
 def main(names: list[str]) -> None:
@@ -43,18 +48,55 @@ def reference_path(path: Path) -> Path:
 
 
 def text_of(reference: dict) -> str:
-    """JSON with a line for each step."""
-    rows = ",\n  ".join(json.dumps(row) for row in reference["steps"])
-    return f'{{\n "case": {json.dumps(reference["case"])},\n "steps": [\n  {rows}\n ]\n}}\n'
+    """JSON with a line for each step and each pair."""
+    lists = {name: reference[name] for name in ("steps", "parts") if reference[name]}
+    told = [f'"case": {json.dumps(reference["case"])}']
+    for name, rows in lists.items():
+        lines = ",\n  ".join(json.dumps(row) for row in rows)
+        told.append(f'"{name}": [\n  {lines}\n ]')
+    return "{\n " + ",\n ".join(told) + "\n}\n"
 
 
 def reference_of(path: Path) -> dict:
     """The steps of a case and the truth about them."""
-    case = cl.load_case(path)
-    n_steps = len(case.robots[0].trajectory.times)
-    worst = cl.check(case, certify=False).worst_sample["step"]
-    steps = sorted({worst, *np.linspace(0, n_steps - 1, SPREAD).astype(int).tolist()})
-    return {"case": str(path.relative_to(ROOT)), "steps": [row(case, step) for step in steps]}
+    case = without_rules(cl.load_case(path))
+    steps = askable_steps(case)
+    record = cl.check(case, certify=False).record
+    clearances = record.clearances
+    nearest = min(steps, key=lambda step: clearances[step])
+    spread = np.array(steps)[np.linspace(0, len(steps) - 1, SPREAD).astype(int)].tolist()
+    rows = [row(case, step) for step in sorted({nearest, *spread})]
+    parts = [pair_row(case, least) for least in of_parts(record, steps)]
+    return {"case": str(path.relative_to(ROOT)), "steps": rows, "parts": parts}
+
+
+def of_parts(record: Record, steps: list[int]) -> list[PairMinimum]:
+    """The nearest minima of pairs with an obstacle that moves, rides or is carried, at some of the steps."""
+    case = record.case
+    names = {one.name for one in case.obstacles if not one.stands}
+    names |= {carry.part for carry in case.carries}
+    found = [
+        least
+        for least in record.pair_minima
+        if names & {least.link, least.obstacle} and least.step in steps and least.clearance > 0.0
+    ]
+    return found[:N_PARTS]
+
+
+def without_rules(case: cl.Case) -> cl.Case:
+    """The case with one limit for all pairs, so that the least clearance of a step is told of it."""
+    return replace(case, limits=replace(case.limits, rules=()))
+
+
+def askable_steps(case: cl.Case) -> list[int]:
+    """The steps within phases, at which a table that turns a body has a row."""
+    timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
+    edges = {phase.first for phase in timeline.phases[1:]}
+    tables = [one.moves for one in case.obstacles if one.moves is not None]
+    turning = [table for table in tables if np.ptp(table.quaternions, axis=0).any()]
+    known = [np.isin(timeline.times, table.timing.run_times(table.times)) for table in turning]
+    asked = np.logical_and.reduce([np.ones(len(timeline.times), dtype=bool), *known])
+    return [step for step in np.flatnonzero(asked).tolist() if step not in edges]
 
 
 def row(case: cl.Case, step: int) -> dict:
@@ -64,6 +106,16 @@ def row(case: cl.Case, step: int) -> dict:
         "step": step,
         "pairs": pairs,
         "clearance": decimal(oracle.root(least_sq, digits=DIGITS + 10)),
+    }
+
+
+def pair_row(case: cl.Case, least: PairMinimum) -> dict:
+    """One pair at the step where it comes nearest, and its clearance [m] there."""
+    exact = clearance_sq_of(case, least.step, least.link, least.obstacle)
+    return {
+        "step": least.step,
+        "pair": [least.link, least.obstacle],
+        "clearance": decimal(oracle.root(exact, digits=DIGITS + 10)),
     }
 
 

@@ -122,6 +122,15 @@ def test_a_scene_file_may_hold_what_moves(tmp_path):
     assert [source.path for source in case.sources if "door" in source.path] == ["parts/door.csv"]
 
 
+def test_what_moves_alike_is_told_in_one_note(tmp_path):
+    fixture = "{name: fixture, box: {size: [0.1, 0.1, 0.1]}, on: left/base, pose: {xyz: [0, 5, 0]}}"
+    also = "{name: fixture, box: {size: [0.1, 0.1, 0.1]}, on: left/base, moves: door.csv}"
+    assert load_cell(tmp_path, fixture, also).notes == (
+        "obstacles 'door', 'fixture' move between the poses of their tables by straight translation, and rotation "
+        "about one axis at constant speed",
+    )
+
+
 def test_notes_say_how_things_move(tmp_path):
     timing = "{file: door.csv, start: 0.25, rate: 2, after: %s}"
     notes = load_cell(tmp_path).notes

@@ -20,6 +20,7 @@ from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.pair_judge import PairJudge
 from clearance.simulate.replay import replay_of
+from clearance.world.carry import Carry
 from clearance.world.case import Clock, Limits, SelfClearance
 from clearance.world.rules import Allowance, Rule
 from clearance.world.timing import Window
@@ -120,6 +121,16 @@ def test_a_rule_that_judges_nothing_is_listed_without_a_status():
         "default": None, "fence": None, "all": "violated" if summary["verdict"] == "violated" else "clear",
     }  # fmt: skip
     assert "judges nothing" in page_of(summary, replay_of(cl.check(cell(rules=covered)).record))
+
+
+def test_what_carries_and_is_no_robot_has_its_own_tint_and_pairs_count_once_for_all_rules():
+    carries = (Carry("part", "left/tool", Window(1.0, 2.0)), Carry("part", "door", Window(2.0)))
+    record = cl.check(cell(carries=carries)).record
+    summary = summary_of(record)
+    page = page_of(summary, replay_of(record))
+    assert 'class="bar hand0"' in page and 'class="bar thing"' in page
+    n_pairs = len({(pair["link"], pair["obstacle"]) for pair in summary["pairs"]})
+    assert n_pairs < len(summary["pairs"]) and f", {n_pairs} pairs" in page
 
 
 def test_the_page_has_rules_hands_and_groups(page):

@@ -23,8 +23,34 @@ def case_of(scene: Path) -> dict:
     return YAML(typ="safe").load((scene / "case.yaml").read_text(encoding="utf-8"))
 
 
-def joints_of(scene: Path) -> dict[str, ElementTree.Element]:
-    given = case_of(scene)["robot"]["urdf"]
+def joint_tables() -> list[tuple[Path, dict]]:
+    """Each table of joints of a scene, and the robot in its case file that follows it."""
+    found = []
+    for scene in SCENES:
+        case = case_of(scene)
+        for robot in case.get("robots") or [case["robot"]]:
+            asked = robot.get("trajectory") or case["trajectory"]
+            path = scene / (asked if isinstance(asked, str) else asked["file"])
+            found.append((path, robot))
+    return found
+
+
+def pose_tables() -> list[Path]:
+    """Each table of poses of a scene."""
+    moves = [
+        scene / (asked if isinstance(asked, str) else asked["file"])
+        for scene in SCENES
+        for obstacle in case_of(scene)["scene"]["obstacles"]
+        if (asked := obstacle.get("moves"))
+    ]
+    return sorted(set(moves))
+
+
+def name_of(value: object) -> str:
+    return f"{value.parent.name}-{value.stem}" if isinstance(value, Path) else ""
+
+
+def joints_of(scene: Path, given: str) -> dict[str, ElementTree.Element]:
     stock = Path(pybullet_data.getDataPath())
     path = stock / given[14:] if given.startswith("pybullet_data:") else scene / given
     return {joint.get("name"): joint for joint in ElementTree.parse(path).getroot().iter("joint")}
@@ -46,17 +72,18 @@ def remade(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def test_all_five_scenes_are_there() -> None:
+def test_all_scenes_are_there() -> None:
     names = {scene.name for scene in SCENES}
     assert names >= {"box_box", "box_pipe", "iiwa_pipe_rack", "panda_shelf", "hot_cell"}
+    assert names >= {"dual_arm_handover", "turntable_cell", "door_and_arm"}
     assert all(case_of(scene)["name"] == scene.name for scene in SCENES)
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.name)
-def test_trajectory_is_smooth_and_within_limits(scene: Path) -> None:
-    header, rows = trajectory_of(scene / "trajectory.csv")
-    joints = joints_of(scene)
-    assert header[0] == "time" and len(rows) >= 200
+@pytest.mark.parametrize(("path", "robot"), joint_tables(), ids=name_of)
+def test_trajectory_is_smooth_and_within_limits(path: Path, robot: dict) -> None:
+    header, rows = trajectory_of(path)
+    joints = joints_of(path.parent, robot["urdf"])
+    assert header[0] == "time" and len(rows) >= 100
     assert (np.diff(rows[:, 0]) > 0).all()
     speeds = np.diff(rows[:, 1:], axis=0) / np.diff(rows[:, 0])[:, None]
     for i, name in enumerate(header[1:]):
@@ -66,6 +93,19 @@ def test_trajectory_is_smooth_and_within_limits(scene: Path) -> None:
         assert np.abs(speeds[:, i]).max() <= float(limit.get("velocity"))
     changes = np.abs(np.diff(speeds, axis=0)).max(axis=0)
     assert (changes <= 0.25 * np.abs(speeds).max(axis=0) + 1e-3).all()
+
+
+@pytest.mark.parametrize("path", pose_tables(), ids=name_of)
+def test_poses_are_in_order_and_of_unit_quaternions(path: Path) -> None:
+    header, rows = trajectory_of(path)
+    assert header == ["time", "x", "y", "z", "qx", "qy", "qz", "qw"]
+    assert (np.diff(rows[:, 0]) > 0).all()
+    assert np.abs(np.linalg.norm(rows[:, 4:], axis=1) - 1.0).max() < 2e-9
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.name)
+def test_scenes_are_small(scene: Path) -> None:
+    assert sum(path.stat().st_size for path in scene.rglob("*") if path.suffix != ".png") < 1e6
 
 
 @pytest.mark.parametrize("mesh", MESHES, ids=lambda path: path.stem)
@@ -86,11 +126,13 @@ def test_urdf_is_remade_byte_for_byte(remade: Path) -> None:
     assert (remade / path).read_bytes() == (ROOT / path).read_bytes()
 
 
-@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.name)
-def test_trajectories_are_remade_to_their_last_digit(scene: Path, remade: Path) -> None:
+TABLES = sorted({path for path, _ in joint_tables()} | set(pose_tables()))
+
+
+@pytest.mark.parametrize("path", TABLES, ids=name_of)
+def test_tables_are_remade_to_their_last_digit(path: Path, remade: Path) -> None:
     """One unit of the sixth decimal is left for another machine's rounding."""
-    path = scene.relative_to(ROOT) / "trajectory.csv"
-    header, rows = trajectory_of(scene / "trajectory.csv")
-    header_again, rows_again = trajectory_of(remade / path)
+    header, rows = trajectory_of(path)
+    header_again, rows_again = trajectory_of(remade / path.relative_to(ROOT))
     assert header == header_again
     assert np.abs(rows - rows_again).max() < 1.5e-6
