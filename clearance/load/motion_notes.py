@@ -5,6 +5,7 @@ Not for: joints that nobody gives a value (`motion_names`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -15,12 +16,17 @@ from clearance.world.timing import Timing
 
 
 class _Table(NamedTuple):
-    """What moves, and when its table is followed: its first and last sample [s] of the run."""
+    """What moves, and when its table is followed: its first and last sample [s] of the run.
+
+    Attributes:
+        taken: [s] when it is picked up, which ends its table; infinite for what never is.
+    """
 
     what: str
     first: float
     last: float
     timing: Timing
+    taken: float = math.inf
 
 
 def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
@@ -37,6 +43,10 @@ def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
     ]
     for table in _tables(case):
         notes += _before_and_after(table, start, end)
+        if table.taken < table.last:
+            notes.append(
+                f"{table.what} follows its table until it is picked up at {table.taken:g} s"
+            )
     return tuple(notes)
 
 
@@ -48,7 +58,9 @@ def _tables(case: Case) -> Iterator[_Table]:
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
             name = f"obstacle {obstacle.name!r}"
-            yield _table(name, obstacle.moves.times, obstacle.moves.timing)
+            table = _table(name, obstacle.moves.times, obstacle.moves.timing)
+            starts = [c.window.start for c in case.carries if c.part == obstacle.name]
+            yield table._replace(taken=min(starts, default=math.inf))
 
 
 def _table(what: str, times: np.ndarray, timing: Timing) -> _Table:
@@ -57,10 +69,12 @@ def _table(what: str, times: np.ndarray, timing: Timing) -> _Table:
 
 
 def _before_and_after(table: _Table, start: float, end: float) -> Iterator[str]:
-    what, first, last, timing = table
-    early, late = start < first, last < end
+    what, first, last, timing, taken = table
+    early, late = start < first, last < min(end, taken)
     if timing.after == "absent":
-        if early or late:
+        if early and taken < math.inf:
+            yield f"{what} is in the cell from {first:g} s (after: absent)"
+        elif early or late:
             yield f"{what} is in the cell from {first:g} s to {last:g} s only (after: absent)"
         return
     if early:

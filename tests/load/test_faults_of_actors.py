@@ -175,12 +175,12 @@ FAULTS = [
     (
         (
             "limits:",
-            "  - {part: door, by: right/tip, from: 0.5}\nlimits:",
+            "  - {part: door, by: right/tip, from: 0.6}\nlimits:",
             "door.csv",
             "{file: door.csv, after: absent, start: -0.5}",
         ),
         BadTime,
-        "carry[1]: part 'door' is not in the cell from 0.5 s to",
+        "carry[1]: part 'door' is not in the cell from 0.6 s to",
     ),
     # rules and allowances
     (
