@@ -5,6 +5,7 @@ Not for: joints that nobody gives a value (`motion_names`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -19,12 +20,17 @@ MOST_NAMES = 8
 
 
 class _Table(NamedTuple):
-    """What moves, and when its table is followed: its first and last sample [s] of the run."""
+    """What moves, and when its table is followed: its first and last sample [s] of the run.
+
+    Attributes:
+        taken: [s] when it is picked up, which ends its table; infinite for what never is.
+    """
 
     what: _Thing
     first: float
     last: float
     timing: Timing
+    taken: float = math.inf
 
 
 class _Thing(NamedTuple):
@@ -57,6 +63,8 @@ def notes_on_motion(case: Case, start: float, end: float) -> tuple[str, ...]:
     told = [(_Thing("obstacle", obstacle.name), BETWEEN_POSES) for obstacle in moving]
     for table in _tables(case):
         told += [(table.what, deed) for deed in _before_and_after(table, start, end)]
+        if table.taken < table.last:
+            told.append((table.what, _until_taken(table.taken)))
     alike: dict[tuple[str, _Deed], list[str]] = {}
     for thing, deed in told:
         alike.setdefault((thing.kind, deed), []).append(repr(thing.name))
@@ -76,8 +84,11 @@ def _tables(case: Case) -> Iterator[_Table]:
             yield _table(_Thing("robot", placed.robot.name), times, placed.timing)
     for obstacle in case.obstacles:
         if obstacle.moves is not None:
-            thing = _Thing("obstacle", obstacle.name)
-            yield _table(thing, obstacle.moves.times, obstacle.moves.timing)
+            table = _table(
+                _Thing("obstacle", obstacle.name), obstacle.moves.times, obstacle.moves.timing
+            )
+            starts = [c.window.start for c in case.carries if c.part == obstacle.name]
+            yield table._replace(taken=min(starts, default=math.inf))
 
 
 def _table(what: _Thing, times: np.ndarray, timing: Timing) -> _Table:
@@ -85,11 +96,21 @@ def _table(what: _Thing, times: np.ndarray, timing: Timing) -> _Table:
     return _Table(what, first, last, timing)
 
 
+def _until_taken(time: float) -> _Deed:
+    return _Deed(
+        f"follows its table until it is picked up at {time:g} s",
+        f"follow their tables until they are picked up at {time:g} s",
+    )
+
+
 def _before_and_after(table: _Table, start: float, end: float) -> Iterator[_Deed]:
-    _, first, last, timing = table
-    early, late = start < first, last < end
+    _, first, last, timing, taken = table
+    early, late = start < first, last < min(end, taken)
     if timing.after == "absent":
-        if early or late:
+        if early and taken < math.inf:
+            when = f"in the cell from {first:g} s (after: absent)"
+            yield _Deed(f"is {when}", f"are {when}")
+        elif early or late:
             when = f"in the cell from {first:g} s to {last:g} s only (after: absent)"
             yield _Deed(f"is {when}", f"are {when}")
         return

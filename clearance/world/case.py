@@ -343,6 +343,7 @@ def _require_names_apart(robots: Sequence[PlacedRobot], obstacles: Sequence[Obst
     names |= {
         f"{placed.robot.name}/{link}" for placed in robots for link in placed.robot.link_names
     }
+    names |= {link for placed in robots for link in placed.robot.link_names}  # as patterns say them
     for i, obstacle in enumerate(obstacles):
         if obstacle.name in names:
             raise BadInput(

@@ -143,8 +143,10 @@ def timeline_of(case: Case, own: Sequence[Motion]) -> Timeline:
             frozenset(i for i, table in enumerate(robots) if table.is_absent(here)),
             frozenset(i for i, table in obstacles.items() if table.is_absent(here)),
         )
+        plain = _with_taken_present(plain, phases)
         _require_carried_present(plain)
         phases.append(_with_absent(_with_parts(plain, phases)))
+        _require_carriers_present(phases[-1], end)
     return Timeline(_joined(own, phases), tuple(phases))
 
 
@@ -158,6 +160,17 @@ def _require_parts(case: Case) -> None:
                 )
         with at(f"carry[{i}].by"):
             require_known(case, carry.by)
+
+
+def _with_taken_present(phase: Phase, before: Sequence[Phase]) -> Phase:
+    """The phase with the parts that have been picked up, whose own tables say nothing from then on."""
+    taken = {part for then in before for part in then.carried}
+    if before:
+        names = [obstacle.name for obstacle in phase.case.obstacles]
+        gone = {names[i] for i in before[-1].absent_obstacles}
+        taken |= phase.carried.keys() - gone
+    absent = (i for i in phase.absent_obstacles if phase.case.obstacles[i].name not in taken)
+    return replace(phase, absent_obstacles=frozenset(absent))
 
 
 def _require_carried_present(phase: Phase) -> None:
@@ -174,6 +187,30 @@ def _require_carried_present(phase: Phase) -> None:
                 f"part {carry.part!r} is not in the cell from {start:g} s to {end:g} s (after: absent)",
                 where=f"carry[{phase.case.carries.index(carry)}]",
                 valid="a window in which it is, or after: hold",
+            )
+
+
+def _require_carriers_present(phase: Phase, end: float) -> None:
+    """Nothing, if what picks up or lets go is in the cell then; it may leave with what it carries.
+
+    Args:
+        end: [s] of the run.
+
+    Raises:
+        BadTime: a part that would vanish when it is picked up, or appear when it is let go.
+    """
+    names = [obstacle.name for obstacle in phase.case.obstacles]
+    start, until = phase.span
+    for carry in phase.carried.values():
+        if names.index(carry.part) not in phase.absent_obstacles:
+            continue
+        if start == carry.window.start or until == carry.window.end < end:
+            deed = "picks up" if start == carry.window.start else "lets go of"
+            raise BadTime(
+                f"{carry.by!r} is not in the cell from {start:g} s to {until:g} s (after: absent), and {deed} "
+                f"part {carry.part!r} then",
+                where=f"carry[{phase.case.carries.index(carry)}]",
+                valid="a window at whose ends it is, or after: hold",
             )
 
 
@@ -198,12 +235,12 @@ def _ends(knots: Knots) -> tuple[float, float]:
 
 
 def _span(case: Case, tables: Sequence[_Table]) -> tuple[float, float]:
-    """[s] From the first sample of all to the last of those that do not loop."""
+    """[s] From the first sample to the last of all that do not loop; what loops may have begun before."""
     moving = [table for table in tables if table.moves]
     if not moving:
         _ = case.robots[0].asked  # refuses a case in which nothing moves
     once = [table for table in moving if table.timing.after != "loop"] or moving
-    return min(table.once[0] for table in moving), max(table.once[1] for table in once)
+    return min(table.once[0] for table in once), max(table.once[1] for table in once)
 
 
 def _laid_out(table: _Table, end: float) -> _Table:

@@ -154,6 +154,23 @@ def test_notes_say_how_things_move(tmp_path):
     )
 
 
+@pytest.mark.parametrize(
+    ("after", "early"),
+    [
+        ("hold", "stands at its first sample until 0.25 s"),
+        ("absent", "is in the cell from 0.25 s (after: absent)"),
+    ],
+)
+def test_a_table_ends_where_its_part_is_picked_up(tmp_path, after, early):
+    timing = f"{{file: door.csv, start: 0.25, rate: 2, after: {after}}}"
+    carry = "  - {part: door, by: right/tip, from: 0.5}\nlimits:"
+    notes = load_cell(tmp_path, "door.csv", timing, "limits:", carry).notes
+    assert notes[1:] == (
+        f"obstacle 'door' {early}",
+        "obstacle 'door' follows its table until it is picked up at 0.5 s",
+    )
+
+
 def test_joints_at_zero_are_told_robot_by_robot(tmp_path):
     notes = load_cell(tmp_path, ", joints: {shoulder: 0.2}", "").notes
     assert notes[0] == (

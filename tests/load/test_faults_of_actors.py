@@ -34,6 +34,7 @@ FAULTS = [
     (("name: right", "name: ~"), BadInput, "robots[1].name: nothing is given"),
     (("name: post", "name: right"), BadInput, "both called 'right'; another name for the obstacle"),
     (("name: post", "name: right/tip"), BadInput, "both called 'right/tip'"),
+    (("name: post", "name: tip"), BadInput, "both called 'tip'; another name for the obstacle"),
     (("name: right, urdf", "name: right, urfd"), UnknownKey, "robots[1]: unknown key 'urfd'"),
     (
         ("arm.urdf, base", "no.urdf, base"),
@@ -174,12 +175,12 @@ FAULTS = [
     (
         (
             "limits:",
-            "  - {part: door, by: right/tip, from: 0.5}\nlimits:",
+            "  - {part: door, by: right/tip, from: 0.6}\nlimits:",
             "door.csv",
             "{file: door.csv, after: absent, start: -0.5}",
         ),
         BadTime,
-        "carry[1]: part 'door' is not in the cell from 0.5 s to",
+        "carry[1]: part 'door' is not in the cell from 0.6 s to",
     ),
     # rules and allowances
     (

@@ -111,6 +111,51 @@ def test_what_is_absent_and_all_on_it_is_gone_before_and_after():
         assert phase.absent_obstacles == (frozenset({1, 2}) if gone else frozenset())
 
 
+def leaving(case, name):
+    """The case without hands, in which the door or the second robot is in the cell for its table only."""
+    absent = Timing(0.0, 1.0, "absent")
+    robots, obstacles = list(case.robots), list(case.obstacles)
+    if name == "door":
+        obstacles[1] = replace(obstacles[1], moves=replace(obstacles[1].moves, timing=absent))
+    else:
+        robots[1] = replace(robots[1], timing=absent)
+    return replace(case, robots=tuple(robots), obstacles=tuple(obstacles), carries=())
+
+
+@pytest.mark.parametrize("until", [1.5, 2.0, 4.0])
+def test_a_part_that_is_picked_up_in_the_cell_stays_in_it_beyond_its_table(until):
+    case = leaving(cell(5), "door")  # its table ends at 2 s
+    case = replace(case, carries=(Carry("door", "left/tool", Window(1.0, until)),))
+    assert all(not phase.absent_obstacles for phase in timeline(case).phases)
+
+
+def test_a_part_is_picked_up_where_its_table_ends_but_not_later():
+    case = leaving(cell(5), "door")
+    held = replace(case, carries=(Carry("door", "left/tool", Window(2.0)),))
+    assert all(not phase.absent_obstacles for phase in timeline(held).phases)
+    with pytest.raises(BadTime, match="'door' is not in the cell"):
+        timeline(replace(case, carries=(Carry("door", "left/tool", Window(2.5)),)))
+
+
+def test_a_part_leaves_with_what_carries_it():
+    case = leaving(cell(5), "right")  # its table ends at 3 s
+    case = replace(case, carries=(Carry("part", "right/tool", Window(1.0)),))
+    for phase in timeline(case).phases:
+        assert phase.absent_obstacles == (frozenset({3, 4}) if phase.span[0] >= 3.0 else set())
+
+
+@pytest.mark.parametrize(
+    ("window", "says"),
+    [(Window(3.0), "picks up part 'part'"), (Window(3.5, 5.0), "picks up part 'part'"),
+     (Window(1.0, 5.0), "lets go of part 'part'")],
+)  # fmt: skip
+def test_what_is_not_in_the_cell_neither_picks_up_nor_lets_go(window, says):
+    case = leaving(cell(5), "right")
+    case = replace(case, carries=(Carry("part", "right/tool", window),))
+    with pytest.raises(BadTime, match=says):
+        timeline(case)
+
+
 @pytest.mark.parametrize(
     ("changes", "fault", "says"),
     [
@@ -143,3 +188,17 @@ def test_actors_on_each_other_in_a_ring_are_refused():
     )
     with pytest.raises(BadInput, match="a ring"):
         forest_of(replace(case, obstacles=crates, carries=()))
+
+
+def test_what_loops_may_be_running_when_the_run_begins():
+    case = cell(7)
+    door = case.obstacles[1]
+    period = float(np.ptp(door.moves.times))
+    running = replace(door, moves=replace(door.moves, timing=Timing(-0.3 * period, 1.0, "loop")))
+    case = replace(case, obstacles=(case.obstacles[0], running, *case.obstacles[2:]), carries=())
+    line = timeline(case)
+    assert line.times[0] == 0.0
+    first = line.phases[0]
+    poses = link_poses_at(first.case, first.motions, slice(0, 1))[0]
+    expected = [pose_at(case, name, 0.0) for name in NAMES]
+    assert np.allclose(poses_in(first, poses), expected, rtol=0.0, atol=1e-9)
