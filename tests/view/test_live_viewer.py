@@ -173,11 +173,11 @@ def test_the_server_ends_with_the_program(tmp_path, how):
     )
     url = re.search(r"http://\S+", program.stdout.readline())[0]
     ask = build_opener(ProxyHandler({})).open
-    assert ask(url, timeout=20).status == 200
+    assert ask(url, timeout=120).status == 200
     program.send_signal(how)
-    assert program.wait(timeout=20) == ENDS[how]
+    assert program.wait(timeout=120) == ENDS[how]
     with pytest.raises(URLError):
-        ask(url, timeout=20)
+        ask(url, timeout=120)
 
 
 def test_a_run_that_ends_in_contact_plays(tmp_path):
