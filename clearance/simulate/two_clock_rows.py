@@ -83,5 +83,5 @@ def _certificate(what: PairsOfTwoClocks, found: UnsynchronisedAnswers) -> Certif
 def _widest(intervals: UnsynchronisedIntervals, gap: float) -> float:
     """[m] How far apart the bounds of an interval were allowed to stay."""
     known = np.isfinite(intervals.upper_bound)
-    apart = (intervals.upper_bound - intervals.lower_bound)[known]
+    apart = intervals.upper_bound[known] - intervals.lower_bound[known]
     return max(gap, float(apart.max(initial=0.0)))
