@@ -22,7 +22,11 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("case_file", metavar="CASE.yaml", type=click.Path(path_type=Path))
 @click.option("--out", metavar="DIR", type=OutputPath(), help="Write the report here.")
-@click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the case's.")
+@click.option(
+    "--fail-mm",
+    type=Millimetres(),
+    help="Fail limit instead of the case's; rules that give one keep theirs.",
+)
 @click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the case's.")
 @click.option(
     "--samples-only",
@@ -217,7 +221,9 @@ def _compile_ahead(quiet: bool) -> None:
 
 
 def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits:
-    """The limits with what the command line changes; raising `fail` alone takes `warn` along."""
+    """The limits with what the command line changes; raising `fail` alone takes `warn` along, a rule's too that
+    gives no `fail` of its own.
+    """
     if fail is None and warn is None:
         return given
     if fail is None:
@@ -228,7 +234,13 @@ def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits:
         raise click.UsageError(
             f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
         )
-    return replace(given, fail=fail, warn=warn)
+    rules = tuple(
+        replace(rule, warn=max(rule.warn, fail))
+        if rule.fail is None and rule.warn is not None
+        else rule
+        for rule in given.rules
+    )
+    return replace(given, fail=fail, warn=warn, rules=rules)
 
 
 def _write(run: Run, out: Path | None, junit: Path | None) -> None:

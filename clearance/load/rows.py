@@ -22,20 +22,15 @@ def limits_of(given: limits_schema.Limits) -> Limits:
     rules = []
     for i, row in enumerate(given.rules):
         with at(f"limits.rules[{i}]"):
-            rules.append(_rule(row, given.fail))
+            rules.append(_rule(row))
+            rules[-1].levels(given.fail)
     with at("limits"):
         return Limits(given.fail, given.warn, given.joints, tuple(rules))  # type: ignore[arg-type]
 
 
-def _rule(row: limits_schema.Rule, fail: float) -> Rule:
-    return Rule(
-        row.patterns,
-        row.window,
-        row.while_carried,
-        row.name or "",
-        fail if row.fail is None else row.fail,
-        row.warn,  # type: ignore[arg-type]  # as `fail` where it is None
-    )
+def _rule(row: limits_schema.Rule) -> Rule:
+    name = row.name or ""
+    return Rule(row.patterns, row.window, row.while_carried, name, row.fail, row.warn)
 
 
 def allowances_of(given: Sequence[limits_schema.Allowed]) -> tuple[Allowance, ...]:

@@ -42,7 +42,7 @@ class RowStatus:
         """(n,) the place among the rules of the one that the motion to the next step stands worst against, and of
         those alike of the least margin above its fail limit."""
         rules = self.record.rules
-        if len(rules) == 1:
+        if len(rules) == 1 or not self.between.any():
             return np.zeros(self.record.steps.num_rows, dtype=np.int64)
         proven = [(one, one.certificate) for one in rules if one.certificate is not None]
         codes = np.array([motion_codes(c, one.limits, slice(None)) for one, c in proven])

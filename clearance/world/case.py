@@ -67,6 +67,8 @@ class Limits:
                 valid="warn at or above fail",
             )
         require_own_names("rule", [rule.name for rule in self.rules])
+        for rule in self.rules:
+            rule.levels(self.fail)
 
     @property
     def rule_names(self) -> tuple[str, ...]:
@@ -77,8 +79,7 @@ class Limits:
         """The limits by themselves (0), or those of a rule (from 1), as `rule_names` counts."""
         if i_rule == 0:
             return self if not self.rules else replace(self, rules=())
-        rule = self.rules[i_rule - 1]
-        return Limits(rule.fail, rule.warn, self.joints)
+        return Limits(*self.rules[i_rule - 1].levels(self.fail), self.joints)
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,8 @@ def _notices_of_robots(case: Case) -> list[Notice]:
 def _notices_on_limits(limits: Limits) -> list[Notice]:
     given = {"limits.fail": limits.fail, "limits.warn": limits.warn}
     for i, rule in enumerate(limits.rules):
-        given |= {f"limits.rules[{i}].fail": rule.fail, f"limits.rules[{i}].warn": rule.warn}
+        levels = {"fail": rule.fail, "warn": rule.warn}
+        given |= {f"limits.rules[{i}].{key}": level for key, level in levels.items() if level}
     large = [f"{key} is {value:g} m" for key, value in given.items() if value > LARGE_LIMIT]
     return _in_millimetres(large, "limits are")
 

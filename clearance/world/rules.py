@@ -73,7 +73,8 @@ class Rule(PairPattern):
     """Limits of some pairs [m].
 
     Attributes:
-        name: for tables. fail, warn: as in `case.Limits`.
+        name: for tables.
+        fail: as in `case.Limits`; None for the one that holds without a rule. warn: as `fail` where it is None.
 
     Raises:
         BadDimension: a level that is below 0 or not finite, or `warn` below `fail`. BadInput: the name of the
@@ -81,23 +82,35 @@ class Rule(PairPattern):
     """
 
     name: str = ""
-    fail: float = 0.0
-    warn: float = None  # type: ignore[assignment]  # always a number once it is made
+    fail: float | None = None
+    warn: float | None = None
 
     def __post_init__(self) -> None:
         if not self.name:
             object.__setattr__(self, "name", " - ".join(self.between))
         if self.name == DEFAULT:
             raise BadInput(f"a rule is called {DEFAULT!r}", valid="another name")
-        if self.warn is None:
-            object.__setattr__(self, "warn", self.fail)
         for name in ("fail", "warn"):
-            object.__setattr__(self, name, checked_level(getattr(self, name), name))
-        if self.warn < self.fail:
+            given = getattr(self, name)
+            if given is not None:
+                object.__setattr__(self, name, checked_level(given, name))
+        if self.fail is not None:
+            self.levels(self.fail)
+
+    def levels(self, fail: float) -> tuple[float, float]:
+        """Its two levels [m], where `fail` is the one that holds without a rule.
+
+        Raises:
+            BadDimension: `warn` below `fail`.
+        """
+        fail = fail if self.fail is None else self.fail
+        warn = fail if self.warn is None else self.warn
+        if warn < fail:
             raise BadDimension(
-                f"the warn limit {self.warn:g} m of rule {self.name!r} is below its fail limit {self.fail:g} m",
+                f"the warn limit {warn:g} m of rule {self.name!r} is below its fail limit {fail:g} m",
                 valid="warn at or above fail",
             )
+        return fail, warn
 
 
 def _any(names: Collection[str], pattern: str) -> bool:

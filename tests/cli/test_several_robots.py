@@ -75,3 +75,38 @@ def test_a_case_file_of_two_robots(tmp_path, capsys):
     if boolean.available():
         assert run(["workspace", str(case), "--json"]) == 0
         assert json.loads(capsys.readouterr().out)["robots"] == ["left", "right"]
+
+
+@pytest.mark.parametrize(
+    ("options", "levels"),
+    [
+        ((), {"default": (5, 20), "own": (1, 1), "inherited": (5, 30)}),
+        (("--fail-mm", "25"), {"default": (25, 25), "own": (1, 1), "inherited": (25, 30)}),
+        (("--fail-mm", "80"), {"default": (80, 80), "own": (1, 1), "inherited": (80, 80)}),
+        (("--warn-mm", "90"), {"default": (5, 90), "own": (1, 1), "inherited": (5, 30)}),
+    ],
+)
+def test_a_limit_of_the_command_line_holds_for_rules_that_give_none(
+    tmp_path, capsys, options, levels
+):
+    names = (
+        "{name: at the",
+        "{name: own, between: [right/*, post], fail: 0.001}\n    - {name: at the",
+    )
+    case = write_cell(
+        tmp_path, *names, "{between: [workpiece", "{name: inherited, between: [workpiece"
+    )
+    run(["check", str(case), "--json", *options])
+    rules = json.loads(capsys.readouterr().out)["rules"]
+    told = {one["name"]: (1000 * one["fail"], 1000 * one["warn"]) for one in rules}
+    assert {name: told[name] for name in levels} == levels
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
+@pytest.mark.parametrize("options", [(), ("--samples-only",)])
+def test_a_cell_of_several_rules_that_is_violated_is_told(tmp_path, capsys, need, options):
+    arguments = ["check", str(write_cell(tmp_path)), "--fail-mm", "1800", "--accept", "units"]
+    assert run([*arguments, "--need", need, *options]) == 1
+    told = capsys.readouterr().out
+    assert told.startswith("VIOLATED")
+    assert ("below fail" in told) == (need != "minimum")

@@ -56,9 +56,11 @@ def test_carries_rules_allowances(tmp_path):
     case = load_cell(tmp_path)
     assert case.carries == (Carry("workpiece", "left/tip", Window(0.25, 0.75), ("left/*",)),)
     assert case.limits.rules == (
-        Rule(("left/*", "fixture"), Window(0.5, 1), None, "at the fixture", 0.001, 0.001),
-        Rule(("workpiece", "*"), Window(), "workpiece", "workpiece - *", 0.005, 0.03),
+        Rule(("left/*", "fixture"), Window(0.5, 1), None, "at the fixture", 0.001),
+        Rule(("workpiece", "*"), Window(), "workpiece", "workpiece - *", None, 0.03),
     )
+    levels = [case.limits.of_rule(i) for i in (1, 2)]
+    assert [(one.fail, one.warn) for one in levels] == [(0.001, 0.001), (0.005, 0.03)]
     assert case.allow == (
         Allowance(("left/base", "post")),
         Allowance(("door", "post"), Window(end=0.5)),
