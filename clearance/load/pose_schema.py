@@ -15,6 +15,7 @@ from clearance.errors import BadInput
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.load.shape_schema import Triple
 from clearance.load.strict_model import Name, StrictModel
+from clearance.load.trajectory_request import Choice
 from clearance.world.timing import Timing, Window
 
 Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
@@ -74,6 +75,19 @@ class TimedFile(StrictModel):
     def timing(self) -> Timing:
         """When the table is followed."""
         return Timing(self.start, self.rate, self.after)
+
+
+class TrajectoryFile(TimedFile):
+    """A trajectory and when it is followed; `which` of those in a file of several, from 1."""
+
+    FILLED = frozenset({"which"})
+
+    which: Annotated[int | None, Field(ge=1)] = None
+
+    @property
+    def choice(self) -> Choice:
+        """What is said beside path and times."""
+        return Choice(self.which)
 
 
 class Windowed(StrictModel):

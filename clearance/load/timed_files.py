@@ -13,21 +13,21 @@ from clearance.errors import BadInput, at
 from clearance.load.csv_table import Opener
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
-from clearance.load.pose_schema import TimedFile
+from clearance.load.pose_schema import TimedFile, TrajectoryFile
 from clearance.load.pose_table_file import read_pose_table
 from clearance.load.trajectory_file import read_trajectory
+from clearance.load.trajectory_request import ReadTrajectory, TrajectoryRequest
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.pose_table import PoseTable, require_samples_to_loop
 from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
-from clearance.world.trajectory import Trajectory
 
 Table = TypeVar("Table")
 
 
 def trajectory_of(
-    given: TimedFile, field: str, folder: Path, robot: Robot, files: InputFiles
-) -> Trajectory:
+    given: TrajectoryFile, field: str, folder: Path, robot: Robot, files: InputFiles
+) -> ReadTrajectory:
     """The trajectory that a case file names for a robot.
 
     Args:
@@ -37,20 +37,21 @@ def trajectory_of(
         BadInput: with the field and the file.
     """
 
-    def read(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
+    def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
         needed = bool(robot.moving_joints)
-        return read_trajectory(opened, n_bytes, shown, joints_needed=needed)
+        return read_trajectory(TrajectoryRequest(opened, n_bytes, needed, given.choice), shown)
 
     path = resolved(given.file, folder)
     with at(f"{field}.file"):
-        trajectory = _read(path, files, read, "a trajectory")
+        found = _read(path, files, read, "a trajectory")
+        trajectory = found.trajectory
         with at(files.shown(path)):
             require_moving_joints(robot, trajectory.joint_names)
             require_few_turns(robot, trajectory.joint_names, trajectory)
     with at(field), at(files.shown(path)):
         require_samples_to_loop(trajectory.n_steps, given.timing)
         given.timing.run_times(trajectory.times)
-    return trajectory
+    return found
 
 
 def pose_table_of(given: TimedFile, field: str, folder: Path, files: InputFiles) -> PoseTable:

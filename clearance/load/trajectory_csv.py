@@ -8,33 +8,33 @@ all joints have one or none. Not for: which joints the robot has (`motion_names`
 from __future__ import annotations
 
 from clearance.errors import BadShape, MissingKey, nearest_name
-from clearance.load.csv_table import TIME, Opener, columns_of, header_of, refuse_standing_time
+from clearance.load.csv_table import TIME, columns_of, header_of, refuse_standing_time
+from clearance.load.trajectory_request import ReadTrajectory, TrajectoryRequest
 from clearance.world.trajectory import Trajectory
 
 _VELOCITY = "/velocity"
 
 
-def read_csv(opened: Opener, n_bytes: int, joints_needed: bool) -> Trajectory:
+def read_csv(request: TrajectoryRequest) -> ReadTrajectory:
     """The samples in a CSV file; joints in the order of their position columns.
-
-    Args:
-        opened, n_bytes, joints_needed: as in `read_trajectory`.
 
     Raises:
         BadSyntax, BadShape, MissingKey, DuplicateName, NotFinite, BadTime: with the line in the
         file. BadDimension: a velocity that no joint can have.
     """
+    request.choice.refuse_others((), "a CSV table")
+    opened = request.opened
     names = header_of(opened, "joint names")
     _refuse_unmatched_velocities(names)
-    if joints_needed and len(names) == 1:
+    if request.joints_needed and len(names) == 1:
         raise BadShape("there is no joint column", valid="time and at least one joint are needed")
     joints = tuple(name for name in names if name != TIME and not name.endswith(_VELOCITY))
     parts = [[TIME], joints]
     if len(joints) < len(names) - 1:
         parts.append([joint + _VELOCITY for joint in joints])
-    times, *moving = columns_of(opened, n_bytes, names, parts)
+    times, *moving = columns_of(opened, request.n_bytes, names, parts)
     refuse_standing_time(times[:, 0], opened)
-    return Trajectory(times[:, 0], joints, *moving)
+    return ReadTrajectory(Trajectory(times[:, 0], joints, *moving))
 
 
 def _refuse_unmatched_velocities(names: list[str]) -> None:
