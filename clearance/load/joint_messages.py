@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 from clearance.errors import BadInput, BadShape, MissingKey, nearest_name
-from clearance.load.message_documents import Fields
+from clearance.load.message_documents import DEPTH, Fields, told
 
 _HOLDERS = (
     "joint_trajectory",
@@ -41,15 +41,14 @@ class JointMessage(NamedTuple):
     @property
     def n_points(self) -> int:
         """Its points."""
-        points = self.trajectory.get("points")
-        return len(points) if isinstance(points, list) else 1
+        return _n_points(self.trajectory)
 
 
 def messages_in(documents: Sequence[Any], most: int) -> list[JointMessage]:
     """The trajectories with points, in the order of the file.
 
     Args:
-        most: how many mappings may be looked into, so that aliases do not make more of a file than it holds.
+        most: how many values may be looked at, so that aliases do not make more of a file than it holds.
 
     Raises:
         MissingKey: there is none. BadShape: none has points, or too much is repeated.
@@ -92,24 +91,31 @@ def chosen(messages: Sequence[JointMessage], which: int | None) -> JointMessage:
     return messages[which - 1]
 
 
-def _within(given: Any, place: str) -> Iterator[JointMessage | None]:
-    """Every trajectory in a message, and nothing for each mapping that is none."""
+def _within(given: Any, place: str, level: int = 0) -> Iterator[JointMessage | None]:
+    """Every trajectory in a message, and nothing for each list, mapping or value looked at on the way."""
+    yield None
+    if level > DEPTH:
+        raise BadShape("aliases nest deeper than the file")
     if isinstance(given, list):
         for i, one in enumerate(given):
-            yield from _within(one, f"{place}[{i}]")
-        return
-    yield None
+            yield from _within(one, f"{place}[{i}]", level + 1)
     if not isinstance(given, Fields):
         return
     if {"joint_names", "points"} <= set(given):
         yield JointMessage(place, given, 0)
         return
     other = given.get("multi_dof_joint_trajectory")
-    n_other = len(other.get("points") or ()) if isinstance(other, Fields) else 0
+    n_other = _n_points(other) if isinstance(other, Fields) else 0
     for key in _HOLDERS:
         if key in given:
-            for one in _within(given[key], f"{place}.{key}".lstrip(".")):
+            for one in _within(given[key], f"{place}.{key}".lstrip("."), level + 1):
                 yield one if one is None else one._replace(n_other_points=n_other)
+
+
+def _n_points(message: Fields) -> int:
+    """Its points; what is no list, and is refused later, counts as one."""
+    points = message.get("points") or []
+    return len(points) if isinstance(points, list) else 1
 
 
 def _listed(messages: Sequence[JointMessage]) -> str:
@@ -132,7 +138,7 @@ def _nothing_found(documents: Sequence[Any]) -> BadInput:
         return BadShape("the file is empty", valid="a JointTrajectory message is needed")
     first = documents[0]
     if not isinstance(first, Fields):
-        return MissingKey(f"{first!r:.60} is not a message", valid=_NEEDED)
+        return MissingKey(f"{told(first)} is not a message", valid=_NEEDED)
     if "joint_names" in first or "points" in first:
         lacks = "points" if "joint_names" in first else "joint_names"
         others = [key for key in first if key not in ("joint_names", "points")]

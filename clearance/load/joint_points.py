@@ -23,7 +23,7 @@ from clearance.errors import (
     nearest_name,
 )
 from clearance.load.joint_messages import JointMessage
-from clearance.load.message_documents import Fields
+from clearance.load.message_documents import Fields, told
 from clearance.load.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.trajectory import Trajectory
@@ -61,7 +61,7 @@ def trajectory_of_message(
     listed = given["points"]
     where = _place(given, message.place, "points")
     if not isinstance(listed, list):
-        raise BadSyntax(f"{listed!r:.60} is given", where=where, valid="a list of points is needed")
+        raise BadSyntax(f"{told(listed)} is given", where=where, valid="a list of points is needed")
     if len(listed) * (len(names) + 1) > most:
         raise BadShape("aliases repeat more than the file holds", where=where)
     points = []
@@ -83,11 +83,11 @@ def _place(nearest: Any, *keys: str) -> str:
 
 def _names(given: Any, joints_needed: bool) -> tuple[str, ...]:
     if not isinstance(given, list):
-        raise BadSyntax(f"{given!r:.60} is given", valid="a list of joint names is needed")
+        raise BadSyntax(f"{told(given)} is given", valid="a list of joint names is needed")
     for i, name in enumerate(given):
         if not isinstance(name, str) or not name:
             raise BadSyntax(
-                f"{name!r:.60} is given", where=f"[{i}]", valid="a name, in quotes if need be"
+                f"{told(name)} is given", where=f"[{i}]", valid="a name, in quotes if need be"
             )
         checked_name(name)
     if joints_needed and not given:
@@ -98,7 +98,7 @@ def _names(given: Any, joints_needed: bool) -> tuple[str, ...]:
 def _point(given: Any, n_joints: int) -> _Point:
     if not isinstance(given, Fields):
         raise BadSyntax(
-            f"{given!r:.60} is given", valid=_WHOLE if given == "..." else "a point is needed"
+            f"{told(given)} is given", valid=_WHOLE if given == "..." else "a point is needed"
         )
     for key in given:
         if key not in _KEYS:
@@ -114,11 +114,11 @@ def _point(given: Any, n_joints: int) -> _Point:
 
 def _numbers(given: Any, key: str, n_joints: int) -> list[float]:
     if not isinstance(given, list):
-        raise BadSyntax(f"{given!r:.60} is given", where=key, valid="a list of numbers is needed")
+        raise BadSyntax(f"{told(given)} is given", where=key, valid="a list of numbers is needed")
     for i, value in enumerate(given):
         if type(value) not in (int, float):
             raise BadSyntax(
-                f"{value!r:.60} is given",
+                f"{told(value)} is given",
                 where=f"{key}[{i}]",
                 valid=_WHOLE if value == "..." else "a number is needed",
             )
@@ -140,9 +140,8 @@ def _seconds(given: Any) -> float:
             seconds, nanoseconds = (given[key] for key in keys)
             if type(seconds) is int and type(nanoseconds) is int and 0 <= nanoseconds < 10**9:
                 return (seconds * 10**9 + nanoseconds) / 10**9
-    shown = dict(given) if isinstance(given, Fields) else given
     raise BadTime(
-        f"{shown!r:.60} is given",
+        f"{told(given)} is given",
         valid="seconds, {sec, nanosec} or {secs, nsecs}, whole and fewer than 1e9 nanoseconds",
     )
 

@@ -163,6 +163,13 @@ class _Builder:
             )
 
 
+def told(value: object) -> str:
+    """What a value is, short; what aliases repeat without end is not gone through."""
+    if isinstance(value, Fields):
+        return f"a mapping of {', '.join(map(repr, value)) or 'nothing':.60}"
+    return f"a list of {len(value)}" if isinstance(value, list) else f"{value!r:.60}"
+
+
 def _plain(text: str) -> Any:
     """What text without quotes means."""
     if _WHOLE.fullmatch(text):

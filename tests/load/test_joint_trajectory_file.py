@@ -128,7 +128,7 @@ def point(**fields: object) -> str:
     [
         ("", BadShape, "path.yaml: the file is empty"),
         ("---\n---\n", BadShape, "the file is empty"),
-        ("- 1\n", MissingKey, "[1] is not a message; a message with joint_names and points"),
+        ("- 1\n", MissingKey, "a list of 1 is not a message; a message with joint_names and points"),
         ("a: 1\nb: 2\n", MissingKey, "there is no trajectory under the keys 'a', 'b'"),
         ("joint_name: [a]\npoints: []\n", MissingKey, "no 'joint_names'; did you mean 'joint_name'?"),
         ("a: [1\n", BadSyntax, "line 2: not YAML"),
@@ -150,7 +150,7 @@ def point(**fields: object) -> str:
         (ROS2.replace("  - 0.05\n", "  - 1_0\n"), BadSyntax, "'1_0' is given"),
         (ROS2.replace("  - 0.05\n", "  - 1e999\n"), NotFinite, "positions[1]: inf is given"),
         (ROS2.replace("    sec: 1\n", "    sec: -1\n"), BadTime, "line 21: points[1]: time_from_start: time -0.9"),
-        (ROS2.replace("    sec: 1\n", ""), BadTime, "{'nanosec': 100000000} is given"),
+        (ROS2.replace("    sec: 1\n", ""), BadTime, "a mapping of 'nanosec' is given"),
         (ROS2.replace("    nanosec: 100000000\n", "    nanosec: 1000000000\n"), BadTime, "fewer than 1e9"),
         (point(velocity=[1, 2]), UnknownKey, "unknown key 'velocity'; did you mean 'velocities'?"),
         (point(positions=[]), MissingKey, "'positions' is missing or empty"),
@@ -203,10 +203,18 @@ def test_aliases_make_no_more_of_a_file_than_it_holds():
         parse(wide + "- *p\n" * 1000)
     doubled = "t0: &t0 {trajectory: []}\n" + many
     doubled += "".join(
-        f"t{i}: &t{i} {{trajectory: [*t{i - 1}, *t{i - 1}]}}\n" for i in range(1, 28)
+        f"t{i}: &t{i} {{trajectory: [{', '.join([f'*t{i - 1}'] * 9)}]}}\n" for i in range(1, 10)
     )
     with pytest.raises(BadShape, match="aliases repeat more"):
-        parse(doubled + "trajectory: *t27\n")
+        parse(doubled + "trajectory: *t9\n")
+    lists = "t0: &t0 []\n" + "".join(f"t{i}: &t{i} [*t{i - 1}, *t{i - 1}]\n" for i in range(1, 28))
+    with pytest.raises(BadShape, match="aliases repeat more"):
+        parse(lists + "trajectory: *t27\n")
+    with pytest.raises(BadSyntax, match=r"joint_names: \[0\]: a list of 2 is given"):
+        parse(lists + "joint_names: *t27\npoints: []\n".replace("[]", "[{}]"))
+    nested = "t0: &t0 []\n" + "".join(f"t{i}: &t{i} [*t{i - 1}]\n" for i in range(1, 3000))
+    with pytest.raises(BadShape, match="aliases nest deeper than the file"):
+        parse(nested + "trajectory: *t2999\n")
 
 
 def test_long_files_are_refused_unread():
