@@ -77,17 +77,31 @@ class TimedFile(StrictModel):
         return Timing(self.start, self.rate, self.after)
 
 
-class TrajectoryFile(TimedFile):
-    """A trajectory and when it is followed; `which` of those in a file of several, from 1."""
+class Units(StrictModel):
+    """What the angles and lengths of a table are written in; velocities are in it a second."""
 
-    FILLED = frozenset({"which"})
+    angle: Literal["rad", "deg"] = "rad"
+    length: Literal["m", "mm"] = "m"
+
+
+class TrajectoryFile(TimedFile):
+    """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
+    `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
+    """
+
+    FILLED = frozenset({"which", "units", "joints", "period"})
 
     which: Annotated[int | None, Field(ge=1)] = None
+    units: Units | None = None
+    joints: Annotated[list[Name], Field(min_length=1)] | None = None
+    period: Annotated[float | None, Field(gt=0)] = None
 
     @property
     def choice(self) -> Choice:
         """What is said beside path and times."""
-        return Choice(self.which)
+        units = None if self.units is None else (self.units.angle, self.units.length)
+        joints = None if self.joints is None else tuple(self.joints)
+        return Choice(self.which, units, joints, self.period)
 
 
 class Windowed(StrictModel):

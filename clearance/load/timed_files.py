@@ -17,6 +17,7 @@ from clearance.load.pose_schema import TimedFile, TrajectoryFile
 from clearance.load.pose_table_file import read_pose_table
 from clearance.load.trajectory_file import read_trajectory
 from clearance.load.trajectory_request import ReadTrajectory, TrajectoryRequest
+from clearance.world.joint_positions import turns
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.pose_table import PoseTable, require_samples_to_loop
 from clearance.world.reach import require_few_turns
@@ -38,8 +39,9 @@ def trajectory_of(
     """
 
     def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
-        needed = bool(robot.moving_joints)
-        return read_trajectory(TrajectoryRequest(opened, n_bytes, needed, given.choice), shown)
+        kinds = {joint.name: turns(joint) for joint in robot.moving_joints}
+        request = TrajectoryRequest(opened, n_bytes, bool(kinds), given.choice, kinds)
+        return read_trajectory(request, shown)
 
     path = resolved(given.file, folder)
     with at(f"{field}.file"):

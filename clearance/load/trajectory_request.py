@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass, fields
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 from clearance.errors import BadInput
@@ -17,9 +17,15 @@ class Choice:
 
     Attributes:
         which: the number of the trajectory that is meant, from 1, in a file that holds several.
+        units: of angles and lengths that name no unit themselves: keys of `column_units.UNITS`.
+        joints: the columns beside time of a table without a header.
+        period: [s] from row to row of a table without times.
     """
 
     which: int | None = None
+    units: tuple[str, str] | None = None
+    joints: tuple[str, ...] | None = None
+    period: float | None = None
 
     def refuse_others(self, used: Collection[str], what: str) -> None:
         """Nothing, if all that is said is of use.
@@ -30,11 +36,10 @@ class Choice:
         Raises:
             BadInput: the first that says nothing about such a file.
         """
-        for field in fields(self):
-            if field.name not in used and getattr(self, field.name) is not None:
+        for name in (one.name for one in fields(self)):
+            if name not in used and getattr(self, name) is not None:
                 raise BadInput(
-                    f"{field.name!r} says nothing about {what}",
-                    valid=f"leave {field.name!r} out of trajectory",
+                    f"{name!r} says nothing about {what}", valid=f"leave {name!r} out of trajectory"
                 )
 
 
@@ -45,12 +50,14 @@ class TrajectoryRequest:
     Attributes:
         opened: opens the file, `n_bytes` long, again and again.
         joints_needed: False for a robot that has no joint to move, for which times alone do.
+        turns: of each joint that the robot can move, whether it turns; empty where the robot is not known.
     """
 
     opened: Opener
     n_bytes: int
     joints_needed: bool = True
     choice: Choice = Choice()
+    turns: Mapping[str, bool] = field(default_factory=dict)
 
 
 class ReadTrajectory(NamedTuple):

@@ -48,6 +48,7 @@ def readers() -> dict[str, Reader]:
         "URDF": Reader("arm.urdf", _URDF, _case_reader("arm.urdf")),
         "case": Reader("case.yaml", _CASE, _case_reader("case.yaml")),
         "trajectory": Reader("path.csv", _PATH, _trajectory_reader("path.csv")),
+        "trajectory semicolons": Reader("path.csv", _COMMAS, _trajectory_reader("path.csv")),
         "JointTrajectory": Reader("path.yaml", _MESSAGE, _trajectory_reader("path.yaml")),
         "JointTrajectory JSON": Reader("path.json", _MESSAGE_JSON, _trajectory_reader("path.json")),
     }
@@ -279,6 +280,8 @@ limits: {fail: 0.005, warn: 0.02}
 allow:
 - [base, post]
 """
+
+_COMMAS = b"time [ms];shoulder [deg]\n0;0,5\n500;11,25\n1e3;-2,5e0\n"
 
 _MESSAGE = b"""joint_names:
 - shoulder
