@@ -16,7 +16,7 @@ from clearance.load.input_files import InputFiles, resolved
 from clearance.load.pose_schema import TimedFile, TrajectoryFile
 from clearance.load.pose_table_file import read_pose_table
 from clearance.load.trajectory_file import read_trajectory
-from clearance.load.trajectory_request import ReadTrajectory, TrajectoryRequest
+from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.world.joint_positions import turns
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.pose_table import PoseTable, require_samples_to_loop
@@ -54,6 +54,19 @@ def trajectory_of(
         require_samples_to_loop(trajectory.n_steps, given.timing)
         given.timing.run_times(trajectory.times)
     return found
+
+
+def load_trajectory(path: Path, choice: Choice) -> ReadTrajectory:
+    """The trajectory in a file, whatever robot it is for.
+
+    Raises:
+        BadInput: with the place in the file.
+    """
+
+    def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
+        return read_trajectory(TrajectoryRequest(opened, n_bytes, choice=choice), shown)
+
+    return _read(path, InputFiles(path.parent), read, "a trajectory")
 
 
 def pose_table_of(given: TimedFile, field: str, folder: Path, files: InputFiles) -> PoseTable:
