@@ -19,12 +19,15 @@ from clearance.cli.options import OutputPath
     type=click.IntRange(min=1),
     help="Which trajectory of a file that holds several, from 1.",
 )
+@click.option("--topic", help="Which topic of a bag.")
 @click.option("--force", is_flag=True, help="Overwrite OUT where it is there.")
-def convert(in_file: Path, out_file: Path, which: int | None, force: bool) -> int:
+def convert(
+    in_file: Path, out_file: Path, which: int | None, topic: str | None, force: bool
+) -> int:
     """The trajectory IN as OUT: a CSV table, or a JointTrajectory message in YAML or JSON, by suffix.
 
-    Every number comes back bit for bit; times of messages are whole nanoseconds, and a note says
-    where they were not. Exit code: 0, or 2 for bad input.
+    IN may be a bag, too. Every number comes back bit for bit; times of messages are whole
+    nanoseconds, and a note says where they were not. Exit code: 0, or 2 for bad input.
     """
     from clearance.cli.places import refuse_inputs, require_file_place
     from clearance.errors import Unwritable, at, unwritable
@@ -36,7 +39,7 @@ def convert(in_file: Path, out_file: Path, which: int | None, force: bool) -> in
     refuse_inputs([out_file], [in_file])
     if out_file.exists() and not force:
         raise Unwritable("is there already", where=str(out_file), valid="--force overwrites it")
-    trajectory, notes = load_trajectory(in_file, Choice(which))
+    trajectory, notes = load_trajectory(in_file, Choice(which, topic=topic))
     with at(in_file.name):
         content, changes = written(trajectory, out_file.name)
     with unwritable(out_file):

@@ -87,21 +87,23 @@ class Units(StrictModel):
 class TrajectoryFile(TimedFile):
     """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
     `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
+    `topic` is that of a bag.
     """
 
-    FILLED = frozenset({"which", "units", "joints", "period"})
+    FILLED = frozenset({"which", "units", "joints", "period", "topic"})
 
     which: Annotated[int | None, Field(ge=1)] = None
     units: Units | None = None
     joints: Annotated[list[Name], Field(min_length=1)] | None = None
     period: Annotated[float | None, Field(gt=0)] = None
+    topic: Name | None = None
 
     @property
     def choice(self) -> Choice:
         """What is said beside path and times."""
         units = None if self.units is None else (self.units.angle, self.units.length)
         joints = None if self.joints is None else tuple(self.joints)
-        return Choice(self.which, units, joints, self.period)
+        return Choice(self.which, units, joints, self.period, self.topic)
 
 
 class Windowed(StrictModel):

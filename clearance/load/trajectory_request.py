@@ -20,12 +20,14 @@ class Choice:
         units: of angles and lengths that name no unit themselves: keys of `column_units.UNITS`.
         joints: the columns beside time of a table without a header.
         period: [s] from row to row of a table without times.
+        topic: of a bag.
     """
 
     which: int | None = None
     units: tuple[str, str] | None = None
     joints: tuple[str, ...] | None = None
     period: float | None = None
+    topic: str | None = None
 
     def refuse_others(self, used: Collection[str], what: str) -> None:
         """Nothing, if all that is said is of use.
