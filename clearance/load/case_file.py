@@ -87,7 +87,12 @@ def load_case(path: str | PathLike[str]) -> Case:
     return replace(
         case,
         sources=files.sources,
-        notes=(*notes, *scene_notes, *notes_on_motion(case, start, end)),
+        notes=(
+            *notes,
+            *dict.fromkeys(reader.notes),
+            *scene_notes,
+            *notes_on_motion(case, start, end),
+        ),
         profiles=profiles,
     )
 

@@ -11,7 +11,7 @@ import csv
 import io
 import os
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -35,16 +35,56 @@ Opener = Callable[[], BinaryIO]
 """Opens a file for reading from its start."""
 
 
-def header_of(opened: Opener, others: str) -> list[str]:
-    """The names of the columns, one of which is `time`.
+class TextTable(NamedTuple):
+    """A file with a table, and how it is written.
+
+    Attributes:
+        opened: opens it, again and again. names: of its columns, where it has no header.
+    """
+
+    opened: Opener
+    delimiter: str = ","
+    decimal: str = "."
+    names: tuple[str, ...] | None = None
+
+    def float_of(self, cell: str) -> float | None:
+        """The number in a cell, or None."""
+        if "_" in cell or (self.decimal != "." and "." in cell):
+            return None
+        try:
+            return float(cell.replace(self.decimal, "."))
+        except ValueError:
+            return None
+
+
+def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTable:
+    """The table with the separators that it shows: semicolons where the first row has some and, in a header, no
+    commas; then decimal commas where there is any comma.
 
     Args:
-        others: what the other columns are, for errors.
+        names: of the columns, where there is no header.
+    """
+    with opened() as file:
+        start = file.read(65536).removeprefix(b"\xef\xbb\xbf").lstrip().partition(b"\n")[0]
+        if b";" not in start or (names is None and b"," in start):
+            return TextTable(opened, names=names)
+        file.seek(0)
+        has_comma = any(b"," in chunk for chunk in iter(lambda: file.read(1 << 20), b""))
+    return TextTable(opened, ";", "," if has_comma else ".", names)
+
+
+def header_of(table: TextTable, others: str) -> list[str]:
+    """The names of the columns, each once.
+
+    Args:
+        others: what the columns beside `time` are, for errors.
 
     Raises:
-        BadSyntax, DuplicateName, MissingKey: with the column.
+        BadSyntax, DuplicateName: with the column.
     """
-    _, cells = next(_rows(opened), (0, []))
+    if table.names is not None:
+        return list(table.names)
+    _, cells = next(_rows(table), (0, []))
     if not any(cell.strip() for cell in cells):
         raise BadSyntax("the file is empty", valid=f"a header with {TIME!r} and {others} is needed")
     names = [cell.strip() for cell in cells]
@@ -56,16 +96,24 @@ def header_of(opened: Opener, others: str) -> list[str]:
             raise DuplicateName(f"column {name!r} is there twice", valid="each column once")
         seen.add(name)
         checked_name(name)
+    return names
+
+
+def require_time(names: Sequence[str], others: str) -> None:
+    """Nothing, if one of the columns is `time`.
+
+    Raises:
+        MissingKey: none is.
+    """
     if TIME not in names:
         raise MissingKey(
             f"there is no column {TIME!r} in the header {','.join(names)!r:.80}",
             valid=f"the header names the columns, separated by commas: time and {others}",
         )
-    return names
 
 
 def columns_of(
-    opened: Opener, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
+    table: TextTable, n_bytes: int, names: list[str], parts: Sequence[Sequence[str]]
 ) -> list[np.ndarray]:
     """For each of `parts` the (n, len(part)) columns of its names.
 
@@ -78,39 +126,43 @@ def columns_of(
     most = (
         n_bytes // (2 * len(names)) + 2
     )  # a cell is a digit and a comma; what is not filled takes no memory
-    tables = [np.empty((most, len(part))) for part in parts]
+    found = [np.empty((most, len(part))) for part in parts]
     n_rows = 0
-    for batch in _batches(opened, names):
+    for batch in _batches(table, names):
         rows = slice(n_rows, n_rows + batch.num_rows)
-        for table, part in zip(tables, parts, strict=True):
+        for columns, part in zip(found, parts, strict=True):
             for i, name in enumerate(part):
-                table[rows, i] = batch.column(names.index(name)).to_numpy()
+                columns[rows, i] = batch.column(names.index(name)).to_numpy()
         n_rows = rows.stop
     if not n_rows:
         raise _no_rows()
-    for table in tables:
-        table.resize(
-            (n_rows, table.shape[1]), refcheck=False
+    for columns in found:
+        columns.resize(
+            (n_rows, columns.shape[1]), refcheck=False
         )  # gives the rest back, without a copy
-    _refuse_not_finite(tables, parts, names, opened)
-    return tables
+    _refuse_not_finite(found, parts, names, table)
+    return found
 
 
-def _batches(opened: Opener, names: list[str]) -> Iterator[pa.RecordBatch]:
+def _batches(table: TextTable, names: list[str]) -> Iterator[pa.RecordBatch]:
     """All rows, a few megabytes at a time; columns as in the header."""
     import pyarrow as pa
     from pyarrow import csv as arrow_csv
 
     keys = [str(i) for i in range(len(names))]
     types = arrow_csv.ConvertOptions(
-        column_types=dict.fromkeys(keys, pa.float64()), null_values=[], strings_can_be_null=False
+        column_types=dict.fromkeys(keys, pa.float64()),
+        null_values=[],
+        strings_can_be_null=False,
+        decimal_point=table.decimal,
     )
-    reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(opened))
+    reading = arrow_csv.ReadOptions(column_names=keys, skip_rows=_header_line(table))
+    parsing = arrow_csv.ParseOptions(delimiter=table.delimiter)
     try:
-        with opened() as file, _native(file) as stream:
-            yield from arrow_csv.open_csv(stream, reading, convert_options=types)
+        with table.opened() as file, _native(file) as stream:
+            yield from arrow_csv.open_csv(stream, reading, parsing, types)
     except pa.ArrowException as error:
-        raise _fault_in_rows(opened, names) or BadSyntax(
+        raise _fault_in_rows(table, names) or BadSyntax(
             f"not a table of numbers: {error}"
         ) from None
 
@@ -136,42 +188,38 @@ def _no_rows() -> ClearanceError:
     return BadShape("there are no rows below the header", valid="at least one row is needed")
 
 
-def _fault_in_rows(opened: Opener, names: list[str]) -> ClearanceError | None:
+def _fault_in_rows(table: TextTable, names: list[str]) -> ClearanceError | None:
     """The first row that is not as many numbers as the header has names."""
-    rows = _rows(opened)
-    next(rows)
+    rows = _data_rows(table)
+    has_header = table.names is None
+    given = "the header has" if has_header else "there are"
     n_rows = 0
     for line, cells in rows:
         n_rows += 1
         where = f"line {line}"
         if len(cells) != len(names):
             return BadShape(
-                f"{len(cells)} columns", where=where, valid=f"the header has {len(names)}"
+                f"{len(cells)} columns",
+                where=where,
+                valid=f"{given} {len(names)}{'' if has_header else ' names'}",
             )
         for name, cell in zip(names, cells, strict=True):
-            if not _is_number(cell):
+            if table.float_of(cell) is None:
+                valid = "decimals have commas in this file" if table.decimal == "," else ""
                 return BadSyntax(
-                    f"{cell.strip()!r} in column {name!r} is not a number", where=where
+                    f"{cell.strip()!r} in column {name!r} is not a number", where=where, valid=valid
                 )
     return None if n_rows else _no_rows()
 
 
-def _is_number(cell: str) -> bool:
-    try:
-        float(cell)
-    except ValueError:
-        return False
-    return "_" not in cell
-
-
 def _refuse_not_finite(
-    tables: list[np.ndarray], parts: Sequence[Sequence[str]], names: list[str], opened: Opener
+    found: list[np.ndarray], parts: Sequence[Sequence[str]], names: list[str], table: TextTable
 ) -> None:
     bad = []
-    for table, part in zip(tables, parts, strict=True):
-        least = np.flatnonzero(~np.isfinite(table).all(axis=1))[:1].tolist()
+    for columns, part in zip(found, parts, strict=True):
+        least = np.flatnonzero(~np.isfinite(columns).all(axis=1))[:1].tolist()
         bad += [
-            (row, names.index(part[i]), table[row, i]) for row in least for i in range(len(part))
+            (row, names.index(part[i]), columns[row, i]) for row in least for i in range(len(part))
         ]
     wrong = [(row, column, value) for row, column, value in bad if not np.isfinite(value)]
     if not wrong:
@@ -179,12 +227,12 @@ def _refuse_not_finite(
     i_row, i_column, value = min(wrong, key=lambda cell: cell[:2])
     raise NotFinite(
         f"{value} in column {names[i_column]!r}",
-        where=f"line {line_of_row(opened, i_row)}",
+        where=f"line {line_of_row(table, i_row)}",
         valid="a finite number is needed",
     )
 
 
-def refuse_standing_time(times: np.ndarray, opened: Opener) -> None:
+def refuse_standing_time(times: np.ndarray, table: TextTable) -> None:
     """Nothing, if times increase from row to row.
 
     Raises:
@@ -196,15 +244,16 @@ def refuse_standing_time(times: np.ndarray, opened: Opener) -> None:
     i_row = int(late[0]) + 1
     raise BadTime(
         f"time {float(times[i_row])} follows {float(times[i_row - 1])}",
-        where=f"line {line_of_row(opened, i_row)}",
+        where=f"line {line_of_row(table, i_row)}",
         valid="time must increase from row to row",
     )
 
 
-def _rows(opened: Opener) -> Iterator[tuple[int, list[str]]]:
+def _rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
     """(line number, cells) of every row that is not blank; lines count from 1."""
-    with opened() as file:
-        reader = csv.reader(io.TextIOWrapper(file, encoding="utf-8-sig", newline=""))
+    with table.opened() as file:
+        text = io.TextIOWrapper(file, encoding="utf-8-sig", newline="")
+        reader = csv.reader(text, delimiter=table.delimiter)
         try:
             for cells in reader:
                 if cells:
@@ -215,17 +264,22 @@ def _rows(opened: Opener) -> Iterator[tuple[int, list[str]]]:
             raise BadSyntax(f"not CSV: {error}", where=f"line {reader.line_num}") from None
 
 
-def _header_line(opened: Opener) -> int:
+def _data_rows(table: TextTable) -> Iterator[tuple[int, list[str]]]:
+    """Those below the header."""
+    rows = _rows(table)
+    if table.names is None:
+        next(rows)
+    return rows
+
+
+def _header_line(table: TextTable) -> int:
     """Number of lines up to and with the header."""
-    line, _ = next(_rows(opened))
-    return line
+    return 0 if table.names is not None else next(_rows(table))[0]
 
 
-def line_of_row(opened: Opener, i_row: int) -> int:
+def line_of_row(table: TextTable, i_row: int) -> int:
     """The line of the file that a row, counted from 0, is on."""
-    rows = _rows(opened)
-    next(rows)
-    for i, (line, _) in enumerate(rows):
+    for i, (line, _) in enumerate(_data_rows(table)):
         if i == i_row:
             return line
     raise AssertionError("a row that was parsed is gone")

@@ -37,8 +37,8 @@ _ADVICE = {
     ),
     "joint trajectory": (
         "a ROS JointTrajectory",
-        "write its points as a CSV table, time and joint names in the header, and name that in a case file: "
-        "trajectory: path.csv",
+        "name it in a case file: trajectory: path.yaml, beside robot and scene; a file of it ends in .yaml "
+        "or .json",
     ),
     "planning scene": (
         "a MoveIt planning scene",
@@ -58,6 +58,9 @@ _LEFT = {
     "csv": ("a URDF file", "a trajectory", "a table of poses"),
 }
 """What may be wanted where a file is of a kind, or is better answered by who reads it."""
+
+_MESSAGES = {".yaml", ".yml", ".json"}
+"""What is read as a trajectory of messages."""
 
 _MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf"}
 
@@ -80,12 +83,18 @@ def refuse_foreign(data: bytes, shown: str, wanted: str) -> None:
     kind = _kind(data, name)
     if kind is None or wanted in _LEFT.get(kind, ()):
         return
+    if (kind, wanted) == ("joint trajectory", "a trajectory") and _suffix(name) in _MESSAGES:
+        return
     what, remedy = _ADVICE[kind]
     raise BadSyntax(f"this is {what}, not {wanted}", where=shown, valid=remedy.format(name=name))
 
 
+def _suffix(name: str) -> str:
+    return PurePath(name).suffix.lower()
+
+
 def _kind(data: bytes, name: str) -> str | None:
-    suffix = PurePath(name).suffix.lower()
+    suffix = _suffix(name)
     if suffix in _MESHES:
         return "mesh"
     start = data[:65536].removeprefix(b"\xef\xbb\xbf").lstrip()
@@ -95,7 +104,7 @@ def _kind(data: bytes, name: str) -> str | None:
         return "csv"
     if suffix == ".scene" or re.match(rb"[^\n:{]*\n\* \S", start):
         return "scene"
-    keys = set(re.findall(rb"^[ \t-]*([a-z_]+):", start, re.MULTILINE))
+    keys = set(re.findall(rb"^[ \t{-]*\"?([a-z_]+)\"?:", start, re.MULTILINE))
     if {b"joint_names", b"points"} <= keys:
         return "joint trajectory"
     if b"collision_objects" in keys:

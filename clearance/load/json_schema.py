@@ -32,6 +32,9 @@ def case_schema() -> dict[str, Any]:
     for pose in ("Pose", "Base"):
         parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}
     parts["TimedFile"] = _or_path(parts["TimedFile"], "a CSV file")
+    parts["TrajectoryFile"] = _or_path(
+        parts["TrajectoryFile"], "a CSV file, a JointTrajectory in YAML or JSON, or a bag"
+    )
     parts["Allowed"] = {"anyOf": [parts["Allowed"]["properties"]["between"], parts["Allowed"]]}
     parts["Clock"] = {"anyOf": [{"enum": list(schema.CLOCKS)}, parts["Clock"]]}
     keys["clock"]["default"] = "common"

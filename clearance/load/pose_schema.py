@@ -15,6 +15,7 @@ from clearance.errors import BadInput
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
 from clearance.load.shape_schema import Triple
 from clearance.load.strict_model import Name, StrictModel
+from clearance.load.trajectory_request import Choice
 from clearance.world.timing import Timing, Window
 
 Quadruple = Annotated[list[float], Field(min_length=4, max_length=4)]
@@ -74,6 +75,35 @@ class TimedFile(StrictModel):
     def timing(self) -> Timing:
         """When the table is followed."""
         return Timing(self.start, self.rate, self.after)
+
+
+class Units(StrictModel):
+    """What the angles and lengths of a table are written in; velocities are in it a second."""
+
+    angle: Literal["rad", "deg"] = "rad"
+    length: Literal["m", "mm"] = "m"
+
+
+class TrajectoryFile(TimedFile):
+    """A trajectory and when it is followed; `which` of those in a file of several, from 1. A table may be in other
+    `units`, have no header but `joints` for its columns, and no times but a `period` [s] from row to row.
+    `topic` is that of a bag.
+    """
+
+    FILLED = frozenset({"which", "units", "joints", "period", "topic"})
+
+    which: Annotated[int | None, Field(ge=1)] = None
+    units: Units | None = None
+    joints: Annotated[list[Name], Field(min_length=1)] | None = None
+    period: Annotated[float | None, Field(gt=0)] = None
+    topic: Name | None = None
+
+    @property
+    def choice(self) -> Choice:
+        """What is said beside path and times."""
+        units = None if self.units is None else (self.units.angle, self.units.length)
+        joints = None if self.joints is None else tuple(self.joints)
+        return Choice(self.which, units, joints, self.period, self.topic)
 
 
 class Windowed(StrictModel):

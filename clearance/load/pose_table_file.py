@@ -13,10 +13,12 @@ from clearance.errors import BadPose, MissingKey, UnknownKey, at, nearest_name
 from clearance.load.csv_table import (
     TIME,
     Opener,
+    TextTable,
     columns_of,
     header_of,
     line_of_row,
     refuse_standing_time,
+    require_time,
 )
 from clearance.tolerance import LARGEST, ROTATION
 from clearance.world.pose_table import PoseTable
@@ -36,13 +38,15 @@ def read_pose_table(opened: Opener, n_bytes: int, shown: str) -> PoseTable:
         BadSyntax, BadShape, MissingKey, UnknownKey, DuplicateName, NotFinite, BadTime, BadPose: with the line.
     """
     with at(shown):
-        names = header_of(opened, ", ".join(COLUMNS[1:]))
+        table = TextTable(opened)
+        names = header_of(table, ", ".join(COLUMNS[1:]))
+        require_time(names, ", ".join(COLUMNS[1:]))
         _require_columns(names)
         parts = [[TIME], _POSITION, _QUATERNION]
-        times, positions, quaternions = columns_of(opened, n_bytes, names, parts)
-        refuse_standing_time(times[:, 0], opened)
-        _refuse_far(positions, opened)
-        _refuse_off_length_one(quaternions, opened)
+        times, positions, quaternions = columns_of(table, n_bytes, names, parts)
+        refuse_standing_time(times[:, 0], table)
+        _refuse_far(positions, table)
+        _refuse_off_length_one(quaternions, table)
         return PoseTable(times[:, 0], positions, quaternions)
 
 
@@ -65,18 +69,18 @@ def _require_columns(names: list[str]) -> None:
             )
 
 
-def _refuse_far(positions: np.ndarray, opened: Opener) -> None:
+def _refuse_far(positions: np.ndarray, table: TextTable) -> None:
     far = np.abs(positions).max(axis=1)
     rows = np.flatnonzero(far > LARGEST)
     if len(rows):
         raise BadPose(
             f"a position is {far[rows[0]]:g} m away",
-            where=f"line {line_of_row(opened, int(rows[0]))}",
+            where=f"line {line_of_row(table, int(rows[0]))}",
             valid=f"{LARGEST:g} m or less",
         )
 
 
-def _refuse_off_length_one(quaternions: np.ndarray, opened: Opener) -> None:
+def _refuse_off_length_one(quaternions: np.ndarray, table: TextTable) -> None:
     with np.errstate(over="ignore"):
         lengths = np.linalg.norm(quaternions, axis=1)
     rows = np.flatnonzero(~(np.abs(lengths - 1.0) <= ROTATION))
@@ -84,6 +88,6 @@ def _refuse_off_length_one(quaternions: np.ndarray, opened: Opener) -> None:
         row = int(rows[0])
         raise BadPose(
             f"the quaternion {quaternions[row].tolist()} has length {lengths[row]:.9g}",
-            where=f"line {line_of_row(opened, row)}",
+            where=f"line {line_of_row(table, row)}",
             valid=f"qx,qy,qz,qw of length 1 within {ROTATION:g}, the scalar last",
         )

@@ -29,11 +29,15 @@ class RobotReader:
 
     Args:
         folder: against which paths are looked up. meshes: reads and keeps mesh files, and all others.
+
+    Attributes:
+        notes: a line each on how what was read so far was taken.
     """
 
     def __init__(self, folder: Path, meshes: MeshStore) -> None:
         self._folder, self._meshes, self._files = folder, meshes, meshes.files
         self._read: dict[UrdfRequest, Robot] = {}
+        self.notes: list[str] = []
 
     def placed(self, entry: schema.RobotEntry) -> PlacedRobot:
         """The robot of an entry.
@@ -47,7 +51,9 @@ class RobotReader:
         trajectory = None
         if entry.trajectory is not None:
             where = entry.trajectory_field
-            trajectory = trajectory_of(entry.trajectory, where, self._folder, robot, self._files)
+            read = trajectory_of(entry.trajectory, where, self._folder, robot, self._files)
+            trajectory = read.trajectory
+            self.notes += read.notes
         with at(f"{field}.joints"):
             require_moving_joints(robot, given.joints)
             check_not_given_twice(given.joints, trajectory.joint_names if trajectory else ())

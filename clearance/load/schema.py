@@ -16,7 +16,7 @@ from pydantic import AfterValidator, Field, model_validator
 from clearance.errors import BadInput, MissingKey, nearest_name
 from clearance.load.limits_schema import Allowed, Limits
 from clearance.load.obstacle_schema import Scene
-from clearance.load.pose_schema import Base, TimedFile, window_of
+from clearance.load.pose_schema import Base, TrajectoryFile, window_of
 from clearance.load.strict_model import Level, Name, StrictModel
 from clearance.world.notice import KINDS
 from clearance.world.timing import Window
@@ -39,7 +39,7 @@ class Robot(StrictModel):
     urdf: Name
     package_dirs: list[Name] = []
     base: Base = Base()
-    trajectory: TimedFile | None = None
+    trajectory: TrajectoryFile | None = None
     exclude_links: list[Name] = []
     joints: dict[str, float] = {}
     geometry: Literal["collision", "visual", "collision_or_visual"] = "collision"
@@ -137,7 +137,7 @@ class RobotEntry(NamedTuple):
 
     field: str
     robot: Robot
-    trajectory: TimedFile | None
+    trajectory: TrajectoryFile | None
     trajectory_field: str
 
 
@@ -150,7 +150,7 @@ class Case(StrictModel):
     robot: Robot | None = None
     robots: Annotated[list[Robot], Field(min_length=1)] | None = None
     scene: Scene
-    trajectory: TimedFile | None = None
+    trajectory: TrajectoryFile | None = None
     carry: list[Carry] = []
     limits: Limits = Limits()
     allow: list[Allowed] = []

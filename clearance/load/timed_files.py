@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -13,21 +13,23 @@ from clearance.errors import BadInput, at
 from clearance.load.csv_table import Opener
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
-from clearance.load.pose_schema import TimedFile
+from clearance.load.pose_schema import TimedFile, TrajectoryFile
 from clearance.load.pose_table_file import read_pose_table
+from clearance.load.rosbag_file import files_of, is_bag, read_bag
 from clearance.load.trajectory_file import read_trajectory
+from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
+from clearance.world.joint_positions import turns
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.pose_table import PoseTable, require_samples_to_loop
 from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
-from clearance.world.trajectory import Trajectory
 
 Table = TypeVar("Table")
 
 
 def trajectory_of(
-    given: TimedFile, field: str, folder: Path, robot: Robot, files: InputFiles
-) -> Trajectory:
+    given: TrajectoryFile, field: str, folder: Path, robot: Robot, files: InputFiles
+) -> ReadTrajectory:
     """The trajectory that a case file names for a robot.
 
     Args:
@@ -37,20 +39,55 @@ def trajectory_of(
         BadInput: with the field and the file.
     """
 
-    def read(opened: Opener, n_bytes: int, shown: str) -> Trajectory:
-        needed = bool(robot.moving_joints)
-        return read_trajectory(opened, n_bytes, shown, joints_needed=needed)
+    kinds = {joint.name: turns(joint) for joint in robot.moving_joints}
+
+    def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
+        request = TrajectoryRequest(opened, n_bytes, bool(kinds), given.choice, kinds)
+        return read_trajectory(request, shown)
 
     path = resolved(given.file, folder)
     with at(f"{field}.file"):
-        trajectory = _read(path, files, read, "a trajectory")
+        found = (
+            _of_bag(path, files, given.choice, kinds)
+            if is_bag(path)
+            else _read(path, files, read, "a trajectory")
+        )
+        trajectory = found.trajectory
         with at(files.shown(path)):
             require_moving_joints(robot, trajectory.joint_names)
             require_few_turns(robot, trajectory.joint_names, trajectory)
     with at(field), at(files.shown(path)):
         require_samples_to_loop(trajectory.n_steps, given.timing)
         given.timing.run_times(trajectory.times)
-    return trajectory
+    return found
+
+
+def load_trajectory(path: Path, choice: Choice) -> ReadTrajectory:
+    """The trajectory in a file, whatever robot it is for.
+
+    Raises:
+        BadInput: with the place in the file.
+    """
+
+    def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
+        return read_trajectory(TrajectoryRequest(opened, n_bytes, choice=choice), shown)
+
+    files = InputFiles(path.parent)
+    if is_bag(path):
+        return _of_bag(path, files, choice, {})
+    return _read(path, files, read, "a trajectory")
+
+
+def _of_bag(
+    path: Path, files: InputFiles, choice: Choice, kinds: Mapping[str, bool]
+) -> ReadTrajectory:
+    """What is in a bag, whose files are not kept."""
+    shown = files.shown(path)
+    for one in files_of(path):
+        files.unread(one)
+    with at(shown):
+        trajectory, notes = read_bag(path, choice, kinds)
+    return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))
 
 
 def pose_table_of(given: TimedFile, field: str, folder: Path, files: InputFiles) -> PoseTable:

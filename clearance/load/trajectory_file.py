@@ -10,33 +10,36 @@ from collections.abc import Callable
 from pathlib import PurePath
 
 from clearance.errors import at
-from clearance.load.csv_table import Opener
+from clearance.load.joint_trajectory_file import read_json_trajectory, read_yaml_trajectory
 from clearance.load.trajectory_csv import read_csv
+from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.world.trajectory import Trajectory
 
-READERS: dict[str, Callable[[Opener, int, bool], Trajectory]] = {
+READERS: dict[str, Callable[[TrajectoryRequest], ReadTrajectory]] = {
     ".csv": read_csv,
+    ".json": read_json_trajectory,
+    ".yaml": read_yaml_trajectory,
+    ".yml": read_yaml_trajectory,
 }
 """By suffix in small letters; a file of another suffix is read as CSV."""
 
 
-def read_trajectory(
-    opened: Opener, n_bytes: int, shown: str, *, joints_needed: bool = True
-) -> Trajectory:
-    """The samples in a file.
+def read_trajectory(request: TrajectoryRequest, shown: str) -> ReadTrajectory:
+    """The samples in a file; notes begin with the file's name.
 
     Args:
-        opened: opens the file, `n_bytes` long, again and again.
         shown: the file's name, in errors too.
-        joints_needed: False for a robot that has no joint to move, for which times alone do.
 
     Raises:
         BadInput: as the reader says, with the place in the file.
     """
     with at(shown):
-        return READERS.get(PurePath(shown).suffix.lower(), read_csv)(opened, n_bytes, joints_needed)
+        reader = READERS.get(PurePath(shown).suffix.lower(), read_csv)
+        trajectory, notes = reader(request)
+    return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))
 
 
-def parse_trajectory(data: bytes, shown: str) -> Trajectory:
+def parse_trajectory(data: bytes, shown: str, choice: Choice | None = None) -> Trajectory:
     """The samples in the content of a file, as `read_trajectory` finds them in the file."""
-    return read_trajectory(lambda: io.BytesIO(data), len(data), shown)
+    request = TrajectoryRequest(lambda: io.BytesIO(data), len(data), choice=choice or Choice())
+    return read_trajectory(request, shown).trajectory

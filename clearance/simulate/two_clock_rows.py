@@ -17,6 +17,7 @@ from clearance.simulate.two_clocks import PairsOfTwoClocks
 from clearance.simulate.unsynchronised import (
     UnsynchronisedAnswers,
     UnsynchronisedIntervals,
+    least_of_all_steps,
     least_unsynchronised,
 )
 
@@ -55,8 +56,10 @@ def _minima(what: PairsOfTwoClocks, resources: Resources) -> Minima:
     n = len(what.pairs)
     least = Minima(np.full(n, np.inf), np.full(n, -1), np.full((n, 2, 3), np.nan))
     for i, pair in enumerate(what.pairs):
-        steps = least_unsynchronised(replace(what, pairs=(pair,)), None, resources).steps
-        step = int(np.argmin(steps.clearance))
+        steps = least_of_all_steps(replace(what, pairs=(pair,)), resources)
+        if (steps.pair < 0).all():  # no two steps occur together
+            continue
+        step = int(np.argmin(np.where(steps.pair < 0, np.inf, steps.clearance)))
         least.clearance[i], least.step[i] = steps.clearance[step], step
         least.points[i] = steps.points[step]
     return least

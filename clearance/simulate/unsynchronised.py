@@ -158,6 +158,12 @@ def least_unsynchronised(
     )
 
 
+def least_of_all_steps(what: PairsOfTwoClocks, resources: Resources) -> UnsynchronisedSteps:
+    """The least of all steps of the first clock, in the first row of least clearance; others may be too much."""
+    _require_two_clocks(what)
+    return _Work.of(what, resources).steps(least_only=True)[0]
+
+
 def _no_moment(interval: int) -> Moment:
     raise AssertionError("nothing is proven of intervals")
 
@@ -208,8 +214,8 @@ class _Work:
     def n_b(self) -> int:
         return len(self.what.b.times)
 
-    def steps(self) -> tuple[UnsynchronisedSteps, dict[str, int]]:
-        """The least of each step."""
+    def steps(self, *, least_only: bool = False) -> tuple[UnsynchronisedSteps, dict[str, int]]:
+        """The least of each step, or what is right of the least of all only."""
         n = self.n_a
         found = StepsFound(
             np.empty(n),
@@ -224,11 +230,11 @@ class _Work:
             counts = np.zeros(len(COUNTERS), dtype=np.int64)
             clocks = self._clocks(self._tree(fill_steps_tree, self._of_a(span), 0), tree_b)
             own = StepsFound(*(column[span] for column in found))
-            call(least_of_unsynchronised_steps, self.surface, clocks, own, counts)
+            call(least_of_unsynchronised_steps, self.surface, clocks, least_only, own, counts)
             return span.stop, counts
 
         tally = self._tally(in_order(run_part, parts(n), self.resources.n_threads), 0)
-        none = np.isinf(found.clearance)  # no step of the other clock is in the band
+        none = found.step_b < 0  # no step of the other clock is in the band, or none is nearer
         found.pair[none], found.points[none] = -1, np.nan
         return UnsynchronisedSteps(found.clearance, found.pair, found.step_b, found.points), tally
 

@@ -47,7 +47,10 @@ def readers() -> dict[str, Reader]:
         "sketch": Reader("s.yaml", SKETCH.read_bytes(), _file_reader("s.yaml", _read_sketch)),
         "URDF": Reader("arm.urdf", _URDF, _case_reader("arm.urdf")),
         "case": Reader("case.yaml", _CASE, _case_reader("case.yaml")),
-        "trajectory": Reader("path.csv", _PATH, _read_trajectory),
+        "trajectory": Reader("path.csv", _PATH, _trajectory_reader("path.csv")),
+        "trajectory semicolons": Reader("path.csv", _COMMAS, _trajectory_reader("path.csv")),
+        "JointTrajectory": Reader("path.yaml", _MESSAGE, _trajectory_reader("path.yaml")),
+        "JointTrajectory JSON": Reader("path.json", _MESSAGE_JSON, _trajectory_reader("path.json")),
     }
 
 
@@ -104,10 +107,13 @@ def _read_sketch(path: Path) -> object:
     return Sketch.load(path)
 
 
-def _read_trajectory(data: bytes, folder: Path) -> object:
-    from clearance.load.trajectory_file import parse_trajectory
+def _trajectory_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.trajectory_file import parse_trajectory
 
-    return parse_trajectory(data, "path.csv")
+        return parse_trajectory(data, name)
+
+    return read
 
 
 def _binary_stl() -> bytes:
@@ -273,6 +279,27 @@ trajectory: {file: path.csv}
 limits: {fail: 0.005, warn: 0.02}
 allow:
 - [base, post]
+"""
+
+_COMMAS = b"time [ms];shoulder [deg]\n0;0,5\n500;11,25\n1e3;-2,5e0\n"
+
+_MESSAGE = b"""joint_names:
+- shoulder
+points:
+- positions: [0.0]
+  velocities: [0.5]
+  time_from_start:
+    sec: 0
+    nanosec: 0
+- positions: &a [0.25]
+  velocities: *a
+  time_from_start: {secs: 1, nsecs: 500000000}
+---
+"""
+
+_MESSAGE_JSON = b"""{"trajectory": [{"joint_trajectory": {"joint_names": ["shoulder"], "points": [
+{"positions": [0.0], "velocities": [0.5], "time_from_start": {"sec": 0, "nanosec": 0}},
+{"positions": [0.25], "velocities": [0.1], "time_from_start": 1.5}]}}]}
 """
 
 _PATH = b"time,shoulder\n0,0\n0.5,0.25\n1,0.5\n1.5,-0.25\n"

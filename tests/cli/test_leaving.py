@@ -13,6 +13,7 @@ import pytest
 
 from clearance.load.input_files import InputFiles
 from clearance.load.trajectory_file import parse_trajectory, read_trajectory
+from clearance.load.trajectory_request import TrajectoryRequest
 from tests.cli.test_check_command import BAD, CASE, PATH, ROOT, URDF
 
 TIMES = 10
@@ -101,7 +102,8 @@ def test_only_the_thread_that_asks_reads_a_trajectory_through_python(tmp_path: P
             self._file.close()
 
     opened, n_bytes = InputFiles(tmp_path).unread(path)
-    watched = read_trajectory(lambda: Watched(opened()), n_bytes, "path.csv")
+    request = TrajectoryRequest(lambda: Watched(opened()), n_bytes)
+    watched = read_trajectory(request, "path.csv").trajectory
     assert watched.n_steps == 200_000
     assert readers == {threading.get_ident()}
     assert (parse_trajectory(path.read_bytes(), "path.csv").positions == watched.positions).all()

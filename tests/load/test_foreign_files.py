@@ -35,7 +35,7 @@ GIVEN = [
     ("arm.xml", MJCF, "this is a MuJoCo model"),
     ("table.scene", SCENE, "this is a MoveIt scene"),
     ("scene.txt", SCENE, "this is a MoveIt scene"),
-    ("path.yaml", JOINT_TRAJECTORY, "this is a ROS JointTrajectory, .*trajectory: path.csv"),
+    ("path.yaml", JOINT_TRAJECTORY, "this is a ROS JointTrajectory, .*trajectory: path.yaml"),
     ("scene.yaml", PLANNING_SCENE, "this is a MoveIt planning scene"),
     ("post.stl", cube_stl(), "this is a mesh.*mesh: {file: post.stl"),
     ("path.csv", "time,shoulder\n0,0\n", "this is a table.*trajectory: path.csv"),
@@ -65,9 +65,14 @@ def test_what_is_no_case_file_is_told_what_it_is(tmp_path, name, content, says):
             {"a__srdf": SRDF},
         ),
         (
+            changed("file: path.csv", "file: p.txt"),
+            "p.txt: this is a ROS JointTrajectory, not a trajectory; name it in a case file: trajectory:",
+            {"p__txt": JOINT_TRAJECTORY},
+        ),
+        (
             changed("file: path.csv", "file: p.yaml"),
-            "p.yaml: this is a ROS Joint",
-            {"p__yaml": JOINT_TRAJECTORY},
+            "p.yaml: this is a MoveIt planning scene",
+            {"p__yaml": PLANNING_SCENE},
         ),
         (
             CASE.partition("scene:")[0] + "scene: t.scene\ntrajectory: path.csv\n",

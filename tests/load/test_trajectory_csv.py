@@ -71,7 +71,7 @@ def test_numbers_are_read_to_the_last_bit():
         ("time,a\n\n", BadShape, "no rows"),
         ("time\n0\n", BadShape, "no joint column"),
         ("a,b\n0,1\n", MissingKey, "no column 'time'"),
-        ("time;a\n0;1\n", MissingKey, "separated by commas"),
+        ("time:a\n0:1\n", MissingKey, "separated by commas"),
         ("time,a,a\n0,1,2\n", DuplicateName, "column 'a' is there twice"),
         ("time,time,a\n0,1,2\n", DuplicateName, "column 'time'"),
         ("time,,a\n0,1,2\n", BadSyntax, "column 2 of the header"),

@@ -292,12 +292,26 @@ def _look(lent, surface, clocks, rectangle, count, state, found, tally, table):
     return n_left, one_b or (most_a > most_b and not one_a)
 
 
+@inline
+def _look_at_few(lent, clocks, state, found, tally, table):
+    """Looks at some steps of clock a, evenly spread; at the others nothing is asked that is not nearer."""
+    n_a, least = len(found.clearance), np.inf
+    for k in range(FIRST_LOOK):
+        row = (n_a - 1) * k // (FIRST_LOOK - 1)
+        _first_look(lent, clocks, row, state, found, tally, table)
+        least = min(least, found.clearance[row])
+    for row in range(n_a):
+        if found.clearance[row] > least:
+            found.clearance[row], found.gaps_sq[row] = least, least * least * NOT_LESS
+
+
 @kernel
-def least_of_unsynchronised_steps(surface, clocks, found, tally, table):
+def least_of_unsynchronised_steps(surface, clocks, least_only, found, tally, table):
     """Fills `found` of the steps of clock a that are the leaves of its tree.
 
     Args:
         clocks: `TwoClocks`, with trees of steps; that of b has all steps.
+        least_only: True if only the least of all these steps is wanted; what is found of others may be too much.
         tally: (5,) as in `certify_unsynchronised`.
     """
     n_pairs = len(clocks.world.pairs)
@@ -309,17 +323,20 @@ def least_of_unsynchronised_steps(surface, clocks, found, tally, table):
     for row in range(len(found.clearance)):
         found.clearance[row], found.gaps_sq[row] = np.inf, np.inf
         found.pair[row], found.step_b[row] = n_pairs, -1
-    _least_of_steps(surface, clocks, state, found, tally, table)
+    _least_of_steps(surface, clocks, least_only, state, found, tally, table)
 
 
 @kernel(reference_counts=False)
-def _least_of_steps(surface, clocks, state, found, tally, table):
+def _least_of_steps(surface, clocks, least_only, state, found, tally, table):
     """The same, with the arrays of its state."""
     lent = lend(surface)
     tree_a, tree_b, waiting = clocks.tree_a, clocks.tree_b, state.waiting
-    _first_look(lent, clocks, 0, state, found, tally, table)
-    for row in range(1, len(found.clearance)):
-        _walk(lent, clocks, row, state, found, tally, table)
+    if least_only:
+        _look_at_few(lent, clocks, state, found, tally, table)
+    else:
+        _first_look(lent, clocks, 0, state, found, tally, table)
+        for row in range(1, len(found.clearance)):
+            _walk(lent, clocks, row, state, found, tally, table)
     put_rectangle(ALL_TIMES, len(waiting.listed), waiting, 0)
     n_waiting = 1
     while n_waiting > 0:

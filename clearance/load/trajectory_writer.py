@@ -1,0 +1,148 @@
+"""A trajectory to a file that `trajectory_file` reads back: CSV, or a JointTrajectory message in YAML or JSON.
+
+Every number is written so that it comes back bit for bit; times of messages are whole nanoseconds. What would not
+come back is refused. Not for: results (`report`).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import PurePath
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.errors import BadInput, BadTime, ClearanceError
+from clearance.load.column_units import VELOCITY
+from clearance.load.csv_table import TIME
+from clearance.load.trajectory_file import parse_trajectory
+from clearance.world.trajectory import Trajectory
+
+NANO = 10**9
+
+
+class WrittenTrajectory(NamedTuple):
+    """The content of a file, and a line each on what is not as it was."""
+
+    content: bytes
+    notes: tuple[str, ...]
+
+
+def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
+    """The content of the file `shown`, in the format of its suffix.
+
+    Raises:
+        BadInput: no such format, or names that it cannot hold. BadTime: samples less than a nanosecond apart.
+    """
+    suffix = PurePath(shown).suffix.lower()
+    if suffix not in WRITERS:
+        raise BadInput(f"{shown!r} has no suffix to write", valid=f"one of {', '.join(WRITERS)}")
+    to_text, in_nanoseconds = WRITERS[suffix]
+    content = to_text(trajectory).encode()
+    n_rounded = _n_other_times(trajectory) if in_nanoseconds else 0
+    _refuse_other(trajectory, content, shown, n_rounded > 0)
+    rounded = (
+        f"{n_rounded} of {trajectory.n_steps} times are rounded to nanoseconds, as ROS keeps them"
+    )
+    return WrittenTrajectory(content, (rounded,) if n_rounded else ())
+
+
+def _csv(trajectory: Trajectory) -> str:
+    header, columns = (
+        [TIME, *trajectory.joint_names],
+        [trajectory.times[:, None], trajectory.positions],
+    )
+    if trajectory.velocities is not None:
+        header += [name + VELOCITY for name in trajectory.joint_names]
+        columns.append(trajectory.velocities)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows(np.hstack(columns).tolist())
+    return text.getvalue()
+
+
+def _yaml(trajectory: Trajectory) -> str:
+    names = ", ".join(json.dumps(name, ensure_ascii=False) for name in trajectory.joint_names)
+    lines = [f"joint_names: [{names}]", "points:"]
+    for i, (seconds, nanoseconds) in enumerate(map(_split, trajectory.times.tolist())):
+        lines.append(f"- positions: {_yaml_numbers(trajectory.positions[i])}")
+        if trajectory.velocities is not None:
+            lines.append(f"  velocities: {_yaml_numbers(trajectory.velocities[i])}")
+        lines.append(f"  time_from_start: {{sec: {seconds}, nanosec: {nanoseconds}}}")
+    return "\n".join([*lines, ""])
+
+
+def _json(trajectory: Trajectory) -> str:
+    points = []
+    for i, (seconds, nanoseconds) in enumerate(map(_split, trajectory.times.tolist())):
+        point: dict[str, object] = {"positions": trajectory.positions[i].tolist()}
+        if trajectory.velocities is not None:
+            point["velocities"] = trajectory.velocities[i].tolist()
+        points.append({**point, "time_from_start": {"sec": seconds, "nanosec": nanoseconds}})
+    message = {"joint_names": list(trajectory.joint_names), "points": points}
+    return json.dumps(message, ensure_ascii=False) + "\n"
+
+
+WRITERS: dict[str, tuple[Callable[[Trajectory], str], bool]] = {
+    ".csv": (_csv, False),
+    ".json": (_json, True),
+    ".yaml": (_yaml, True),
+    ".yml": (_yaml, True),
+}
+"""By suffix: what writes it, and whether it keeps times in whole nanoseconds."""
+
+
+def _yaml_numbers(row: np.ndarray) -> str:
+    """As YAML 1.1 and 1.2 both know them: with a point before an exponent."""
+    words = [repr(value) for value in row.tolist()]
+    return f"[{', '.join(word if '.' in word else word.replace('e', '.0e') for word in words)}]"
+
+
+def _split(time: float) -> tuple[int, int]:
+    """Seconds and nanoseconds, to the nearest."""
+    return divmod(round(Fraction(time) * NANO), NANO)
+
+
+def _n_other_times(trajectory: Trajectory) -> int:
+    """How many times are not the nearest doubles of whole nanoseconds.
+
+    Raises:
+        BadTime: two of them are the same then.
+    """
+    times = trajectory.times.tolist()
+    wholes = [round(Fraction(time) * NANO) for time in times]
+    for before, after, time in zip(wholes, wholes[1:], times[1:], strict=False):
+        if before == after:
+            raise BadTime(
+                f"the sample at {time} s is less than a nanosecond after the one before",
+                valid="a CSV file keeps such times",
+            )
+    return sum(whole / NANO != time for whole, time in zip(wholes, times, strict=True))
+
+
+def _refuse_other(trajectory: Trajectory, content: bytes, shown: str, is_rounded: bool) -> None:
+    """Nothing, if the file is read back as what was written."""
+    try:
+        back = parse_trajectory(content, shown)
+    except ClearanceError as error:
+        raise BadInput(f"the trajectory cannot be written as {shown!r}: {error}") from None
+    same = back.joint_names == trajectory.joint_names and _same(
+        back.positions, trajectory.positions
+    )
+    same = same and _same(back.velocities, trajectory.velocities)
+    if not (same and (is_rounded or np.array_equal(back.times, trajectory.times))):
+        raise BadInput(
+            f"the names {', '.join(trajectory.joint_names)!r:.80} would be read otherwise from {shown!r}",
+            valid="another format",
+        )
+
+
+def _same(a: np.ndarray | None, b: np.ndarray | None) -> bool:
+    if a is None or b is None:
+        return a is b
+    return a.shape == b.shape and a.tobytes() == b.tobytes()

@@ -1,0 +1,128 @@
+"""`clearance convert`: what is written is read back bit for bit, nothing is overwritten unasked."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from clearance import check
+from clearance.cli import run
+from clearance.errors import BadInput, BadTime
+from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.trajectory_writer import WRITERS, written
+from clearance.world.trajectory import Trajectory
+from tests.load.making_case import TWO_JOINTS, changed, load_small
+from tests.load.making_messages import MESSAGE, ROS2, dumped
+
+TABLE = (
+    "time,shoulder,lift,shoulder/velocity,lift/velocity\n"
+    "0.0,0.1,0.0,0.0,-0.001\n"
+    "1.1,0.30000000000000004,0.05,0.5,1e-07\n"
+)
+
+
+def convert(*arguments: object) -> int:
+    return run(["convert", *map(str, arguments)])
+
+
+@pytest.mark.parametrize("between", ["path.yaml", "path.yml", "path.json"])
+def test_there_and_back_gives_the_same_bytes(tmp_path, capsys, between):
+    (tmp_path / "a.csv").write_text(TABLE)
+    assert convert(tmp_path / "a.csv", tmp_path / between) == 0
+    assert convert(tmp_path / between, tmp_path / "b.csv") == 0
+    assert (tmp_path / "b.csv").read_text() == TABLE
+    assert "b.csv: 2 samples of 2 joints" in capsys.readouterr().out
+    message = (tmp_path / between).read_bytes()
+    key = between.replace(".", "__")
+    case = changed("file: path.csv", f"file: {between}")
+    direct = check(load_small(tmp_path, urdf=TWO_JOINTS, trajectory=TABLE), certify=True)
+    back = check(load_small(tmp_path, case, urdf=TWO_JOINTS, **{key: message}), certify=True)
+    ours, theirs = (run.record.clearances for run in (direct, back))
+    assert ours.tobytes() == theirs.tobytes()
+    bounds = [run.record.certificate.lower_bound for run in (direct, back)]
+    assert bounds[0].tobytes() == bounds[1].tobytes()
+
+
+NUMBERS = st.floats(-1e3, 1e3)
+TIMES = st.lists(st.integers(-(10**12), 10**13), min_size=1, max_size=5, unique=True)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.data(), TIMES, st.sampled_from(sorted(WRITERS)), st.booleans())
+def test_any_trajectory_comes_back_bit_for_bit(data, nanoseconds, suffix, moving):
+    times = np.array([whole / 10**9 for whole in sorted(nanoseconds)])
+    names = data.draw(
+        st.lists(
+            st.sampled_from(["a", "b c", "é", '"', "x,y", "1", "~", "#"]), min_size=1, unique=True
+        )
+    )
+    rows = st.lists(NUMBERS, min_size=len(names), max_size=len(names))
+    table = [np.array([data.draw(rows) for _ in times]) for _ in range(1 + moving)]
+    if suffix == ".csv" and names[0] == "#":
+        names = names[::-1]
+    trajectory = Trajectory(times, tuple(names), *table)
+    content, notes = written(trajectory, f"path{suffix}")
+    back = parse_trajectory(content, f"path{suffix}")
+    assert back.joint_names == trajectory.joint_names and not notes
+    assert back.times.tobytes() == times.tobytes()
+    assert back.positions.tobytes() == table[0].tobytes()
+    assert back.velocities is None or back.velocities.tobytes() == table[1].tobytes()
+
+
+def test_times_that_are_no_whole_nanoseconds_are_told(tmp_path, capsys):
+    (tmp_path / "a.csv").write_text("time,a\n0,0\n0.3333333333333333,1\n")
+    assert convert(tmp_path / "a.csv", tmp_path / "b.yaml") == 0
+    assert "note: b.yaml: 1 of 2 times are rounded to nanoseconds" in capsys.readouterr().out
+    near = Trajectory(np.array([0.0, 1e-10]), ("a",), np.zeros((2, 1)))
+    with pytest.raises(BadTime, match="less than a nanosecond"):
+        written(near, "b.yaml")
+    zero = Trajectory(np.array([-0.0, 1.0]), ("a",), np.zeros((2, 1)))
+    assert written(zero, "b.yaml").notes == ()
+    assert parse_trajectory(written(near, "b.csv").content, "b.csv").times.tolist() == [0.0, 1e-10]
+
+
+@pytest.mark.parametrize("name", ["a [deg]", "time", "b/velocity", "x\ty;z"])
+def test_names_that_a_table_would_read_otherwise_are_refused(name):
+    trajectory = Trajectory(np.arange(2.0), (name,), np.ones((2, 1)))
+    if name != "x\ty;z":
+        with pytest.raises(BadInput, match=r"b\.csv"):
+            written(trajectory, "b.csv")
+        assert written(trajectory, "b.yaml").content
+
+
+def test_what_was_taken_how_is_told(tmp_path, capsys):
+    (tmp_path / "a.csv").write_text("time [ms];a [deg]\n0;90,0\n1000;0\n")
+    assert convert(tmp_path / "a.csv", tmp_path / "b.csv") == 0
+    assert "note: a.csv: read in degrees: 'a'; in milliseconds: 'time'" in capsys.readouterr().out
+    assert (tmp_path / "b.csv").read_text() == f"time,a\n0.0,{np.pi / 2!r}\n1.0,0.0\n"
+
+
+def test_one_of_several_is_chosen(tmp_path):
+    (tmp_path / "a.yaml").write_text(ROS2 + dumped(MESSAGE).replace("shoulder", "elbow") + "\n")
+    assert convert(tmp_path / "a.yaml", tmp_path / "b.csv", "--which", 2) == 0
+    assert (tmp_path / "b.csv").read_text().startswith("time,elbow,lift,")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["a.yaml", "b.csv"], "b.csv: is there already; --force overwrites it"),
+        (["a.yaml", "a.yaml", "--force"], "would overwrite"),
+        (["a.yaml", "c.txt"], "'c.txt' has no suffix to write; one of .csv, .json, .yaml, .yml"),
+        (["no.yaml", "c.csv"], "there is no file 'no.yaml'"),
+        (["a.yaml", "c.csv", "--which", "3"], "which is 3, the file holds 1"),
+        (["a.yaml", "no/c.csv"], "cannot write here"),
+        (["robot.urdf", "c.csv"], "robot.urdf: "),
+    ],
+)
+def test_the_command_line_says_it_in_one_line(tmp_path, monkeypatch, capsys, arguments, says):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.yaml").write_text(ROS2)
+    (tmp_path / "b.csv").write_text("mine")
+    (tmp_path / "robot.urdf").write_text("<robot/>")
+    assert convert(*arguments) == 2
+    told = capsys.readouterr().err.strip()
+    assert says in told and told.count("\n") == 0
+    assert (tmp_path / "b.csv").read_text() == "mine" and (tmp_path / "a.yaml").read_text() == ROS2
+    assert convert("a.yaml", "b.csv", "--force") == 0
+    assert (tmp_path / "b.csv").read_text() != "mine"
