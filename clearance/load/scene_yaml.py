@@ -1,0 +1,18 @@
+"""A scene in YAML, as under `scene:` in a case file. Not for: which keys are valid (`obstacle_schema`)."""
+
+from __future__ import annotations
+
+from clearance.load.foreign_files import refuse_foreign
+from clearance.load.scene_request import SceneContent, SceneRequest
+from clearance.load.yaml_file import parse_yaml
+
+
+def read_scene_yaml(asked: SceneRequest) -> SceneContent:
+    """The scene in a YAML file.
+
+    Raises:
+        BadSyntax: another kind of file, or not YAML, with the place in the file.
+    """
+    data = asked.files.read(asked.path)
+    refuse_foreign(data, asked.shown, "a scene")
+    return SceneContent(parse_yaml(data, asked.shown))
