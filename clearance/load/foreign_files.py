@@ -25,7 +25,7 @@ _ADVICE = {
     ),
     "sdf": (
         "an SDF world or model",
-        "give the robot as URDF and what stands around it under scene: {{obstacles: […]}} of a case file",
+        "call it .sdf and name it in a case file: scene: {name}, beside robot (as URDF) and trajectory",
     ),
     "mjcf": (
         "a MuJoCo model",

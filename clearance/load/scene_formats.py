@@ -11,9 +11,12 @@ from clearance.load.obstacle_schema import Scene
 from clearance.load.scene_request import SceneContent, SceneRequest
 from clearance.load.scene_yaml import read_scene_yaml
 from clearance.load.schema_errors import validated
+from clearance.load.sdf_file import read_sdf
 
 READERS: dict[str, Callable[[SceneRequest], SceneContent]] = {
     ".yaml": read_scene_yaml,
+    ".sdf": read_sdf,
+    ".world": read_sdf,
 }
 """By suffix in small letters; a file of another suffix is read as YAML."""
 
