@@ -25,6 +25,7 @@ from clearance.load.reserved import reserved_spaces
 from clearance.load.robots import RobotReader
 from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
+from clearance.load.scene_rows import with_scene_rows
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -70,6 +71,7 @@ def load_case(path: str | PathLike[str]) -> Case:
             carries=carries_of(given.carry),
             clock=Clock(given.clock.slack),
         )
+        case, row_notes = with_scene_rows(case, scene_at.content)
         names = body_names(case)
         require_allowances(case.allow, names)
         profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
@@ -84,7 +86,13 @@ def load_case(path: str | PathLike[str]) -> Case:
     return replace(
         case,
         sources=files.sources,
-        notes=(*notes, *scene_at.content.notes, *scene_notes, *notes_on_motion(case, start, end)),
+        notes=(
+            *notes,
+            *scene_at.content.notes,
+            *row_notes,
+            *scene_notes,
+            *notes_on_motion(case, start, end),
+        ),
         profiles=profiles,
     )
 

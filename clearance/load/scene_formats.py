@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from clearance.load.moveit_scene_file import read_moveit_scene
 from clearance.load.obstacle_schema import Scene
 from clearance.load.scene_request import SceneContent, SceneRequest
 from clearance.load.scene_yaml import read_scene_yaml
@@ -17,6 +18,7 @@ READERS: dict[str, Callable[[SceneRequest], SceneContent]] = {
     ".yaml": read_scene_yaml,
     ".sdf": read_sdf,
     ".world": read_sdf,
+    ".scene": read_moveit_scene,
 }
 """By suffix in small letters; a file of another suffix is read as YAML."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from clearance.load.input_files import InputFiles
@@ -35,8 +35,12 @@ class SceneContent:
     Attributes:
         scene: what stands under `scene:`, files relative to the folder of the scene's file.
         notes: what was left out or decided, one line each. notices: what bears on the verdict.
+        allow: names of bodies that may touch, in any order, of which some may not be there.
+        link_padding: [m] by link.
     """
 
     scene: object
     notes: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
+    allow: tuple[tuple[str, str], ...] = ()
+    link_padding: dict[str, float] = field(default_factory=dict)
