@@ -106,12 +106,15 @@ def pose_of(element: Element) -> np.ndarray:
 
 
 def angles_of(element: Element) -> list[float]:
-    """Roll, pitch and yaw [rad] as they are written in a checked `<pose>` that has them."""
+    """Roll, pitch and yaw [rad] as they are written in a `<pose>`; none where it has no six numbers."""
     pose = element.find("pose")
     words = [] if pose is None else (pose.text or "").split()
     if len(words) != 6 or pose.get("degrees"):
         return []
-    return [float(word) for word in words[3:]]
+    try:
+        return [float(word) for word in words[3:]]
+    except ValueError:  # of an element that is not read, in a plugin or an actor
+        return []
 
 
 def base_of(element: Element) -> str:

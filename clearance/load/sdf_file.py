@@ -113,5 +113,4 @@ def _make_unique(obstacles: list[dict[str, Any]]) -> list[str]:
 def _odd(document: Element) -> Iterator[str]:
     for tag in ("model", "link", "collision"):
         for element in document.iter(tag):
-            if (element.get("name") and element.find("geometry") is not None) or tag != "collision":
-                yield from odd_angles(f"{tag} {element.get('name')!r}", angles_of(element))
+            yield from odd_angles(f"{tag} {element.get('name')!r}", angles_of(element))

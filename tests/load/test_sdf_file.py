@@ -188,6 +188,13 @@ def test_what_is_left_out_is_told(tmp_path):
     assert notice.severity is Severity.WARNING and "not measured: 'm/a'" in notice.text
 
 
+def test_poses_that_look_like_degrees_are_suspect_and_those_of_plugins_passed_over(tmp_path):
+    other = f'<plugin name="p">{link(pose("a b c d e f"))}</plugin>'
+    document = sdf(model(pose("0 0 0 0 0 90"), link(collision()), other))
+    (notice,) = content_of(tmp_path, document).notices
+    assert notice.severity is Severity.SUSPECT and "model 'm' has an angle of 90 rad" in notice.text
+
+
 def state(text):
     return f'<state world_name="w"><model name="m">{text}</model></state>'
 
