@@ -8,26 +8,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 
 from clearance.errors import at
 from clearance.load import schema
 from clearance.load.allow import body_names, require_allowances, require_patterns
-from clearance.load.foreign_files import refuse_foreign
-from clearance.load.input_files import InputFiles, resolved
+from clearance.load.case_schema import ScenePlace, read_schema
+from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import note_on_joints_at_zero
 from clearance.load.motion_notes import notes_on_motion
-from clearance.load.obstacle_schema import Scene
 from clearance.load.plausibility import angle_notices, obstacle_notices, odd_angles, scale_notices
 from clearance.load.reserved import reserved_spaces
 from clearance.load.robots import RobotReader
 from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
-from clearance.load.schema_errors import validated
-from clearance.load.yaml_file import parse_yaml
+from clearance.load.scene_rows import with_scene_rows
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -51,7 +49,7 @@ def load_case(path: str | PathLike[str]) -> Case:
     path = Path(path)
     files = InputFiles(path.parent)
     meshes = MeshStore(files)
-    given, scene_at = _read_schema(path, files)
+    given, scene_at = read_schema(path, files)
     entries = given.entries()
     reader = RobotReader(path.parent, meshes)
     with at(path.name):
@@ -67,12 +65,13 @@ def load_case(path: str | PathLike[str]) -> Case:
             limits=limits,
             allow=allowances_of(given.allow),
             contact_response=given.contact_response,
-            notices=tuple(_notices(given)),
+            notices=(*_notices(given), *scene_at.content.notices),
             accept=tuple(given.accept),
             sign_off=_sign_off(given.report),
             carries=carries_of(given.carry),
             clock=Clock(given.clock.slack),
         )
+        case, row_notes = with_scene_rows(case, scene_at.content)
         names = body_names(case)
         require_allowances(case.allow, names)
         profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
@@ -90,6 +89,8 @@ def load_case(path: str | PathLike[str]) -> Case:
         notes=(
             *notes,
             *dict.fromkeys(reader.notes),
+            *scene_at.content.notes,
+            *row_notes,
             *scene_notes,
             *notes_on_motion(case, start, end),
         ),
@@ -130,39 +131,7 @@ def _notices(given: schema.Case) -> list[Notice]:
     return [*angle_notices(bases), *obstacle_notices(obstacles), *scale_notices(scales)]
 
 
-@dataclass(frozen=True)
-class _ScenePlace:
-    """Where the obstacles are written: file and field for errors, folder for the files that they name; and the
-    field as seen from the case file.
-    """
-
-    place: str
-    folder: Path
-    field: str = "scene."
-
-
-def _read_schema(path: Path, files: InputFiles) -> tuple[schema.Case, _ScenePlace]:
-    data = files.read(path)
-    refuse_foreign(data, path.name, "a case file")
-    raw = parse_yaml(data, path.name)
-    scene_at = _ScenePlace(f"{path.name}: scene", path.parent)
-    if isinstance(raw, dict) and isinstance(raw.get("scene"), str):
-        with at(f"{path.name}: scene"):
-            scene_path = resolved(raw["scene"], path.parent)
-            shown = files.shown(scene_path)
-            refuse_foreign(files.read(scene_path), shown, "a scene")
-            scene = parse_yaml(files.read(scene_path), shown)
-            validated(Scene, scene, shown)
-        raw = {**raw, "scene": scene}
-        scene_at = _ScenePlace(
-            f"{path.name}: scene: {shown}", scene_path.parent, f"scene: {shown}: "
-        )
-    return validated(schema.Case, raw, path.name), scene_at
-
-
-def _require_mounts(
-    case: Case, entries: Sequence[schema.RobotEntry], scene_at: _ScenePlace
-) -> None:
+def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: ScenePlace) -> None:
     """Nothing, if what robots and obstacles are on is there."""
     for entry, placed in zip(entries, case.robots, strict=True):
         if placed.mount is not None:

@@ -25,7 +25,7 @@ _ADVICE = {
     ),
     "sdf": (
         "an SDF world or model",
-        "give the robot as URDF and what stands around it under scene: {{obstacles: […]}} of a case file",
+        "call it .sdf and name it in a case file: scene: {name}, beside robot (as URDF) and trajectory",
     ),
     "mjcf": (
         "a MuJoCo model",
@@ -33,7 +33,7 @@ _ADVICE = {
     ),
     "scene": (
         "a MoveIt scene",
-        "write its objects into a case file: scene: {{obstacles: [{{name: …, box: {{size: […]}}, pose: …}}]}}",
+        "call it .scene and name it in a case file: scene: {name}, beside robot and trajectory",
     ),
     "joint trajectory": (
         "a ROS JointTrajectory",
@@ -42,7 +42,7 @@ _ADVICE = {
     ),
     "planning scene": (
         "a MoveIt planning scene",
-        "write its collision objects into a case file: scene: {{obstacles: […]}}",
+        "name it in a case file: scene: {name}, beside robot and trajectory",
     ),
     "mesh": (
         "a mesh",
@@ -54,6 +54,7 @@ _ADVICE = {
 
 _LEFT = {
     "urdf": ("a URDF file",),
+    "planning scene": ("a scene",),
     "xacro": ("a URDF file",),
     "csv": ("a URDF file", "a trajectory", "a table of poses"),
 }

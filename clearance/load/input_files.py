@@ -54,6 +54,10 @@ class InputFiles:
             self._sources[path] = Source(self.shown(path), digest, len(data), str(path))
         return self._contents[path]
 
+    def hold(self, path: Path, data: bytes) -> None:
+        """Keeps what is written out in another file as the content of a file of its own, which is not on disk."""
+        self._contents[Path(os.path.abspath(path))] = data
+
     def unread(self, path: Path) -> tuple[Callable[[], BufferedReader], int]:
         """Opens a long file, again and again, and how many bytes it has; its checksum is remembered,
         its content is not.

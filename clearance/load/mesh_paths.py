@@ -1,4 +1,8 @@
-"""Where a mesh named in a URDF lies: `package://…`, `file://…`, absolute, or relative."""
+"""Where a mesh named in a URDF or SDF file lies, and a model: `package://…`, `model://…`, `file://…`, absolute, or
+relative.
+
+Source: resolve-robotics-uri-py 0.6 (BSD), for what the variables of ROS and Gazebo mean. Not for: reading.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,15 @@ from clearance.errors import BadSyntax, MissingFile
 
 _PACKAGE_SCHEMES = ("package", "model")
 
-_VARIABLES = ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH")
+_VARIABLES = {
+    "ROS_PACKAGE_PATH": "",
+    "AMENT_PREFIX_PATH": "share",
+    "GZ_SIM_RESOURCE_PATH": "",
+    "IGN_GAZEBO_RESOURCE_PATH": "",
+    "GAZEBO_MODEL_PATH": "",
+    "SDF_PATH": "",
+}
+"""Variables that list folders with packages, and the folder in each of these in which the packages are."""
 
 
 class MeshPath(NamedTuple):
@@ -21,18 +33,21 @@ class MeshPath(NamedTuple):
 
     Attributes:
         package: the package that the file was asked of and is not in; empty where it is.
+        variable: the variable of the environment that led to it, if one did.
     """
 
     path: Path
     package: str = ""
+    variable: str = ""
 
 
 def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
     """The file that `given` means.
 
-    `package://x/y` is y in the package x, which is looked for in each of the package folders, in the URDF's
-    folder and those above it, and where ROS's variables say. Without the package, y and then y without its
-    leading parts is looked for in the package folders and the URDF's folder: the longest match stands in.
+    `package://x/y` is y in the package x, which is looked for in each of the package folders, in the file's
+    folder and those above it, and where the variables of ROS and Gazebo say. Without the package, y and then y
+    without its leading parts is looked for in the package folders and the file's folder: the longest match stands
+    in.
 
     Raises:
         MissingFile: no such file, with the places tried. BadSyntax: a scheme that is not known.
@@ -48,14 +63,43 @@ def mesh_path(given: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> Me
     raise BadSyntax(f"{given!r} is given", valid="package://, file:// or a path is needed")
 
 
+def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
+    """The folder or file of a model that `given` means: `model://x`, `package://x`, `file://…` or a path.
+
+    Args:
+        folder: of the file that names it.
+
+    Raises:
+        MissingFile: no such folder or file, with the places tried. BadSyntax: a scheme that is not known.
+    """
+    scheme, separator, rest = given.partition("://")
+    if separator and scheme in _PACKAGE_SCHEMES:
+        package, *parts = _parts(rest)
+        for place, variable in _package_folders(package, folder, package_dirs):
+            if _is_there(place.joinpath(*parts)):
+                return MeshPath(place.joinpath(*parts), variable=variable)
+        raise MissingFile(
+            f"there is no model {given!r}; looked for it {_places(folder, package_dirs)}",
+            valid="give the folder that it is in as robot.package_dirs",
+        )
+    if separator and scheme != "file":
+        raise BadSyntax(
+            f"{given!r} is given", valid="model://, file:// or a path; nothing is fetched"
+        )
+    path = Path(unquote(urlsplit(given).path)) if separator else folder / given
+    if not _is_there(path):
+        raise MissingFile(f"there is no model {given!r}")
+    return MeshPath(path)
+
+
 def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
-    package, *parts = PurePosixPath(rest.replace("\\", "/").lstrip("/")).parts or ("",)
-    for folder in _package_folders(package, urdf_folder, package_dirs):
-        if folder.joinpath(*parts).is_file():
-            return MeshPath(folder.joinpath(*parts))
+    package, *parts = _parts(rest)
+    for folder, variable in _package_folders(package, urdf_folder, package_dirs):
+        if _is_file(folder.joinpath(*parts)):
+            return MeshPath(folder.joinpath(*parts), variable=variable)
     for n_dropped in range(len(parts)):
         for folder in (*package_dirs, urdf_folder):
-            if folder.joinpath(*parts[n_dropped:]).is_file():
+            if _is_file(folder.joinpath(*parts[n_dropped:])):
                 return MeshPath(folder.joinpath(*parts[n_dropped:]), package)
     raise MissingFile(
         f"there is no mesh {given!r}; looked for it {_places(urdf_folder, package_dirs)}",
@@ -63,18 +107,33 @@ def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence
     )
 
 
+def _is_file(path: Path) -> bool:
+    return _is_there(path) and path.is_file()
+
+
+def _is_there(path: Path) -> bool:
+    """True for a file or folder; False also for a path that no file can have."""
+    try:
+        return path.exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _parts(rest: str) -> tuple[str, ...]:
+    """The package and the parts of the path in it."""
+    return PurePosixPath(rest.replace("\\", "/").lstrip("/")).parts or ("",)
+
+
 def _package_folders(
     package: str, urdf_folder: Path, package_dirs: Sequence[Path]
-) -> Iterator[Path]:
-    """Folders that are the package, if they are there; the nearest first."""
+) -> Iterator[tuple[Path, str]]:
+    """Folders that are the package, if they are there, the nearest first; and the variable that names each."""
     above = Path(os.path.abspath(urdf_folder))
-    ros = [*_from_variable("ROS_PACKAGE_PATH")]
-    for folder in (*package_dirs, urdf_folder, *above.parents, *ros):
-        yield folder / package
+    near = [(folder, "") for folder in (*package_dirs, urdf_folder, *above.parents)]
+    for folder, variable in (*near, *_from_variables()):
+        yield folder / package, variable
         if _is_package(folder, package):
-            yield folder
-    for prefix in _from_variable("AMENT_PREFIX_PATH"):
-        yield prefix / "share" / package
+            yield folder, variable
 
 
 def _is_package(folder: Path, package: str) -> bool:
@@ -89,22 +148,27 @@ def _is_package(folder: Path, package: str) -> bool:
     return name is not None and name[1] == package
 
 
-def _from_variable(name: str) -> list[Path]:
-    return [Path(part) for part in os.environ.get(name, "").split(os.pathsep) if part]
+def _from_variables() -> Iterator[tuple[Path, str]]:
+    """The folders with packages that the environment names, and the variable of each."""
+    for name, below in _VARIABLES.items():
+        for part in os.environ.get(name, "").split(os.pathsep):
+            if part:
+                yield Path(part, below), name
 
 
 def _places(urdf_folder: Path, package_dirs: Sequence[Path]) -> str:
     n_above = len(Path(os.path.abspath(urdf_folder)).parents)
     dirs = ", ".join(repr(path.name or str(path)) for path in package_dirs) or "none are given"
-    variables = [f"${name} ({os.environ.get(name) or 'not set'})" for name in _VARIABLES]
+    ros = [f"${name} ({os.environ.get(name) or 'not set'})" for name in list(_VARIABLES)[:2]]
+    others = [f"${name}" for name in list(_VARIABLES)[2:] if os.environ.get(name)]
     return (
-        f"in robot.package_dirs ({dirs}), in the URDF's folder and the {n_above} above it, "
-        f"in {' and '.join(variables)}"
+        f"in robot.package_dirs ({dirs}), in the file's folder and the {n_above} above it, "
+        f"in {' and '.join([*ros, *others])}"
     )
 
 
 def _existing(given: str, candidates: list[Path]) -> MeshPath:
     for candidate in candidates:
-        if candidate.is_file():
+        if _is_file(candidate):
             return MeshPath(candidate)
     raise MissingFile(f"there is no mesh {given!r}")

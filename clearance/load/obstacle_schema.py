@@ -6,7 +6,7 @@ Not for: reading mesh files (`scene_file`).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import field_validator, model_validator
 
@@ -30,6 +30,7 @@ class Mesh(StrictModel):
 
     file: Name
     scale: Triple = [1.0, 1.0, 1.0]
+    collada_up_axis: Literal["ros", "file"] = "file"
 
     @field_validator("scale", mode="before")
     @classmethod

@@ -14,12 +14,13 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import SHAPES
 from clearance.load.collada_file import UpAxis
+from clearance.load.found_files import notes_on_variables, notices_on_stand_ins
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore, Scale
 from clearance.load.notes import grouped, short
 from clearance.load.plausibility import scale_notices
 from clearance.load.urdf_elements import dimensions_of, numbers, pose_of
-from clearance.world.notice import Notice, Severity
+from clearance.world.notice import Notice
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -54,6 +55,7 @@ class ShapeReader:
         self._notes: list[tuple[str, str]] = []
         self._scales: dict[str, Scale] = {}
         self._stand_ins: dict[str, dict[str, str]] = {}
+        self._by_variable: dict[str, dict[str, str]] = {}
 
     def kind(self, link: Element) -> str:
         """Which elements of a link are its shape."""
@@ -72,6 +74,8 @@ class ShapeReader:
         given = mesh.get("filename")
         found = mesh_path(given, self.request.path.parent, self.request.package_dirs)
         shown = self.meshes.files.shown(found.path)
+        if found.variable:
+            self._by_variable.setdefault(found.variable, {}).setdefault(given, shown)
         if found.package:
             self._stand_ins.setdefault(found.package, {}).setdefault(given, shown)
         scale = tuple(np.broadcast_to(numbers(mesh, "scale", (1.0,)), 3).tolist())
@@ -80,12 +84,11 @@ class ShapeReader:
 
     def notes(self) -> list[str]:
         """What was mended in the files, a line for each kind of fault."""
-        return grouped(self._notes)
+        return [*grouped(self._notes), *notes_on_variables(self._by_variable)]
 
     def notices(self) -> list[Notice]:
         """Files that stand in for others, and scales that look like another unit."""
-        told = [self._on_stand_ins(package, files) for package, files in self._stand_ins.items()]
-        return [*told, *scale_notices(list(self._scales.items()))]
+        return [*notices_on_stand_ins(self._stand_ins), *scale_notices(list(self._scales.items()))]
 
     def _unmoved(self, element: Element) -> tuple[Polyhedron, str]:
         kind = element.tag
@@ -99,9 +102,3 @@ class ShapeReader:
         shown = self.meshes.files.shown(path)
         self._notes += [(shown, note) for note in mesh.notes]
         return mesh.shape, shown
-
-    def _on_stand_ins(self, package: str, files: dict[str, str]) -> Notice:
-        (given, shown), *others = files.items()
-        rest = "" if not others else f", and {len(others)} more likewise"
-        text = f"package {package!r} is not there: {given} is taken from {shown}{rest}; is it the same file?"
-        return Notice(Severity.WARNING, "package", text)

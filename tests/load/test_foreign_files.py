@@ -75,9 +75,9 @@ def test_what_is_no_case_file_is_told_what_it_is(tmp_path, name, content, says):
             {"p__yaml": PLANNING_SCENE},
         ),
         (
-            CASE.partition("scene:")[0] + "scene: t.scene\ntrajectory: path.csv\n",
-            "t.scene: this is a MoveIt scene, not a scene",
-            {"t__scene": SCENE},
+            CASE.partition("scene:")[0] + "scene: t.yaml\ntrajectory: path.csv\n",
+            "t.yaml: this is a MoveIt scene, not a scene; call it .scene",
+            {"t__yaml": SCENE},
         ),
     ],
 )

@@ -3,6 +3,7 @@
 import pytest
 
 from clearance.errors import MissingFile
+from clearance.load import mesh_paths
 from clearance.world.notice import Severity
 from tests.load.making import cube_stl
 from tests.load.making_urdf import collision, link, load_urdf, robot
@@ -12,7 +13,7 @@ ASKED = robot(link(collision('<mesh filename="package://arms/meshes/part.stl"/>'
 
 @pytest.fixture(autouse=True)
 def no_ros(monkeypatch):
-    for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
+    for name in mesh_paths._VARIABLES:
         monkeypatch.delenv(name, raising=False)
 
 
@@ -57,6 +58,8 @@ def test_a_folder_of_another_name_is_the_package_that_its_manifest_names(tmp_pat
         ("ROS_PACKAGE_PATH", "{}/none:{}/ws/src", "ws/src/arms"),
         ("ROS_PACKAGE_PATH", "{}/ws/src/arms", "ws/src/arms"),
         ("AMENT_PREFIX_PATH", "{}/none:{}/install", "install/share/arms"),
+        ("GZ_SIM_RESOURCE_PATH", "{}/none:{}/models", "models/arms"),
+        ("GAZEBO_MODEL_PATH", "{}/none:{}/models", "models/arms"),
     ],
 )
 def test_the_package_is_found_by_ros_variables(tmp_path, monkeypatch, variable, value, place):
@@ -65,8 +68,9 @@ def test_the_package_is_found_by_ros_variables(tmp_path, monkeypatch, variable, 
     folder.mkdir()
     part(tmp_path / place / "meshes" / "part.stl")
     found = load_urdf(folder, ASKED)
-    assert found.bodies[0].origin == f"../{place}/meshes/part.stl"
-    assert found.notices == ()
+    shown = f"../{place}/meshes/part.stl"
+    assert found.bodies[0].origin == shown and found.notices == ()
+    assert found.notes == (f"${variable} leads to package://arms/meshes/part.stl as {shown}",)
 
 
 def test_a_file_of_the_same_name_stands_in_only_with_a_warning_that_names_both(tmp_path):
@@ -97,6 +101,6 @@ def test_an_error_lists_where_it_looked(tmp_path, monkeypatch):
     told = str(caught.value)
     n_above = len(tmp_path.parents)
     assert "there is no mesh 'package://arms/meshes/part.stl'" in told
-    assert f"robot.package_dirs ('given'), in the URDF's folder and the {n_above} above it" in told
+    assert f"robot.package_dirs ('given'), in the file's folder and the {n_above} above it" in told
     assert "$ROS_PACKAGE_PATH (/opt/ws/src) and $AMENT_PREFIX_PATH (not set)" in told
     assert "\n" not in told

@@ -1,0 +1,184 @@
+"""MoveIt's PlanningScene in YAML, as a message is printed or as robowflex writes it, to a scene.
+
+World objects become obstacles, attached ones ride on their link. Not for: the robot's state, colours.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from clearance.errors import BadDimension, BadInput, at
+from clearance.load.found_files import notes_on_variables, notices_on_stand_ins
+from clearance.load.moveit_matrix import allowed_pairs
+from clearance.load.moveit_objects import object_rows
+from clearance.load.moveit_shapes import Row, SceneMeshes
+from clearance.load.moveit_values import Message, Poses, items, message, messages, number, text
+from clearance.load.scene_request import SceneContent, SceneRequest
+
+_KEYS = {
+    "world",
+    "robot_state",
+    "allowed_collision_matrix",
+    "fixed_frame_transforms",
+    "robot_model_name",
+}
+
+
+def is_planning_scene(raw: object) -> bool:
+    """True for plain data that has what no scene of ours has."""
+    return isinstance(raw, dict) and not _KEYS.isdisjoint(raw) and "obstacles" not in raw
+
+
+def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
+    """The obstacles of a planning scene, what may touch them, and the padding of links.
+
+    Raises:
+        BadInput: what is not read (octomap, scale of links, cone, plane), or is no message; with its field.
+    """
+    with at(asked.shown):
+        meshes, poses = SceneMeshes(asked), Poses()
+        frames = _Frames(raw, poses)
+        _refuse_octomap(message(raw, "world"))
+        with at("world"):
+            obstacles = list(_world(message(raw, "world"), frames, meshes, poses))
+        state = message(raw, "robot_state")
+        with at("robot_state"):
+            attached, touching = _attached(state, meshes, poses)
+        matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
+        padding = _padding(raw)
+    rows = [*obstacles, *attached]
+    notes = [*frames.notes(), *_lost(raw, state), *_on_rounded(poses)]
+    return SceneContent(
+        {"obstacles": rows},
+        (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(meshes.by_variable)),
+        tuple(notices_on_stand_ins(meshes.stand_ins)),
+        allow=(*touching, *_by_obstacle(matrix, rows)),
+        link_padding=padding,
+    )
+
+
+class _Frames:
+    """The frames of a planning scene, each in the frame in which it plans."""
+
+    def __init__(self, raw: Message, poses: Poses) -> None:
+        self._known: dict[str, np.ndarray] = {}
+        self._plain: set[str] = set()
+        for where, row in messages(raw, "fixed_frame_transforms"):
+            with at(where):
+                self._plain.add(text(row, "child_frame_id", "").lstrip("/"))
+                name = text(message(row, "header"), "frame_id", "").lstrip("/")
+                self._known[name] = poses.read(message(row, "transform"), "translation", "rotation")
+
+    def of(self, given: Message) -> np.ndarray:
+        """(4, 4) [m] the frame of an object.
+
+        Raises:
+            BadInput: a frame that nothing ties to those of other objects.
+        """
+        name = text(message(given, "header"), "frame_id", "").lstrip("/")
+        if name in self._known:
+            return self._known[name]
+        self._plain.add(name)
+        named = sorted(self._plain - {""})
+        if len(named) > 1:
+            raise BadInput(
+                f"frames {named[0]!r} and {named[1]!r} are used, and nothing says where one is in the other",
+                valid="one frame, or fixed_frame_transforms",
+            )
+        return np.eye(4)
+
+    def notes(self) -> list[str]:
+        """Which frame is taken for the world."""
+        named = sorted(self._plain - {"", "world"})
+        return [f"frame {name!r} is taken for the world of the case" for name in named]
+
+
+def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
+    for where, given in messages(world, "collision_objects"):
+        with at(where):
+            rows = object_rows(given, frames.of(given), meshes, poses)
+        yield from rows
+
+
+def _attached(
+    state: Message, meshes: SceneMeshes, poses: Poses
+) -> tuple[list[Row], list[tuple[str, str]]]:
+    """The obstacles that ride on links, and which links may touch which of them."""
+    rows: list[Row] = []
+    touching: list[tuple[str, str]] = []
+    for where, given in messages(state, "attached_collision_objects"):
+        with at(where):
+            link = text(given, "link_name")
+            links = dict.fromkeys([link, *_touch_links(given)])
+            for row in _held(message(given, "object"), link, meshes, poses):
+                rows.append(row | {"on": link})
+                touching += [(one, row["name"]) for one in links]
+    return rows, touching
+
+
+def _touch_links(given: Message) -> list[str]:
+    links = items(given, "touch_links")
+    if not all(isinstance(link, str) for link in links):
+        raise BadInput("a name is no text", where="touch_links", valid="names of links")
+    return links
+
+
+def _held(held: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[Row]:
+    """The obstacles of what a link holds, in the link's frame."""
+    frame = text(message(held, "header"), "frame_id", link).lstrip("/")
+    if frame != link:
+        raise BadInput(f"it is given in {frame!r}, not in its link", valid=f"frame_id: {link}")
+    return object_rows(held, np.eye(4), meshes, poses)
+
+
+def _by_obstacle(pairs: list[tuple[str, str]], rows: list[Row]) -> Iterator[tuple[str, str]]:
+    """The pairs with the name of an object of several shapes put as a pattern of them all."""
+    single = {row["name"] for row in rows}
+    parted = {name.rpartition("/")[0] for name in single} - single
+    for one, other in pairs:
+        yield tuple(f"{name}/*" if name in parted else name for name in (one, other))  # type: ignore[misc]
+
+
+def _padding(raw: Message) -> dict[str, float]:
+    """[m] by link; those of 0 are left out.
+
+    Raises:
+        BadDimension: a scale that is not 1, a padding below 0.
+    """
+    for where, row in messages(raw, "link_scale"):
+        with at(where):
+            if number(row.get("scale", 1.0), "scale") != 1.0:
+                problem = f"link {text(row, 'link_name')!r} is scaled by {row['scale']}"
+                raise BadDimension(problem, valid="1, and padding")
+    found = {}
+    for where, row in messages(raw, "link_padding"):
+        with at(where):
+            padding = number(row.get("padding", 0.0), "padding")
+            if padding < 0.0:
+                raise BadDimension(f"padding is {padding} m", valid="0 or more")
+            found[text(row, "link_name")] = padding
+    return {link: padding for link, padding in found.items() if padding}
+
+
+def _refuse_octomap(world: Message) -> None:
+    if items(message(message(world, "octomap"), "octomap"), "data"):
+        raise BadInput(
+            "an octomap is not read", where="world.octomap", valid="no data, and boxes or meshes"
+        )
+
+
+def _lost(raw: Message, state: Message) -> Iterator[str]:
+    """What has no place in a scene."""
+    if items(message(state, "joint_state"), "name"):
+        yield "the robot's state is not taken: joints are as the case says"
+    if raw.get("is_diff") is True:
+        yield "it is a difference to another scene, of which nothing is known"
+
+
+def _on_rounded(poses: Poses) -> Iterator[str]:
+    if poses.n_rounded:
+        were = "quaternion is" if poses.n_rounded == 1 else "quaternions are"
+        yield f"{poses.n_rounded} {were} rounded to three digits or so and made of length 1"

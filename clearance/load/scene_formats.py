@@ -1,0 +1,34 @@
+"""A scene file to a scene, by the reader of its suffix: a further format is a file and a row here.
+
+Not for: making solids of it (`scene_file`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from clearance.load.moveit_scene_file import read_moveit_scene
+from clearance.load.obstacle_schema import Scene
+from clearance.load.scene_request import SceneContent, SceneRequest
+from clearance.load.scene_yaml import read_scene_yaml
+from clearance.load.schema_errors import validated
+from clearance.load.sdf_file import read_sdf
+
+READERS: dict[str, Callable[[SceneRequest], SceneContent]] = {
+    ".yaml": read_scene_yaml,
+    ".sdf": read_sdf,
+    ".world": read_sdf,
+    ".scene": read_moveit_scene,
+}
+"""By suffix in small letters; a file of another suffix is read as YAML."""
+
+
+def read_scene(asked: SceneRequest) -> SceneContent:
+    """The scene in a file.
+
+    Raises:
+        BadInput: as the reader says, with the place in the file.
+    """
+    content = READERS.get(asked.path.suffix.lower(), read_scene_yaml)(asked)
+    validated(Scene, content.scene, asked.shown)
+    return content

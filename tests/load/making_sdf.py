@@ -1,0 +1,61 @@
+"""SDF files written by tests, and read as scenes."""
+
+from clearance.load.input_files import InputFiles
+from clearance.load.mesh_store import MeshStore
+from clearance.load.obstacle_schema import Scene
+from clearance.load.scene_file import make_obstacles
+from clearance.load.scene_formats import read_scene
+from clearance.load.scene_request import SceneRequest
+
+BOX = "<box><size>0.2 0.4 0.6</size></box>"
+
+
+def sdf(*parts, version="1.9"):
+    return f'<?xml version="1.0"?>\n<sdf version="{version}">{"".join(parts)}</sdf>'
+
+
+def world(*parts):
+    return f'<world name="w">{"".join(parts)}</world>'
+
+
+def model(*parts, name="m", attributes=""):
+    return f'<model name="{name}"{attributes}>{"".join(parts)}</model>'
+
+
+def link(*parts, name="l"):
+    return f'<link name="{name}">{"".join(parts)}</link>'
+
+
+def collision(shape=BOX, *parts, name="c"):
+    return f'<collision name="{name}">{"".join(parts)}<geometry>{shape}</geometry></collision>'
+
+
+def pose(text, relative_to="", more=""):
+    base = f' relative_to="{relative_to}"' if relative_to else ""
+    return f"<pose{base}{more}>{text}</pose>"
+
+
+def at(x, relative_to=""):
+    return pose(f"{x} 0 0 0 0 0", relative_to)
+
+
+def content_of(folder, document, package_dirs=()):
+    """What the reader makes of a document."""
+    path = folder / "cell.sdf"
+    path.write_bytes(document if isinstance(document, bytes) else document.encode())
+    return read_scene(SceneRequest(path, InputFiles(folder), tuple(package_dirs)))
+
+
+def obstacles_of(folder, document, package_dirs=()):
+    """The obstacles of a document, by name."""
+    content = content_of(folder, document, package_dirs)
+    made, _ = make_obstacles(
+        Scene.model_validate(content.scene).obstacles, folder, MeshStore(InputFiles(folder))
+    )
+    return {one.name: one for one in made}
+
+
+def places_of(folder, document, package_dirs=()):
+    """The x [m] of each obstacle, by name."""
+    made = obstacles_of(folder, document, package_dirs)
+    return {name: round(float(one.world_from_body[0, 3]), 12) for name, one in made.items()}
