@@ -18,7 +18,7 @@ from rich.text import Text
 from clearance.cli.progress import shown_progress
 from clearance.errors import shown
 from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
-from clearance.report.actors import carried_of
+from clearance.report.actors import carried_of, paddings_of
 from clearance.report.contact import HEADS
 from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.verdict import Verdict, moment_line, profile_text
@@ -26,6 +26,7 @@ from clearance.report.wording import (
     certified_text,
     contact_text,
     count,
+    limit_mm,
     limits_text,
     mm,
     moment_text,
@@ -36,12 +37,12 @@ from clearance.report.wording import (
 from clearance.run import Run
 from clearance.simulate.names import LINK_AND_OBSTACLE
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
-from clearance.world.notice import KINDS, Notice
+from clearance.world.notice import KINDS, Notice, listed
 
 _STYLES = {"clear": "bold green", "near": "bold yellow"}
 _LEVELS = {"contact": "contact", "below_fail": "below fail", "below_warn": "below warn"}
 _MOST_INTERVALS, _MOST_NOTES, _MOST_PAIRS, _MOST_DISAGREEMENTS = 4, 8, 5, 5
-_MOST_CARRIES = 6
+_MOST_CARRIES, _MOST_PADDINGS = 6, 6
 _PLAIN_WIDTH = 160  # columns for tables where the output is not a terminal
 
 
@@ -66,6 +67,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     record, verdict = run.record, run.verdict
     lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
     lines += [*_beside(verdict), *_worst(record), *_rules(record), *_carried(record)]
+    lines += _paddings(record)
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines.append(partial(_deepest, record))
@@ -120,6 +122,13 @@ def _worst(record: Record) -> list[Text]:
     told = f"{where} of {n_steps}, {seconds(worst.time)}{other_time(worst.obstacle, worst.time_b)}"
     told += f": {worst.link} - {worst.obstacle}"
     return [_row("worst", told), _row("points", points)]
+
+
+def _paddings(record: Record) -> list[Text]:
+    """What clearances are less by, if any body is padded."""
+    told = [f"{name} {limit_mm(padding)} mm" for name, padding in paddings_of(record).items()]
+    less = f"clearances are less that of both bodies: {listed(told, _MOST_PADDINGS)}"
+    return [_row("padding", less)] if told else []
 
 
 def _rules(record: Record) -> list[Text]:

@@ -114,7 +114,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         all_judged,
         samples,
         _contacts(plan, found),
-        _notices(plan, all_judged.certificate),
+        _notices(plan, all_judged.certificate, found),
         _profiles(plan),
         _peer(samples, found, resources) if question.cross_check else None,
     )
@@ -185,13 +185,16 @@ def _blocks(answer: SectionAnswer) -> Iterator[slice]:
     return blocks(len(answer.found.clearance))
 
 
-def _notices(plan: MeasurementPlan, certificate: Certificate | None) -> tuple[Notice, ...]:
+def _notices(
+    plan: MeasurementPlan, certificate: Certificate | None, found: Sequence[SectionAnswer]
+) -> tuple[Notice, ...]:
     """All that a reader of the verdict must know: of the case, and of how it was measured."""
     question = plan.question
     measured = inside.notices(plan.sections) if question.method == "exact" else ()
     proven = () if certificate is None else certificate.notices
     empty = [_nothing_measured(phase) for phase in plan.sections.empty]
-    untied = _not_cross_checked(plan) if question.cross_check else ()
+    untied = [*_not_cross_checked(plan)] if question.cross_check else []
+    untied += _without_depth(found)
     return worst_first([*question.case.notices, *measured, *proven, *empty, *untied])
 
 
@@ -199,6 +202,13 @@ def _nothing_measured(phase: Phase) -> Notice:
     start, end = phase.span
     text = f"nothing is measured from {start:.3f} s to {end:.3f} s: no pair is left then"
     return Notice(Severity.WARNING, "pairs", text)
+
+
+def _without_depth(found: Sequence[SectionAnswer]) -> Iterator[Notice]:
+    """Contact of pairs that no one time has: none of what is said of contact is worked out."""
+    if any((one.found.clearance <= 0.0).any() for one in found if not one.section.tied):
+        text = "contact of bodies whose clocks are not tied has no depth, volume or way out here"
+        yield Notice(Severity.WARNING, "contact", text)
 
 
 def _not_cross_checked(plan: MeasurementPlan) -> Iterator[Notice]:
