@@ -169,8 +169,9 @@ def test_the_server_ends_with_the_program(tmp_path, how):
     replay_of(RUN).save(tmp_path / "replay.npz")
     script = "import sys; from clearance.view import show; show(sys.argv[1], open_browser=False)"
     program = subprocess.Popen(
-        [sys.executable, "-c", script, str(tmp_path)], stdout=subprocess.PIPE, text=True
-    )
+        [sys.executable, "-c", script, str(tmp_path)], stdout=subprocess.PIPE, text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_DFL),  # what runs tests may ignore it
+    )  # fmt: skip
     url = re.search(r"http://\S+", program.stdout.readline())[0]
     ask = build_opener(ProxyHandler({})).open
     assert ask(url, timeout=120).status == 200
