@@ -97,29 +97,31 @@ class _Place(NamedTuple):
 
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     """The layout of the bodies in `pairs`."""
-    links = forest_of(case).links
-    bodies = {body for pair in pairs for body in pair}
-    frames = {body: body.frame_in(case) for body in bodies}
-    references = [_reference_of(case, frames[pair.a], frames[pair.b]) for pair in pairs]
-    places = _places(pairs, references)
-    solids = sorted({place.body for place in places}, key=_links_first)
-    link_of = {place: frames[place.body] for place in places if frames[place.body] != WORLD}
+    solids = sorted({body for pair in pairs for body in pair}, key=_links_first)
+    number = {body: i for i, body in enumerate(solids)}
+    frames = np.array([body.frame_in(case) for body in solids])
+    numbers = np.array([(number[a], number[b]) for a, b in pairs], dtype=np.int64)
+    references = _references(case, frames[numbers])
+    seen_bodies, rows = np.unique(
+        (references[:, None] + 1) * len(solids) + numbers, return_inverse=True
+    )  # in the world first; links, then obstacles
+    measured = rows.reshape(-1, 2).astype(np.int64)
+    solid_of = seen_bodies % len(solids)
+    at = (seen_bodies // len(solids) - 1).tolist()
+    places = [_Place(reference, solids[i]) for reference, i in zip(at, solid_of, strict=True)]
+    link_of = {
+        place: int(frames[i])
+        for place, i in zip(places, solid_of, strict=True)
+        if frames[i] != WORLD
+    }
     wanted = {(p.reference, link_of[p]) for p in places if p.reference != IN_WORLD}
-    links, seen = seen_from(links, sorted(wanted))
-    row_of = {tuple(place): row for row, place in enumerate(places)}
-    measured = np.array(
-        [
-            [row_of[reference, body] for body in pair]
-            for pair, reference in zip(pairs, references, strict=True)
-        ],
-        dtype=np.int64,
-    )
+    links, seen = seen_from(forest_of(case).links, sorted(wanted))
     carriers = [_frame_of(place, link_of, seen) for place in places]
     stands = np.array(carriers, dtype=np.int64) == -1
     swapped = stands[measured[:, 0]] & ~stands[measured[:, 1]]
     measured[swapped] = measured[swapped][:, ::-1]
     world = World(
-        solids=np.array([solids.index(place.body) for place in places], dtype=np.int64),
+        solids=solid_of,
         frames=np.array(carriers, dtype=np.int64),
         groups=_groups(measured, np.array(carriers)),
         standing=_standing(case, places),
@@ -127,7 +129,7 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
         links=links,
     )
     shapes = [body.shape_in(case) for body in solids]
-    return Layout(join(shapes), world, np.array(references, dtype=np.int64), swapped)
+    return Layout(join(shapes), world, references, swapped)
 
 
 def positions_at(case: Case, motions: Sequence[Motion], steps: np.ndarray | range) -> np.ndarray:
@@ -141,23 +143,15 @@ def _links_first(body: BodyIndex) -> tuple[bool, BodyIndex]:
     return body.is_obstacle, body
 
 
-def _places(pairs: Sequence[Pair], references: Sequence[int]) -> list[_Place]:
-    """Each body in each reference that it is seen from; in the world links first, then obstacles."""
-    found = {
-        _Place(reference, body)
-        for pair, reference in zip(pairs, references, strict=True)
-        for body in pair
-    }
-    return sorted(found, key=lambda place: (place.reference, _links_first(place.body)))
-
-
-def _reference_of(case: Case, one: int, other: int) -> int:
-    """The nearest link above both of two links; the world where there is none, or one stands there."""
-    if WORLD in (one, other):
-        return IN_WORLD
+def _references(case: Case, links: np.ndarray) -> np.ndarray:
+    """(p,) the nearest link above both of two links (p, 2); the world where there is none, or one stands there."""
+    references = np.full(len(links), IN_WORLD, dtype=np.int64)
     forest = forest_of(case)
-    above = set(carried_by(forest, other))
-    return next((link for link in carried_by(forest, one) if link in above), IN_WORLD)
+    for i in np.flatnonzero((links != WORLD).all(axis=1)):
+        one, other = links[i].tolist()
+        above = set(carried_by(forest, other))
+        references[i] = next((link for link in carried_by(forest, one) if link in above), IN_WORLD)
+    return references
 
 
 def _frame_of(place: _Place, link_of: dict[_Place, int], seen: dict[tuple[int, int], int]) -> int:
