@@ -22,8 +22,9 @@ from clearance.world.case import Case
 from clearance.world.forest import WORLD
 from clearance.world.motion import kinematic_motion
 from clearance.world.pairs import OBSTACLE, BodyIndex, names_of
+from clearance.world.phase import Phase
 from clearance.world.rules import matches
-from clearance.world.timeline import Phase, Timeline, timeline_of
+from clearance.world.timeline import Timeline, timeline_of
 
 
 class CaseOverTime(Protocol):

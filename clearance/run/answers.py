@@ -25,8 +25,9 @@ from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, ste
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.notice import Notice, Severity, worst_first
+from clearance.world.phase import Phase
 from clearance.world.reach import require_within_reach
-from clearance.world.timeline import Phase, Timeline, timeline_of
+from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from clearance.world.case import Case
 from clearance.world.forest import WORLD, carried_by, forest_of
-from clearance.world.timeline import Phase
+from clearance.world.phase import Phase
 
 
 def holding_link(phase: Phase, i_obstacle: int) -> tuple[int, int] | None:

@@ -18,7 +18,7 @@ from clearance.world.case import Case
 from clearance.world.clocks import clocks_of
 from clearance.world.forest import forest_of, positions_between
 from clearance.world.pairs import OBSTACLE, BodyIndex
-from clearance.world.timeline import Phase
+from clearance.world.phase import Phase
 
 LINK, STANDING, MOVING, PART = "link", "obstacle", "moving", "part"
 """Kinds of bodies as they are drawn: links, obstacles that stand, that move, and parts that are carried at some

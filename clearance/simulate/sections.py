@@ -19,7 +19,8 @@ from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.world.case import Case, Limits, Omission
 from clearance.world.clocks import actors_of_clock, clock_pair, clocks_of
 from clearance.world.pairs import Pair, Selection, nothing_to_measure, selected_pairs
-from clearance.world.timeline import Phase, Timeline
+from clearance.world.phase import Phase
+from clearance.world.timeline import Timeline
 
 
 @dataclass(frozen=True, eq=False)

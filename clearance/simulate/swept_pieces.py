@@ -24,7 +24,8 @@ from clearance.simulate.certify import path_of
 from clearance.simulate.holders import holding_link
 from clearance.world.cubic import cubics_of, extremes_between
 from clearance.world.forest import carried_by, forest_of, link_poses_at
-from clearance.world.timeline import Phase, Timeline
+from clearance.world.phase import Phase
+from clearance.world.timeline import Timeline
 
 ROUNDING = 1e-9
 """[m] By how much every piece is wider still: far more than poses and hulls are rounded by."""

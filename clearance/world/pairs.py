@@ -15,9 +15,9 @@ from clearance.world.body import Body
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Omission, SelfClearance
 from clearance.world.forest import WORLD, Forest, forest_of
+from clearance.world.phase import Phase
 from clearance.world.rules import matches
 from clearance.world.self_pairs import RIGID, self_pairs
-from clearance.world.timeline import Phase
 
 OBSTACLE = -1
 """Stands for the robot of a body that is an obstacle."""
