@@ -18,8 +18,8 @@ from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.sections import Section, SectionPlan
-from clearance.simulate.status import RowLimits, sample_codes
-from clearance.world.case import Case, Limits
+from clearance.simulate.status import sample_codes
+from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.rules import DEFAULT
 
@@ -50,15 +50,6 @@ class Judged:
     rule: np.ndarray | None
     nearest: Measurement
     certificate: Certificate | None
-
-    def limits_at(self, steps: slice) -> RowLimits | Limits:
-        """What the rows of some steps are held against."""
-        if self.rule is None:
-            return self.rules[0].limits
-        fail, warn = (
-            np.array([getattr(r.limits, name) for r in self.rules]) for name in ("fail", "warn")
-        )
-        return RowLimits(fail[self.rule[steps]], warn[self.rule[steps]])
 
     def rules_at(self, steps: slice) -> np.ndarray:
         """(k,) the place in `rules` of what judged each of some steps."""

@@ -92,10 +92,6 @@ class SectionPlan:
     unmeasured: tuple[Omission, ...]
     empty: tuple[Phase, ...]
 
-    def of_rule(self, rule: int) -> tuple[Section, ...]:
-        """The sections that a rule judges."""
-        return tuple(section for section in self.sections if section.rule == rule)
-
     @property
     def rules(self) -> tuple[int, ...]:
         """The rules that judge something, as `Limits.rule_names` counts."""

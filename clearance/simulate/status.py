@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,15 +25,8 @@ class Status(StrEnum):
 STATUSES = tuple(Status)
 
 
-class RowLimits(NamedTuple):
-    """The limits of rows that different rules judge: (k,) each [m]."""
-
-    fail: np.ndarray
-    warn: np.ndarray
-
-
 def status_codes(
-    clearance: np.ndarray, limits: Limits | RowLimits, touching: np.ndarray | bool | None = None
+    clearance: np.ndarray, limits: Limits, touching: np.ndarray | bool | None = None
 ) -> np.ndarray:
     """(n,) indices into `STATUSES`: contact, violated below `fail`, near below `warn`; 0 where unknown.
 

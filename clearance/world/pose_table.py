@@ -9,7 +9,7 @@ import numpy as np
 from clearance.errors import BadPose, BadShape, BadTime, NotFinite
 from clearance.tolerance import LARGEST, ROTATION
 from clearance.world.slerp import aligned, slerp
-from clearance.world.timing import AS_GIVEN, Timing
+from clearance.world.timing import AS_GIVEN, Timing, require_increasing
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,20 +83,6 @@ def require_samples_to_loop(n_samples: int, timing: Timing) -> None:
     """
     if timing.after == "loop" and n_samples < 2:
         raise BadTime("one sample where `after: loop` is asked", valid="two samples or more")
-
-
-def require_increasing(times: np.ndarray) -> None:
-    """Nothing, if times increase from sample to sample.
-
-    Raises:
-        BadTime: the first pair that does not.
-    """
-    late = np.flatnonzero(np.diff(times) <= 0.0)
-    if len(late):
-        before, after = times[late[0] : late[0] + 2].tolist()
-        raise BadTime(
-            f"time {after} follows {before}", valid="times must increase from sample to sample"
-        )
 
 
 def _numbers(given: object, name: str, width: int, n_rows: int) -> np.ndarray:

@@ -99,3 +99,17 @@ class Window:
 
 ALWAYS = Window()
 """All of a run."""
+
+
+def require_increasing(times: np.ndarray) -> None:
+    """Nothing, if times increase from sample to sample.
+
+    Raises:
+        BadTime: the first pair that does not.
+    """
+    late = np.flatnonzero(np.diff(times) <= 0.0)
+    if len(late):
+        before, after = times[late[0] : late[0] + 2].tolist()
+        raise BadTime(
+            f"time {after} follows {before}", valid="times must increase from sample to sample"
+        )

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from clearance.errors import BadDimension, BadShape, BadTime, DuplicateName, NotFinite
+from clearance.errors import BadDimension, BadShape, DuplicateName, NotFinite
 from clearance.tolerance import LARGEST
+from clearance.world.timing import require_increasing
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,12 +60,7 @@ class Trajectory:
             )
         if not (np.isfinite(self.times).all() and np.isfinite(self.positions).all()):
             raise NotFinite("a time or a position is NaN or infinite", valid="finite numbers")
-        late = np.flatnonzero(np.diff(self.times) <= 0.0)
-        if len(late):
-            before, after = self.times[late[0] : late[0] + 2].tolist()
-            raise BadTime(
-                f"time {after} follows {before}", valid="times must increase from sample to sample"
-            )
+        require_increasing(self.times)
 
     def _refuse_bad_velocities(self, velocities: np.ndarray) -> None:
         if velocities.shape != np.shape(self.positions):
