@@ -14,9 +14,10 @@ from clearance.load.allow import checked_links
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import check_not_given_twice
+from clearance.load.robot_formats import read_robot
+from clearance.load.robot_request import RobotRequest
 from clearance.load.srdf import read_srdf
 from clearance.load.timed_files import trajectory_of
-from clearance.load.urdf import UrdfRequest, read_robot
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
@@ -36,7 +37,7 @@ class RobotReader:
 
     def __init__(self, folder: Path, meshes: MeshStore) -> None:
         self._folder, self._meshes, self._files = folder, meshes, meshes.files
-        self._read: dict[UrdfRequest, Robot] = {}
+        self._read: dict[RobotRequest, Robot] = {}
         self.notes: list[str] = []
 
     def placed(self, entry: schema.RobotEntry) -> PlacedRobot:
@@ -77,14 +78,14 @@ class RobotReader:
             return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
         return replace(placed, world_from_base=given.base.matrix())
 
-    def _request(self, given: schema.Robot, field: str) -> UrdfRequest:
+    def _request(self, given: schema.Robot, field: str) -> RobotRequest:
         package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
         with at(f"{field}.package_dirs"):
             _refuse_missing_folders(given.package_dirs, package_dirs)
         path = resolved(given.urdf, self._folder)
-        return UrdfRequest(path, package_dirs, given.geometry, given.collada_up_axis)
+        return RobotRequest(path, package_dirs, given.geometry, given.collada_up_axis)
 
-    def _robot(self, request: UrdfRequest, name: str | None, field: str) -> Robot:
+    def _robot(self, request: RobotRequest, name: str | None, field: str) -> Robot:
         if request not in self._read:
             with at(f"{field}.urdf"):
                 self._read[request] = read_robot(request, self._meshes)

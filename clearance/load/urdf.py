@@ -19,17 +19,16 @@ from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joints import joints_of
 from clearance.load.mesh_store import MeshStore
 from clearance.load.plausibility import angle_notices
+from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.robot_tree import links_from_root
 from clearance.load.urdf_elements import odd_origins, parse_document
-from clearance.load.urdf_shapes import Geometry, ShapeReader, UrdfRequest
+from clearance.load.urdf_shapes import ShapeReader
 from clearance.world.body import Body
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
-
-__all__ = ["Geometry", "UrdfRequest", "load_urdf", "read_robot"]
 
 
 def load_urdf(
@@ -43,17 +42,17 @@ def load_urdf(
 
     Args:
         path: or `pybullet_data:…`, as in a case file.
-        package_dirs, geometry, collada_up_axis: as in `UrdfRequest`.
+        package_dirs, geometry, collada_up_axis: as in `RobotRequest`.
 
     Raises:
         BadInput: with the file and the element.
     """
     path = resolved(str(path), Path())
-    request = UrdfRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
-    return read_robot(request, MeshStore(InputFiles(path.parent)))
+    request = RobotRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
+    return read_urdf(request, MeshStore(InputFiles(path.parent)))
 
 
-def read_robot(request: UrdfRequest, meshes: MeshStore) -> Robot:
+def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
     """The robot in a URDF file: one body for each link that has a shape, in the link's frame.
 
     Raises:

@@ -5,51 +5,30 @@ Not for: which links and joints there are (`urdf`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import SHAPES
-from clearance.load.collada_file import UpAxis
 from clearance.load.found_files import notes_on_variables, notices_on_stand_ins
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore, Scale
 from clearance.load.notes import grouped, short
 from clearance.load.plausibility import scale_notices
+from clearance.load.robot_request import RobotRequest
 from clearance.load.urdf_elements import dimensions_of, numbers, pose_of
 from clearance.world.notice import Notice
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
-Geometry = Literal["collision", "visual", "collision_or_visual"]
-
-
-@dataclass(frozen=True)
-class UrdfRequest:
-    """Which URDF, and how it is to be read.
-
-    Attributes:
-        path: the URDF file.
-        package_dirs: where `package://` is looked up first.
-        geometry: which elements are the robot's shape; "collision_or_visual" takes the visual ones of links
-            that have no others.
-        collada_up_axis: "ros" leaves COLLADA files as they lie, "file" turns them as their `<up_axis>` says.
-    """
-
-    path: Path
-    package_dirs: tuple[Path, ...] = ()
-    geometry: Geometry = "collision"
-    collada_up_axis: UpAxis = "ros"
-
 
 class ShapeReader:
     """Makes shapes from elements, and keeps what is to be reported of their files."""
 
-    def __init__(self, request: UrdfRequest, meshes: MeshStore) -> None:
+    def __init__(self, request: RobotRequest, meshes: MeshStore) -> None:
         self.request = request
         self.meshes = meshes
         self._notes: list[tuple[str, str]] = []

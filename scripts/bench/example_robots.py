@@ -28,7 +28,8 @@ from rich.table import Table  # noqa: E402
 from clearance.errors import ClearanceError  # noqa: E402
 from clearance.load.input_files import InputFiles  # noqa: E402
 from clearance.load.mesh_store import MeshStore  # noqa: E402
-from clearance.load.urdf import UrdfRequest, read_robot  # noqa: E402
+from clearance.load.robot_formats import read_robot  # noqa: E402
+from clearance.load.robot_request import RobotRequest  # noqa: E402
 from clearance.world.robot import Joint, Robot  # noqa: E402
 
 BROUGHT = Path(sysconfig.get_path("purelib")) / "cmeel.prefix/share/example-robot-data/robots"
@@ -133,7 +134,7 @@ def row_of(urdf: Path, folder: Path) -> Row:
 
 def read(urdf: Path, geometry: str, axis: str) -> Robot:
     """The robot as the command reads it."""
-    return read_robot(UrdfRequest(urdf, (), geometry, axis), MeshStore(InputFiles(urdf.parent)))
+    return read_robot(RobotRequest(urdf, (), geometry, axis), MeshStore(InputFiles(urdf.parent)))
 
 
 def answer(urdf: Path, robot: Robot, geometry: str, axis: str) -> tuple[int, str]:

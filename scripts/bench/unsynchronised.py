@@ -27,7 +27,8 @@ from rich.table import Table
 import clearance as cl
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.urdf import UrdfRequest, read_robot
+from clearance.load.robot_formats import read_robot
+from clearance.load.robot_request import RobotRequest
 from clearance.simulate.resources import Resources
 from clearance.simulate.two_clocks import ClockMotion, PairsOfTwoClocks
 from clearance.simulate.unsynchronised import UnsynchronisedAnswers, least_unsynchronised
@@ -91,7 +92,7 @@ def arm(
     """An arm that waves about its rest."""
     urdf, rest = ARMS[name]
     path = folder / urdf
-    robot = read_robot(UrdfRequest(path, (path.parent,)), MeshStore(InputFiles(path.parent)))
+    robot = read_robot(RobotRequest(path, (path.parent,)), MeshStore(InputFiles(path.parent)))
     joints = [joint.name for joint in robot.moving_joints][: len(rest)]
     times = np.linspace(0.0, 10.0, n_steps)
     rate, phase = random.uniform(0.3, 1.5, len(rest)), random.uniform(0.0, 6.0, len(rest))

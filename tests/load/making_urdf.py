@@ -2,7 +2,8 @@
 
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.urdf import UrdfRequest, read_robot
+from clearance.load.robot_formats import read_robot
+from clearance.load.robot_request import RobotRequest
 from tests.load.making import cube_stl
 
 
@@ -11,7 +12,7 @@ def load_urdf(folder, urdf, package_dirs=(), geometry="collision"):
     path.write_bytes(urdf.encode() if isinstance(urdf, str) else urdf)
     if not (folder / "upper.stl").exists():
         (folder / "upper.stl").write_bytes(cube_stl())
-    request = UrdfRequest(path, tuple(package_dirs), geometry)
+    request = RobotRequest(path, tuple(package_dirs), geometry)
     return read_robot(request, MeshStore(InputFiles(folder)))
 
 

@@ -6,7 +6,8 @@ import pytest
 from clearance.errors import BadInput
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.urdf import UrdfRequest, read_robot
+from clearance.load.robot_formats import read_robot
+from clearance.load.robot_request import RobotRequest
 from clearance.world.notice import Severity
 from tests.load.making import CUBE, CUBE_TRIANGLES, binary_stl
 from tests.load.making_case import changed, load_small
@@ -48,7 +49,7 @@ def load(
     path = folder / "bar.urdf"
     joints = joint("j", "a", "b"), joint("k", "b", "c", inner=at_end)
     path.write_text(robot(link("", "a"), link(bar, "b"), link("", "c"), *joints))
-    request = UrdfRequest(path, (), geometry, way)
+    request = RobotRequest(path, (), geometry, way)
     return read_robot(request, MeshStore(InputFiles(folder)))
 
 

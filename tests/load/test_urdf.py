@@ -8,7 +8,8 @@ import pytest
 from clearance.errors import BadSyntax
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
-from clearance.load.urdf import UrdfRequest, read_robot
+from clearance.load.robot_formats import read_robot
+from clearance.load.robot_request import RobotRequest
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses, moving_positions
 from clearance.world.mimics import followers
@@ -274,7 +275,7 @@ def test_a_robot_that_a_package_brings(tmp_path):
     pytest.importorskip("pybullet_data")
     files = InputFiles(tmp_path)
     path = resolved("pybullet_data:kuka_iiwa/model.urdf", tmp_path)
-    arm = read_robot(UrdfRequest(path), MeshStore(files))
+    arm = read_robot(RobotRequest(path), MeshStore(files))
     assert len(arm.bodies) == 8
     assert len(arm.moving_joints) == 7
     assert {source.path.split(":")[0] for source in files.sources} == {"pybullet_data"}

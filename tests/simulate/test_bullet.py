@@ -13,7 +13,8 @@ from clearance.errors import BadInput, MissingFile
 from clearance.load.case_file import load_case
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
-from clearance.load.urdf import UrdfRequest, read_robot
+from clearance.load.robot_formats import read_robot
+from clearance.load.robot_request import RobotRequest
 from clearance.simulate.bullet import STEPS_PER_SECOND, bullet_link_poses, simulated_motion
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import PlacedRobot
@@ -52,7 +53,7 @@ def cart(tmp_path: Path, effort: float = 500.0, axis: str = "1 0 0", **changes) 
 
 
 def placed_robot(path: Path, trajectory: Trajectory | None = None, packages=()) -> PlacedRobot:
-    robot = read_robot(UrdfRequest(path, packages), MeshStore(InputFiles(path.parent)))
+    robot = read_robot(RobotRequest(path, packages), MeshStore(InputFiles(path.parent)))
     names = tuple(joint.name for joint in robot.moving_joints)
     still = Trajectory(np.array([0.0, 1.0]), names, np.zeros((2, len(names))))
     return PlacedRobot(robot, trajectory or still, urdf_path=str(path))

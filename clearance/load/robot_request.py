@@ -1,0 +1,29 @@
+"""What is asked of a reader of robot files. Not for: reading them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from clearance.load.collada_file import UpAxis
+
+Geometry = Literal["collision", "visual", "collision_or_visual"]
+
+
+@dataclass(frozen=True)
+class RobotRequest:
+    """Which robot, and how its file is to be read.
+
+    Attributes:
+        path: the robot's file.
+        package_dirs: where `package://` is looked up first.
+        geometry: which shapes are the robot's; "collision_or_visual" takes the visual ones of links that have no
+            others.
+        collada_up_axis: "ros" leaves COLLADA files as they lie, "file" turns them as their `<up_axis>` says.
+    """
+
+    path: Path
+    package_dirs: tuple[Path, ...] = ()
+    geometry: Geometry = "collision"
+    collada_up_axis: UpAxis = "ros"
