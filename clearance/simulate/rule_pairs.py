@@ -42,6 +42,14 @@ class RulePairs:
     answers: Sequence[SectionAnswer]
     rule: str
 
+    @property
+    def names(self) -> Iterator[tuple[str, str]]:
+        """The two bodies of each pair, once a section."""
+        for answer in self.answers:
+            yield from zip(
+                *pair_names(answer.section.phase.case, answer.section.pairs), strict=True
+            )
+
     def near(self, within: float) -> NearRows:
         """All pairs nearer than `within` [m] at each step."""
         parts = [_near(answer, within) for answer in self.answers]
