@@ -31,6 +31,7 @@ from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
+from clearance.world.waiver import Waiver
 
 if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch
@@ -249,6 +250,7 @@ class Case:
         notes: what loading had to mend or assume, one line each.
         notices: suspect input and warnings that only loading can find; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
+        waivers: which bodies may come nearer than their rule says; of several for a pair the last counts.
         profiles: outlines that the sweep must keep to.
         sign_off: for the report; None where it has no such fields.
     """
@@ -264,6 +266,7 @@ class Case:
     profiles: tuple[ReservedSpace, ...] = ()
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
+    waivers: tuple[Waiver, ...] = ()
     sign_off: SignOff | None = None
     carries: tuple[Carry, ...] = ()
     clock: Clock = COMMON
