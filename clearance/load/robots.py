@@ -73,7 +73,8 @@ class RobotReader:
             padding=padding,
         )
         if entry.trajectory is not None:
-            placed = replace(placed, timing=entry.trajectory.timing)
+            path = str(resolved(entry.trajectory.file, self._folder))
+            placed = replace(placed, timing=entry.trajectory.timing, trajectory_path=path)
         if given.base.on is not None:
             return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
         return replace(placed, world_from_base=given.base.matrix())

@@ -29,6 +29,8 @@ from clearance.report.wording import count, joint_value, limits_text, mm, other_
 MAX_EVENT_ROWS = 200
 """Most events printed on the page; all are in `summary.json`."""
 
+NOTHING = Markup("")
+
 _TITLES = {
     "clear": "clear",
     "near": "near miss",
@@ -161,8 +163,14 @@ def _cross_check_word(check: dict[str, Any] | None) -> str:
     return f"agrees with {check['peer']}" if check["agrees"] else f"disagrees with {check['peer']}"
 
 
-def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:
-    """All sections under the replay; `pictures`: SVG of each profile by its name."""
+def sections(
+    summary: dict[str, Any], pictures: dict[str, str], findings: Markup = NOTHING
+) -> Markup:
+    """All sections under the replay.
+
+    Args:
+        pictures: SVG of each profile by its name. findings: their section.
+    """
     return Markup("").join(
         [
             element(
@@ -171,6 +179,7 @@ def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:
                 element("div", events(summary), certainty(summary)),
                 class_="columns",
             ),
+            findings,
             rules(summary),
             cell_time(summary),
             contacts(summary),

@@ -133,6 +133,7 @@ class PlacedRobot:
         exclude_links: links that are not measured.
         self_clearance: whether its links are measured against one another, and which pairs are excused.
         padding: [m] by how much the clearance of links is lessened, by link.
+        trajectory_path: the file that the trajectory is from; empty where it is from none.
     """
 
     robot: Robot
@@ -146,6 +147,7 @@ class PlacedRobot:
     mount: Mount | None = None
     timing: Timing = AS_GIVEN
     padding: dict[str, float] = field(default_factory=dict)
+    trajectory_path: str = ""
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
@@ -321,7 +323,8 @@ class Case:
         i_robot = _index_of(self.robots, robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
-        moved = replace(placed, trajectory=Trajectory(times, names, positions, velocities))
+        trajectory = Trajectory(times, names, positions, velocities)
+        moved = replace(placed, trajectory=trajectory, trajectory_path="")
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
 
 
