@@ -224,7 +224,9 @@ def _outputs(out: Path | None, *beside: Path | None) -> list[Path]:
             continue
         if os.path.realpath(path) in map(os.path.realpath, found):
             raise Unwritable(
-                "is a file of the report, or of this run", where=str(path), valid="another name is needed"
+                "is a file of the report, or of this run",
+                where=str(path),
+                valid="another name is needed",
             )
         found.append(path)
     return found
