@@ -1,10 +1,12 @@
 from .errors import BadInput, ClearanceError
+from .findings.finding import Finding
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
 from .geometry.shapes import box, capsule, cylinder, pipe, sphere
 from .load.case_file import load_case
 from .load.mesh import read_mesh
 from .load.urdf import load_urdf
+from .load.waiver_file import load_waivers
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
 from .planar.deviation import deviation
@@ -36,6 +38,7 @@ from .world.robot import Robot
 from .world.rules import Allowance, Rule
 from .world.timing import Timing, Window
 from .world.trajectory import Trajectory
+from .world.waiver import Waiver
 
 __all__ = [
     "Allowance",
@@ -49,6 +52,7 @@ __all__ = [
     "Contact",
     "CrossCheck",
     "Curve",
+    "Finding",
     "Fit",
     "Intersection",
     "Limits",
@@ -73,6 +77,7 @@ __all__ = [
     "Timing",
     "Trajectory",
     "Undecided",
+    "Waiver",
     "Window",
     "Workspace",
     "__version__",
@@ -92,6 +97,7 @@ __all__ = [
     "intersect",
     "load_case",
     "load_urdf",
+    "load_waivers",
     "minimum_distance",
     "penetration",
     "pipe",
