@@ -212,7 +212,7 @@ def _compile_ahead(quiet: bool) -> None:
     import warnings
 
     from clearance.cli import compile_ahead
-    from clearance.compile.kernel_cache import KernelCacheWarning
+    from clearance.kept_files import KernelCacheWarning
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)
