@@ -11,6 +11,7 @@ from pathlib import Path
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.load import schema
 from clearance.load.allow import checked_links
+from clearance.load.compound_joints import require_placed
 from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import check_not_given_twice
@@ -57,7 +58,9 @@ class RobotReader:
             self.notes += read.notes
         with at(f"{field}.joints"):
             require_moving_joints(robot, given.joints)
-            check_not_given_twice(given.joints, trajectory.joint_names if trajectory else ())
+            moved = trajectory.joint_names if trajectory else ()
+            check_not_given_twice(given.joints, moved)
+        require_placed(robot, {*given.joints, *moved}, f"{field}.joints")
         with at(f"{field}.exclude_links"):
             exclude_links = checked_links(given.exclude_links, robot.link_names)
         with at(f"{field}.padding"):

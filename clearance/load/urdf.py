@@ -14,6 +14,7 @@ from clearance.errors import NothingToMeasure, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.axis_check import axis_notices
 from clearance.load.collada_file import UpAxis
+from clearance.load.compound_joints import frames_between
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joints import joints_of
@@ -24,6 +25,7 @@ from clearance.load.robot_tree import links_from_root
 from clearance.load.urdf_elements import odd_origins, parse_document
 from clearance.load.urdf_shapes import ShapeReader
 from clearance.world.body import Body
+from clearance.world.names import require_own_names
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Robot
 
@@ -65,8 +67,10 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         root = parse_document(data)
         joints, notes = joints_of(root)
         by_name = {link.get("name"): link for link in root.iterfind("link")}
-        link_names, ordered = links_from_root(tuple(by_name), joints)
-        links = [by_name[name] for name in link_names]
+        frames = frames_between(joints)
+        require_own_names("link", [*by_name, *frames])
+        link_names, ordered = links_from_root((*by_name, *frames), joints)
+        links = [by_name[name] for name in link_names if name in by_name]
         _refuse_other_geometry(links, request.geometry)
         reader = ShapeReader(request, meshes)
         bodies = [body for link in links if (body := _body(link, reader)) is not None]
