@@ -18,6 +18,7 @@ from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest
 from clearance.load.srdf import read_srdf
 from clearance.load.timed_files import trajectory_of
+from clearance.load.xacro_file import checked_args
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
@@ -82,8 +83,22 @@ class RobotReader:
         package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
         with at(f"{field}.package_dirs"):
             _refuse_missing_folders(given.package_dirs, package_dirs)
-        path = resolved(given.urdf, self._folder)
-        return RobotRequest(path, package_dirs, given.geometry, given.collada_up_axis)
+        if given.xacro_args and not given.xacro:
+            raise BadInput(
+                "arguments of xacro, which is not used",
+                where=f"{field}.xacro_args",
+                valid="xacro: true",
+            )
+        with at(f"{field}.xacro_args"):
+            args = checked_args(given.xacro_args)
+        return RobotRequest(
+            resolved(given.urdf, self._folder),
+            package_dirs,
+            given.geometry,
+            given.collada_up_axis,
+            given.xacro,
+            args,
+        )
 
     def _robot(self, request: RobotRequest, name: str | None, field: str) -> Robot:
         if request not in self._read:

@@ -37,6 +37,8 @@ class Robot(StrictModel):
 
     name: Annotated[Name, AfterValidator(_without_stroke)] | None = None
     urdf: Name
+    xacro: bool = False
+    xacro_args: dict[str, str | bool | int | float] = {}
     package_dirs: list[Name] = []
     base: Base = Base()
     trajectory: TrajectoryFile | None = None
