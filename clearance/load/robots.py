@@ -12,8 +12,9 @@ from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_nam
 from clearance.load import schema
 from clearance.load.allow import checked_links
 from clearance.load.input_files import resolved
+from clearance.load.joints_schema import states_of
 from clearance.load.mesh_store import MeshStore
-from clearance.load.motion_names import check_not_given_twice
+from clearance.load.resting import resting_positions
 from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest
 from clearance.load.srdf import read_srdf
@@ -21,7 +22,6 @@ from clearance.load.timed_files import trajectory_of
 from clearance.load.xacro_file import checked_args
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
-from clearance.world.moving_joints import require_moving_joints
 from clearance.world.robot import Robot
 from clearance.world.rules import matches
 
@@ -56,9 +56,9 @@ class RobotReader:
             read = trajectory_of(entry.trajectory, where, self._folder, robot, self._files)
             trajectory = read.trajectory
             self.notes += read.notes
-        with at(f"{field}.joints"):
-            require_moving_joints(robot, given.joints)
-            check_not_given_twice(given.joints, trajectory.joint_names if trajectory else ())
+        moved = trajectory.joint_names if trajectory else ()
+        resting = resting_positions(entry, robot, moved, self._folder, self._files)
+        self.notes += resting.notes
         with at(f"{field}.exclude_links"):
             exclude_links = checked_links(given.exclude_links, robot.link_names)
         with at(f"{field}.padding"):
@@ -66,7 +66,7 @@ class RobotReader:
         placed = PlacedRobot(
             robot=robot,
             trajectory=trajectory,
-            fixed_positions=dict(given.joints),
+            fixed_positions=resting.positions,
             exclude_links=exclude_links,
             urdf_path=str(request.path),
             package_dirs=tuple(map(str, request.package_dirs)),
@@ -125,11 +125,12 @@ def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:
     """Refuses fields about excused pairs where they would excuse nothing."""
     if not given.self_clearance:
         for key in ("srdf", "trust_never"):
-            if getattr(given, key):
+            if getattr(given, key) and not (key == "srdf" and states_of(given.joints)):
                 raise BadInput(
                     "it excuses pairs of links, which are not measured",
                     where=f"{field}.{key}",
-                    valid="self_clearance: true, or no such field",
+                    valid="self_clearance: true, or no such field"
+                    + (", or a state of it: joints: {state: …}" if key == "srdf" else ""),
                 )
     elif given.srdf is None and given.trust_never:
         raise BadInput(
