@@ -13,6 +13,7 @@ from clearance.load import schema
 from clearance.load.allow import checked_links
 from clearance.load.input_files import resolved
 from clearance.load.joints_schema import states_of
+from clearance.load.limit_files import limited, note_on_accelerations
 from clearance.load.mesh_store import MeshStore
 from clearance.load.resting import resting_positions
 from clearance.load.robot_formats import read_robot
@@ -49,7 +50,9 @@ class RobotReader:
         """
         given, field = entry.robot, entry.field
         request = self._request(given, field)
-        robot = self._robot(request, given.name, field)
+        limits = limited(entry, self._robot(request, given.name, field), self._folder, self._files)
+        robot = limits.robot
+        self.notes += limits.notes
         trajectory = None
         if entry.trajectory is not None:
             where = entry.trajectory_field
@@ -58,7 +61,7 @@ class RobotReader:
             self.notes += read.notes
         moved = trajectory.joint_names if trajectory else ()
         resting = resting_positions(entry, robot, moved, self._folder, self._files)
-        self.notes += resting.notes
+        self.notes += [*resting.notes, *note_on_accelerations(limits.motion_limits, trajectory)]
         with at(f"{field}.exclude_links"):
             exclude_links = checked_links(given.exclude_links, robot.link_names)
         with at(f"{field}.padding"):
@@ -72,6 +75,8 @@ class RobotReader:
             package_dirs=tuple(map(str, request.package_dirs)),
             self_clearance=self._self_clearance(given, field, robot),
             padding=padding,
+            motion_limits=limits.motion_limits,
+            path_tolerances=limits.path_tolerances,
         )
         if entry.trajectory is not None:
             placed = replace(placed, timing=entry.trajectory.timing)

@@ -50,6 +50,8 @@ class Robot(StrictModel):
     self_clearance: bool = False
     srdf: Name | None = None
     trust_never: bool = False
+    joint_limits: Name | None = None
+    controllers: Name | None = None
     padding: dict[str, Level] = {}
 
 
