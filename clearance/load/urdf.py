@@ -6,8 +6,9 @@ loader (`urdf_shapes`). Not for: where the robot stands, or how it moves.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from clearance.errors import NothingToMeasure, at
@@ -24,6 +25,7 @@ from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.robot_tree import links_from_root
 from clearance.load.urdf_elements import odd_origins, parse_document
 from clearance.load.urdf_shapes import ShapeReader
+from clearance.load.xacro_file import checked_args, expanded, refuse_unasked
 from clearance.world.body import Body
 from clearance.world.names import require_own_names
 from clearance.world.notice import Notice, Severity, listed
@@ -39,18 +41,27 @@ def load_urdf(
     package_dirs: Sequence[str | Path] = (),
     geometry: Geometry = "collision",
     collada_up_axis: UpAxis = "ros",
+    xacro: bool = False,
+    xacro_args: Mapping[str, str | bool | int | float] = MappingProxyType({}),
 ) -> Robot:
     """The robot in a URDF file, for cases that are made in memory.
 
     Args:
         path: or `pybullet_data:…`, as in a case file.
-        package_dirs, geometry, collada_up_axis: as in `RobotRequest`.
+        package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
 
     Raises:
         BadInput: with the file and the element.
     """
     path = resolved(str(path), Path())
-    request = RobotRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
+    request = RobotRequest(
+        path,
+        tuple(map(Path, package_dirs)),
+        geometry,
+        collada_up_axis,
+        xacro,
+        checked_args(xacro_args),
+    )
     return read_urdf(request, MeshStore(InputFiles(path.parent)))
 
 
@@ -61,8 +72,7 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         BadInput: with the file and the element. NothingToMeasure: no link has a shape of the kind that is
         asked for, though there are others.
     """
-    data = meshes.files.read(request.path)
-    refuse_foreign(data, meshes.files.shown(request.path), "a URDF file")
+    data, made = _document(request, meshes.files)
     with at(meshes.files.shown(request.path)):
         root = parse_document(data)
         joints, notes = joints_of(root)
@@ -86,9 +96,19 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         link_names,
         ordered,
         tuple(bodies),
-        (*reader.notes(), *notes),
+        (*made, *reader.notes(), *notes),
         tuple(notices),
     )
+
+
+def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:
+    """The URDF in a file, or what xacro makes of it; and notes on that."""
+    if request.xacro:
+        return expanded(request, files)
+    data, shown = files.read(request.path), files.shown(request.path)
+    refuse_foreign(data, shown, "a URDF file")
+    refuse_unasked(request, data, shown)
+    return data, ()
 
 
 def _body(link: Element, reader: ShapeReader) -> Body | None:

@@ -21,6 +21,7 @@ from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name, require_own_names
@@ -132,6 +133,8 @@ class PlacedRobot:
         exclude_links: links that are not measured.
         self_clearance: whether its links are measured against one another, and which pairs are excused.
         padding: [m] by how much the clearance of links is lessened, by link.
+        motion_limits: how fast joints may be, where more than the robot's own file is known.
+        path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
     """
 
     robot: Robot
@@ -145,6 +148,8 @@ class PlacedRobot:
     mount: Mount | None = None
     timing: Timing = AS_GIVEN
     padding: dict[str, float] = field(default_factory=dict)
+    motion_limits: dict[str, MotionLimit] = field(default_factory=dict)
+    path_tolerances: dict[str, PathTolerance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
