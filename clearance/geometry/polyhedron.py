@@ -153,6 +153,11 @@ class Polyhedron:
         return file_reader()(path, scale)
 
     @property
+    def ball_radius(self) -> float:
+        """[m] of the balls about the points of a cloud; 0: of a surface there are none."""
+        return 0.0
+
+    @property
     def n_faces(self) -> int:
         """Number of polygons."""
         return len(self.face_starts) - 1
