@@ -11,7 +11,7 @@ from pathlib import Path
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.load import schema
 from clearance.load.allow import checked_links
-from clearance.load.input_files import resolved
+from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import check_not_given_twice
 from clearance.load.robot_formats import read_robot
@@ -49,22 +49,14 @@ class RobotReader:
         given, field = entry.robot, entry.field
         request = self._request(given, field)
         robot = self._robot(request, given.name, field)
-        trajectory = None
-        if entry.trajectory is not None:
-            where = entry.trajectory_field
-            read = trajectory_of(entry.trajectory, where, self._folder, robot, self._files)
-            trajectory = read.trajectory
-            self.notes += read.notes
         with at(f"{field}.joints"):
             require_moving_joints(robot, given.joints)
-            check_not_given_twice(given.joints, trajectory.joint_names if trajectory else ())
         with at(f"{field}.exclude_links"):
             exclude_links = checked_links(given.exclude_links, robot.link_names)
         with at(f"{field}.padding"):
             padding = _padding(given.padding, robot.link_names)
         placed = PlacedRobot(
             robot=robot,
-            trajectory=trajectory,
             fixed_positions=dict(given.joints),
             exclude_links=exclude_links,
             urdf_path=str(request.path),
@@ -72,11 +64,15 @@ class RobotReader:
             self_clearance=self._self_clearance(given, field, robot),
             padding=padding,
         )
-        if entry.trajectory is not None:
-            placed = replace(placed, timing=entry.trajectory.timing)
         if given.base.on is not None:
-            return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
-        return replace(placed, world_from_base=given.base.matrix())
+            placed = replace(placed, mount=Mount(given.base.on, given.base.matrix()))
+        else:
+            placed = replace(placed, world_from_base=given.base.matrix())
+        if entry.trajectory is None:
+            return placed
+        moved, notes = with_trajectory(entry, placed, self._folder, self._files)
+        self.notes += notes
+        return moved
 
     def _request(self, given: schema.Robot, field: str) -> RobotRequest:
         package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
@@ -104,6 +100,25 @@ class RobotReader:
         with at(f"{field}.srdf"):
             matrix = read_srdf(resolved(given.srdf, self._folder), robot, self._files)
         return SelfClearance(matrix, given.trust_never)
+
+
+def with_trajectory(
+    entry: schema.RobotEntry, placed: PlacedRobot, folder: Path, files: InputFiles
+) -> tuple[PlacedRobot, tuple[str, ...]]:
+    """The robot of an entry with the trajectory of its file, and a line each on how that was taken.
+
+    Args:
+        folder: against which its path is looked up.
+
+    Raises:
+        BadInput: with the field and the file.
+    """
+    asked = entry.trajectory
+    assert asked is not None
+    trajectory, notes = trajectory_of(asked, entry.trajectory_field, folder, placed.robot, files)
+    with at(f"{entry.field}.joints"):
+        check_not_given_twice(placed.fixed_positions, trajectory.joint_names)
+    return replace(placed, trajectory=trajectory, timing=asked.timing), notes
 
 
 def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:
