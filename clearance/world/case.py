@@ -320,14 +320,19 @@ class Case:
         Raises:
             BadInput: no such robot or joint, or numbers that are no trajectory.
         """
-        i_robot = _index_of(self.robots, robot)
+        i_robot = index_of_robot(self.robots, robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
         moved = replace(placed, trajectory=Trajectory(times, names, positions, velocities))
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
 
 
-def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
+def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
+    """The place of the one robot of a name, or of the only one.
+
+    Raises:
+        UnknownRobot: there is no such one.
+    """
     names = [placed.robot.name for placed in robots]
     if name is None and len(names) == 1:
         return 0
