@@ -56,6 +56,7 @@ def is_path_with_name(shown: str) -> bool:
     return is_path(place) and is_name(f"{Path(place).name}.{name}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "page",
     [page for page in (*NOTES, *PAGES) if page.name not in PAST],

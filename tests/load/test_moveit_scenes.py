@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
 from clearance import cli
 from clearance.errors import BadInput
+from tests.examples import examples
 from tests.load.making import CASE, CUBE, cube_stl, write_case
 from tests.load.making_case import load_small
 from tests.load.making_moveit import FIRST, LISTS, MESSAGE, SECOND, content_of, obstacles_of
@@ -73,6 +74,7 @@ def test_rounded_quaternions_are_made_of_length_one_and_told(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_file_that_names_its_parts_again_and_again_ends(tmp_path):
     thousand = ", ".join(["*s"] * 1000)
     objects = ", ".join(["*o"] * 1000)
@@ -246,13 +248,14 @@ def test_text_cut_off_anywhere_is_refused(tmp_path, document):
         assert not only_our_own(tmp_path, document[:n].encode(), "cell.scene")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("document", [MESSAGE, LISTS], ids=["message", "lists"])
 def test_messages_cut_off_anywhere_are_refused_in_one_line_or_whole(tmp_path, document):
     for n in range(0, len(document), 1 if document is LISTS else 7):
         only_our_own(tmp_path, document[:n].encode(), "cell.yaml")
 
 
-@settings(deadline=None, max_examples=100)
+@examples(100)
 @given(st.data())
 def test_exchanged_parts_bring_only_our_own_errors(tmp_path_factory, data):
     name, document = data.draw(
@@ -279,7 +282,7 @@ VALUES = st.recursive(
 )  # fmt: skip
 
 
-@settings(deadline=None, max_examples=200)
+@examples(200)
 @given(
     st.dictionaries(
         st.sampled_from(

@@ -283,6 +283,7 @@ def test_a_robot_that_a_package_brings(tmp_path):
     assert importlib.util.find_spec("pybullet_data").origin not in str(files.sources)
 
 
+@pytest.mark.slow
 def test_a_chain_of_thousands_of_links_and_followers_is_read(tmp_path):
     """Neither links in a row nor joints that follow each other in a row are gone through by recursion."""
     n = 3000

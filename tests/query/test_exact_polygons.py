@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from clearance import polygon_distance, polygon_distances
 from tests import oracle
-from tests.examples import examples
+from tests.examples import examples, some_slow
 from tests.strategies import FAMILIES, polygon_pairs
 
 
@@ -39,7 +39,7 @@ def measured(name):
     return [(p, q, polygon_distance(p, q), exact_sq(p, q)) for p, q in draws(name)]
 
 
-@pytest.mark.parametrize("name", sorted(FAMILIES))
+@pytest.mark.parametrize("name", some_slow(sorted(FAMILIES), {"many_sided"}))
 def test_contact_is_decided_like_the_oracle(name):
     wrong = [i for i, (_, _, near, sq) in enumerate(measured(name)) if near.contact != (sq == 0)]
     assert not wrong
@@ -51,7 +51,7 @@ def test_the_error_bound_is_never_violated(name):
         assert oracle.error(near.distance, sq) <= Fraction(near.error_bound)
 
 
-@pytest.mark.parametrize("name", sorted(FAMILIES))
+@pytest.mark.parametrize("name", some_slow(sorted(FAMILIES), {"many_sided"}))
 def test_every_digit_is_right_where_the_distance_is_a_number(name):
     """To an ulp, or to 2^-96 of the polygons' size; a plain kernel loses six digits at a millionth of it."""
     for p, q, near, sq in measured(name):
@@ -60,7 +60,7 @@ def test_every_digit_is_right_where_the_distance_is_a_number(name):
             assert oracle.error(near.distance, sq) <= Fraction(2) ** -52 * oracle.root(sq) + noise
 
 
-@pytest.mark.parametrize("name", sorted(FAMILIES))
+@pytest.mark.parametrize("name", some_slow(sorted(FAMILIES), {"many_sided"}))
 def test_witness_points_are_on_their_polygons_and_realise_the_distance(name):
     for p, q, near, _ in measured(name):
         ulp = 8 * np.spacing(max(np.abs(p).max(), np.abs(q).max()))

@@ -11,12 +11,13 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.simulate import measure, parts
+from tests.examples import first_fast
 from tests.made_cases import arm, at, spindle, torus
 
 SCENES = Path(__file__).parents[2] / "scenes"
 
 
-@pytest.fixture(scope="module", params=["box_pipe", "panda_shelf", "hot_cell"])
+@pytest.fixture(scope="module", params=first_fast(["box_pipe", "panda_shelf", "hot_cell"], 2))
 def runs(request: pytest.FixtureRequest) -> dict[str, cl.Run]:
     case = cl.load_case(SCENES / request.param / "case.yaml")
     return {
