@@ -23,7 +23,12 @@ def register() -> None:
 
 def examples(n: int) -> settings:
     """The settings of a property that draws `n` examples, or its profile's share of them."""
-    return settings(max_examples=max(3, n * settings.default.max_examples // 100))
+    return settings(max_examples=share_of(n))
+
+
+def share_of(n: int) -> int:
+    """`n`, or the profile's share of it: how many examples a test draws by itself."""
+    return max(3, n * settings.default.max_examples // 100)
 
 
 def first_fast(values: Iterable, n: int) -> list:

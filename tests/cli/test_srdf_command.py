@@ -48,6 +48,7 @@ def robot(tmp_path):
     return write
 
 
+@pytest.mark.slow
 def test_pairs_that_never_meet_are_proven(robot, capsys):
     assert run(["srdf", "audit", *robot()]) == 0
     told = capsys.readouterr().out.splitlines()

@@ -66,6 +66,7 @@ def test_the_names_of_a_page_are_there(page):
     assert absent_names(page) == []
 
 
+@pytest.mark.slow
 def test_a_name_that_is_gone_is_found():
     assert is_there("descent.descend") and is_there("kernels/search/descent.py")
     assert is_there("Query.distances") and is_there("world.kinematic_chain")

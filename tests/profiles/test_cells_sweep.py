@@ -130,9 +130,7 @@ def test_what_moves_by_itself_is_swept_where_it_is_named_and_only_there(seed):
     assert of_robots == {*LINKS, "part", "lid"}
 
 
-@pytest.mark.parametrize(
-    "name", some_slow(["door", "crate", "right/tool"], {"crate", "right/tool"})
-)
+@pytest.mark.parametrize("name", some_slow(["door", "crate", "right/tool"], {"door", "crate"}))
 def test_a_section_holds_every_point_cut(name):
     case, rng = cells.cell(4), np.random.default_rng(4)
     times = np.linspace(0.0, end_of(case), 1000)

@@ -148,7 +148,7 @@ def test_parallel_slabs_that_both_slide_keep_their_exact_gap(gap):
     assert (run.certificate.lower_bound <= run.record.clearances).all()
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", first_fast(range(3), 1))
 def test_two_bodies_with_a_long_chain_between_are_as_far_apart_as_is_exact(seed):
     """36 joints between, of which some follow others; each adds its rounding of coordinates of some metres."""
     random = np.random.default_rng(seed)

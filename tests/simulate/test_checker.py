@@ -1,6 +1,6 @@
 """One configuration after another against a run over the same positions, bit for bit, in any order."""
 
-import threading
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -114,11 +114,8 @@ def test_threads_may_share_a_checker():
             if checker.distance(positions[i]).distance != run.record.clearances[i]:
                 wrong.append(i)
 
-    threads = [threading.Thread(target=ask, args=(seed,)) for seed in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(4) as threads:
+        list(threads.map(ask, range(4)))
     assert not wrong
 
 

@@ -78,6 +78,7 @@ def test_no_pair_of_times_is_nearer(seed, slack):
     assert lower.min() >= run.record.worst.clearance - 1.001e-4
 
 
+@pytest.mark.slow
 def test_a_step_has_the_least_over_the_other_clock_and_says_when():
     case = loose(4, np.inf)
     run = cl.check(case, certify=False)
