@@ -6,6 +6,7 @@ can serve a whole robot and scene. Not for: the search itself (`kernels.search.d
 
 from __future__ import annotations
 
+import itertools
 import weakref
 from collections.abc import Sequence
 
@@ -15,6 +16,7 @@ from clearance.geometry.closing import Closing, closing_of
 from clearance.geometry.cones import face_cones, node_cones
 from clearance.geometry.copies import Copies, copies_of
 from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
+from clearance.geometry.kept_shapes import kept, name_of
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.mesh.face_planes import face_planes
@@ -24,6 +26,9 @@ from clearance.kernels.mesh.tree_build import build_tree, most_groups
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
 _joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Surface]]
 _joined = weakref.WeakKeyDictionary()
+
+LARGE = 200
+"""Faces of a shape whose searchable form is kept for later runs, in a file of its own."""
 
 _NO_CAPS = np.empty((0, 3))
 
@@ -46,9 +51,26 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
     if known is not None and len(known[0]) == len(shapes):
         if all(ref() is shape for ref, shape in zip(known[0], shapes, strict=True)):
             return known[1]
+    _take_kept([shape for shape in dict.fromkeys(shapes) if shape not in _built])
     joined = _join([surface_of(shape) for shape in shapes])
     _joined[shapes[0]] = (tuple(weakref.ref(shape) for shape in shapes), joined)
     return joined
+
+
+def _take_kept(shapes: Sequence[Polyhedron]) -> None:
+    """Builds all, or takes from an earlier run what it has built: large ones one by one, small ones together."""
+    small = [shape for shape in shapes if shape.n_faces < LARGE]
+    for shape in shapes:
+        if shape.n_faces >= LARGE:
+            (_built[shape],) = _kept_surfaces([shape])
+    if sum(shape.n_faces for shape in small) >= LARGE:
+        _built.update(zip(small, _kept_surfaces(small), strict=True))
+
+
+def _kept_surfaces(shapes: Sequence[Polyhedron]) -> list[Surface]:
+    arrays = [(shape.vertices, shape.face_starts, shape.face_vertices) for shape in shapes]
+    name = name_of(*itertools.chain.from_iterable(arrays))
+    return kept(name, "surfaces", __file__, lambda: [_build(shape) for shape in shapes])
 
 
 def _join(parts: Sequence[Surface]) -> Surface:
