@@ -59,7 +59,10 @@ def statements_of(path: Path) -> tuple[Statement, ...]:
     kept = _kept()
     if name not in kept.known:
         kept.known[name] = kept.new[name] = _statements(source.decode("utf-8"), path)
-    return tuple(Statement(*one[:3], tuple(one[3]), one[4]) for one in kept.known[name])
+    return tuple(
+        Statement(line, module, level, tuple(names), alias)
+        for line, module, level, names, alias in kept.known[name]
+    )
 
 
 class _Kept(NamedTuple):

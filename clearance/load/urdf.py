@@ -124,7 +124,8 @@ def _body(link: Element, reader: ShapeReader) -> Body | None:
             shape, origin = reader.shape(element)
         shapes.append(shape)
         origins.append(origin)
-    return Body(name, Polyhedron.merged(shapes), ", ".join(origins))
+    whole = shapes[0] if len(shapes) == 1 else Polyhedron.merged(shapes)
+    return Body(name, whole, ", ".join(origins))
 
 
 def _refuse_other_geometry(links: list[Element], geometry: Geometry) -> None:
