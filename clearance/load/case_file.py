@@ -16,6 +16,7 @@ from clearance.errors import at
 from clearance.load import schema
 from clearance.load.allow import body_names, require_allowances, require_patterns
 from clearance.load.case_schema import ScenePlace, read_schema
+from clearance.load.held_parts import with_held_parts
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import note_on_joints_at_zero
@@ -76,6 +77,7 @@ def load_case(path: str | PathLike[str]) -> Case:
         require_allowances(case.allow, names)
         profiles = reserved_spaces(given.profiles, path.parent, files, names.table_links)
         _require_mounts(case, entries, scene_at)
+        case, held_notes = with_held_parts(case, scene_at.content)
         for i, carry in enumerate(case.carries):
             with at(f"carry[{i}].touch"):
                 require_patterns(carry.touch, names)
@@ -91,6 +93,7 @@ def load_case(path: str | PathLike[str]) -> Case:
             *dict.fromkeys(reader.notes),
             *scene_at.content.notes,
             *row_notes,
+            *held_notes,
             *scene_notes,
             *notes_on_motion(case, start, end),
         ),

@@ -91,7 +91,8 @@ def _as_ours() -> Iterator[None]:
     except ClearanceError:
         raise
     except Exception as error:
-        raise BadSyntax(f"not a bag that can be read: {error or type(error).__name__}") from None
+        reason = str(error).strip() or "it is damaged"
+        raise BadSyntax(f"not a bag that can be read: {reason}") from None
 
 
 @contextmanager
