@@ -90,12 +90,12 @@ def test_subframes_and_the_place_of_the_robot_are_said_to_be_passed_over(tmp_pat
 
 
 def test_an_object_held_in_a_case_of_several_robots_is_refused_by_name(tmp_path):
-    text = NAMED.replace(
-        "robot:",
-        "robots:\n- name: left\n  urdf: arm.urdf\n  trajectory: path.csv\n- name: right\n  trajectory: path.csv\n  urdf: arm.urdf\n#",
+    robots = "".join(
+        f"- {{name: {name}, urdf: arm.urdf, trajectory: path.csv}}\n" for name in ("left", "right")
     )
+    text = f"robots:\n{robots}scene: cell.yaml\n"
     with pytest.raises(BadInput, match="nothing is called 'tip'; valid: left/base, left/tip"):
-        load_small(tmp_path, text.replace("\ntrajectory: path.csv", ""), cell__yaml=MESSAGE)
+        load_small(tmp_path, text, cell__yaml=MESSAGE)
 
 
 def test_the_padding_of_the_case_goes_before(tmp_path):
