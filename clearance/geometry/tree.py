@@ -60,7 +60,7 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
 
 
 def _take_kept(shapes: Sequence[Polyhedron]) -> None:
-    """Builds solids, or takes from an earlier run what it has built: large ones one by one, small ones together."""
+    """Builds solids, or takes from an earlier run what it has built: large ones each, small ones together."""
     shapes = [shape for shape in shapes if not isinstance(shape, PointCloud)]
     small = [shape for shape in shapes if shape.n_faces < LARGE]
     for shape in shapes:

@@ -17,6 +17,7 @@ from clearance.load import schema
 from clearance.load.allow import body_names, require_allowances, require_patterns
 from clearance.load.case_schema import ScenePlace, read_schema
 from clearance.load.compound_joints import require_placed
+from clearance.load.held_parts import with_held_parts
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import note_on_joints_at_zero
@@ -26,6 +27,7 @@ from clearance.load.reserved import reserved_spaces
 from clearance.load.robots import RobotReader, in_motion
 from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
+from clearance.load.scene_request import SceneContent
 from clearance.load.scene_rows import with_scene_rows
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
 from clearance.world.clocks import require_clocks
@@ -97,7 +99,7 @@ class CellFile:
     Attributes:
         files: all that were read. entries: the robots as they are written.
         case: without what is told of the motion. notes: on how files were taken. motion_notes: robot by robot, on
-            trajectories and the joints that rest. scene_notes: on the scene.
+            trajectories and the joints that rest. scene_notes: on the scene. scene: what its file says.
     """
 
     path: Path
@@ -107,6 +109,7 @@ class CellFile:
     notes: tuple[str, ...]
     motion_notes: tuple[tuple[str, ...], ...]
     scene_notes: tuple[str, ...]
+    scene: SceneContent
 
 
 def _read(path: Path, model: type[schema.Case]) -> CellFile:
@@ -151,6 +154,7 @@ def _read(path: Path, model: type[schema.Case]) -> CellFile:
         notes=tuple(reader.notes),
         motion_notes=tuple(notes for _, notes in moving),
         scene_notes=of_scene,
+        scene=scene_at.content,
     )
 
 
@@ -159,6 +163,7 @@ def _finished(read: CellFile, case: Case, sources: Sequence[Source]) -> Case:
     with at(read.path.name):
         for entry, placed in zip(read.entries, case.robots, strict=True):
             require_placed(placed.robot, _placed_joints(placed), f"{entry.field}.joints")
+        case, held_notes = with_held_parts(case, read.scene)
         timeline = _run_through(case)
     several = len(case.robots) > 1
     notes = [note for entry, placed in zip(read.entries, case.robots, strict=True)
@@ -166,7 +171,7 @@ def _finished(read: CellFile, case: Case, sources: Sequence[Source]) -> Case:
     start, end = timeline.times[[0, -1]].tolist()
     on_motion = notes_on_motion(case, start, end)
     on_robots = [*read.notes, *(note for robot in read.motion_notes for note in robot)]
-    told = (*notes, *dict.fromkeys(on_robots), *read.scene_notes, *on_motion)
+    told = (*notes, *dict.fromkeys(on_robots), *held_notes, *read.scene_notes, *on_motion)
     return replace(case, sources=tuple(sources), notes=told)
 
 

@@ -1,6 +1,7 @@
 """Dumps of ROS's trajectory messages: exact numbers, which message is meant, and the line of every fault."""
 
 import json
+from io import BytesIO
 
 import pytest
 from hypothesis import given
@@ -20,8 +21,8 @@ from clearance.errors import (
     UnknownJoint,
     UnknownKey,
 )
-from clearance.load.trajectory_file import parse_trajectory
-from clearance.load.trajectory_request import Choice
+from clearance.load.trajectory_file import parse_trajectory, read_trajectory
+from clearance.load.trajectory_request import Choice, TrajectoryRequest
 from tests.examples import examples, some_slow
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small
@@ -74,6 +75,20 @@ def test_without_velocities_there_are_none():
     points = [{key: point[key] for key in ("positions", "time_from_start")} for point in POINTS]
     assert parse(dumped(with_points(*points))).velocities is None
     assert parse(dumped(with_points(*[{**p, "velocities": []} for p in points]))).velocities is None
+
+
+def test_times_as_people_write_them_by_hand():
+    """Without nanoseconds, which is told, and with a point behind whole seconds."""
+    document = {**MESSAGE, "points": [
+        {"positions": [0, 0], "time_from_start": {"secs": 0.0, "nsecs": 5}},
+        {"positions": [0, 0], "time_from_start": {"sec": 2}},
+    ]}  # fmt: skip
+    data = dumped(document).encode()
+    trajectory, notes = read_trajectory(
+        TrajectoryRequest(lambda: BytesIO(data), len(data)), "path.json"
+    )
+    assert trajectory.times.tolist() == [5e-9, 2.0]
+    assert "path.json: 1 times are seconds without nanoseconds, which are taken as 0" in notes
 
 
 def test_seconds_and_nanoseconds_are_the_nearest_double():
