@@ -1,7 +1,7 @@
 from .errors import BadInput, ClearanceError
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
-from .geometry.shapes import box, capsule, cylinder, pipe, sphere
+from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
 from .load.mesh import read_mesh
 from .load.urdf import load_urdf
@@ -87,6 +87,7 @@ __all__ = [
     "cylinder",
     "deviation",
     "distance",
+    "ellipsoid",
     "fit",
     "hausdorff",
     "intersect",

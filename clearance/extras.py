@@ -16,6 +16,7 @@ LIBRARIES = {
     "contact": ("coacd", "manifold3d"),
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
+    "mujoco": ("mujoco",),
     "report": ("plotly", "meshcat", "matplotlib"),
     "ros": ("rosbags",),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
