@@ -64,7 +64,7 @@ _LEFT = {
 _MESSAGES = {".yaml", ".yml", ".json"}
 """What is read as a trajectory of messages."""
 
-_MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf"}
+_MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf", ".step", ".stp"}
 
 _ROOT = re.compile(rb"\s*<(?:\w+:)?([A-Za-z_][\w.-]*)[\s/>]")
 
