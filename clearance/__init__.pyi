@@ -2,7 +2,7 @@ from .errors import BadInput, ClearanceError
 from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
-from .geometry.shapes import box, capsule, cylinder, pipe, sphere
+from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
 from .load.mesh import read_mesh
 from .load.urdf import load_urdf
@@ -89,6 +89,7 @@ __all__ = [
     "cylinder",
     "deviation",
     "distance",
+    "ellipsoid",
     "fit",
     "hausdorff",
     "intersect",

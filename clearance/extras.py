@@ -13,9 +13,11 @@ from importlib.util import find_spec
 from clearance.errors import Unavailable
 
 LIBRARIES = {
+    "cad": ("cascadio",),
     "contact": ("coacd", "manifold3d"),
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
+    "mujoco": ("mujoco",),
     "report": ("plotly", "meshcat", "matplotlib"),
     "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),

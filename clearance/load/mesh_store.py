@@ -9,7 +9,8 @@ from clearance.geometry.kept_shapes import kept, name_of
 from clearance.load import mesh
 from clearance.load.collada_file import UpAxis
 from clearance.load.input_files import InputFiles
-from clearance.load.mesh import LoadedMesh, mesh_from_bytes
+from clearance.load.mesh import CAD, LoadedMesh, mesh_from_bytes
+from clearance.tolerance import TESSELLATION
 
 Scale = tuple[float, float, float]
 
@@ -26,28 +27,41 @@ class MeshStore:
 
     def __init__(self, files: InputFiles) -> None:
         self.files = files
-        self._loaded: dict[tuple[str, Scale, UpAxis], LoadedMesh] = {}
+        self._loaded: dict[tuple[str, Scale, UpAxis, float], LoadedMesh] = {}
 
-    def load(self, path: Path, scale: Scale, up_axis: UpAxis = "file") -> LoadedMesh:
-        """The solid in a mesh file; the same object for the same file, scale and up axis.
+    def load(
+        self,
+        path: Path,
+        scale: Scale,
+        up_axis: UpAxis = "file",
+        tolerance: float = TESSELLATION,
+    ) -> LoadedMesh:
+        """The solid in a mesh file; the same object for the same file, scale, up axis and tolerance.
+
+        Args:
+            tolerance: [m] how far the facets of a CAD file may be off its surface.
 
         Raises:
             BadInput: as `mesh.read_mesh`, with the path as it is shown.
         """
-        key = (os.path.abspath(path), scale, up_axis)
+        key = (os.path.abspath(path), scale, up_axis, tolerance)
         if key not in self._loaded:
             data = self.files.read(path)
-            self._loaded[key] = _solid_of(data, self.files.shown(path), scale, up_axis)
+            shown = self.files.shown(path)
+            self._loaded[key] = _solid_of(data, shown, scale, up_axis, tolerance)
         return self._loaded[key]
 
 
-def _solid_of(data: bytes, shown: str, scale: Scale, up_axis: UpAxis) -> LoadedMesh:
+def _solid_of(
+    data: bytes, shown: str, scale: Scale, up_axis: UpAxis, tolerance: float
+) -> LoadedMesh:
     """As `mesh_from_bytes`, which depends on the name by its suffix alone where it refuses nothing."""
 
     def make() -> LoadedMesh:
-        return mesh_from_bytes(data, shown, scale, up_axis)
+        return mesh_from_bytes(data, shown, scale, up_axis, tolerance)
 
-    if len(data) < SMALL:
+    suffix = Path(shown).suffix.lower()
+    if len(data) < SMALL or suffix in CAD:  # what makes facets of CAD files is not among our sources
         return make()
-    name = name_of(data, Path(shown).suffix.lower(), scale, up_axis)
+    name = name_of(data, suffix, scale, up_axis)
     return kept(name, "solid", str(mesh.__file__), make)

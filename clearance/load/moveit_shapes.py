@@ -8,6 +8,7 @@ from typing import Any
 
 from clearance.errors import BadDimension, BadInput, BadShape, nearest_name
 from clearance.load.mesh_paths import mesh_path
+from clearance.load.off_file import off_text
 from clearance.load.scene_request import SceneRequest
 
 Row = dict[str, Any]
@@ -82,10 +83,7 @@ class SceneMeshes:
                 )
         name = f"{self._asked.path.name}.mesh{self._n_inline}.off"
         self._n_inline += 1
-        lines = ["OFF", f"{len(vertices)} {len(triangles)} 0"]
-        lines += [" ".join(map(repr, vertex)) for vertex in vertices]
-        lines += [" ".join(map(str, (3, *triangle))) for triangle in triangles]
-        self._asked.files.hold(self._asked.path.parent / name, "\n".join(lines).encode())
+        self._asked.files.hold(self._asked.path.parent / name, off_text(vertices, triangles))
         return {"mesh": {"file": name}}
 
     def named(self, uri: str, scale: list[float]) -> Row:

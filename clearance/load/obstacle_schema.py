@@ -6,15 +6,18 @@ Not for: reading mesh files (`scene_file`).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
 from clearance.geometry import shapes
+from clearance.load.mesh import CAD
 from clearance.load.pose_schema import Pose, TimedFile
 from clearance.load.shape_schema import Triple, with_shapes
+from clearance.load.step_file import COARSEST, FINEST
 from clearance.load.strict_model import Level, Name, StrictModel
+from clearance.tolerance import TESSELLATION
 
 
 def _is_double(number: int | float) -> bool:
@@ -26,11 +29,16 @@ def _is_double(number: int | float) -> bool:
 
 
 class Mesh(StrictModel):
-    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
+    """A mesh file; `scale` is a number or one for each axis, negative to mirror. `tolerance` [m] is how far the
+    facets of a CAD file may be off its surface.
+    """
+
+    FILLED = frozenset({"tolerance"})
 
     file: Name
     scale: Triple = [1.0, 1.0, 1.0]
     collada_up_axis: Literal["ros", "file"] = "file"
+    tolerance: Annotated[float | None, Field(ge=FINEST, le=COARSEST)] = None
 
     @field_validator("scale", mode="before")
     @classmethod
@@ -44,6 +52,20 @@ class Mesh(StrictModel):
         if 0 in factors:
             raise BadDimension(f"{scale!r:.60} is given", valid="a scale is not zero")
         return [float(f) for f in factors] * (3 if len(factors) == 1 else 1)
+
+    @model_validator(mode="after")
+    def _tolerance_of_cad(self) -> Mesh:
+        if self.tolerance is not None and not self.file.lower().endswith(CAD):
+            raise BadInput(
+                f"a tolerance of {self.file!r:.60} is given, whose faces are flat",
+                valid="of .step or .stp",
+            )
+        return self
+
+    @property
+    def tolerance_or_default(self) -> float:
+        """[m]."""
+        return TESSELLATION if self.tolerance is None else self.tolerance
 
     @property
     def factors(self) -> tuple[float, float, float]:

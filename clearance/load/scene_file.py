@@ -59,7 +59,10 @@ def _body(
     if item.mesh is not None:
         with at("mesh"):
             path = resolved(item.mesh.file, folder)
-            mesh = meshes.load(path, item.mesh.factors, item.mesh.collada_up_axis)
+            asked = item.mesh
+            mesh = meshes.load(
+                path, asked.factors, asked.collada_up_axis, asked.tolerance_or_default
+            )
         shown = meshes.files.shown(path)
         return Body(item.name, mesh.shape, shown), list(mesh.notes)
     with at(item.kind):

@@ -72,10 +72,11 @@ class BodyIndex(NamedTuple):
         return np.ascontiguousarray(link_poses[:, frame])
 
     def padding_in(self, case: Case) -> float:
-        """[m] By how much its clearance is lessened."""
+        """[m] By how much its clearance is lessened: what was asked for, and what its surface may fall short."""
+        shortfall = self.shape_in(case).shortfall
         if self.is_obstacle:
-            return case.obstacles[self.i_body].padding
-        return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0)
+            return case.obstacles[self.i_body].padding + shortfall
+        return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0) + shortfall
 
     def body_in(self, case: Case) -> Body:
         """Its name and shape."""
