@@ -47,7 +47,15 @@ def load_case(path: str | PathLike[str]) -> Case:
         BadInput: what was wrong, in which file and field, and what would be valid.
     """
     path = Path(path)
-    files = InputFiles(path.parent)
+    return read_case(path, InputFiles(path.parent))
+
+
+def read_case(path: Path, files: InputFiles) -> Case:
+    """The case in a YAML file, which is read through `files` as all that it names.
+
+    Raises:
+        BadInput: as `load_case`.
+    """
     meshes = MeshStore(files)
     given, scene_at = read_schema(path, files)
     entries = given.entries()

@@ -156,7 +156,7 @@ def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "fault", "says"),
     [
-        ("max_velocity: 0.4", "max_velocty: 0.4", UnknownKey, "joint_limits.shoulder: unknown key 'max_velocty'; did"),
+        ("max_velocity: 0.4", "max_velocty: 0.4", UnknownKey, "shoulder: unknown key 'max_velocty'; did you mean"),
         ("max_velocity: 0.4", "max_velocity: fast", BadInput, "max_velocity: 'fast' is given; a finite number"),
         ("max_velocity: 0.4", "max_velocity: 0", BadInput, "max_velocity is 0; above 0"),
         ("    max_velocity: 0.4\n", "", MissingKey, "has_velocity_limits is true, but 'max_velocity' is missing"),
