@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.notices import say_notices
 from clearance.cli.options import XACRO_OPTIONS, OutputPath
 from clearance.errors import shown
 from clearance.extras import LIBRARIES, is_installed
@@ -151,7 +152,7 @@ def new(
     given = Given(_given(keys), asked or None, states or (), rest, scene)
     made = new_case(given, out_dir)
     _write(made, out_dir, force)
-    _print(made, out_dir)
+    _print(made, out_dir, at_once)
     command = _command(out_dir)
     click.echo(f"{'run':10}clearance check {shlex.join(command)}")
     return _checked(command) if at_once else ExitCode.CLEAR
@@ -192,18 +193,23 @@ def _write(made: NewCase, out_dir: Path, force: bool) -> None:
     fill_folder(out_dir, fill, {CASE, TRAJECTORY, SCENE, *made.files})
 
 
-def _print(made: NewCase, out_dir: Path) -> None:
-    """What was taken, what was assumed, what is to be known, and what was written."""
-    notes = list(made.notes)
+def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:
+    """What was taken, what was assumed, what is to be known, and what was written.
+
+    Args:
+        at_once: a check follows, which tells what it reads itself.
+    """
+    if not at_once:
+        say_notices(made.case)
+    notes = [*made.lost, *(() if at_once else made.notes)]
     if len(notes) > _MOST_NOTES:
         left = len(notes) - _MOST_NOTES
-        notes = [*notes[:_MOST_NOTES], f"and {left} more, which the check tells"]
-    written = [str(out_dir / name) for name in made.files]
+        notes = [*notes[:_MOST_NOTES], f"and {left} more, in the files or told by the check"]
     for label, lines in (
         ("took", made.taken),
         ("assumed", made.assumed),
         ("note", notes),
-        ("written", [", ".join(written)]),
+        ("written", [", ".join(str(out_dir / name) for name in made.files)]),
     ):
         for line in lines:
             click.echo(f"{label:10}{shown(line)}")

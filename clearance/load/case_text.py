@@ -19,9 +19,10 @@ class CaseText:
 
     Attributes:
         name: of the case. made_from: the files, as they are shown.
-        robot: its keys and values, in order. root: its first link.
+        robot: its keys and values, in order. link: its first with a shape, for examples.
         resting: what stands under `joints`. states: of the SRDF, one of which could stand there.
-        scene: a file, or nothing. trajectory: a file; `motion` says where it comes from.
+        scene: a file, or nothing. trajectory: a file; `motion` says where it comes from, `motion_notes` how it was
+            read.
         allow: pairs that are not measured.
         remarks: why a key is as it is, by key.
     """
@@ -29,12 +30,13 @@ class CaseText:
     name: str
     made_from: Sequence[str]
     robot: Mapping[str, Any]
-    root: str
+    link: str
     resting: Mapping[str, Any]
     states: Sequence[str]
     scene: str | None
     trajectory: str
     motion: str
+    motion_notes: Sequence[str] = ()
     allow: Sequence[tuple[str, str]] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
 
@@ -51,6 +53,7 @@ def _lines(case: CaseText) -> Iterator[str]:
     yield "robot:"
     yield from (f"  {line}" for line in _robot(case))
     yield from _scene(case)
+    yield from (f"# {shown(note)}" for note in case.motion_notes)
     yield f"trajectory: {flow(case.trajectory)}  # {shown(case.motion)}"
     yield from _allow(case)
     yield "limits:"
@@ -72,7 +75,7 @@ def _robot(case: CaseText) -> Iterator[str]:
         yield "# srdf: robot.srdf  # with self_clearance: which pairs of links are excused, and why"
     elif case.robot.get("self_clearance"):
         yield "# trust_never: true  # pairs that the SRDF calls Never are excused too; now they are measured"
-    yield f"# exclude_links: [{flow(case.root)}]  # not measured, as a link that is bolted to what it stands on"
+    yield f"# exclude_links: [{flow(case.link)}]  # not measured, as a link that is bolted to what it stands on"
 
 
 def _resting(case: CaseText) -> Iterator[str]:
@@ -97,7 +100,7 @@ def _scene(case: CaseText) -> Iterator[str]:
 
 def _allow(case: CaseText) -> Iterator[str]:
     if not case.allow:
-        yield f"# allow: [[{flow(case.root)}, table]]  # pairs that are not measured; wildcards in quotes"
+        yield f"# allow: [[{flow(case.link)}, table]]  # pairs that are not measured; wildcards in quotes"
         return
     yield "allow:  # pairs that are not measured; from the scene's file"
     yield from (f"- {flow(list(pair))}" for pair in case.allow)

@@ -7,9 +7,10 @@ is handed over. Not for: writing the files, nor the text of the case (`case_text
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from clearance.errors import MissingKey, NothingToMeasure, at
 from clearance.load.case_file import read_case
@@ -34,7 +35,8 @@ class NewCase:
 
     Attributes:
         files: content by name. case: what they say. sources: the files that were read.
-        taken, assumed, notes: a line each.
+        taken, assumed: a line each. notes: on what is read anew with each check. lost: notes that are not, but
+            stand in the files as comments.
     """
 
     files: Mapping[str, bytes]
@@ -43,6 +45,7 @@ class NewCase:
     taken: tuple[str, ...]
     assumed: tuple[str, ...]
     notes: tuple[str, ...]
+    lost: tuple[str, ...]
 
 
 def new_case(given: Given, folder: Path) -> NewCase:
@@ -59,8 +62,10 @@ def new_case(given: Given, folder: Path) -> NewCase:
     trajectory, source = _motion(given, robot, files)
     with at("scene"):
         scene = new_scene(given.scene, given.package_dirs, robot.placed, meshes, folder)
-    motion = f"from {source}: {_told(trajectory)}"
-    text = _text(given, robot, scene, trajectory, motion, folder, files)
+    motion = _Motion(
+        trajectory, f"from {source}: {_told(trajectory)}", _notes_of(given, robot, files)
+    )
+    text = _text(given, robot, scene, motion, folder, files)
     contents = {CASE: text_of(text).encode(), TRAJECTORY: written(trajectory, TRAJECTORY).content}
     contents |= scene.contents
     try:
@@ -76,10 +81,27 @@ def new_case(given: Given, folder: Path) -> NewCase:
         contents,
         case,
         files.sources,
-        (robot.taken, f"trajectory {motion}", *scene.taken),
+        (robot.taken, f"trajectory {motion.source}", *scene.taken),
         (*robot.assumed(trajectory, scene.name is None), *_assumed_of_motion(given)),
-        tuple(dict.fromkeys([*robot.notes, *scene.notes])),
+        tuple(dict.fromkeys(note for note in robot.notes if note not in motion.notes)),
+        (*motion.notes, *scene.notes),
     )
+
+
+class _Motion(NamedTuple):
+    """What the robot does, where that is from, and what was noted of its file."""
+
+    trajectory: Trajectory
+    source: str
+    notes: Sequence[str]
+
+
+def _notes_of(given: Given, robot: NewRobot, files: InputFiles) -> list[str]:
+    """The notes on the trajectory's file, which begin with its name."""
+    if given.trajectory is None:
+        return []
+    begins = f"{files.shown(Path(given.trajectory['file']))}: "
+    return [note for note in robot.notes if note.startswith(begins)]
 
 
 def _motion(given: Given, robot: NewRobot, files: InputFiles) -> tuple[Trajectory, str]:
@@ -120,28 +142,28 @@ def _text(
     given: Given,
     robot: NewRobot,
     scene: NewScene,
-    trajectory: Trajectory,
-    motion: str,
+    motion: _Motion,
     folder: Path,
     files: InputFiles,
 ) -> CaseText:
     """What the case file says."""
     named = (given.keys["urdf"], (given.trajectory or {}).get("file"), given.scene, given.srdf)
-    resting = robot.resting(trajectory)
+    resting = robot.resting(motion.trajectory)
     states = [] if given.srdf is None or given.rest or not resting else _states(given.srdf, files)
     return CaseText(
         name=checked_name(folder.name) or "case",
         made_from=[files.shown(resolved(one, Path())) for one in named if one is not None],
         robot=robot.written(folder, scene.name is None)
         | ({"padding": scene.padding} if scene.padding else {}),
-        root=robot.root,
+        link=robot.first_body,
         resting=resting,
         states=states,
         scene=scene.name,
         trajectory=TRAJECTORY,
-        motion=motion,
+        motion=motion.source,
+        motion_notes=motion.notes,
         allow=scene.allow,
-        remarks=robot.remarks(trajectory) | {"scene": scene.remark},
+        remarks=robot.remarks(motion.trajectory) | {"scene": scene.remark},
     )
 
 

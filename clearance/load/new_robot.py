@@ -78,6 +78,11 @@ class NewRobot:
         """Its first link."""
         return self.placed.robot.link_names[0]
 
+    @property
+    def first_body(self) -> str:
+        """Its first link that has a shape."""
+        return self.placed.robot.bodies[0].name
+
     def written(self, folder: Path, is_alone: bool) -> dict[str, Any]:
         """Its keys in a case in `folder`.
 

@@ -115,6 +115,17 @@ def test_it_says_what_it_took_and_what_it_assumed(capsys):
     assert "file: ../cell/cube.stl" in Path("out/scene.yaml").read_text()
 
 
+def test_how_a_file_was_read_stays_in_the_case(capsys):
+    words = ["--trajectory", "cell/degrees.csv", "--scene", "cell/planning.yaml", "--check"]
+    assert new(*words) == 0
+    told = capsys.readouterr().out.partition("\nrun ")[0]
+    read = "cell/degrees.csv: columns are separated by semicolons, decimals written with commas"
+    frame = "cell/planning.yaml: "
+    assert f"note      {read}" in told and f"note      {frame}" in told
+    assert f"# {read}" in Path("out/case.yaml").read_text()
+    assert f"# {frame}" in Path("out/scene.yaml").read_text()
+
+
 def test_the_same_files_make_the_same_bytes(capsys):
     words = ["--trajectory", "cell/path.csv", "--scene", "cell/planning.yaml"]
     assert new(*words) == 0
