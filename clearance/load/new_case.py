@@ -18,8 +18,9 @@ from clearance.load.case_text import CaseText, text_of
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.named_motion import PERIOD, motion_between
-from clearance.load.new_robot import Given, NewRobot, counted, new_robot
+from clearance.load.new_robot import Given, NewRobot, new_robot
 from clearance.load.new_scene import NewScene, new_scene
+from clearance.load.notes import counted
 from clearance.load.srdf_states import names_of, read_states
 from clearance.load.trajectory_writer import written
 from clearance.world.case import Case, Source

@@ -13,6 +13,7 @@ from typing import Any
 from clearance.errors import NothingToMeasure
 from clearance.load import schema
 from clearance.load.mesh_store import MeshStore
+from clearance.load.notes import counted
 from clearance.load.pose_schema import TrajectoryFile
 from clearance.load.robots import RobotReader
 from clearance.load.schema_errors import validated
@@ -100,8 +101,10 @@ class NewRobot:
 
     def resting(self, trajectory: Trajectory) -> dict[str, Any]:
         """What stands under `joints` for those that a trajectory does not move."""
-        states = {"state": list(self.rest)} if self.rest else {}
-        return states | {joint.name: _near_zero(joint) for joint in self._left(trajectory)}
+        states = self.rest[0] if len(self.rest) == 1 else list(self.rest)
+        return ({"state": states} if self.rest else {}) | {
+            joint.name: _near_zero(joint) for joint in self._left(trajectory)
+        }
 
     def remarks(self, trajectory: Trajectory) -> dict[str, str]:
         """Why each key is as it is."""
@@ -181,8 +184,3 @@ def _placed(
 def _near_zero(joint: Joint) -> float:
     """[rad] or [m] 0, or the limit that is nearest to it."""
     return float(min(max(0.0, joint.lower), joint.upper)) + 0.0
-
-
-def counted(n: int, what: str) -> str:
-    """`1 link`, `2 links`."""
-    return f"{n} {what}" if n == 1 else f"{n} {what}s"

@@ -13,6 +13,7 @@ from typing import Any
 from clearance.errors import shown
 from clearance.load.input_files import PYBULLET_DATA, resolved
 from clearance.load.mesh_store import MeshStore
+from clearance.load.notes import counted
 from clearance.load.obstacle_schema import Scene
 from clearance.load.scene_file import make_obstacles
 from clearance.load.scene_formats import read_scene
@@ -65,7 +66,7 @@ def new_scene(
     asked = SceneRequest(path, meshes.files, tuple(Path(one) for one in package_dirs))
     content = read_scene(asked)
     rows = content.scene["obstacles"]  # type: ignore[index]  # as the reader checked
-    taken = f"scene from {asked.shown}: {len(rows)} obstacles"
+    taken = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
     if content.notices:
         told = (f"{taken}; it stays the file that it is, whose warnings belong to each check",)
         return NewScene(path_from(folder, given), "as it is: it brings a warning", taken=told)

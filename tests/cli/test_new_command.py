@@ -237,6 +237,7 @@ USUAL = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml")
         ((*USUAL, "--package-dir", "no"), "robot.package_dirs: [0]: there is no folder 'no'"),
         ((*USUAL[:2], "--scene", "cell/no.sdf"), "scene: cell/no.sdf: there is no file 'cell/no.sdf'"),
         (("--trajectory", "cell/door.csv"), "unknown joint 'x'"),
+        ((*USUAL, "--robot", "cell/arm.srdf"), "this is a MoveIt SRDF, not a URDF file; name it in a case file"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_one_line_and_leaves_nothing(capsys, words, says):
