@@ -49,8 +49,18 @@ def load_case(path: str | PathLike[str]) -> Case:
     Raises:
         BadInput: what was wrong, in which file and field, and what would be valid.
     """
-    read = _read(Path(path), schema.Case)
-    return _finished(read, read.case, read.files.sources)
+    path = Path(path)
+    return read_case(path, InputFiles(path.parent))
+
+
+def read_case(path: Path, files: InputFiles) -> Case:
+    """The case in a YAML file, which is read through `files` as all that it names.
+
+    Raises:
+        BadInput: as `load_case`.
+    """
+    read = _read(path, schema.Case, files)
+    return _finished(read, read.case, files.sources)
 
 
 def load_cell(path: str | PathLike[str]) -> CellFile:
@@ -59,7 +69,8 @@ def load_cell(path: str | PathLike[str]) -> CellFile:
     Raises:
         BadInput: as `load_case`.
     """
-    return _read(Path(path), schema.Cell)
+    path = Path(path)
+    return _read(path, schema.Cell, InputFiles(path.parent))
 
 
 def with_trajectory_file(
@@ -112,8 +123,7 @@ class CellFile:
     scene: SceneContent
 
 
-def _read(path: Path, model: type[schema.Case]) -> CellFile:
-    files = InputFiles(path.parent)
+def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     meshes = MeshStore(files)
     given, scene_at = read_schema(path, files, model)
     entries = given.entries()

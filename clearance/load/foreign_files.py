@@ -13,7 +13,8 @@ from clearance.errors import BadSyntax
 _ADVICE = {
     "urdf": (
         "a URDF robot",
-        "name it in a case file: robot: {{urdf: {name}}}, beside scene and trajectory",
+        "name it in a case file: robot: {{urdf: {name}}}, beside scene and trajectory; or let "
+        "`clearance new` write one",
     ),
     "xacro": (
         "a xacro robot",
@@ -21,7 +22,7 @@ _ADVICE = {
     ),
     "srdf": (
         "a MoveIt SRDF",
-        "what it lets touch goes into the case file: allow: [[link, obstacle]]",
+        "name it in a case file: robot: {{srdf: {name}, self_clearance: true}}, beside urdf",
     ),
     "sdf": (
         "an SDF world or model",

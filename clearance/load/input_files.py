@@ -13,14 +13,15 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from io import BufferedReader
+from io import BufferedReader, BytesIO
 from pathlib import Path
+from typing import BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
 from clearance.world.case import Source
 
-_PYBULLET_DATA = "pybullet_data:"
+PYBULLET_DATA = "pybullet_data:"
 
 
 class InputFiles:
@@ -34,6 +35,7 @@ class InputFiles:
         self.folder = folder
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
+        self._held: set[Path] = set()
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -57,8 +59,13 @@ class InputFiles:
     def hold(self, path: Path, data: bytes) -> None:
         """Keeps what is written out in another file as the content of a file of its own, which is not on disk."""
         self._contents[Path(os.path.abspath(path))] = data
+        self._held.add(Path(os.path.abspath(path)))
 
-    def unread(self, path: Path) -> tuple[Callable[[], BufferedReader], int]:
+    def is_held(self, path: Path) -> bool:
+        """Whether a file is not on disk."""
+        return Path(os.path.abspath(path)) in self._held
+
+    def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
         """Opens a long file, again and again, and how many bytes it has; its checksum is remembered,
         its content is not.
 
@@ -66,6 +73,9 @@ class InputFiles:
             MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
+        if path in self._held:
+            data = self._contents[path]
+            return lambda: BytesIO(data), len(data)
         with _openable(self.shown(path)), _regular(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
             digest = hashlib.file_digest(file, "sha256").hexdigest()
@@ -77,7 +87,7 @@ class InputFiles:
         path = Path(os.path.abspath(path))
         brought = _pybullet_data_folder()
         if brought is not None and path.is_relative_to(brought):
-            return _PYBULLET_DATA + path.relative_to(brought).as_posix()
+            return PYBULLET_DATA + path.relative_to(brought).as_posix()
         return relative_path(path, self.folder)
 
 
@@ -149,12 +159,12 @@ def resolved(given: str, folder: Path) -> Path:
     Raises:
         Unavailable: `pybullet_data:` without that package.
     """
-    if not given.startswith(_PYBULLET_DATA):
-        return folder / given
+    if not given.startswith(PYBULLET_DATA):
+        return Path(os.path.normpath(folder / given))  # also from a folder that is not there yet
     brought = _pybullet_data_folder()
     if brought is None:
         raise Unavailable(f"{given!r} needs the package pybullet", valid=install("simulate"))
-    return brought / given.removeprefix(_PYBULLET_DATA).lstrip("/")
+    return brought / given.removeprefix(PYBULLET_DATA).lstrip("/")
 
 
 def _pybullet_data_folder() -> Path | None:

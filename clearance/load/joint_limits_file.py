@@ -54,8 +54,10 @@ def parse_joint_limits(data: bytes) -> dict[str, FileLimits]:
         BadInput: with the joint and the key.
     """
     found = list(_blocks(parameters(data)))
-    if len(found) != 1:
-        raise MissingKey(f"there are {len(found)} mappings 'joint_limits'", valid="one")
+    if not found:
+        raise MissingKey("'joint_limits' is missing", valid="MoveIt's file of that name")
+    if len(found) > 1:
+        raise BadInput(f"there are {len(found)} mappings 'joint_limits'", valid="one")
     limits = {}
     for name, given in mapping(found[0]).items():
         with at(f"joint_limits.{name:.60}"):

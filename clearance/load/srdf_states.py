@@ -6,7 +6,7 @@ Not for: which links may touch (`srdf`).
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -129,7 +129,7 @@ def _chosen(name: str, states: Sequence[GroupState]) -> GroupState:
     if not exact:
         raise UnknownState(
             f"unknown state {name!r}",
-            valid=nearest_name(name, _names(states)) if states else "it has none",
+            valid=nearest_name(name, names_of(states)) if states else "it has none",
         )
     groups = [state.full_name for state in exact]
     raise UnknownState(
@@ -137,7 +137,7 @@ def _chosen(name: str, states: Sequence[GroupState]) -> GroupState:
     )
 
 
-def _names(states: Iterable[GroupState]) -> list[str]:
+def names_of(states: Sequence[GroupState]) -> list[str]:
     """As each can be asked for; without the group where no other has the name."""
     alone = [state.name for state in states]
     return [state.name if alone.count(state.name) == 1 else state.full_name for state in states]

@@ -108,7 +108,7 @@ def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[st
         return expanded(request, files)
     data, shown = files.read(request.path), files.shown(request.path)
     refuse_foreign(data, shown, "a URDF file")
-    refuse_unasked(request, data, shown)
+    refuse_unasked(request, shown)
     return data, ()
 
 

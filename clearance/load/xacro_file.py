@@ -26,6 +26,7 @@ from clearance.errors import (
 from clearance.extras import install, is_installed
 from clearance.load.found_files import notes_on_variables
 from clearance.load.input_files import InputFiles
+from clearance.load.robot_element import ALLOW_XACRO
 from clearance.load.robot_request import RobotRequest
 from clearance.world.notice import listed
 
@@ -39,8 +40,6 @@ LONGEST = 2.0 * MOST_WORK
 
 MOST_MEMORY = 1 << 30
 """[bytes] That the process may have."""
-
-ALLOW = "xacro evaluates Python in it: `xacro: true` beside urdf, or --xacro, allows that"
 
 _PROCESS = Path(__file__).with_name("xacro_process.py")
 
@@ -83,14 +82,14 @@ def expanded(request: RobotRequest, files: InputFiles) -> Expanded:
     return Expanded(done["urdf"].encode(), tuple(notes))
 
 
-def refuse_unasked(request: RobotRequest, data: bytes, shown: str) -> None:
-    """Nothing, if the file is none of xacro's.
+def refuse_unasked(request: RobotRequest, shown: str) -> None:
+    """Nothing, if the file is none of xacro's by its name.
 
     Raises:
         BadSyntax: it is, and nobody allowed that Python is evaluated.
     """
-    if request.path.suffix.lower() == SUFFIX or b"<xacro:" in data:
-        raise BadSyntax("this is a xacro file, not URDF", where=shown, valid=ALLOW)
+    if request.path.suffix.lower() == SUFFIX:
+        raise BadSyntax("this is a xacro file, not a URDF file", where=shown, valid=ALLOW_XACRO)
 
 
 def _run(request: RobotRequest, shown: str) -> dict[str, Any]:

@@ -35,6 +35,7 @@ SUSPECT = "suspect"
 MOTION, SAMPLES = "motion", "samples"
 """What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
 
+SURROUNDINGS = "surroundings (the scene is empty)"
 SELF_COLLISION = "self-collision"
 """What is not measured unless the case asks for it."""
 
@@ -147,7 +148,9 @@ def verdict_of(record: Record) -> Verdict:
 
 
 def _not_checked(case: Case) -> Iterator[str]:
-    """The robots whose links are not measured against one another."""
+    """That nothing stands around the robots, and those whose links are not measured against one another."""
+    if not case.obstacles:
+        yield SURROUNDINGS
     left_out = [placed.robot.name for placed in case.robots if not placed.self_clearance]
     if len(left_out) == len(case.robots):
         yield SELF_COLLISION

@@ -30,7 +30,7 @@ GIVEN = [
         "this is a URDF robot, not a case file; name it in a case file: robot: {urdf: arm.urdf}",
     ),
     ("arm.xacro", ARM.replace("<link", "<xacro:arm/><link", 1), "xacro: true"),
-    ("arm.srdf", SRDF, "this is a MoveIt SRDF, not a case file; .*allow: "),
+    ("arm.srdf", SRDF, "this is a MoveIt SRDF, not a case file; .*srdf: arm.srdf"),
     ("world.sdf", SDF, "this is an SDF world or model"),
     ("arm.xml", MJCF, "this is a MuJoCo model"),
     ("table.scene", SCENE, "this is a MoveIt scene"),

@@ -156,14 +156,14 @@ def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "fault", "says"),
     [
-        ("max_velocity: 0.4", "max_velocty: 0.4", UnknownKey, "joint_limits.shoulder: unknown key 'max_velocty'; did"),
+        ("max_velocity: 0.4", "max_velocty: 0.4", UnknownKey, "shoulder: unknown key 'max_velocty'; did you mean"),
         ("max_velocity: 0.4", "max_velocity: fast", BadInput, "max_velocity: 'fast' is given; a finite number"),
         ("max_velocity: 0.4", "max_velocity: 0", BadInput, "max_velocity is 0; above 0"),
         ("    max_velocity: 0.4\n", "", MissingKey, "has_velocity_limits is true, but 'max_velocity' is missing"),
         ("max_position: 2", "max_position: -1", BadInput, "min_position -0.5 is above max_position -1"),
         ("min_position: -0.5", "min_position: 1.5", BadInput, "lies outside the robot's -1 to 1"),
         ("has_position_limits: true", "has_position_limits: yes", BadInput, "'yes' is given; true or false"),
-        ("joint_limits:", "limits:", MissingKey, "there are 0 mappings 'joint_limits'"),
+        ("joint_limits:", "limits:", MissingKey, "'joint_limits' is missing; MoveIt's file"),
         ("max_velocity: 0.4", "max_velocity: !degrees 20", BadInput, "line 9: the tag '!degrees'"),
     ],
 )  # fmt: skip

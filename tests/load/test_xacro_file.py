@@ -70,6 +70,17 @@ def test_it_is_never_evaluated_unasked(tmp_path):
     (tmp_path / "plain.xacro").write_text("<robot name='a'><link name='b'/></robot>")
     with pytest.raises(BadSyntax, match="this is a xacro file"):
         load_urdf(tmp_path / "plain.xacro")
+    (tmp_path / "arm.urdf").write_text(body("<xacro:property name='a' value='1'/><link name='b'/>"))
+    with pytest.raises(BadSyntax, match="this is a xacro file, not a URDF file; xacro evaluates"):
+        load_urdf(tmp_path / "arm.urdf")
+
+
+def test_a_comment_makes_no_xacro_file(tmp_path):
+    box = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    (tmp_path / "a.urdf").write_text(
+        f"<robot name='a'><!-- <xacro:x/> --><link name='b'>{box}</link></robot>"
+    )
+    assert load_urdf(tmp_path / "a.urdf").link_names == ("b",)
 
 
 def test_arguments(tmp_path):
