@@ -6,9 +6,9 @@ Not for: reading mesh files (`scene_file`).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
 from clearance.geometry import shapes
@@ -25,12 +25,11 @@ def _is_double(number: int | float) -> bool:
         return False
 
 
-class Mesh(StrictModel):
-    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
+class ScaledFile(StrictModel):
+    """A file whose coordinates are times `scale`: a number or one for each axis, negative to mirror."""
 
     file: Name
     scale: Triple = [1.0, 1.0, 1.0]
-    collada_up_axis: Literal["ros", "file"] = "file"
 
     @field_validator("scale", mode="before")
     @classmethod
@@ -52,7 +51,33 @@ class Mesh(StrictModel):
         return x, y, z
 
 
-SHAPES = (*shapes.SHAPES, "mesh")
+class Mesh(ScaledFile):
+    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
+
+    collada_up_axis: Literal["ros", "file"] = "file"
+
+
+class LengthUnit(StrictModel):
+    """What the coordinates of a file are written in."""
+
+    length: Literal["m", "mm"] = "m"
+
+
+class ScannedPoints(ScaledFile):
+    """A file of points of a scan, each a ball of `radius` [m]; its coordinates are in `units`, times `scale`."""
+
+    FILLED = frozenset({"units"})
+
+    radius: Annotated[float, Field(gt=0)]
+    units: LengthUnit | None = None
+
+    @property
+    def in_millimetres(self) -> bool:
+        """True if the coordinates are."""
+        return self.units is not None and self.units.length == "mm"
+
+
+SHAPES = (*shapes.SHAPES, "mesh", "points")
 
 
 class NamedPose(StrictModel):
@@ -76,6 +101,7 @@ class Obstacle(_Shaped):
     FILLED = frozenset({"on", "moves"})
 
     mesh: Mesh | None = None
+    points: ScannedPoints | None = None
     on: Name | None = None
     moves: TimedFile | None = None
     padding: Level = 0.0
