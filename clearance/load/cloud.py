@@ -127,7 +127,7 @@ def _touches_another(point: np.ndarray, points: np.ndarray, radius: float) -> bo
     reach = 2.0 * radius
     ends = np.searchsorted(points[:, 0], [point[0] - reach, np.nextafter(point[0] + reach, np.inf)])
     near = points[ends[0] : ends[1]] - point
-    return np.count_nonzero((near**2).sum(axis=1) <= reach * reach) > 1
+    return int(np.count_nonzero((near**2).sum(axis=1) <= reach * reach)) > 1
 
 
 def _scaled(points: np.ndarray, scale: float | Sequence[float]) -> np.ndarray:

@@ -19,6 +19,7 @@ from clearance.load.collada_file import UpAxis, read_collada
 from clearance.load.gltf_file import read_glb
 from clearance.load.input_files import read_bytes
 from clearance.load.obj_file import read_obj
+from clearance.load.octree_file import read_octree
 from clearance.load.off_file import read_off
 from clearance.load.placing import Z_FROM_Y_UP
 from clearance.load.ply_file import read_ply
@@ -32,6 +33,8 @@ _READERS: dict[str, Callable[[bytes, UpAxis], Triangles]] = {
     ".ply": lambda data, _: read_ply(data),
     ".off": lambda data, _: read_off(data),
     ".glb": lambda data, _: read_glb(data),
+    ".bt": lambda data, _: read_octree(data),
+    ".ot": lambda data, _: read_octree(data),
 }
 
 OPEN = "the surface is open: it has no inside"
@@ -56,7 +59,7 @@ class LoadedMesh:
 def read_mesh(
     path: str | PathLike[str], scale: float | Sequence[float] = 1.0, up_axis: UpAxis = "file"
 ) -> Polyhedron:
-    """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`).
+    """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`) or an octomap (`.bt`, `.ot`).
 
     Args:
         scale: factor of all axes or of each; negative mirrors, and the faces stay counter-clockwise
