@@ -4,6 +4,7 @@ from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
 from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
+from .load.cloud import read_points
 from .load.mesh import read_mesh
 from .load.urdf import load_urdf
 from .planar.biarcs import biarcs
@@ -101,6 +102,7 @@ __all__ = [
     "polygon_distance",
     "polygon_distances",
     "read_mesh",
+    "read_points",
     "shared_workspace",
     "sphere",
     "swept_profile",

@@ -16,7 +16,8 @@ import numpy as np
 from clearance.errors import BadDimension, BadShape, EmptyMesh
 from clearance.geometry.faces import checked_vertices
 from clearance.geometry.planes import Planes
-from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
+from clearance.geometry.shapes.box import box
 from clearance.geometry.topology import Topology
 from clearance.kernels.arithmetic.union_find import joined_labels
 from clearance.tolerance import LARGEST
@@ -32,6 +33,9 @@ _MOST_CELLS = 2.0**_BITS - 2.0
 """Cells along an axis, so that doubles number all of them; where there are more, each point is a group."""
 
 _STEPS = (1 << 2 * _BITS, 1 << _BITS, 1)
+
+
+_SURFACE = "a body with a surface is needed here"
 
 
 class PointCloud(Polyhedron):
@@ -87,6 +91,13 @@ class PointCloud(Polyhedron):
         low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
         return np.array([low - self.ball_radius, high + self.ball_radius])
 
+    def box_about(self) -> Polyhedron:
+        """A box along the axes of the body frame that holds all balls."""
+        middle = np.eye(4)
+        middle[:3, 3] = self.bounds.mean(axis=0)
+        size = np.ptp(self.bounds, axis=0) + 8.0 * np.spacing(np.abs(self.bounds).max())
+        return box(size.tolist()).transformed(middle)
+
     @property
     def n_triangles(self) -> int:
         """0: nothing is between points."""
@@ -98,9 +109,7 @@ class PointCloud(Polyhedron):
         Raises:
             BadShape: always, so that nothing takes a cloud for a body without a surface.
         """
-        raise BadShape(
-            "a cloud of points has no faces", valid="a body with a surface is needed here"
-        )
+        raise BadShape("a cloud of points has no faces", valid=_SURFACE)
 
     @property
     def triangle_faces(self) -> NoReturn:
@@ -148,6 +157,18 @@ class PointCloud(Polyhedron):
             BadDimension: as of a surface. NotFinite: a factor that is too large.
         """
         return PointCloud(super().scaled(factor).vertices, self.ball_radius)
+
+
+def require_surface(given: object, where: str) -> Polyhedron:
+    """What was given, if it is a `Polyhedron` with faces.
+
+    Raises:
+        BadShape: it is a cloud of points, or no `Polyhedron`.
+    """
+    solid = require_polyhedron(given, where)
+    if isinstance(solid, PointCloud):
+        raise BadShape("a cloud of points has no faces", where=where, valid=_SURFACE)
+    return solid
 
 
 def components_of(points: np.ndarray, radius: float) -> np.ndarray:

@@ -206,7 +206,8 @@ def _name_of(path: Path) -> str:
 def _notices(given: schema.Case) -> list[Notice]:
     """What of the bases and obstacles only the file shows."""
     entries, obstacles = given.entries(), given.scene.obstacles
-    scales = [(item.name, item.mesh.factors) for item in obstacles if item.mesh is not None]
+    files = [(item.name, item.mesh or item.points) for item in obstacles]
+    scales = [(name, file.factors) for name, file in files if file is not None]
     bases = [
         odd
         for entry in entries

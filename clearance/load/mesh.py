@@ -19,6 +19,7 @@ from clearance.load.collada_file import UpAxis, read_collada
 from clearance.load.gltf_file import read_glb
 from clearance.load.input_files import read_bytes
 from clearance.load.obj_file import read_obj
+from clearance.load.octree_file import read_octree
 from clearance.load.off_file import read_off
 from clearance.load.placing import Z_FROM_Y_UP
 from clearance.load.ply_file import read_ply
@@ -36,6 +37,8 @@ _READERS: dict[str, Callable[[bytes, UpAxis, float], Triangles]] = {
     ".glb": lambda data, *_: read_glb(data),
     ".step": lambda data, _, tolerance: read_step(data, tolerance),
     ".stp": lambda data, _, tolerance: read_step(data, tolerance),
+    ".bt": lambda data, *_: read_octree(data),
+    ".ot": lambda data, *_: read_octree(data),
 }
 
 CAD = (".step", ".stp")
@@ -66,7 +69,8 @@ def read_mesh(
     up_axis: UpAxis = "file",
     tolerance: float = TESSELLATION,
 ) -> Polyhedron:
-    """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`) or CAD file (`.step`, `.stp`).
+    """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`), CAD file (`.step`, `.stp`) or
+    octomap (`.bt`, `.ot`).
 
     Args:
         scale: factor of all axes or of each; negative mirrors, and the faces stay counter-clockwise

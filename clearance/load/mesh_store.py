@@ -1,4 +1,7 @@
-"""The solids of one case's mesh files: each is made once for each scale and up axis, and kept for later runs."""
+"""The bodies of one case's files of meshes and points: each is made once for each scale and up axis.
+
+Solids are kept for later runs.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from pathlib import Path
 
 from clearance.geometry.kept_shapes import kept, name_of
 from clearance.load import mesh
+from clearance.load.cloud import LoadedCloud, cloud_from_bytes
 from clearance.load.collada_file import UpAxis
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh import CAD, LoadedMesh, mesh_from_bytes
@@ -19,7 +23,7 @@ SMALL = 4096
 
 
 class MeshStore:
-    """Loads meshes through `files` and keeps them.
+    """Loads meshes and clouds through `files` and keeps them.
 
     Args:
         files: reads the files and remembers their checksums.
@@ -28,6 +32,7 @@ class MeshStore:
     def __init__(self, files: InputFiles) -> None:
         self.files = files
         self._loaded: dict[tuple[str, Scale, UpAxis, float], LoadedMesh] = {}
+        self._clouds: dict[tuple[str, float, Scale, bool], LoadedCloud] = {}
 
     def load(
         self,
@@ -51,6 +56,22 @@ class MeshStore:
             self._loaded[key] = _solid_of(data, shown, scale, up_axis, tolerance)
         return self._loaded[key]
 
+    def load_points(
+        self, path: Path, radius: float, scale: Scale, *, in_millimetres: bool = False
+    ) -> LoadedCloud:
+        """The cloud in a file of points; the same object for the same file, radius, scale and unit.
+
+        Raises:
+            BadInput: as `cloud.read_points`, with the path as it is shown.
+        """
+        key = (os.path.abspath(path), radius, scale, in_millimetres)
+        if key not in self._clouds:
+            data = self.files.read(path)
+            self._clouds[key] = cloud_from_bytes(
+                data, self.files.shown(path), radius, scale, in_millimetres=in_millimetres
+            )
+        return self._clouds[key]
+
 
 def _solid_of(
     data: bytes, shown: str, scale: Scale, up_axis: UpAxis, tolerance: float
@@ -61,7 +82,7 @@ def _solid_of(
         return mesh_from_bytes(data, shown, scale, up_axis, tolerance)
 
     suffix = Path(shown).suffix.lower()
-    if len(data) < SMALL or suffix in CAD:  # what makes facets of CAD files is not among our sources
+    if len(data) < SMALL or suffix in CAD:  # a CAD file's facets are not made by sources of ours
         return make()
     name = name_of(data, suffix, scale, up_axis)
     return kept(name, "solid", str(mesh.__file__), make)

@@ -28,17 +28,11 @@ def _is_double(number: int | float) -> bool:
         return False
 
 
-class Mesh(StrictModel):
-    """A mesh file; `scale` is a number or one for each axis, negative to mirror. `tolerance` [m] is how far the
-    facets of a CAD file may be off its surface.
-    """
-
-    FILLED = frozenset({"tolerance"})
+class ScaledFile(StrictModel):
+    """A file whose coordinates are times `scale`: a number or one for each axis, negative to mirror."""
 
     file: Name
     scale: Triple = [1.0, 1.0, 1.0]
-    collada_up_axis: Literal["ros", "file"] = "file"
-    tolerance: Annotated[float | None, Field(ge=FINEST, le=COARSEST)] = None
 
     @field_validator("scale", mode="before")
     @classmethod
@@ -52,6 +46,21 @@ class Mesh(StrictModel):
         if 0 in factors:
             raise BadDimension(f"{scale!r:.60} is given", valid="a scale is not zero")
         return [float(f) for f in factors] * (3 if len(factors) == 1 else 1)
+
+    @property
+    def factors(self) -> tuple[float, float, float]:
+        """The scale of each axis."""
+        x, y, z = self.scale
+        return x, y, z
+
+
+class Mesh(ScaledFile):
+    """A mesh file; `tolerance` [m] is how far the facets of a CAD file may be off its surface."""
+
+    FILLED = frozenset({"tolerance"})
+
+    collada_up_axis: Literal["ros", "file"] = "file"
+    tolerance: Annotated[float | None, Field(ge=FINEST, le=COARSEST)] = None
 
     @model_validator(mode="after")
     def _tolerance_of_cad(self) -> Mesh:
@@ -67,14 +76,28 @@ class Mesh(StrictModel):
         """[m]."""
         return TESSELLATION if self.tolerance is None else self.tolerance
 
+
+class LengthUnit(StrictModel):
+    """What the coordinates of a file are written in."""
+
+    length: Literal["m", "mm"] = "m"
+
+
+class ScannedPoints(ScaledFile):
+    """A file of points of a scan, each a ball of `radius` [m]; its coordinates are in `units`, times `scale`."""
+
+    FILLED = frozenset({"units"})
+
+    radius: Annotated[float, Field(gt=0)]
+    units: LengthUnit | None = None
+
     @property
-    def factors(self) -> tuple[float, float, float]:
-        """The scale of each axis."""
-        x, y, z = self.scale
-        return x, y, z
+    def in_millimetres(self) -> bool:
+        """True if the coordinates are."""
+        return self.units is not None and self.units.length == "mm"
 
 
-SHAPES = (*shapes.SHAPES, "mesh")
+SHAPES = (*shapes.SHAPES, "mesh", "points")
 
 
 class NamedPose(StrictModel):
@@ -98,6 +121,7 @@ class Obstacle(_Shaped):
     FILLED = frozenset({"on", "moves"})
 
     mesh: Mesh | None = None
+    points: ScannedPoints | None = None
     on: Name | None = None
     moves: TimedFile | None = None
     padding: Level = 0.0

@@ -16,7 +16,11 @@ from clearance.load.moveit_matrix import allowed_pairs
 from clearance.load.moveit_objects import object_rows
 from clearance.load.moveit_shapes import Row, SceneMeshes
 from clearance.load.moveit_values import Message, Poses, items, message, messages, number, text
+from clearance.load.pose_row import pose_row
 from clearance.load.scene_request import HeldPart, SceneContent, SceneRequest
+
+OCTOMAP = "<octomap>"
+"""The name of a map in MoveIt, by which its matrix may allow it."""
 
 _KEYS = {
     "world",
@@ -36,14 +40,15 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
     """The obstacles of a planning scene, what may touch them, and the padding of links.
 
     Raises:
-        BadInput: what is not read (octomap, scale of links, cone, plane), or is no message; with its field.
+        BadInput: what is not read (scale of links, cone, plane), or is no message; with its field.
     """
     with at(asked.shown):
         meshes, poses = SceneMeshes(asked), Poses()
         frames = _Frames(raw, poses)
-        _refuse_octomap(message(raw, "world"))
+        world = message(raw, "world")
         with at("world"):
-            obstacles = list(_world(message(raw, "world"), frames, meshes, poses))
+            obstacles = list(_world(world, frames, meshes, poses))
+            obstacles += _octomap(message(world, "octomap"), frames, meshes, poses)
         state = message(raw, "robot_state")
         with at("robot_state"):
             attached, held = _attached(state, meshes, poses)
@@ -164,11 +169,19 @@ def _padding(raw: Message) -> dict[str, float]:
     return {link: padding for link, padding in found.items() if padding}
 
 
-def _refuse_octomap(world: Message) -> None:
-    if items(message(message(world, "octomap"), "octomap"), "data"):
-        raise BadInput(
-            "an octomap is not read", where="world.octomap", valid="no data, and boxes or meshes"
+def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
+    """The obstacle of a map that is not empty, called `OCTOMAP` as in MoveIt."""
+    tree = message(given, "octomap")
+    if not items(tree, "data"):
+        return
+    with at("octomap"):
+        origin = (
+            poses.read(given["origin"], "position", "orientation")
+            if given.get("origin")
+            else np.eye(4)
         )
+        placed = frames.of(given) @ origin
+        yield {"name": OCTOMAP, **meshes.octomap(tree), "pose": pose_row(placed)}
 
 
 def _lost(raw: Message, state: Message) -> Iterator[str]:

@@ -65,5 +65,15 @@ def _body(
             )
         shown = meshes.files.shown(path)
         return Body(item.name, mesh.shape, shown), list(mesh.notes)
+    if item.points is not None:
+        with at("points"):
+            path = resolved(item.points.file, folder)
+            cloud = meshes.load_points(
+                path,
+                item.points.radius,
+                item.points.factors,
+                in_millimetres=item.points.in_millimetres,
+            )
+        return Body(item.name, cloud.shape, meshes.files.shown(path)), list(cloud.notes)
     with at(item.kind):
         return Body(item.name, SHAPES[item.kind].maker(**item.dimensions), item.kind), []

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, at
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.world.mount import Mount
@@ -33,6 +34,11 @@ class Body:
         if not isinstance(self.shape, Polyhedron):
             with at(f"body {self.name!r}"):
                 object.__setattr__(self, "shape", Polyhedron.from_trimesh(self.shape).outward())
+
+    @property
+    def is_cloud(self) -> bool:
+        """True if it is points of a scan and has no surface."""
+        return isinstance(self.shape, PointCloud)
 
 
 def require_no_shortfall(bodies: Iterable[Body], purpose: str) -> None:

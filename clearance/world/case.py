@@ -11,6 +11,7 @@ import numpy as np
 from clearance.errors import (
     BadDimension,
     BadInput,
+    BadShape,
     BadTime,
     NothingToMeasure,
     NoTrajectory,
@@ -281,6 +282,7 @@ class Case:
         require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
         for placed in self.robots:
             require_own_names("link", list(placed.robot.link_names))
+            _require_surfaces(placed.robot)
         if len(self.robots) > 1:
             _require_names_apart(self.robots, self.obstacles)
         elif self.robots[0].self_clearance or self._stand_on_others:
@@ -339,6 +341,15 @@ def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
     if name is None or names.count(name) != 1:
         raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
     return names.index(name)
+
+
+def _require_surfaces(robot: Robot) -> None:
+    for body in robot.bodies:
+        if body.is_cloud:
+            raise BadShape(
+                f"link {body.name!r} of robot {robot.name!r} is a cloud of points",
+                valid="links have surfaces; only obstacles may be clouds",
+            )
 
 
 def _require_names_apart(robots: Sequence[PlacedRobot], obstacles: Sequence[Obstacle]) -> None:

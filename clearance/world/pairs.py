@@ -95,6 +95,10 @@ class Pair(NamedTuple):
     a: BodyIndex
     b: BodyIndex
 
+    def has_cloud(self, case: Case) -> bool:
+        """True if either body is a cloud of points."""
+        return self.a.body_in(case).is_cloud or self.b.body_in(case).is_cloud
+
 
 @dataclass(frozen=True, eq=False)
 class Selection:

@@ -127,7 +127,7 @@ def mesh_and_cloud(points_of, count: int) -> tuple[Polyhedron, PointCloud]:
 def table(u: np.ndarray, v: np.ndarray) -> np.ndarray:
     """(…, 3) [m] a table 1.6 m wide with things on it, rough to a millimetre."""
     x, y = 0.3 + 0.8 * u, 1.6 * (v - 0.5)
-    z = 0.23 + 0.12 * np.exp(-((x - 0.8) ** 2 + (y - 0.3) ** 2) / 0.005)
+    z = 0.42 + 0.12 * np.exp(-((x - 0.8) ** 2 + (y - 0.3) ** 2) / 0.005)
     z += 0.2 * np.exp(-((x - 0.6) ** 2 + (y + 0.4) ** 2) / 0.01) + rough(u)
     return np.stack([x, y, z], axis=-1)
 

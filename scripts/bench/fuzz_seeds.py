@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.load.making_clouds import pcd, ply, table
+
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 TRIANGLES = np.array([[q[0], q[i], q[i + 1]] for q in QUADS for i in (1, 2)])
@@ -40,6 +42,8 @@ def readers() -> dict[str, Reader]:
         "GLB": ("m.glb", _glb()),
     }
     made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
+    for kind, (name, data) in _scans().items():
+        made[kind] = Reader(name, data, _points_reader(name))
     return made | {
         "DXF": Reader("d.dxf", _dxf(), _file_reader("d.dxf", _read_dxf)),
         "curves": Reader("c.yaml", _CURVES, _file_reader("c.yaml", _read_curves)),
@@ -68,6 +72,27 @@ def _mesh_reader(name: str) -> Callable[[bytes, Path], object]:
         from clearance.load.mesh import mesh_from_bytes
 
         return mesh_from_bytes(data, name)
+
+    return read
+
+
+def _scans() -> dict[str, tuple[str, bytes]]:
+    points = np.concatenate([CUBE, [[np.nan] * 3]])
+    return {
+        "PCD ascii": ("s.pcd", pcd(points, "ascii")),
+        "PCD binary": ("s.pcd", pcd(points, "binary")),
+        "PCD compressed": ("s.pcd", pcd(points, "binary_compressed")),
+        "points PLY": ("s.ply", ply(points)),
+        "points CSV": ("s.csv", table(points, ",", "x [mm],y [mm],z [mm]")),
+        "points XYZ": ("s.xyz", table(points, " ", "")),
+    }
+
+
+def _points_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.cloud import cloud_from_bytes
+
+        return cloud_from_bytes(data, name, 0.01)
 
     return read
 

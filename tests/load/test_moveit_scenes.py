@@ -219,8 +219,8 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
             "frames 'base' and 'map' are used",
         ),
         (
-            "world: {octomap: {octomap: {data: [1]}}}",
-            "world.octomap: an octomap is not read",
+            "world: {octomap: {octomap: {id: ColorOcTree, resolution: 0.1, binary: true, data: [1]}}}",
+            "world: octomap: an octomap of kind 'ColorOcTree' is not read; OcTree",
         ),
         (
             OBJECT % SPHERE + "link_scale: [{link_name: l, scale: 1.1}]",
