@@ -6,6 +6,7 @@ import click
 
 from clearance import __version__
 from clearance.cli.check import check
+from clearance.cli.comparison import compare
 from clearance.cli.convert import convert
 from clearance.cli.new import new
 from clearance.cli.profile import profile
@@ -22,6 +23,7 @@ def clearance() -> None:
 
 
 clearance.add_command(check)
+clearance.add_command(compare)
 clearance.add_command(convert)
 clearance.add_command(new)
 clearance.add_command(profile)

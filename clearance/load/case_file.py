@@ -7,7 +7,7 @@ something, numbers are finite, shapes are solids, times increase.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
@@ -29,6 +29,7 @@ from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
 from clearance.load.scene_request import SceneContent
 from clearance.load.scene_rows import with_scene_rows
+from clearance.load.waiver_file import waivers_of
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -38,6 +39,7 @@ from clearance.world.notice import Notice
 from clearance.world.pairs import nothing_to_measure, selected_pairs
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
+from clearance.world.waiver import Waiver
 
 
 def load_case(path: str | PathLike[str]) -> Case:
@@ -142,6 +144,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
             contact_response=given.contact_response,
             notices=(*_notices(given), *scene_at.content.notices),
             accept=tuple(given.accept),
+            waivers=tuple(_waivers(given, path, files)),
             sign_off=_sign_off(given.report),
             carries=carries_of(given.carry),
             clock=Clock(given.clock.slack),
@@ -244,6 +247,12 @@ def _placed_joints(placed: PlacedRobot) -> list[str]:
     """The joints that the trajectory moves or the case sets."""
     moved = placed.trajectory.joint_names if placed.trajectory else ()
     return [*moved, *placed.fixed_positions]
+
+
+def _waivers(given: schema.Case, path: Path, files: InputFiles) -> Iterator[Waiver]:
+    for i, name in enumerate(given.waivers):
+        with at(f"waivers[{i}]"):
+            yield from waivers_of(files, path.parent / name)
 
 
 def _sign_off(given: schema.Report | None) -> SignOff | None:

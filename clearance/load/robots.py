@@ -129,7 +129,8 @@ def in_motion(
     if asked is not None:
         field = entry.trajectory_field
         trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
-        placed = replace(placed, trajectory=trajectory, timing=asked.timing)
+        path = str(resolved(asked.file, folder))
+        placed = replace(placed, trajectory=trajectory, timing=asked.timing, trajectory_path=path)
     moved = trajectory.joint_names if trajectory else ()
     resting = resting_positions(entry, placed.robot, moved, folder, files)
     on_limits = note_on_accelerations(placed.motion_limits, trajectory)

@@ -33,6 +33,7 @@ from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
+from clearance.world.waiver import Waiver
 
 if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch
@@ -136,6 +137,7 @@ class PlacedRobot:
         padding: [m] by how much the clearance of links is lessened, by link.
         motion_limits: how fast joints may be, where more than the robot's own file is known.
         path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
+        trajectory_path: the file that the trajectory is from; empty where it is from none.
     """
 
     robot: Robot
@@ -151,6 +153,7 @@ class PlacedRobot:
     padding: dict[str, float] = field(default_factory=dict)
     motion_limits: dict[str, MotionLimit] = field(default_factory=dict)
     path_tolerances: dict[str, PathTolerance] = field(default_factory=dict)
+    trajectory_path: str = ""
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
@@ -255,6 +258,7 @@ class Case:
         notes: what loading had to mend or assume, one line each.
         notices: suspect input and warnings that only loading can find; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
+        waivers: which bodies may come nearer than their rule says; of several for a pair the last counts.
         profiles: outlines that the sweep must keep to.
         sign_off: for the report; None where it has no such fields.
     """
@@ -270,6 +274,7 @@ class Case:
     profiles: tuple[ReservedSpace, ...] = ()
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
+    waivers: tuple[Waiver, ...] = ()
     sign_off: SignOff | None = None
     carries: tuple[Carry, ...] = ()
     clock: Clock = COMMON
@@ -325,7 +330,8 @@ class Case:
         i_robot = index_of_robot(self.robots, robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
-        moved = replace(placed, trajectory=Trajectory(times, names, positions, velocities))
+        trajectory = Trajectory(times, names, positions, velocities)
+        moved = replace(placed, trajectory=trajectory, trajectory_path="")
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
 
 
