@@ -13,6 +13,7 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cached_property
 from io import BufferedReader
 from pathlib import Path
 
@@ -66,16 +67,20 @@ class InputFiles:
             MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
-        with _openable(self.shown(path)), _regular(path) as file:
+        with _openable(self.shown(path)), regular_file(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
             digest = hashlib.file_digest(file, "sha256").hexdigest()
         self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
-        return lambda: _regular(path), n_bytes
+        return lambda: regular_file(path), n_bytes
+
+    @cached_property
+    def _brought(self) -> Path | None:
+        return _pybullet_data_folder()
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         path = Path(os.path.abspath(path))
-        brought = _pybullet_data_folder()
+        brought = self._brought
         if brought is not None and path.is_relative_to(brought):
             return _PYBULLET_DATA + path.relative_to(brought).as_posix()
         return relative_path(path, self.folder)
@@ -87,7 +92,7 @@ def read_bytes(path: Path, shown: str) -> bytes:
     Raises:
         MissingFile: it is not there, is no file on disk, or cannot be read.
     """
-    with _openable(shown), _regular(path) as file:
+    with _openable(shown), regular_file(path) as file:
         return file.read()
 
 
@@ -95,7 +100,7 @@ class _NotRegular(OSError):
     """A pipe, socket or device."""
 
 
-def _regular(path: Path) -> BufferedReader:
+def regular_file(path: Path) -> BufferedReader:
     """Opens a file on disk; a pipe or a device, which may never end, is not waited for."""
     descriptor = os.open(
         path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
