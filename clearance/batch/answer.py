@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from clearance.batch.rows import ERROR, VERDICT, error_row
 from clearance.batch.run import Outcome
@@ -32,9 +33,12 @@ class BatchAnswer:
     Attributes:
         cases: one row a case, in order: `case`, its name, `key`, then the columns of `rows.VERDICT`. Where a case
             has no answer, its status is "error", its text says why, and most columns are null.
+        findings: one row a finding, in order of the cases, the worst of a case first: `case`, then the columns of
+            `rows.FINDING`.
     """
 
     cases: pa.Table
+    findings: pa.Table
 
     @property
     def counts(self) -> dict[str, int]:
@@ -88,4 +92,15 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
     items = [item for item in outcome.items if item.number in place]
     table = table.take(pa.array([place[item.number] for item in items], type=pa.int64()))
     names = pa.array([item.name for item in items], type=pa.string())
-    return BatchAnswer(table.add_column(0, "case", names))
+    findings = _findings(table, names)
+    return BatchAnswer(table.drop_columns(["findings"]).add_column(0, "case", names), findings)
+
+
+def _findings(table: pa.Table, names: pa.Array) -> pa.Table:
+    """The findings of all cases, a row each."""
+    column = table["findings"].combine_chunks()
+    if isinstance(column, pa.ChunkedArray):
+        column = pa.concat_arrays(column.chunks)
+    whose = pc.list_parent_indices(column)
+    flat = pa.Table.from_struct_array(pc.list_flatten(column))
+    return flat.add_column(0, "case", names.take(whose))

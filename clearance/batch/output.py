@@ -12,7 +12,8 @@ from clearance.batch.answer import BatchAnswer
 from clearance.batch.store import Store
 from clearance.report.folder import write_file
 
-CASES, PAGE, JUNIT = "cases.parquet", "batch.html", "junit.xml"
+CASES, FINDINGS = "cases.parquet", "findings.parquet"
+PAGE, JUNIT = "batch.html", "junit.xml"
 
 
 def write_answer(answer: BatchAnswer, store: Store) -> None:
@@ -26,6 +27,7 @@ def write_answer(answer: BatchAnswer, store: Store) -> None:
 
     with store.locked():
         write_file(store.place / CASES, _parquet(answer.cases))
+        write_file(store.place / FINDINGS, _parquet(answer.findings))
         write_file(store.place / JUNIT, junit_of(answer, store.place.name))
         write_file(store.place / PAGE, page_of(answer, store.place).encode())
 
@@ -45,6 +47,7 @@ def rewrite_page(store: Store) -> None:
     from clearance.batch.page import page_of
 
     with store.locked():
-        if (store.place / CASES).is_file():
-            answer = BatchAnswer(pq.read_table(store.place / CASES, partitioning=None))
+        tables = [store.place / name for name in (CASES, FINDINGS)]
+        if all(path.is_file() for path in tables):
+            answer = BatchAnswer(*(pq.read_table(path, partitioning=None) for path in tables))
             write_file(store.place / PAGE, page_of(answer, store.place).encode())

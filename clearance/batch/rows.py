@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from clearance.findings.finding import Finding
+from clearance.findings.of_record import findings_of
 from clearance.run import Run
 from clearance.simulate.record import Record
 from clearance.world.case import Source
@@ -23,6 +25,37 @@ CURVE = 64
 """Numbers of a curve at most."""
 
 _TEXTS = pa.list_(pa.string())
+
+FINDING = pa.schema(
+    [
+        ("id", pa.string()),
+        ("kind", pa.string()),
+        ("rule", pa.string()),
+        ("body_a", pa.string()),
+        ("body_b", pa.string()),
+        ("occurrence", pa.int64()),
+        ("status", pa.string()),
+        ("clearance", pa.float64()),
+        ("proven", pa.float64()),
+        ("fail", pa.float64()),
+        ("warn", pa.float64()),
+        ("time", pa.float64()),
+        ("time_b", pa.float64()),
+        ("step", pa.int64()),
+        ("between", pa.bool_()),
+        ("start", pa.float64()),
+        ("end", pa.float64()),
+        ("first_step", pa.int64()),
+        ("last_step", pa.int64()),
+        ("point_a", pa.list_(pa.float64())),
+        ("point_b", pa.list_(pa.float64())),
+        ("text", pa.string()),
+    ]
+)
+"""What is kept of a `findings.finding.Finding`."""
+
+MOST_FINDINGS = 200
+"""Of one case, the worst."""
 
 VERDICT = pa.schema(
     [
@@ -48,6 +81,8 @@ VERDICT = pa.schema(
         ("warnings", _TEXTS),
         ("not_checked", _TEXTS),
         ("curve", pa.list_(pa.float32())),
+        ("n_findings", pa.int64()),
+        ("findings", pa.list_(pa.struct(FINDING))),
     ]
 )
 """Columns that follow from the case: what the room's notes say of `cases.parquet`."""
@@ -61,7 +96,7 @@ def row_of(run: Run) -> dict[str, Any]:
     record, verdict = run.record, run.verdict
     worst, times = record.worst, record.motions[0].times
     certificate = record.certificate
-    limits = record.rule(worst.rule).limits
+    limits, findings = record.rule(worst.rule).limits, findings_of(record)
     return {
         "status": verdict.status,
         "exit_code": verdict.exit_code,
@@ -85,7 +120,13 @@ def row_of(run: Run) -> dict[str, Any]:
         "warnings": list(verdict.warnings),
         "not_checked": list(verdict.not_checked),
         "curve": curve_of(record),
+        "n_findings": len(findings),
+        "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
     }
+
+
+def _told(finding: Finding) -> dict[str, Any]:
+    return {name: getattr(finding, name) for name in FINDING.names}
 
 
 def curve_of(record: Record) -> np.ndarray:
