@@ -14,14 +14,18 @@ import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
-from io import BufferedReader
+from io import BufferedReader, BytesIO
 from pathlib import Path
+from typing import BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
 from clearance.world.case import Source
 
 _PYBULLET_DATA = "pybullet_data:"
+
+SHORT = 2**20
+"""[bytes] Files up to this length are read once, whoever goes through them how often."""
 
 
 class InputFiles:
@@ -59,19 +63,30 @@ class InputFiles:
         """Keeps what is written out in another file as the content of a file of its own, which is not on disk."""
         self._contents[Path(os.path.abspath(path))] = data
 
-    def unread(self, path: Path) -> tuple[Callable[[], BufferedReader], int]:
-        """Opens a long file, again and again, and how many bytes it has; its checksum is remembered,
-        its content is not.
+    def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
+        """Opens a file, again and again, and how many bytes it has; its checksum is remembered, its content only
+        while a short one is read.
 
         Raises:
             MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
-        with _openable(self.shown(path)), regular_file(path) as file:
+        shown, content = self.shown(path), b""
+        with _openable(shown), regular_file(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
-            digest = hashlib.file_digest(file, "sha256").hexdigest()
-        self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
-        return lambda: regular_file(path), n_bytes
+            if n_bytes <= SHORT:
+                content = file.read()
+                digest, n_bytes = hashlib.sha256(content).hexdigest(), len(content)
+            else:
+                digest = hashlib.file_digest(file, "sha256").hexdigest()
+        self._sources[path] = Source(shown, digest, n_bytes, str(path))
+        return (lambda: BytesIO(content) if n_bytes <= SHORT else regular_file(path)), n_bytes
+
+    def of_more(self) -> InputFiles:
+        """The same folder, for further files: none is read yet."""
+        made = InputFiles(self.folder)
+        made.__dict__["_brought"] = self._brought
+        return made
 
     @cached_property
     def _brought(self) -> Path | None:
