@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from clearance.errors import Unavailable
 
 LIBRARIES = {
+    "batch": ("dask", "distributed"),
     "cad": ("cascadio",),
     "contact": ("coacd", "manifold3d"),
     "crosscheck": ("fcl",),

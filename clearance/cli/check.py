@@ -20,7 +20,7 @@ from clearance.world.notice import KINDS
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
     from clearance.run import Question, Run
-    from clearance.world.case import Case, Limits
+    from clearance.world.case import Case
 
 
 @click.command()
@@ -196,10 +196,11 @@ def _case(
 ) -> Case:
     """The case with what the command line changes of it."""
     from clearance.load.case_file import load_case
+    from clearance.run.question import with_levels
 
     case = load_case(case_file)
     accepted = tuple(dict.fromkeys([*case.accept, *accept]))
-    return replace(case, limits=_limits(case.limits, fail, warn), accept=accepted)
+    return replace(case, limits=with_levels(case.limits, fail, warn), accept=accepted)
 
 
 def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, motion: str) -> None:
@@ -254,29 +255,6 @@ def _compile_ahead(quiet: bool) -> None:
         warnings.simplefilter("ignore", KernelCacheWarning)
     if compile_ahead.start() and not quiet and sys.stderr.isatty():
         click.echo("compiling for this machine, once: about half a minute", err=True)
-
-
-def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits:
-    """The limits with what the command line changes; raising `fail` alone takes `warn` along, a rule's too that
-    gives no `fail` of its own.
-    """
-    if fail is None and warn is None:
-        return given
-    if fail is None:
-        fail = given.fail
-    if warn is None:
-        warn = max(given.warn, fail)
-    if warn < fail:
-        raise click.UsageError(
-            f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
-        )
-    rules = tuple(
-        replace(rule, warn=max(rule.warn, fail))
-        if rule.fail is None and rule.warn is not None
-        else rule
-        for rule in given.rules
-    )
-    return replace(given, fail=fail, warn=warn, rules=rules)
 
 
 def _write(run: Run, out: Path | None, junit: Path | None, comparison: Comparison | None) -> None:

@@ -88,7 +88,7 @@ def with_trajectory_file(
         BadInput: as `load_case`, or the robot has a trajectory already.
     """
     i_robot = index_of_robot(cell.case.robots, robot)
-    entry, files = cell.entries[i_robot], InputFiles(cell.path.parent)
+    entry, files = cell.entries[i_robot], cell.files.of_more()
     with at(cell.path.name):
         if entry.trajectory is not None:
             raise BadInput(

@@ -143,6 +143,33 @@ def limited(case: Case, limits: Limits | None) -> Case:
     return replace(case, limits=limits)
 
 
+def with_levels(limits: Limits, fail: float | None, warn: float | None) -> Limits:
+    """The limits with other levels [m]; None leaves one as it is.
+
+    Raising `fail` alone takes `warn` along, a rule's too that gives no `fail` of its own.
+
+    Raises:
+        BadInput: a warn limit below the fail limit.
+    """
+    if fail is None and warn is None:
+        return limits
+    if fail is None:
+        fail = limits.fail
+    if warn is None:
+        warn = max(limits.warn, fail)
+    if warn < fail:
+        raise BadInput(
+            f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
+        )
+    rules = tuple(
+        replace(rule, warn=max(rule.warn, fail))
+        if rule.fail is None and rule.warn is not None
+        else rule
+        for rule in limits.rules
+    )
+    return replace(limits, fail=fail, warn=warn, rules=rules)
+
+
 def _checked_gap(gap: float) -> float:
     if not (isinstance(gap, int | float | np.number) and 0.0 < gap < np.inf):
         raise BadDimension(f"a gap of {gap!r:.60} m", where="certify", valid="a length above 0")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,6 +22,7 @@ from clearance.errors import (
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry, require_one_carrier
+from clearance.world.cell import Cell, cell_of, once_a_cell
 from clearance.world.collision_matrix import CollisionMatrix
 from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
@@ -283,20 +285,22 @@ class Case:
         if not self.robots:
             raise NothingToMeasure(f"case {self.name!r} has no robot", valid="at least one")
         checked_name(self.name)
-        require_own_names("robot", [placed.robot.name for placed in self.robots])
-        require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
-        for placed in self.robots:
-            require_own_names("link", list(placed.robot.link_names))
-            _require_surfaces(placed.robot)
-        if len(self.robots) > 1:
-            _require_names_apart(self.robots, self.obstacles)
-        elif self.robots[0].self_clearance or self._stand_on_others:
-            _require_other_names(self.robots[0].robot, self.obstacles)
-        require_one_carrier(self.carries)
         allow = (
             row if isinstance(row, Allowance) else Allowance((row[0], row[1])) for row in self.allow
         )
         object.__setattr__(self, "allow", tuple(allow))
+        _require_bodies(self)
+
+    @cached_property
+    def cell(self) -> Cell:
+        """What of it no trajectory changes, as a key."""
+        held: list[object] = [*self.obstacles]
+        told: list[Hashable] = [self.allow, self.limits, self.carries, self.clock]
+        for placed in self.robots:
+            held += [placed.robot, placed.mount, placed.self_clearance]
+            told += [placed.world_from_base.tobytes(), placed.exclude_links]
+            told.append(tuple(sorted(placed.padding.items())))
+        return cell_of(held, tuple(told))
 
     def prefix_of(self, placed: PlacedRobot) -> str:
         """What stands before the names of a robot's links in tables: nothing where there is one robot."""
@@ -333,6 +337,21 @@ class Case:
         trajectory = Trajectory(times, names, positions, velocities)
         moved = replace(placed, trajectory=trajectory, trajectory_path="")
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
+
+
+@once_a_cell(16)
+def _require_bodies(case: Case) -> None:
+    """Nothing, if what can be named can be told apart, and links have surfaces."""
+    require_own_names("robot", [placed.robot.name for placed in case.robots])
+    require_own_names("obstacle", [obstacle.name for obstacle in case.obstacles])
+    for placed in case.robots:
+        require_own_names("link", list(placed.robot.link_names))
+        _require_surfaces(placed.robot)
+    if len(case.robots) > 1:
+        _require_names_apart(case.robots, case.obstacles)
+    elif case.robots[0].self_clearance or case._stand_on_others:
+        _require_other_names(case.robots[0].robot, case.obstacles)
+    require_one_carrier(case.carries)
 
 
 def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
