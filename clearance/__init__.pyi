@@ -1,4 +1,5 @@
 from .errors import BadInput, ClearanceError
+from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
 from .geometry.shapes import box, capsule, cylinder, pipe, sphere
@@ -56,6 +57,7 @@ __all__ = [
     "Nearest",
     "Obstacle",
     "PlacedRobot",
+    "PointCloud",
     "Polyhedron",
     "Polytope",
     "PoseTable",

@@ -17,7 +17,7 @@ LIBRARIES = {
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
     "report": ("plotly", "meshcat", "matplotlib"),
-    "ros": ("rosbags",),
+    "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
     "view": ("meshcat", "tornado", "umsgpack"),
 }

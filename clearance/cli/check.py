@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
 from clearance.world.notice import KINDS
 
@@ -81,6 +82,7 @@ if TYPE_CHECKING:
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
+@more_files_options
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
     case_file: Path,
@@ -100,6 +102,9 @@ def check(
     motion: str,
     as_json: bool,
     junit: Path | None,
+    png: Path | None,
+    glb: Path | None,
+    trajectory: Path | None,
     quiet: bool,
 ) -> int:
     """Measures the least clearance of every step of CASE.yaml.
@@ -120,9 +125,11 @@ def check(
         )
     _require_extras(out, cross_check, motion)
     _require_places(out, junit)
+    more = MoreFiles(png, glb, trajectory)
+    more.require_writable()
     _compile_ahead(quiet)
     question = Question(
-        _case(case_file, _outputs(out, junit), fail_mm, warn_mm, accept),
+        _case(case_file, _outputs(out, junit, more), fail_mm, warn_mm, accept),
         need=need,
         method=method,
         motion=motion,
@@ -132,13 +139,17 @@ def check(
         contact=contact,
         paper_tolerance=paper_tolerance,
     )
+    ahead = more.made_ahead(question.case, motion)
     with kept_rows(out, quiet) as rows:
         with shown_progress(quiet or as_json, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
             if out is not None or as_json:
                 run.record.work_out_contacts(progress)
         _write(run, out, junit)
+        notes = more.write(run, ahead)
     _print(run, out, as_json, quiet)
+    if not (as_json or quiet):
+        more.print_written(notes)
     return ExitCode(run.verdict.exit_code)
 
 
@@ -188,23 +199,24 @@ def _require_extras(out: Path | None, cross_check: bool, motion: str) -> None:
         require("simulate", "--motion simulated")
 
 
-def _outputs(out: Path | None, junit: Path | None) -> list[Path]:
-    """The files that may be written; the report's own are none for `junit`.
+def _outputs(out: Path | None, junit: Path | None, more: MoreFiles) -> list[Path]:
+    """The files that may be written; no two are the same.
 
     Raises:
-        Unwritable: it would overwrite one of them.
+        Unwritable: one would overwrite another.
     """
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 
     report = [] if out is None else [out / name for name in OWN]
-    if junit is None:
-        return report
-    if os.path.realpath(junit) in map(os.path.realpath, report):
-        raise Unwritable(
-            "is a file of the report", where=str(junit), valid="--junit needs another name"
-        )
-    return [*report, junit]
+    taken = {os.path.realpath(path): "is a file of the report" for path in report}
+    named = ({} if junit is None else {"--junit": junit}) | more.by_option
+    for option, path in named.items():
+        if os.path.realpath(path) in taken:
+            problem = taken[os.path.realpath(path)]
+            raise Unwritable(problem, where=str(path), valid=f"{option} needs another name")
+        taken[os.path.realpath(path)] = f"is the file of {option}"
+    return [*report, *named.values()]
 
 
 def _compile_ahead(quiet: bool) -> None:
@@ -212,7 +224,7 @@ def _compile_ahead(quiet: bool) -> None:
     import warnings
 
     from clearance.cli import compile_ahead
-    from clearance.compile.kernel_cache import KernelCacheWarning
+    from clearance.kept_files import KernelCacheWarning
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)

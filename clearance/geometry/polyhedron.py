@@ -100,6 +100,12 @@ class Polyhedron:
             object.__setattr__(self, name, array)
         object.__setattr__(self, "excess", float(excess))
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy from another process, whose arrays come back as writable."""
+        self.__dict__.update(state)
+        for array in (self.vertices, self.face_starts, self.face_vertices):
+            array.setflags(write=False)
+
     @classmethod
     def _of_valid(
         cls, vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, excess: float = 0.0
@@ -151,6 +157,11 @@ class Polyhedron:
             MissingFile, BadSyntax, EmptyMesh, NotFinite: as the attached reader, `clearance.load.mesh.read_mesh`.
         """
         return file_reader()(path, scale)
+
+    @property
+    def ball_radius(self) -> float:
+        """[m] of the balls about the points of a cloud; 0: of a surface there are none."""
+        return 0.0
 
     @property
     def n_faces(self) -> int:

@@ -17,7 +17,7 @@ _ADVICE = {
     ),
     "xacro": (
         "a xacro robot",
-        "turn it into URDF with the xacro command, and name that in a case file",
+        "name it in a case file: robot: {{urdf: {name}, xacro: true}}, which evaluates the Python in it",
     ),
     "srdf": (
         "a MoveIt SRDF",

@@ -24,4 +24,5 @@ def read_robot(request: RobotRequest, meshes: MeshStore) -> Robot:
     Raises:
         BadInput: as the reader says, with the place in the file.
     """
-    return READERS.get(request.path.suffix.lower(), read_urdf)(request, meshes)
+    suffix = ".urdf" if request.xacro else request.path.suffix.lower()
+    return READERS.get(suffix, read_urdf)(request, meshes)

@@ -6,14 +6,16 @@ loader (`urdf_shapes`). Not for: where the robot stands, or how it moves.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from clearance.errors import NothingToMeasure, at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.axis_check import axis_notices
 from clearance.load.collada_file import UpAxis
+from clearance.load.compound_joints import frames_between
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joints import joints_of
@@ -23,7 +25,9 @@ from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.robot_tree import links_from_root
 from clearance.load.urdf_elements import odd_origins, parse_document
 from clearance.load.urdf_shapes import ShapeReader
+from clearance.load.xacro_file import checked_args, expanded, refuse_unasked
 from clearance.world.body import Body
+from clearance.world.names import require_own_names
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.robot import Robot
 
@@ -37,18 +41,27 @@ def load_urdf(
     package_dirs: Sequence[str | Path] = (),
     geometry: Geometry = "collision",
     collada_up_axis: UpAxis = "ros",
+    xacro: bool = False,
+    xacro_args: Mapping[str, str | bool | int | float] = MappingProxyType({}),
 ) -> Robot:
     """The robot in a URDF file, for cases that are made in memory.
 
     Args:
         path: or `pybullet_data:…`, as in a case file.
-        package_dirs, geometry, collada_up_axis: as in `RobotRequest`.
+        package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
 
     Raises:
         BadInput: with the file and the element.
     """
     path = resolved(str(path), Path())
-    request = RobotRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
+    request = RobotRequest(
+        path,
+        tuple(map(Path, package_dirs)),
+        geometry,
+        collada_up_axis,
+        xacro,
+        checked_args(xacro_args),
+    )
     return read_urdf(request, MeshStore(InputFiles(path.parent)))
 
 
@@ -59,14 +72,15 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         BadInput: with the file and the element. NothingToMeasure: no link has a shape of the kind that is
         asked for, though there are others.
     """
-    data = meshes.files.read(request.path)
-    refuse_foreign(data, meshes.files.shown(request.path), "a URDF file")
+    data, made = _document(request, meshes.files)
     with at(meshes.files.shown(request.path)):
         root = parse_document(data)
         joints, notes = joints_of(root)
         by_name = {link.get("name"): link for link in root.iterfind("link")}
-        link_names, ordered = links_from_root(tuple(by_name), joints)
-        links = [by_name[name] for name in link_names]
+        frames = frames_between(joints)
+        require_own_names("link", [*by_name, *frames])
+        link_names, ordered = links_from_root((*by_name, *frames), joints)
+        links = [by_name[name] for name in link_names if name in by_name]
         _refuse_other_geometry(links, request.geometry)
         reader = ShapeReader(request, meshes)
         bodies = [body for link in links if (body := _body(link, reader)) is not None]
@@ -82,9 +96,19 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         link_names,
         ordered,
         tuple(bodies),
-        (*reader.notes(), *notes),
+        (*made, *reader.notes(), *notes),
         tuple(notices),
     )
+
+
+def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:
+    """The URDF in a file, or what xacro makes of it; and notes on that."""
+    if request.xacro:
+        return expanded(request, files)
+    data, shown = files.read(request.path), files.shown(request.path)
+    refuse_foreign(data, shown, "a URDF file")
+    refuse_unasked(request, data, shown)
+    return data, ()
 
 
 def _body(link: Element, reader: ShapeReader) -> Body | None:
@@ -100,7 +124,8 @@ def _body(link: Element, reader: ShapeReader) -> Body | None:
             shape, origin = reader.shape(element)
         shapes.append(shape)
         origins.append(origin)
-    return Body(name, Polyhedron.merged(shapes), ", ".join(origins))
+    whole = shapes[0] if len(shapes) == 1 else Polyhedron.merged(shapes)
+    return Body(name, whole, ", ".join(origins))
 
 
 def _refuse_other_geometry(links: list[Element], geometry: Geometry) -> None:

@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from clearance.report.folder import LAST, fill_folder
+from clearance.report.moments_file import FILE_NAME as MOMENTS
+from clearance.report.moments_file import moments_text
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.summary import summary_of
@@ -26,6 +28,7 @@ OWN = (
     "steps.csv",
     "pairs.parquet",
     "contacts.csv",
+    MOMENTS,
     FILE_NAME,
     "report.html",
     LAST,
@@ -34,8 +37,8 @@ OWN = (
 
 
 def write(record: Record, folder: str | Path, kept: MeasuredRows = IN_MEMORY) -> None:
-    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `replay.npz`, `report.html` and, last,
-    `summary.json`.
+    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `worst_moments.yaml`, `replay.npz`, `report.html`
+    and, last, `summary.json`.
 
     The same record gives the same bytes. Other files in `folder` are left alone; an older report
     there is replaced as a whole, or, if anything goes wrong, kept as it was.
@@ -50,6 +53,7 @@ def write(record: Record, folder: str | Path, kept: MeasuredRows = IN_MEMORY) ->
     """
     summary, replay = summary_of(record), replay_of(record, rows=kept)
     pictures = {answer.name: answer.picture() for answer in record.profiles}
+    moments = moments_text(record)
     page = page_of(summary, replay, pictures, pair_curves(record, kept))
 
     def fill(place: Path) -> None:
@@ -58,6 +62,7 @@ def write(record: Record, folder: str | Path, kept: MeasuredRows = IN_MEMORY) ->
         if record.every_pair is not None:
             write_parquet(pair_batches(record, kept), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
+        (place / MOMENTS).write_text(moments, encoding="utf-8")
         replay.save(place / FILE_NAME)
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")

@@ -15,11 +15,12 @@ from clearance.simulate import inside
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_sequence import ContactSequence
 from clearance.simulate.fingerprint import fingerprint
-from clearance.simulate.judged import Judged, SectionAnswer, judged
+from clearance.simulate.judged import Judged, judged
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import CrossCheck, ProfileAnswer, Record, Samples
 from clearance.simulate.resources import Resources
+from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
 from clearance.world.clocks import require_clocks

@@ -19,6 +19,7 @@ from clearance.world.kinematics import kinematic_tree_arrays
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
 from clearance.world.pairs import Pair
+from clearance.world.robot import Robot
 
 _ENTRY = PACKAGE / "run" / "__init__.py"
 _BEFORE_AND_AFTER = ("load", "profiles", "crosscheck", "report", "view")
@@ -62,6 +63,17 @@ def fingerprint(
         if obstacle.moves is not None:
             _add(digest, obstacle.moves.times, obstacle.moves.columns)
             digest.update(repr(obstacle.moves.timing).encode())
+    return digest.hexdigest()
+
+
+def robot_digest(robot: Robot) -> str:
+    """sha256 of a robot's joints and of the shapes of its links."""
+    digest = hashlib.sha256()
+    for body in robot.bodies:
+        digest.update(body.name.encode())
+        _add_shape(digest, body.shape)
+    digest.update(repr((robot.link_names, robot.joints)).encode())
+    _add(digest, *kinematic_tree_arrays(robot))
     return digest.hexdigest()
 
 

@@ -16,6 +16,7 @@ from clearance.world.case import Limits
 
 if TYPE_CHECKING:
     from clearance.simulate.measure import Measurement
+    from clearance.simulate.rule_pairs import RulePairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +27,7 @@ class RuleAnswer:
         name: of the rule, "default" for the limits that hold where no rule does.
         measurement: of all steps; pairs are those of the run. certificate: None where nothing is proven.
         moment_at: the moment of a step whose clearance is known.
+        pairs: its pairs one by one; None where only the nearest of each step is known.
     """
 
     name: str
@@ -33,6 +35,7 @@ class RuleAnswer:
     measurement: Measurement
     certificate: Certificate | None
     moment_at: Callable[[int], Moment]
+    pairs: RulePairs | None = None
 
     @cached_property
     def worst_sample(self) -> Moment | None:

@@ -21,6 +21,7 @@ from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name, require_own_names
@@ -132,6 +133,8 @@ class PlacedRobot:
         exclude_links: links that are not measured.
         self_clearance: whether its links are measured against one another, and which pairs are excused.
         padding: [m] by how much the clearance of links is lessened, by link.
+        motion_limits: how fast joints may be, where more than the robot's own file is known.
+        path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
     """
 
     robot: Robot
@@ -145,6 +148,8 @@ class PlacedRobot:
     mount: Mount | None = None
     timing: Timing = AS_GIVEN
     padding: dict[str, float] = field(default_factory=dict)
+    motion_limits: dict[str, MotionLimit] = field(default_factory=dict)
+    path_tolerances: dict[str, PathTolerance] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
@@ -315,14 +320,19 @@ class Case:
         Raises:
             BadInput: no such robot or joint, or numbers that are no trajectory.
         """
-        i_robot = _index_of(self.robots, robot)
+        i_robot = index_of_robot(self.robots, robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
         moved = replace(placed, trajectory=Trajectory(times, names, positions, velocities))
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
 
 
-def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
+def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
+    """The place of the one robot of a name, or of the only one.
+
+    Raises:
+        UnknownRobot: there is no such one.
+    """
     names = [placed.robot.name for placed in robots]
     if name is None and len(names) == 1:
         return 0

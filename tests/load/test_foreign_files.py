@@ -29,7 +29,7 @@ GIVEN = [
         ARM,
         "this is a URDF robot, not a case file; name it in a case file: robot: {urdf: arm.urdf}",
     ),
-    ("arm.xacro", ARM.replace("<link", "<xacro:arm/><link", 1), "xacro command"),
+    ("arm.xacro", ARM.replace("<link", "<xacro:arm/><link", 1), "xacro: true"),
     ("arm.srdf", SRDF, "this is a MoveIt SRDF, not a case file; .*allow: "),
     ("world.sdf", SDF, "this is an SDF world or model"),
     ("arm.xml", MJCF, "this is a MuJoCo model"),
