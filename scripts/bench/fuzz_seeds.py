@@ -13,10 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tests.load.making_clouds import pcd, ply, table
+from tests.load.making_octree import octree
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 TRIANGLES = np.array([[q[0], q[i], q[i + 1]] for q in QUADS for i in (1, 2)])
+
+CELLS = {(0, 0, 0): True, (1, 0, 0): True, (0, -1, 2): False, (-9, 4, 4): True}
 
 SKETCH = Path(__file__).parents[2] / "scenes" / "sketches" / "d_cell.yaml"
 
@@ -41,6 +44,8 @@ def readers() -> dict[str, Reader]:
         "OFF": ("m.off", _off()),
         "GLB": ("m.glb", _glb()),
         "STEP": ("m.step", _step()),
+        "octomap binary": ("m.bt", octree(CELLS)),
+        "octomap full": ("m.ot", octree(CELLS, full=True)),
     }
     made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
     for kind, (name, data) in _scans().items():
