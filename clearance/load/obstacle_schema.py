@@ -12,7 +12,7 @@ from pydantic import field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
 from clearance.geometry import shapes
-from clearance.load.pose_schema import Pose, TimedFile
+from clearance.load.pose_schema import Pose, PoseFile
 from clearance.load.shape_schema import Triple, with_shapes
 from clearance.load.strict_model import Level, Name, StrictModel
 
@@ -77,7 +77,7 @@ class Obstacle(_Shaped):
 
     mesh: Mesh | None = None
     on: Name | None = None
-    moves: TimedFile | None = None
+    moves: PoseFile | None = None
     padding: Level = 0.0
 
     @property
