@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 from clearance.load.message_documents import Fields
@@ -21,6 +22,11 @@ def nanoseconds_in(given: Any) -> int | None:
             if seconds is not None and nanoseconds is not None and 0 <= nanoseconds < NANO:
                 return seconds * NANO + nanoseconds
     return None
+
+
+def split_time(time: float) -> tuple[int, int]:
+    """Whole seconds and nanoseconds of a time [s], to the nearest."""
+    return divmod(round(Fraction(time) * NANO), NANO)
 
 
 def _whole(given: Any) -> int | None:
