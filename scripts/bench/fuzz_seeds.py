@@ -68,6 +68,7 @@ def readers() -> dict[str, Reader]:
         "JointTrajectory": Reader("path.yaml", _MESSAGE, _trajectory_reader("path.yaml")),
         "JointTrajectory JSON": Reader("path.json", _MESSAGE_JSON, _trajectory_reader("path.json")),
         "pose table": Reader("door.csv", _POSES, _file_reader("door.csv", _read_poses)),
+        "poses stamped": Reader("door.yaml", _STAMPED, _file_reader("door.yaml", _read_poses)),
         "PlanningScene": Reader("cell.yaml", _PLANNING_SCENE, _scene_reader("cell.yaml")),
         "scene text": Reader("cell.scene", _SCENE_TEXT, _scene_reader("cell.scene")),
         "SDF": Reader("cell.sdf", _SDF, _scene_reader("cell.sdf")),
@@ -207,9 +208,10 @@ def _read_sketch(path: Path) -> object:
 
 
 def _read_poses(path: Path) -> object:
-    from clearance.load.pose_table_file import parse_pose_table
+    from clearance.load.pose_formats import read_poses
+    from clearance.load.pose_table_request import PoseRequest
 
-    return parse_pose_table(path.read_bytes(), path.name)
+    return read_poses(PoseRequest(lambda: path.open("rb"), path.stat().st_size), path.name)
 
 
 def _scene_reader(name: str) -> Callable[[bytes, Path], object]:
@@ -536,6 +538,17 @@ _MESSAGE_JSON = b"""{"trajectory": [{"joint_trajectory": {"joint_names": ["shoul
 _POSES = (
     b"time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
 )
+
+_STAMPED = b"""header:
+  stamp: {sec: 3, nanosec: 5}
+  frame_id: map
+pose:
+  position: {x: 1.0, y: -2.5, z: 0.5}
+  orientation: {x: 0.0, y: 0.0, z: 0.6, w: 0.8}
+---
+header: {stamp: {secs: 4, nsecs: 0}, frame_id: map}
+pose: {position: {x: 1.0, y: -2.5, z: 0.5}, orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}}
+"""
 
 _PLANNING_SCENE = b"""name: cell
 robot_state:
