@@ -1,10 +1,13 @@
 from .errors import BadInput, ClearanceError
 from .findings.finding import Finding
+from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
-from .geometry.shapes import box, capsule, cylinder, pipe, sphere
+from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
+from .load.cloud import read_points
 from .load.mesh import read_mesh
+from .load.robot_formats import load_robot
 from .load.urdf import load_urdf
 from .load.waiver_file import load_waivers
 from .planar.biarcs import biarcs
@@ -60,6 +63,7 @@ __all__ = [
     "Nearest",
     "Obstacle",
     "PlacedRobot",
+    "PointCloud",
     "Polyhedron",
     "Polytope",
     "PoseTable",
@@ -92,10 +96,12 @@ __all__ = [
     "cylinder",
     "deviation",
     "distance",
+    "ellipsoid",
     "fit",
     "hausdorff",
     "intersect",
     "load_case",
+    "load_robot",
     "load_urdf",
     "load_waivers",
     "minimum_distance",
@@ -104,6 +110,7 @@ __all__ = [
     "polygon_distance",
     "polygon_distances",
     "read_mesh",
+    "read_points",
     "shared_workspace",
     "sphere",
     "swept_profile",

@@ -63,7 +63,7 @@ def _dispatch(arguments: list[str]) -> int:
     import click
 
     from clearance.cli.commands import clearance
-    from clearance.errors import ClearanceError
+    from clearance.errors import ClearanceError, Incomplete
 
     try:
         _require_text(arguments)
@@ -80,6 +80,9 @@ def _dispatch(arguments: list[str]) -> int:
     except click.ClickException as error:
         _say(f"error: {' '.join(error.format_message().split())}{_hint(error)}")
         return ExitCode.BAD_INPUT
+    except Incomplete as error:
+        _say(f"incomplete: {error}")
+        return ExitCode.INCOMPLETE
     except ClearanceError as error:
         _say(f"error: {error}")
         return ExitCode.BAD_INPUT

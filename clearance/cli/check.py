@@ -13,13 +13,14 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
+from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
     from clearance.run import Question, Run
-    from clearance.world.case import Case, Limits
+    from clearance.world.case import Case
 
 
 @click.command()
@@ -84,6 +85,7 @@ if TYPE_CHECKING:
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
+@more_files_options
 @ci_options
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
@@ -104,6 +106,9 @@ def check(
     motion: str,
     as_json: bool,
     junit: Path | None,
+    png: Path | None,
+    glb: Path | None,
+    trajectory: Path | None,
     waivers: tuple[Path, ...],
     today: date | None,
     baseline: Path | None,
@@ -132,8 +137,10 @@ def check(
         )
     _require_extras(out, junit, cross_check, motion)
     _require_places(out, junit, summary)
+    more = MoreFiles(png, glb, trajectory)
+    more.require_writable()
     _compile_ahead(quiet)
-    outputs = _outputs(out, junit, summary)
+    outputs = _outputs(out, junit, summary, more)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
     refuse_inputs_of_cases([case], outputs)
     before = baseline_of(baseline, outputs)
@@ -149,16 +156,20 @@ def check(
         paper_tolerance=paper_tolerance,
         today=today,
     )
+    ahead = more.made_ahead(question.case, motion)
     with kept_rows(out, quiet) as rows:
         with shown_progress(quiet or as_json, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if out is not None or as_json:
+            if out is not None or as_json or png or glb:
                 run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
         _write(run, out, junit, comparison)
+        notes = more.write(run, ahead)
     _print(run, out, as_json, quiet)
-    if comparison is not None and not (as_json or quiet):
-        print_comparison(comparison)
+    if not (as_json or quiet):
+        more.print_written(notes)
+        if comparison is not None:
+            print_comparison(comparison)
     ForCi(summary, github).write(run, comparison, to_stderr=as_json)
     return ExitCode(run.verdict.exit_code)
 
@@ -185,10 +196,11 @@ def _case(
 ) -> Case:
     """The case with what the command line changes of it."""
     from clearance.load.case_file import load_case
+    from clearance.run.question import with_levels
 
     case = load_case(case_file)
     accepted = tuple(dict.fromkeys([*case.accept, *accept]))
-    return replace(case, limits=_limits(case.limits, fail, warn), accept=accepted)
+    return replace(case, limits=with_levels(case.limits, fail, warn), accept=accepted)
 
 
 def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, motion: str) -> None:
@@ -209,27 +221,27 @@ def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, mot
         require("simulate", "--motion simulated")
 
 
-def _outputs(out: Path | None, *beside: Path | None) -> list[Path]:
-    """The files that may be written; those beside the report are none of its own.
+def _outputs(
+    out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
+) -> list[Path]:
+    """The files that may be written; no two are the same.
 
     Raises:
-        Unwritable: it would overwrite one of them.
+        Unwritable: one would overwrite another.
     """
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 
-    found = [] if out is None else [out / name for name in OWN]
-    for path in beside:
-        if path is None:
-            continue
-        if os.path.realpath(path) in map(os.path.realpath, found):
-            raise Unwritable(
-                "is a file of the report, or of this run",
-                where=str(path),
-                valid="another name is needed",
-            )
-        found.append(path)
-    return found
+    report = [] if out is None else [out / name for name in OWN]
+    taken = {os.path.realpath(path): "is a file of the report" for path in report}
+    asked = {"--junit": junit, "--summary": summary, **more.by_option}
+    named = {option: path for option, path in asked.items() if path is not None}
+    for option, path in named.items():
+        if os.path.realpath(path) in taken:
+            problem = taken[os.path.realpath(path)]
+            raise Unwritable(problem, where=str(path), valid=f"{option} needs another name")
+        taken[os.path.realpath(path)] = f"is the file of {option}"
+    return [*report, *named.values()]
 
 
 def _compile_ahead(quiet: bool) -> None:
@@ -237,35 +249,12 @@ def _compile_ahead(quiet: bool) -> None:
     import warnings
 
     from clearance.cli import compile_ahead
-    from clearance.compile.kernel_cache import KernelCacheWarning
+    from clearance.kept_files import KernelCacheWarning
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)
     if compile_ahead.start() and not quiet and sys.stderr.isatty():
         click.echo("compiling for this machine, once: about half a minute", err=True)
-
-
-def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits:
-    """The limits with what the command line changes; raising `fail` alone takes `warn` along, a rule's too that
-    gives no `fail` of its own.
-    """
-    if fail is None and warn is None:
-        return given
-    if fail is None:
-        fail = given.fail
-    if warn is None:
-        warn = max(given.warn, fail)
-    if warn < fail:
-        raise click.UsageError(
-            f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
-        )
-    rules = tuple(
-        replace(rule, warn=max(rule.warn, fail))
-        if rule.fail is None and rule.warn is not None
-        else rule
-        for rule in given.rules
-    )
-    return replace(given, fail=fail, warn=warn, rules=rules)
 
 
 def _write(run: Run, out: Path | None, junit: Path | None, comparison: Comparison | None) -> None:

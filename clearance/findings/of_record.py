@@ -35,7 +35,7 @@ def why_incomplete(record: Record) -> str:
         return "where clocks are not tied only the nearest pair of each step is known"
     for rule in record.rules:
         if rule.pairs is not None and rule.pairs.is_cut(release_level(rule.limits)):
-            return f"something is near at more than {MOST_NEAR_STEPS:,} steps; only the nearest pair of each is told"
+            return f"more than {MOST_NEAR_STEPS:,} steps are near; only the nearest pair of each is told"
     return ""
 
 

@@ -90,6 +90,9 @@ def _add_mount(digest: hashlib._Hash, mount: Mount | None) -> None:
 
 def _add_shape(digest: hashlib._Hash, shape: Polyhedron) -> None:
     _add(digest, shape.vertices, shape.face_starts, shape.face_vertices)
+    digest.update(repr(shape.shortfall).encode())
+    if shape.ball_radius:
+        digest.update(repr(shape.ball_radius).encode())
 
 
 def _add(digest: hashlib._Hash, *arrays: np.ndarray) -> None:
