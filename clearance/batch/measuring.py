@@ -9,13 +9,13 @@ import json
 import time
 import traceback
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from clearance.batch.file_hashes import Seen, seen
 from clearance.batch.item import Item
-from clearance.batch.keys import key_of, program
+from clearance.batch.keys import day_of, key_of, program
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
 from clearance.errors import ClearanceError, Incomplete
@@ -168,12 +168,18 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
     given = item.trajectory
     if given is None:
         case = load_case(item.file)
-        return ReadItem(case, case.sources)
+        return _of_today(case, case.sources)
     cell = _cell(item.file, batch)
     reading = Reading.model_validate(json.loads(given.reading))
     asked = reading.model_copy(update={"file": given.path})
     case = with_trajectory_file(cell, asked, item.name, given.robot)
-    return ReadItem(case, cell.files.sources)
+    return _of_today(case, cell.files.sources)
+
+
+def _of_today(case: Case, kept: tuple[Source, ...]) -> ReadItem:
+    """The case with the day among what it was made from, if that decides its row."""
+    day = day_of(case)
+    return ReadItem(replace(case, sources=(*case.sources, *day)), (*kept, *day))
 
 
 @lru_cache(maxsize=CELLS)

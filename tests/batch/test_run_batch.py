@@ -5,6 +5,7 @@ import os
 import pyarrow.parquet as pq
 import pytest
 
+from clearance.batch import keys, plan
 from clearance.batch.engine import InThisProcess
 from clearance.batch.keys import key_of
 from clearance.batch.manifest import Changes, items_of
@@ -82,6 +83,23 @@ def test_a_case_file_is_known_by_all_that_it_was_made_from(tmp_path):
     assert run_here(manifest, tmp_path / "out")[0].measured == []
     write_path(tmp_path / "in" / "t001.csv", 0.01)
     assert run_here(manifest, tmp_path / "out")[0].measured == ["case1"]
+
+
+def test_a_case_with_waivers_is_measured_again_on_another_day(manifest, tmp_path, monkeypatch):
+    """On another day a waiver may have expired: no row of yesterday says what today's verdict is."""
+    cell = manifest.parent / "cell.yaml"
+    cell.write_text(CELL + "waivers: [waivers.yaml]\n")
+    waiver = "{between: [slider, wall], at_least: 0.03, reason: soft, by: N. N., until: 9999-12-31}"
+    (manifest.parent / "waivers.yaml").write_text(f"- {waiver}\n")
+    _, found = run_here(manifest, tmp_path / "out")
+    expected = ["stale waiver", "stale waiver", "clear", "stale waiver", "contact"]
+    assert list(statuses(found).values()) == expected
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert told.measured == []
+    for module in (keys, plan):
+        monkeypatch.setattr(module, "today", lambda: "2999-01-01")
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == 5
 
 
 def test_fresh_measures_all_again(manifest, tmp_path):
