@@ -176,9 +176,10 @@ def _placed(
     if given.trajectory is not None:
         motion = validated(TrajectoryFile, dict(given.trajectory), "trajectory")
     reader = RobotReader(Path(), meshes)
-    placed = reader.placed(schema.RobotEntry("robot", robot, motion, "trajectory"))
+    placed, on_motion = reader.moving(schema.RobotEntry("robot", robot, motion, "trajectory"))
     matrix = placed.self_clearance and placed.self_clearance.matrix
-    return placed, [*placed.robot.notes, *reader.notes, *(matrix.notes if matrix else ())]
+    told = (*placed.robot.notes, *reader.notes, *on_motion)
+    return placed, [*told, *(matrix.notes if matrix else ())]
 
 
 def _near_zero(joint: Joint) -> float:
