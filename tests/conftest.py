@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numba  # noqa: F401 - so that the compiler is at work from the start, as most tests want it
 import pytest
 
 from tests import examples

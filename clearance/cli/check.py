@@ -109,17 +109,18 @@ def check(
     (or near), 1 a limit is violated, 2 bad or suspect input, 3 the cross-check disagrees; the
     greatest that holds.
     """
-    from clearance.cli.kept import kept_rows
-    from clearance.cli.progress import shown_progress
-    from clearance.run import Question, Resources, answer
-    from clearance.tolerance import CERTIFY_GAP
-
     if samples_only and (certify or certify_mm is not None):
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
     _require_extras(out, cross_check, motion)
     _require_places(out, junit)
+    _require_file(case_file)
+    from clearance.cli.kept import kept_rows
+    from clearance.cli.progress import shown_progress
+    from clearance.run import Question, Resources, answer
+    from clearance.tolerance import CERTIFY_GAP
+
     _compile_ahead(quiet)
     question = Question(
         _case(case_file, _outputs(out, junit), fail_mm, warn_mm, accept),
@@ -140,6 +141,17 @@ def check(
         _write(run, out, junit)
     _print(run, out, as_json, quiet)
     return ExitCode(run.verdict.exit_code)
+
+
+def _require_file(case_file: Path) -> None:
+    """Refuses a path that leads to no file, before all that a run needs is imported.
+
+    Raises:
+        MissingFile: as when it is read.
+    """
+    from clearance.load.input_files import require_file
+
+    require_file(case_file, case_file.name)
 
 
 def _passes(question: Question) -> list[str]:
@@ -194,6 +206,8 @@ def _outputs(out: Path | None, junit: Path | None) -> list[Path]:
     Raises:
         Unwritable: it would overwrite one of them.
     """
+    if out is None and junit is None:
+        return []
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 

@@ -6,6 +6,7 @@ import click
 
 from clearance import __version__
 from clearance.cli.check import check
+from clearance.cli.compile_kernels import compile_kernels
 from clearance.cli.convert import convert
 from clearance.cli.profile import profile
 from clearance.cli.schema import schema
@@ -21,6 +22,7 @@ def clearance() -> None:
 
 
 clearance.add_command(check)
+clearance.add_command(compile_kernels)
 clearance.add_command(convert)
 clearance.add_command(profile)
 clearance.add_command(schema)

@@ -13,12 +13,16 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cached_property
 from io import BufferedReader
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
-from clearance.world.case import Source
+
+if TYPE_CHECKING:
+    from clearance.world.case import Source
 
 _PYBULLET_DATA = "pybullet_data:"
 
@@ -35,6 +39,10 @@ class InputFiles:
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
 
+    @cached_property
+    def _brought(self) -> Path | None:
+        return _pybullet_data_folder()
+
     @property
     def sources(self) -> tuple[Source, ...]:
         """Every file read so far, sorted by its shown path."""
@@ -50,8 +58,7 @@ class InputFiles:
         if path not in self._contents:
             data = read_bytes(path, self.shown(path))
             self._contents[path] = data
-            digest = hashlib.sha256(data).hexdigest()
-            self._sources[path] = Source(self.shown(path), digest, len(data), str(path))
+            self._note(path, hashlib.sha256(data).hexdigest(), len(data))
         return self._contents[path]
 
     def hold(self, path: Path, data: bytes) -> None:
@@ -69,13 +76,18 @@ class InputFiles:
         with _openable(self.shown(path)), _regular(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
             digest = hashlib.file_digest(file, "sha256").hexdigest()
-        self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
+        self._note(path, digest, n_bytes)
         return lambda: _regular(path), n_bytes
+
+    def _note(self, path: Path, digest: str, n_bytes: int) -> None:
+        from clearance.world.case import Source
+
+        self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         path = Path(os.path.abspath(path))
-        brought = _pybullet_data_folder()
+        brought = self._brought
         if brought is not None and path.is_relative_to(brought):
             return _PYBULLET_DATA + path.relative_to(brought).as_posix()
         return relative_path(path, self.folder)
@@ -89,6 +101,16 @@ def read_bytes(path: Path, shown: str) -> bytes:
     """
     with _openable(shown), _regular(path) as file:
         return file.read()
+
+
+def require_file(path: Path, shown: str) -> None:
+    """Refuses what `read_bytes` would refuse, without reading it.
+
+    Raises:
+        MissingFile: it is not there, is no file on disk, or cannot be read.
+    """
+    with _openable(shown), _regular(path):
+        pass
 
 
 class _NotRegular(OSError):
