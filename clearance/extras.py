@@ -17,7 +17,7 @@ LIBRARIES = {
     "contact": ("coacd", "manifold3d"),
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
-    "report": ("plotly", "meshcat", "matplotlib"),
+    "report": ("plotly", "meshcat", "matplotlib", "junitparser"),
     "ros": ("rosbags",),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
     "view": ("meshcat", "tornado", "umsgpack"),

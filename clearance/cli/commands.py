@@ -7,7 +7,9 @@ import click
 from clearance import __version__
 from clearance.cli.batch import batch
 from clearance.cli.check import check
+from clearance.cli.comparison import compare
 from clearance.cli.convert import convert
+from clearance.cli.pre_commit import pre_commit
 from clearance.cli.profile import profile
 from clearance.cli.schema import schema
 from clearance.cli.srdf import srdf
@@ -23,7 +25,9 @@ def clearance() -> None:
 
 clearance.add_command(batch)
 clearance.add_command(check)
+clearance.add_command(compare)
 clearance.add_command(convert)
+clearance.add_command(pre_commit)
 clearance.add_command(profile)
 clearance.add_command(schema)
 clearance.add_command(srdf)

@@ -6,15 +6,18 @@ from collections import Counter
 from collections.abc import Iterator
 
 from clearance.findings.finding import JOINT_LIMITS, PROFILE, Finding, FindingName
-from clearance.findings.of_rule import RuleFindings
+from clearance.findings.judgement import judgement_of
 from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.status import Status
 from clearance.world.notice import Severity
 
 
 def findings_of(record: Record) -> tuple[Finding, ...]:
-    """The findings of a record, the worst first; each rule that judges something has one at least."""
-    found = [finding for rule in record.rules for finding in RuleFindings(record, rule)]
+    """The findings of a record, the worst first; each rule that judges something has one at least.
+
+    What its waivers cover is `waived`, and is there all the same.
+    """
+    found = [*judgement_of(record).findings]
     found += [_of_profile(record, answer) for answer in record.profiles]
     found += _of_joints(record)
     return tuple(sorted(found, key=lambda finding: finding.standing))

@@ -121,7 +121,7 @@ class RuleFindings:
             named,
             status=status_of(moment.clearance, self.rule.limits, moment.touches),
             clearance=float(moment.clearance),
-            proven=self._proven(slice(max(0, first // 2 - 1 + first % 2), last // 2 + 1)),
+            proven=self._proven(slice(max(0, first // 2 - 1), last // 2 + 1)),
             time=float(moment.time),
             time_b=moment.time_b,
             step=int(moment.step),

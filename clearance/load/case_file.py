@@ -7,7 +7,7 @@ something, numbers are finite, shapes are solids, times increase.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
@@ -26,6 +26,7 @@ from clearance.load.robots import RobotReader, with_trajectory
 from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
 from clearance.load.scene_rows import with_scene_rows
+from clearance.load.waiver_file import waivers_of
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -35,6 +36,7 @@ from clearance.world.notice import Notice
 from clearance.world.pairs import nothing_to_measure, selected_pairs
 from clearance.world.timeline import Timeline, timeline_of
 from clearance.world.used_rules import require_rules_used
+from clearance.world.waiver import Waiver
 
 
 def load_case(path: str | PathLike[str]) -> Case:
@@ -125,6 +127,7 @@ def _read(path: Path, model: type[schema.Case]) -> CellFile:
             contact_response=given.contact_response,
             notices=(*_notices(given), *scene_at.content.notices),
             accept=tuple(given.accept),
+            waivers=tuple(_waivers(given, path, files)),
             sign_off=_sign_off(given.report),
             carries=carries_of(given.carry),
             clock=Clock(given.clock.slack),
@@ -209,6 +212,12 @@ def _robot_notes(entry: schema.RobotEntry, placed: PlacedRobot, several: bool) -
         notes = [f"robot {placed.robot.name!r}: {note}" for note in notes]
     matrix = placed.self_clearance and placed.self_clearance.matrix
     return [*notes, *(matrix.notes if matrix else ())]
+
+
+def _waivers(given: schema.Case, path: Path, files: InputFiles) -> Iterator[Waiver]:
+    for i, name in enumerate(given.waivers):
+        with at(f"waivers[{i}]"):
+            yield from waivers_of(files, path.parent / name)
 
 
 def _sign_off(given: schema.Report | None) -> SignOff | None:

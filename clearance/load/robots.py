@@ -118,7 +118,9 @@ def with_trajectory(
     trajectory, notes = trajectory_of(asked, entry.trajectory_field, folder, placed.robot, files)
     with at(f"{entry.field}.joints"):
         check_not_given_twice(placed.fixed_positions, trajectory.joint_names)
-    return replace(placed, trajectory=trajectory, timing=asked.timing), notes
+    path = str(resolved(asked.file, folder))
+    placed = replace(placed, trajectory=trajectory, timing=asked.timing, trajectory_path=path)
+    return placed, notes
 
 
 def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:

@@ -160,6 +160,7 @@ class Case(StrictModel):
     contact_response: bool = False
     profiles: list[Profile] = []
     accept: list[Kind] = []
+    waivers: list[Name] = []
     report: Report | None = None
 
     @model_validator(mode="before")

@@ -6,6 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from clearance.findings import findings_file
+from clearance.findings.comparison import Comparison
+from clearance.report.findings import findings
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
@@ -27,14 +30,20 @@ OWN = (
     "pairs.parquet",
     "contacts.csv",
     FILE_NAME,
+    findings_file.FILE_NAME,
     "report.html",
     LAST,
 )
 """All files that a report can have."""
 
 
-def write(record: Record, folder: str | Path, kept: MeasuredRows = IN_MEMORY) -> None:
-    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `replay.npz`, `report.html` and, last,
+def write(
+    record: Record,
+    folder: str | Path,
+    kept: MeasuredRows = IN_MEMORY,
+    comparison: Comparison | None = None,
+) -> None:
+    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `replay.npz`, `findings.json`, `report.html` and, last,
     `summary.json`.
 
     The same record gives the same bytes. Other files in `folder` are left alone; an older report
@@ -44,13 +53,16 @@ def write(record: Record, folder: str | Path, kept: MeasuredRows = IN_MEMORY) ->
 
     Args:
         kept: where the record's rows are; files on the way to `folder` lie beside them.
+        comparison: with a baseline, for the page.
 
     Raises:
         Unwritable: `folder` cannot be written.
     """
     summary, replay = summary_of(record), replay_of(record, rows=kept)
     pictures = {answer.name: answer.picture() for answer in record.profiles}
-    page = page_of(summary, replay, pictures, pair_curves(record, kept))
+    found = findings_file.finding_list_of(record)
+    told = findings(found.findings, comparison)
+    page = page_of(summary, replay, pictures, pair_curves(record, kept), told)
 
     def fill(place: Path) -> None:
         write_parquet(step_batches(record, kept), place / "steps.parquet")
@@ -59,6 +71,8 @@ def write(record: Record, folder: str | Path, kept: MeasuredRows = IN_MEMORY) ->
             write_parquet(pair_batches(record, kept), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
         replay.save(place / FILE_NAME)
+        findings_text = findings_file.findings_text(found)
+        (place / findings_file.FILE_NAME).write_text(findings_text, encoding="utf-8")
         (place / "report.html").write_text(page, encoding="utf-8")
         (place / LAST).write_text(json_text(summary), encoding="utf-8")
 

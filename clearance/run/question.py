@@ -6,6 +6,7 @@ Not for: answering (`answers`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime
 
 import numpy as np
 
@@ -41,6 +42,8 @@ class Question:
         contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
             deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
             The verdict does not depend on it.
+        today: the day that the case's waivers are held against; that of the clock, in UTC, if not given; None
+            where it has none.
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
 
     Raises:
@@ -57,6 +60,7 @@ class Question:
     cross_check: bool = False
     contact: str = "events"
     paper_tolerance: float | None = None
+    today: date | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.case, Case):
@@ -84,6 +88,8 @@ class Question:
             )
         _require_one_clock(self)
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
+        today = (self.today or datetime.now(UTC).date()) if self.case.waivers else None
+        object.__setattr__(self, "today", today)
         object.__setattr__(self, "case", replace(self.case, notices=notices_of(self.case)))
 
     @property

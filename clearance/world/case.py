@@ -33,6 +33,7 @@ from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
+from clearance.world.waiver import Waiver
 
 if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch
@@ -134,6 +135,7 @@ class PlacedRobot:
         exclude_links: links that are not measured.
         self_clearance: whether its links are measured against one another, and which pairs are excused.
         padding: [m] by how much the clearance of links is lessened, by link.
+        trajectory_path: the file that the trajectory is from; empty where it is from none.
     """
 
     robot: Robot
@@ -147,6 +149,7 @@ class PlacedRobot:
     mount: Mount | None = None
     timing: Timing = AS_GIVEN
     padding: dict[str, float] = field(default_factory=dict)
+    trajectory_path: str = ""
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
@@ -251,6 +254,7 @@ class Case:
         notes: what loading had to mend or assume, one line each.
         notices: suspect input and warnings that only loading can find; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
+        waivers: which bodies may come nearer than their rule says; of several for a pair the last counts.
         profiles: outlines that the sweep must keep to.
         sign_off: for the report; None where it has no such fields.
     """
@@ -266,6 +270,7 @@ class Case:
     profiles: tuple[ReservedSpace, ...] = ()
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
+    waivers: tuple[Waiver, ...] = ()
     sign_off: SignOff | None = None
     carries: tuple[Carry, ...] = ()
     clock: Clock = COMMON
@@ -323,7 +328,8 @@ class Case:
         i_robot = index_of_robot(self.robots, robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
-        moved = replace(placed, trajectory=Trajectory(times, names, positions, velocities))
+        trajectory = Trajectory(times, names, positions, velocities)
+        moved = replace(placed, trajectory=trajectory, trajectory_path="")
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
 
 
