@@ -132,7 +132,7 @@ def require_file(path: Path, shown: str) -> None:
     Raises:
         MissingFile: it is not there, is no file on disk, or cannot be read.
     """
-    with _openable(shown), _regular(path):
+    with _openable(shown), regular_file(path):
         pass
 
 
