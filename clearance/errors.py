@@ -132,6 +132,10 @@ class Unavailable(ClearanceError):
     """An optional library that is needed for this call and is not installed."""
 
 
+class Incomplete(ClearanceError):
+    """Work that could not be finished; what was done stays, and the same command goes on with it."""
+
+
 @contextmanager
 def at(place: str) -> Iterator[None]:
     """Puts `place` before the `where` of any ClearanceError raised inside."""

@@ -11,7 +11,7 @@ from pathlib import Path
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.load import schema
 from clearance.load.allow import checked_links
-from clearance.load.input_files import resolved
+from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joints_schema import states_of
 from clearance.load.limit_files import limited, note_on_accelerations
 from clearance.load.mesh_store import MeshStore
@@ -54,23 +54,12 @@ class RobotReader:
         limits = limited(entry, self._robot(request, given.name, field), self._folder, self._files)
         robot = limits.robot
         self.notes += limits.notes
-        trajectory = None
-        if entry.trajectory is not None:
-            where = entry.trajectory_field
-            read = trajectory_of(entry.trajectory, where, self._folder, robot, self._files)
-            trajectory = read.trajectory
-            self.notes += read.notes
-        moved = trajectory.joint_names if trajectory else ()
-        resting = resting_positions(entry, robot, moved, self._folder, self._files)
-        self.notes += [*resting.notes, *note_on_accelerations(limits.motion_limits, trajectory)]
         with at(f"{field}.exclude_links"):
             exclude_links = checked_links(given.exclude_links, robot.link_names)
         with at(f"{field}.padding"):
             padding = _padding(given.padding, robot.link_names)
         placed = PlacedRobot(
             robot=robot,
-            trajectory=trajectory,
-            fixed_positions=resting.positions,
             exclude_links=exclude_links,
             urdf_path=str(request.path),
             package_dirs=tuple(map(str, request.package_dirs)),
@@ -79,8 +68,6 @@ class RobotReader:
             motion_limits=limits.motion_limits,
             path_tolerances=limits.path_tolerances,
         )
-        if entry.trajectory is not None:
-            placed = replace(placed, timing=entry.trajectory.timing)
         if given.base.on is not None:
             return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
         return replace(placed, world_from_base=given.base.matrix())
@@ -134,6 +121,30 @@ class RobotReader:
         with at(f"{field}.srdf"):
             matrix = read_srdf(resolved(given.srdf, self._folder), robot, self._files)
         return SelfClearance(matrix, given.trust_never)
+
+
+def in_motion(
+    entry: schema.RobotEntry, placed: PlacedRobot, folder: Path, files: InputFiles
+) -> tuple[PlacedRobot, tuple[str, ...]]:
+    """The robot of an entry with its trajectory, the others of its joints at rest; and a line each on how.
+
+    Args:
+        placed: as it stands. folder: against which paths are looked up.
+
+    Raises:
+        BadInput: with the field and the file.
+    """
+    asked, trajectory = entry.trajectory, None
+    notes: tuple[str, ...] = ()
+    if asked is not None:
+        field = entry.trajectory_field
+        trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
+        path = str(resolved(asked.file, folder))
+        placed = replace(placed, trajectory=trajectory, timing=asked.timing, trajectory_path=path)
+    moved = trajectory.joint_names if trajectory else ()
+    resting = resting_positions(entry, placed.robot, moved, folder, files)
+    on_limits = note_on_accelerations(placed.motion_limits, trajectory)
+    return replace(placed, fixed_positions=resting.positions), (*notes, *resting.notes, *on_limits)
 
 
 def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:

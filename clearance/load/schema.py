@@ -9,7 +9,7 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -150,6 +150,8 @@ class Case(StrictModel):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
     FILLED = frozenset({"trajectory"})
+    MOVES: ClassVar[bool] = True
+    """Something must move."""
 
     name: Name | None = None
     robot: Robot | None = None
@@ -163,6 +165,7 @@ class Case(StrictModel):
     contact_response: bool = False
     profiles: list[Profile] = []
     accept: list[Kind] = []
+    waivers: list[Name] = []
     report: Report | None = None
 
     @model_validator(mode="before")
@@ -195,7 +198,7 @@ class Case(StrictModel):
                     valid="one of them",
                 )
         moving = any(obstacle.moves is not None for obstacle in self.scene.obstacles)
-        if not moving and all(entry.trajectory is None for entry in entries):
+        if self.MOVES and not moving and all(entry.trajectory is None for entry in entries):
             raise MissingKey("'trajectory' is missing", valid="nothing moves without one")
         return self
 
@@ -210,6 +213,12 @@ class Case(StrictModel):
         if self.trajectory is not None:
             return RobotEntry(field, robot, self.trajectory, "trajectory")
         return RobotEntry(field, robot, robot.trajectory, f"{field}.trajectory")
+
+
+class Cell(Case):
+    """A case file that may leave out what moves: trajectories are given to it one after another."""
+
+    MOVES = False
 
 
 _NEEDED = {

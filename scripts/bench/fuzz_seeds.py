@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.load.making_clouds import pcd, ply, table
+
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 TRIANGLES = np.array([[q[0], q[i], q[i + 1]] for q in QUADS for i in (1, 2)])
@@ -40,6 +42,8 @@ def readers() -> dict[str, Reader]:
         "GLB": ("m.glb", _glb()),
     }
     made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
+    for kind, (name, data) in _scans().items():
+        made[kind] = Reader(name, data, _points_reader(name))
     return made | {
         "DXF": Reader("d.dxf", _dxf(), _file_reader("d.dxf", _read_dxf)),
         "curves": Reader("c.yaml", _CURVES, _file_reader("c.yaml", _read_curves)),
@@ -55,6 +59,11 @@ def readers() -> dict[str, Reader]:
         "trajectory semicolons": Reader("path.csv", _COMMAS, _trajectory_reader("path.csv")),
         "JointTrajectory": Reader("path.yaml", _MESSAGE, _trajectory_reader("path.yaml")),
         "JointTrajectory JSON": Reader("path.json", _MESSAGE_JSON, _trajectory_reader("path.json")),
+        "pose table": Reader("door.csv", _POSES, _file_reader("door.csv", _read_poses)),
+        "PlanningScene": Reader("cell.yaml", _PLANNING_SCENE, _scene_reader("cell.yaml")),
+        "scene text": Reader("cell.scene", _SCENE_TEXT, _scene_reader("cell.scene")),
+        "SDF": Reader("cell.sdf", _SDF, _scene_reader("cell.sdf")),
+        **_bag_readers(),
     }
 
 
@@ -63,6 +72,27 @@ def _mesh_reader(name: str) -> Callable[[bytes, Path], object]:
         from clearance.load.mesh import mesh_from_bytes
 
         return mesh_from_bytes(data, name)
+
+    return read
+
+
+def _scans() -> dict[str, tuple[str, bytes]]:
+    points = np.concatenate([CUBE, [[np.nan] * 3]])
+    return {
+        "PCD ascii": ("s.pcd", pcd(points, "ascii")),
+        "PCD binary": ("s.pcd", pcd(points, "binary")),
+        "PCD compressed": ("s.pcd", pcd(points, "binary_compressed")),
+        "points PLY": ("s.ply", ply(points)),
+        "points CSV": ("s.csv", table(points, ",", "x [mm],y [mm],z [mm]")),
+        "points XYZ": ("s.xyz", table(points, " ", "")),
+    }
+
+
+def _points_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.cloud import cloud_from_bytes
+
+        return cloud_from_bytes(data, name, 0.01)
 
     return read
 
@@ -141,6 +171,60 @@ def _read_sketch(path: Path) -> object:
     from clearance.sketch import Sketch
 
     return Sketch.load(path)
+
+
+def _read_poses(path: Path) -> object:
+    from clearance.load.pose_table_file import parse_pose_table
+
+    return parse_pose_table(path.read_bytes(), path.name)
+
+
+def _scene_reader(name: str) -> Callable[[bytes, Path], object]:
+    """Reads a scene as a case would: its content, then the solids that it names."""
+
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.input_files import InputFiles
+        from clearance.load.mesh_store import MeshStore
+        from clearance.load.obstacle_schema import Scene
+        from clearance.load.scene_file import make_obstacles
+        from clearance.load.scene_formats import read_scene
+        from clearance.load.scene_request import SceneRequest
+        from clearance.load.schema_errors import validated
+
+        (folder / "m.stl").write_bytes(_binary_stl())
+        (folder / name).write_bytes(data)
+        files = InputFiles(folder)
+        content = read_scene(SceneRequest(folder / name, files))
+        given = validated(Scene, content.scene, name).obstacles
+        return make_obstacles(given, folder, MeshStore(files))
+
+    return read
+
+
+def _bag_readers() -> dict[str, Reader]:
+    """Bags in each container that rosbags writes; of a folder its one file with the messages."""
+    files = {"bag": "run.bag", "mcap": "run.mcap", "rosbag2 sqlite3": "run.db3"}
+    return {
+        f"bag {kind}": Reader(name, _bag(kind), _file_reader(name, _read_bag))
+        for kind, name in files.items()
+    }
+
+
+def _read_bag(path: Path) -> object:
+    from clearance.load.timed_files import load_trajectory
+    from clearance.load.trajectory_request import Choice
+
+    return load_trajectory(path, Choice())
+
+
+def _bag(kind: str) -> bytes:
+    from tests.load.making_bags import planned, write_bag
+
+    with tempfile.TemporaryDirectory() as folder:
+        topics = {"/plan": [planned([0.1, 0.0], [0.3, 0.05])]}
+        path = write_bag(Path(folder) / "made", kind, topics)
+        file = next(path.glob("*.db3")) if path.is_dir() else path
+        return file.read_bytes()
 
 
 def _trajectory_reader(name: str) -> Callable[[bytes, Path], object]:
@@ -395,6 +479,86 @@ points:
 _MESSAGE_JSON = b"""{"trajectory": [{"joint_trajectory": {"joint_names": ["shoulder"], "points": [
 {"positions": [0.0], "velocities": [0.5], "time_from_start": {"sec": 0, "nanosec": 0}},
 {"positions": [0.25], "velocities": [0.1], "time_from_start": 1.5}]}}]}
+"""
+
+_POSES = b"time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
+
+_PLANNING_SCENE = b"""name: cell
+robot_state:
+  joint_state: {name: [shoulder], position: [0.5]}
+  attached_collision_objects:
+  - link_name: tip
+    object: {header: {frame_id: tip}, id: tool, operation: 0, primitives: [{type: 2, dimensions: [0.05]}]}
+    touch_links: [upper]
+allowed_collision_matrix:
+  entry_names: [base, post]
+  entry_values: [{enabled: [false, true]}, {enabled: [true, false]}]
+fixed_frame_transforms:
+- child_frame_id: base_link
+  header: {frame_id: map}
+  transform: {translation: [0, 0, 3], rotation: [0, 0, 0, 1]}
+link_padding: [{link_name: upper, padding: 0.01}]
+link_scale: [{link_name: base, scale: 1.0}]
+world:
+  collision_objects:
+  - header: {frame_id: map}
+    id: post
+    operation: 0
+    primitives: [{type: 1, dimensions: [0.1, 0.1, 1.0]}, {type: cylinder, dimensions: [0.5, 0.1]}]
+    primitive_poses:
+    - {position: {x: 0.0, y: 2.0, z: 0.0}, orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}}
+    - {position: [1, 2, 3], orientation: [0, 0, 1, 0]}
+  - id: tetrahedron
+    header: {frame_id: map}
+    meshes:
+    - vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+      triangles: [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+    mesh_poses: [{position: [4, 0, 0], orientation: [0, 0, 0, 1]}]
+is_diff: false
+"""
+
+_SCENE_TEXT = b"""cell
+* post
+1 0 0
+0 0 0 1
+2
+sphere
+0.25
+0 2 0
+0 0 0 1
+0 0 0 0
+mesh
+4 4
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+0 2 1
+0 1 3
+1 2 3
+0 3 2
+0 2 0
+0 0 0 1
+0 0 0 0
+1
+grip
+0 0 0
+0 0 0 1
+.
+"""
+
+_SDF = b"""<?xml version="1.0"?>
+<sdf version="1.7"><world name="w"><frame name="f" attached_to="m"><pose>1 0 0 0 0 0.5</pose></frame>
+<model name="m"><static>true</static><pose>0 0 1 0 0 0</pose>
+<link name="a"><pose>0.1 0 0 0 0 0</pose>
+<collision name="c"><pose relative_to="b">0 0 0.5 0 0 0</pose><geometry><box><size>1 2 3</size></box></geometry>
+</collision></link>
+<link name="b"><collision name="d"><geometry><mesh><uri>m.stl</uri><scale>0.5 0.5 0.5</scale></mesh></geometry>
+</collision></link></model>
+<model name="n"><pose relative_to="f">3 0 0 0 0 0</pose><link name="a">
+<collision name="c"><geometry><cylinder><radius>0.2</radius><length>1</length></cylinder></geometry></collision>
+<collision name="e"><geometry><plane><normal>0 0 1</normal></plane></geometry></collision></link></model>
+</world></sdf>
 """
 
 _PATH = b"time,shoulder\n0,0\n0.5,0.25\n1,0.5\n1.5,-0.25\n"
