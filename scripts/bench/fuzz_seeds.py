@@ -481,7 +481,9 @@ _MESSAGE_JSON = b"""{"trajectory": [{"joint_trajectory": {"joint_names": ["shoul
 {"positions": [0.25], "velocities": [0.1], "time_from_start": 1.5}]}}]}
 """
 
-_POSES = b"time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
+_POSES = (
+    b"time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
+)
 
 _PLANNING_SCENE = b"""name: cell
 robot_state:
