@@ -124,15 +124,17 @@ def _robot_reader(name: str) -> Callable[[bytes, Path], object]:
         from clearance.load import schema
         from clearance.load.input_files import InputFiles
         from clearance.load.mesh_store import MeshStore
-        from clearance.load.robots import RobotReader
+        from clearance.load.robots import RobotReader, in_motion
 
         valid = {"arm.urdf": _BOXES, "m.stl": _binary_stl(), "arm.srdf": _SRDF}
         valid |= {"limits.yaml": _LIMITS, "control.yaml": _CONTROL}
         for other, content in (valid | {name: data}).items():
             (folder / other).write_bytes(content)
         robot = schema.Robot.model_validate(_ROBOT)
-        reader = RobotReader(folder, MeshStore(InputFiles(folder)))
-        return reader.placed(schema.RobotEntry("robot", robot, None, "trajectory"))
+        files = InputFiles(folder)
+        reader = RobotReader(folder, MeshStore(files))
+        entry = schema.RobotEntry("robot", robot, None, "trajectory")
+        return in_motion(entry, reader.placed(entry), folder, files)
 
     return read
 
