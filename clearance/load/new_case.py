@@ -83,7 +83,7 @@ def new_case(given: Given, folder: Path) -> NewCase:
         contents,
         case,
         files.sources,
-        (robot.taken, f"trajectory {motion.source}", *scene.taken),
+        (*robot.taken, f"trajectory {motion.source}", *scene.taken),
         (*robot.assumed(trajectory, scene.name is None), *_assumed_of_motion(given)),
         tuple(dict.fromkeys(note for note in robot.notes if note not in motion.notes)),
         (*motion.notes, *scene.notes),
