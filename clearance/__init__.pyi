@@ -1,8 +1,10 @@
 from .errors import BadInput, ClearanceError
+from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
-from .geometry.shapes import box, capsule, cylinder, pipe, sphere
+from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
+from .load.cloud import read_points
 from .load.mesh import read_mesh
 from .load.urdf import load_urdf
 from .planar.biarcs import biarcs
@@ -56,6 +58,7 @@ __all__ = [
     "Nearest",
     "Obstacle",
     "PlacedRobot",
+    "PointCloud",
     "Polyhedron",
     "Polytope",
     "PoseTable",
@@ -87,6 +90,7 @@ __all__ = [
     "cylinder",
     "deviation",
     "distance",
+    "ellipsoid",
     "fit",
     "hausdorff",
     "intersect",
@@ -98,6 +102,7 @@ __all__ = [
     "polygon_distance",
     "polygon_distances",
     "read_mesh",
+    "read_points",
     "shared_workspace",
     "sphere",
     "swept_profile",

@@ -24,6 +24,7 @@ from clearance.errors import (
     MissingKey,
     NotFinite,
 )
+from clearance.load.input_files import SHORT
 from clearance.world.names import checked_name
 
 if TYPE_CHECKING:
@@ -168,6 +169,11 @@ def _batches(table: TextTable, names: list[str]) -> Iterator[pa.RecordBatch]:
     parsing = arrow_csv.ParseOptions(delimiter=table.delimiter)
     try:
         with table.opened() as file, _native(file) as stream:
+            if stream.size() <= SHORT:  # threads cost more than they help
+                reading.use_threads = False
+                whole = arrow_csv.read_csv(stream, reading, parsing, types)
+                yield from whole.combine_chunks().to_batches()
+                return
             yield from arrow_csv.open_csv(stream, reading, parsing, types)
     except pa.ArrowException as error:
         raise _fault_in_rows(table, names) or BadSyntax(

@@ -1,5 +1,5 @@
-"""Where a mesh named in a URDF or SDF file lies, and a model: `package://…`, `model://…`, `file://…`, absolute, or
-relative.
+"""Where a mesh named in a URDF or SDF file lies, a model, and a package: `package://…`, `model://…`, `file://…`,
+absolute, or relative.
 
 Source: resolve-robotics-uri-py 0.6 (BSD), for what the variables of ROS and Gazebo mean. Not for: reading.
 """
@@ -90,6 +90,24 @@ def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPa
     if not _is_there(path):
         raise MissingFile(f"there is no model {given!r}")
     return MeshPath(path)
+
+
+def package_folder(package: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
+    """The folder of a package.
+
+    Args:
+        folder: of the file that names it.
+
+    Raises:
+        MissingFile: no such folder, with the places tried.
+    """
+    for place, variable in _package_folders(package or " ", folder, package_dirs):
+        if _is_there(place) and place.is_dir():
+            return MeshPath(place, variable=variable)
+    raise MissingFile(
+        f"there is no package {package!r}; looked for it {_places(folder, package_dirs)}",
+        valid="give its folder in robot.package_dirs",
+    )
 
 
 def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:

@@ -16,7 +16,11 @@ from clearance.load.moveit_matrix import allowed_pairs
 from clearance.load.moveit_objects import object_rows
 from clearance.load.moveit_shapes import Row, SceneMeshes
 from clearance.load.moveit_values import Message, Poses, items, message, messages, number, text
+from clearance.load.pose_row import pose_row
 from clearance.load.scene_request import HeldPart, SceneContent, SceneRequest
+
+OCTOMAP = "<octomap>"
+"""The name of a map in MoveIt, by which its matrix may allow it."""
 
 _KEYS = {
     "world",
@@ -36,14 +40,15 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
     """The obstacles of a planning scene, what may touch them, and the padding of links.
 
     Raises:
-        BadInput: what is not read (octomap, scale of links, cone, plane), or is no message; with its field.
+        BadInput: what is not read (scale of links, cone, plane), or is no message; with its field.
     """
     with at(asked.shown):
         meshes, poses = SceneMeshes(asked), Poses()
         frames = _Frames(raw, poses)
-        _refuse_octomap(message(raw, "world"))
+        world = message(raw, "world")
         with at("world"):
-            obstacles = list(_world(message(raw, "world"), frames, meshes, poses))
+            obstacles = list(_world(world, frames, meshes, poses))
+            obstacles += _octomap(message(world, "octomap"), frames, meshes, poses)
         state = message(raw, "robot_state")
         with at("robot_state"):
             attached, held = _attached(state, meshes, poses)
@@ -51,6 +56,8 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         padding = _padding(raw)
     rows = [*obstacles, *attached]
     notes = [*frames.notes(), *_lost(raw, state), *_on_rounded(poses)]
+    if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
+        notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
     return SceneContent(
         {"obstacles": rows},
         (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(meshes.by_variable)),
@@ -164,11 +171,25 @@ def _padding(raw: Message) -> dict[str, float]:
     return {link: padding for link, padding in found.items() if padding}
 
 
-def _refuse_octomap(world: Message) -> None:
-    if items(message(message(world, "octomap"), "octomap"), "data"):
-        raise BadInput(
-            "an octomap is not read", where="world.octomap", valid="no data, and boxes or meshes"
+def _octomap_data(world: Message) -> list[object]:
+    return items(message(message(world, "octomap"), "octomap"), "data")
+
+
+def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
+    """The obstacle of a map with occupied cells, called `OCTOMAP` as in MoveIt."""
+    tree = message(given, "octomap")
+    if not items(tree, "data"):
+        return
+    with at("octomap"):
+        origin = (
+            poses.read(given["origin"], "position", "orientation")
+            if given.get("origin")
+            else np.eye(4)
         )
+        placed = frames.of(given) @ origin
+        mapped = meshes.octomap(tree)
+        if mapped is not None:
+            yield {"name": OCTOMAP, **mapped, "pose": pose_row(placed)}
 
 
 def _lost(raw: Message, state: Message) -> Iterator[str]:

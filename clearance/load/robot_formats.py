@@ -7,13 +7,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from clearance.load.foreign_files import is_mjcf
 from clearance.load.mesh_store import MeshStore
+from clearance.load.mjcf_robot import read_mjcf
 from clearance.load.robot_request import RobotRequest
 from clearance.load.urdf import read_urdf
 from clearance.world.robot import Robot
 
+
+def read_robot_xml(request: RobotRequest, meshes: MeshStore) -> Robot:
+    """The robot in a file that is called XML: MJCF by its root element, else URDF."""
+    data = meshes.files.read(request.path)
+    return (read_mjcf if is_mjcf(data) else read_urdf)(request, meshes)
+
+
 READERS: dict[str, Callable[[RobotRequest, MeshStore], Robot]] = {
     ".urdf": read_urdf,
+    ".mjcf": read_mjcf,
+    ".xml": read_robot_xml,
 }
 """By suffix in small letters; a file of another suffix is read as URDF."""
 
@@ -24,4 +35,5 @@ def read_robot(request: RobotRequest, meshes: MeshStore) -> Robot:
     Raises:
         BadInput: as the reader says, with the place in the file.
     """
-    return READERS.get(request.path.suffix.lower(), read_urdf)(request, meshes)
+    suffix = ".urdf" if request.xacro else request.path.suffix.lower()
+    return READERS.get(suffix, read_urdf)(request, meshes)

@@ -63,8 +63,21 @@ def _body(
     if item.mesh is not None:
         with at("mesh"):
             path = resolved(item.mesh.file, folder)
-            mesh = meshes.load(path, item.mesh.factors, item.mesh.collada_up_axis)
+            asked = item.mesh
+            mesh = meshes.load(
+                path, asked.factors, asked.collada_up_axis, asked.tolerance_or_default
+            )
         shown = meshes.files.shown(path)
         return Body(item.name, mesh.shape, shown), list(mesh.notes)
+    if item.points is not None:
+        with at("points"):
+            path = resolved(item.points.file, folder)
+            cloud = meshes.load_points(
+                path,
+                item.points.radius,
+                item.points.factors,
+                in_millimetres=item.points.in_millimetres,
+            )
+        return Body(item.name, cloud.shape, meshes.files.shown(path)), list(cloud.notes)
     with at(item.kind):
         return Body(item.name, SHAPES[item.kind].maker(**item.dimensions), item.kind), []

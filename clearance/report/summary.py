@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from clearance.geometry.point_cloud import PointCloud
 from clearance.report.actors import actors_of, carried_of, clock_of, paddings_of
 from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, not_listed, status_counts
@@ -98,6 +99,9 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "not_checked": list(verdict.not_checked),
         "nearer": verdict.nearest,
         "clocks": verdict.clocks,
+        "waived": list(verdict.waived),
+        "n_waivers": verdict.n_waivers,
+        "stale": list(verdict.stale),
     }
 
 
@@ -146,11 +150,14 @@ def _robot(record: Record, motion: Motion) -> dict[str, Any]:
 
 def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
     shape = body.shape
-    return {
+    cloud = {}
+    if isinstance(shape, PointCloud):
+        cloud = {"points": shape.n_points, "ball_radius": shape.ball_radius}
+    return cloud | {
         "name": label,
         "origin": public_origin(record.case, body.origin),
         "triangles": shape.n_triangles,
-        "polygons": shape.n_faces,
+        "polygons": 0 if cloud else shape.n_faces,
         "bounding_box": shape.bounds.tolist(),
         "excess": shape.excess,
         "closed": shape.closed,

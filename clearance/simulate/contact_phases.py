@@ -15,7 +15,7 @@ from clearance.progress import Progress
 from clearance.simulate.contact import find_contacts
 from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.contact_sequence import ContactSequence, StepContact
-from clearance.simulate.judged import SectionAnswer
+from clearance.simulate.section_answer import SectionAnswer
 from clearance.world.case import Case
 
 
@@ -26,7 +26,9 @@ def contacts_of(
     parts = [
         _of_section(answer, work_out)
         for answer in answers
-        if answer.section.tied and (answer.found.clearance <= 0.0).any()
+        if answer.section.tied
+        and (answer.found.clearance <= 0.0).any()
+        and not all(pair.has_cloud(case) for pair in answer.section.pairs)
     ]
     if not parts:  # only pairs whose clocks are not tied touch: no one time has them
         return ()

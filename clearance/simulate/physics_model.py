@@ -76,7 +76,14 @@ def write_obj(shape: Polyhedron, path: Path) -> Path:
 
 def _parsed(urdf_path: str) -> ET.Element:
     try:
-        return ET.parse(urdf_path).getroot()
+        root = ET.parse(urdf_path).getroot()
+        if urdf_path.endswith(".xacro") or any("xacro" in str(part.tag) for part in root.iter()):
+            raise BadSyntax(
+                "is a xacro file, which is not simulated",
+                where=urdf_path,
+                valid="turn it into URDF with the xacro command first",
+            )
+        return root
     except OSError as error:
         raise MissingFile(f"cannot be read ({error.strerror})", where=urdf_path) from None
     except ET.ParseError as error:

@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.load.making_clouds import pcd, ply, table
+
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 TRIANGLES = np.array([[q[0], q[i], q[i + 1]] for q in QUADS for i in (1, 2)])
@@ -40,6 +42,8 @@ def readers() -> dict[str, Reader]:
         "GLB": ("m.glb", _glb()),
     }
     made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
+    for kind, (name, data) in _scans().items():
+        made[kind] = Reader(name, data, _points_reader(name))
     return made | {
         "DXF": Reader("d.dxf", _dxf(), _file_reader("d.dxf", _read_dxf)),
         "curves": Reader("c.yaml", _CURVES, _file_reader("c.yaml", _read_curves)),
@@ -47,6 +51,10 @@ def readers() -> dict[str, Reader]:
         "sketch": Reader("s.yaml", SKETCH.read_bytes(), _file_reader("s.yaml", _read_sketch)),
         "URDF": Reader("arm.urdf", _URDF, _case_reader("arm.urdf")),
         "case": Reader("case.yaml", _CASE, _case_reader("case.yaml")),
+        "SRDF": Reader("arm.srdf", _SRDF, _robot_reader("arm.srdf")),
+        "joint limits": Reader("limits.yaml", _LIMITS, _robot_reader("limits.yaml")),
+        "controllers": Reader("control.yaml", _CONTROL, _robot_reader("control.yaml")),
+        "xacro": Reader("arm.xacro", _XACRO, _file_reader("arm.xacro", _read_xacro)),
         "trajectory": Reader("path.csv", _PATH, _trajectory_reader("path.csv")),
         "trajectory semicolons": Reader("path.csv", _COMMAS, _trajectory_reader("path.csv")),
         "JointTrajectory": Reader("path.yaml", _MESSAGE, _trajectory_reader("path.yaml")),
@@ -65,6 +73,27 @@ def _mesh_reader(name: str) -> Callable[[bytes, Path], object]:
         from clearance.load.mesh import mesh_from_bytes
 
         return mesh_from_bytes(data, name)
+
+    return read
+
+
+def _scans() -> dict[str, tuple[str, bytes]]:
+    points = np.concatenate([CUBE, [[np.nan] * 3]])
+    return {
+        "PCD ascii": ("s.pcd", pcd(points, "ascii")),
+        "PCD binary": ("s.pcd", pcd(points, "binary")),
+        "PCD compressed": ("s.pcd", pcd(points, "binary_compressed")),
+        "points PLY": ("s.ply", ply(points)),
+        "points CSV": ("s.csv", table(points, ",", "x [mm],y [mm],z [mm]")),
+        "points XYZ": ("s.xyz", table(points, " ", "")),
+    }
+
+
+def _points_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.cloud import cloud_from_bytes
+
+        return cloud_from_bytes(data, name, 0.01)
 
     return read
 
@@ -89,10 +118,42 @@ def _case_reader(name: str) -> Callable[[bytes, Path], object]:
     return read
 
 
+def _robot_reader(name: str) -> Callable[[bytes, Path], object]:
+    """Reads a robot with all the files that may stand beside it, of which one is damaged."""
+
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load import schema
+        from clearance.load.input_files import InputFiles
+        from clearance.load.mesh_store import MeshStore
+        from clearance.load.robots import RobotReader
+
+        valid = {"arm.urdf": _BOXES, "m.stl": _binary_stl(), "arm.srdf": _SRDF}
+        valid |= {"limits.yaml": _LIMITS, "control.yaml": _CONTROL}
+        for other, content in (valid | {name: data}).items():
+            (folder / other).write_bytes(content)
+        robot = schema.Robot.model_validate(_ROBOT)
+        reader = RobotReader(folder, MeshStore(InputFiles(folder)))
+        return reader.placed(schema.RobotEntry("robot", robot, None, "trajectory"))
+
+    return read
+
+
 def _read_dxf(path: Path) -> object:
     from clearance.planar.dxf import read_dxf
 
     return read_dxf(str(path))
+
+
+def _read_xacro(path: Path) -> object:
+    """What is evaluated in the process that is started for it, and then read as URDF."""
+    from clearance.errors import BadSyntax
+    from clearance.load.urdf_elements import parse_document
+    from clearance.load.xacro_process import Watch, evaluated
+
+    made = evaluated(path, {}, Watch())
+    if "problem" in made:
+        raise BadSyntax(made["problem"], where=path.name)
+    return parse_document(made["urdf"].encode())
 
 
 def _read_curves(path: Path) -> object:
@@ -329,6 +390,10 @@ _URDF = b"""<?xml version="1.0"?>
 </robot>
 """
 
+_BOXES = _URDF
+for _round in (b'<sphere radius="0.05"/>', b'<cylinder radius="0.01" length="0.1"/>'):
+    _BOXES = _BOXES.replace(_round, b'<box size="0.1 0.1 0.1"/>')
+
 _CASE = b"""name: small
 robot: {urdf: arm.urdf, base: {xyz: [0, 0, 0.5], rpy: [0, 0, 1.57]}, exclude_links: [tip]}
 scene:
@@ -340,6 +405,61 @@ trajectory: {file: path.csv}
 limits: {fail: 0.005, warn: 0.02}
 allow:
 - [base, post]
+"""
+
+_ROBOT = {
+    "urdf": "arm.urdf",
+    "srdf": "arm.srdf",
+    "self_clearance": True,
+    "joints": {"state": "home"},
+    "joint_limits": "limits.yaml",
+    "controllers": "control.yaml",
+}
+
+_SRDF = b"""<?xml version="1.0"?>
+<robot name="arm">
+  <group name="arm"><joint name="shoulder"/></group>
+  <group_state name="home" group="arm"><joint name="shoulder" value="0.1"/><joint name="x" value="0 1"/>
+  </group_state>
+  <disable_default_collisions link="finger"/>
+  <enable_collisions link1="finger" link2="base"/>
+  <disable_collisions link1="base" link2="upper" reason="Adjacent"/>
+  <disable_collisions link1="base" link2="gripper" reason="Never"/>
+</robot>
+"""
+
+_LIMITS = b"""robot_description_planning:
+  joint_limits:
+    shoulder:
+      has_position_limits: true
+      min_position: -0.5
+      max_position: 0.9
+      has_velocity_limits: true
+      max_velocity: 2.5e0
+    grip: {has_acceleration_limits: true, max_acceleration: 3, has_jerk_limits: false, max_jerk: 1}
+"""
+
+_CONTROL = b"""controller_manager: {ros__parameters: {update_rate: 100}}
+arm_controller:
+  ros__parameters:
+    joints: [shoulder]
+    constraints:
+      goal_time: 0.6
+      shoulder: {trajectory: 0.2, goal: 1.0e-2}
+"""
+
+_XACRO = b"""<?xml version="1.0"?>
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="size" default="0.2"/>
+  <xacro:property name="long" value="${2 * pi / 4}"/>
+  <xacro:macro name="part" params="name size:=0.1 *more">
+    <link name="${name}"><collision><geometry><box size="${size} ${size} 0.5"/></geometry></collision></link>
+    <xacro:insert_block name="more"/>
+  </xacro:macro>
+  <xacro:part name="base" size="$(arg size)"><origin/></xacro:part>
+  <xacro:if value="${long > 1}"><xacro:part name="tip"><origin/></xacro:part></xacro:if>
+  <joint name="j" type="continuous"><parent link="base"/><child link="tip"/></joint>
+</robot>
 """
 
 _COMMAS = b"time [ms];shoulder [deg]\n0;0,5\n500;11,25\n1e3;-2,5e0\n"

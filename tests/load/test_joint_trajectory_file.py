@@ -4,7 +4,7 @@ import json
 from io import BytesIO
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import check
@@ -23,6 +23,7 @@ from clearance.errors import (
 )
 from clearance.load.trajectory_file import parse_trajectory, read_trajectory
 from clearance.load.trajectory_request import Choice, TrajectoryRequest
+from tests.examples import examples, some_slow
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small
 from tests.load.making_messages import (
@@ -240,7 +241,7 @@ def test_long_files_are_refused_unread():
 
 
 @pytest.mark.parametrize("form", ["ros2", "ros1", "RobotTrajectory", "DisplayTrajectory"])
-@pytest.mark.parametrize("suffix", ["yaml", "json"])
+@pytest.mark.parametrize("suffix", some_slow(["yaml", "json"], {"yaml"}))
 def test_a_file_cut_off_anywhere_is_refused_in_one_line_or_is_shorter(form, suffix):
     data = ALL_FORMS[form].encode()
     whole = parse_trajectory(data, "path.yaml")
@@ -276,7 +277,7 @@ VALUES = st.recursive(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(VALUES)
 def test_any_message_is_read_or_refused(message):
     text = json.dumps(message)
@@ -287,7 +288,7 @@ def test_any_message_is_read_or_refused(message):
             assert "\n" not in str(error)
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(st.data())
 def test_any_damage_is_read_or_refused(data):
     text = bytearray(ROS2.encode())

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
 from clearance import cli
 from clearance.errors import BadInput
+from tests.examples import examples
 from tests.load.making import CASE, CUBE, cube_stl, write_case
 from tests.load.making_case import load_small
 from tests.load.making_moveit import FIRST, LISTS, MESSAGE, SECOND, content_of, obstacles_of
@@ -78,6 +79,19 @@ def test_what_the_case_carries_is_left_to_it(tmp_path):
     assert carry.window.start == 0.5 and carry.touch == ("*",)
 
 
+def test_an_octomap_of_free_cells_is_no_obstacle(tmp_path):
+    """One cell, of log odds -0.405 and +0.847: free, and occupied."""
+    for bytes_, found in (([31, -103, -49, -66, 0], 0), ([220, 217, 88, 63, 0], 1)):
+        map_ = (
+            f"octomap: {{octomap: {{id: OcTree, resolution: 0.1, binary: false, data: {bytes_}}}}}"
+        )
+        content = content_of(tmp_path, LISTS.replace("world:", f"world:\n  {map_}"))
+        names = [row["name"] for row in content.scene["obstacles"]]
+        assert names.count("<octomap>") == found
+        told = any("no cell of the octomap is occupied" in note for note in content.notes)
+        assert told == (not found)
+
+
 def test_subframes_and_the_place_of_the_robot_are_said_to_be_passed_over(tmp_path):
     document = LISTS.replace("  - id: can\n", "  - id: can\n    subframe_names: [a, b]\n") + (
         "robot_state: {multi_dof_joint_state: {joint_names: [virtual_joint]}}\n"
@@ -113,6 +127,7 @@ def test_rounded_quaternions_are_made_of_length_one_and_told(tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_a_file_that_names_its_parts_again_and_again_ends(tmp_path):
     thousand = ", ".join(["*s"] * 1000)
     objects = ", ".join(["*o"] * 1000)
@@ -217,8 +232,8 @@ SPHERE = "primitives: [{type: sphere, dimensions: [1]}]"
             "frames 'base' and 'map' are used",
         ),
         (
-            "world: {octomap: {octomap: {data: [1]}}}",
-            "world.octomap: an octomap is not read",
+            "world: {octomap: {octomap: {id: ColorOcTree, resolution: 0.1, binary: true, data: [1]}}}",
+            "world: octomap: an octomap of kind 'ColorOcTree' is not read; OcTree",
         ),
         (
             OBJECT % SPHERE + "link_scale: [{link_name: l, scale: 1.1}]",
@@ -286,13 +301,14 @@ def test_text_cut_off_anywhere_is_refused(tmp_path, document):
         assert not only_our_own(tmp_path, document[:n].encode(), "cell.scene")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("document", [MESSAGE, LISTS], ids=["message", "lists"])
 def test_messages_cut_off_anywhere_are_refused_in_one_line_or_whole(tmp_path, document):
     for n in range(0, len(document), 1 if document is LISTS else 7):
         only_our_own(tmp_path, document[:n].encode(), "cell.yaml")
 
 
-@settings(deadline=None, max_examples=100)
+@examples(100)
 @given(st.data())
 def test_exchanged_parts_bring_only_our_own_errors(tmp_path_factory, data):
     name, document = data.draw(
@@ -319,7 +335,7 @@ VALUES = st.recursive(
 )  # fmt: skip
 
 
-@settings(deadline=None, max_examples=200)
+@examples(200)
 @given(
     st.dictionaries(
         st.sampled_from(

@@ -14,6 +14,7 @@ from tests.load.making_case import TWO_JOINTS, changed
 
 pytest.importorskip("rosbags", reason="bags are made by rosbags")
 
+from tests.examples import some_slow
 from tests.load.making_bags import (
     CONTAINERS,
     EVENT,
@@ -154,7 +155,7 @@ def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
             read(bag)
 
 
-@pytest.mark.parametrize("container", CONTAINERS)
+@pytest.mark.parametrize("container", some_slow(CONTAINERS, {"rosbag2 sqlite3", "rosbag2 mcap"}))
 def test_a_bag_cut_off_is_refused_in_one_line_or_is_read(tmp_path, container):
     path = write_bag(tmp_path, container, {"/joint_states": STATES})
     file = max(path.iterdir(), key=lambda one: one.stat().st_size) if path.is_dir() else path

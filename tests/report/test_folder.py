@@ -18,8 +18,8 @@ from clearance.report.output import OWN
 from tests.report.records import record
 
 NAMES = {
-    "report.html", "replay.npz", "steps.csv", "contacts.csv", "steps.parquet", "summary.json",
-    "worst_moments.yaml",
+    "report.html", "replay.npz", "steps.csv", "contacts.csv", "steps.parquet", "findings.json",
+    "summary.json", "worst_moments.yaml",
 }  # fmt: skip
 
 
