@@ -147,11 +147,23 @@ def _package_folders(
 ) -> Iterator[tuple[Path, str]]:
     """Folders that are the package, if they are there, the nearest first; and the variable that names each."""
     above = Path(os.path.abspath(urdf_folder))
-    near = [(folder, "") for folder in (*package_dirs, urdf_folder, *above.parents)]
-    for folder, variable in (*near, *_from_variables()):
+    near = [(folder, "") for folder in (urdf_folder, *above.parents)]
+    for folder, variable in (*((one, "") for one in package_dirs), *near, *_from_variables()):
         yield folder / package, variable
         if _is_package(folder, package):
             yield folder, variable
+        if folder in package_dirs:
+            yield from (
+                (below, "") for below in _packages_in(folder) if _is_package(below, package)
+            )
+
+
+def _packages_in(folder: Path) -> list[Path]:
+    """The packages in a folder, as a workspace has them, whatever their folders are called."""
+    try:
+        return sorted(below for below in folder.iterdir() if (below / "package.xml").is_file())
+    except OSError:
+        return []
 
 
 def _is_package(folder: Path, package: str) -> bool:

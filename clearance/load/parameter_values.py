@@ -12,13 +12,17 @@ from clearance.load.message_documents import Fields, told, yaml_documents
 _WORDS = {"true": True, "false": False}
 
 
+_FACTORS = {"!degrees": math.pi / 180.0, "!radians": 1.0}
+"""Units that xacro knows as tags, and files of limits use."""
+
+
 def parameters(data: bytes) -> Fields:
     """The one mapping in a file.
 
     Raises:
         BadSyntax: not YAML, or something else.
     """
-    documents = yaml_documents(data)
+    documents = yaml_documents(data, _FACTORS)
     if len(documents) != 1 or not isinstance(documents[0], Fields):
         what = told(documents[0]) if len(documents) == 1 else f"{len(documents)} documents"
         raise BadSyntax(f"{what} is given", valid="one mapping")

@@ -40,7 +40,9 @@ def robot_element(data: bytes, wanted: str) -> Element:
             valid="write out what it stands for",
         )
     if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter()):
-        otherwise = f"turn it into {wanted} with the xacro command first"
+        otherwise = (
+            f"`xacro: true` beside urdf in a case makes {wanted} of it, as the xacro command does"
+        )
         raise BadSyntax(
             f"this is a xacro file, not {wanted}",
             valid=ALLOW_XACRO if wanted == "a URDF file" else otherwise,

@@ -20,7 +20,7 @@ from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest
 from clearance.load.srdf import read_srdf
 from clearance.load.timed_files import trajectory_of
-from clearance.load.xacro_file import checked_args
+from clearance.load.xacro_file import SUFFIX, checked_args, hold_expanded
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
 from clearance.world.robot import Robot
@@ -50,6 +50,7 @@ class RobotReader:
         """
         given, field = entry.robot, entry.field
         request = self._request(given, field)
+        self._expand_srdf(given, field, request)
         limits = limited(entry, self._robot(request, given.name, field), self._folder, self._files)
         robot = limits.robot
         self.notes += limits.notes
@@ -91,6 +92,15 @@ class RobotReader:
             given.xacro,
             args,
         )
+
+    def _expand_srdf(self, given: schema.Robot, field: str, request: RobotRequest) -> None:
+        """Makes an SRDF of xacro's what it stands for, where xacro is allowed."""
+        if given.srdf is None or not given.xacro or not given.srdf.endswith(SUFFIX):
+            return
+        path = resolved(given.srdf, self._folder)
+        if not self._files.is_held(path):
+            with at(f"{field}.srdf"):
+                self.notes += hold_expanded(path, request.package_dirs, self._files)
 
     def _robot(self, request: RobotRequest, name: str | None, field: str) -> Robot:
         if request not in self._read:

@@ -31,7 +31,11 @@ if TYPE_CHECKING:
 
 
 class GroupState(NamedTuple):
-    """Positions [rad] or [m] that a group of joints has by name; a joint of several freedoms has several."""
+    """Positions [rad] or [m] that a group of joints has by name; a joint of several freedoms has several.
+
+    Attributes:
+        group: empty where the file names none, as files that are not for MoveIt do.
+    """
 
     group: str
     name: str
@@ -40,7 +44,7 @@ class GroupState(NamedTuple):
     @property
     def full_name(self) -> str:
         """Its name with that of the group."""
-        return f"{self.group}/{self.name}"
+        return f"{self.group}/{self.name}" if self.group else self.name
 
 
 class StatePositions(NamedTuple):
@@ -98,7 +102,8 @@ def _state(element: Element) -> GroupState:
             raise DuplicateName(f"joint {name!r} is there twice", valid="each joint once")
         with at(f"joint {name!r}"):
             positions[name] = _numbers(joint.get("value"))
-    return GroupState(_named(element, "group"), _named(element, "name"), positions)
+    group = checked_name(element.get("group") or "")
+    return GroupState(group, _named(element, "name"), positions)
 
 
 def _named(element: Element, attribute: str) -> str:

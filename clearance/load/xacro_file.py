@@ -11,7 +11,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -75,7 +75,9 @@ def expanded(request: RobotRequest, files: InputFiles) -> Expanded:
         for variable, names in done["variables"].items()
     }
     notes = [
-        _note(shown, [name for name in others if name != shown], given, done["args"]),
+        _note(
+            shown, [name for name in others if name != shown], given, _shown(done["args"], files)
+        ),
         *notes_on_variables(found),
         *_warnings(done["said"], shown, request.path.parent),
     ]
@@ -151,11 +153,30 @@ def _require_asked(given: Mapping[str, str], asked: list[str], shown: str) -> No
 
 def _note(shown: str, others: list[str], given: Mapping[str, str], used: Mapping[str, str]) -> str:
     also = f" and in {listed(others, 6)}" if others else ""
-    told = f"{shown}: xacro made URDF of it; Python in it{also} was evaluated"
+    told = f"{shown}: xacro evaluated it, with the Python in it{also}"
     own = [f"{name}:={value}" for name, value in given.items()]
     defaults = [f"{name}:={value}" for name, value in used.items() if name not in given]
     told += f"; arguments {listed(own, 12)}" if own else ""
     return told + (f"; defaults {listed(defaults, 12)}" if defaults else "")
+
+
+def _shown(args: Mapping[str, str], files: InputFiles) -> dict[str, str]:
+    """Arguments with paths as they are on every machine."""
+    return {
+        name: files.shown(Path(value)) if os.path.isabs(value) else value
+        for name, value in args.items()
+    }
+
+
+def hold_expanded(path: Path, package_dirs: Sequence[Path], files: InputFiles) -> tuple[str, ...]:
+    """Lets `files` give what xacro makes of a file beside the robot's in place of its content; notes on that.
+
+    Raises:
+        BadInput: as `expanded`.
+    """
+    made = expanded(RobotRequest(path, tuple(package_dirs), xacro=True), files)
+    files.hold(path, made.urdf)
+    return made.notes
 
 
 def _warnings(said: str, shown: str, folder: Path) -> list[str]:

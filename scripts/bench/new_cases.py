@@ -3,8 +3,8 @@
     python scripts/bench/new_cases.py [--only NAME,…] [--markdown]
 
 Robots are those of `example-robot-data` and `pybullet_data` as they lie, with their SRDF where they bring one.
-Each has a motion of its own, through five positions that a fixed seed draws within the limits of its joints, as a
-JointTrajectory in YAML or in a bag of ROS 2. No file is edited.
+Each has a motion of its own, through five positions of its turning joints that a fixed seed draws within their
+limits, as a JointTrajectory in YAML or in a bag of ROS 2. Other joints are left out. No file is edited.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ sys.path.insert(0, str(ROOT))  # so that the script runs from the root without a
 from clearance.errors import NothingToMeasure  # noqa: E402
 from clearance.load.trajectory_writer import written  # noqa: E402
 from clearance.load.urdf import load_urdf  # noqa: E402
+from clearance.world.joint_positions import turns  # noqa: E402
 from clearance.world.robot import Joint  # noqa: E402
 from clearance.world.trajectory import Trajectory  # noqa: E402
 
@@ -112,7 +113,9 @@ def row_of(robot: Robot) -> Row:
     verdict = next((line for i, line in enumerate(lines) if lines[i - 1].startswith("run ")), "")
     if not is_told:
         verdict = (done.stderr.strip().splitlines() or ["no report"])[-1]
+    kinds = [line.split("--accept ")[1].rstrip(")") for line in lines if "(--accept " in line]
     told = verdict.partition("(")[0].replace("  case: least clearance", "").strip()
+    told += f" ({', '.join(kinds)})" if kinds else ""
     return Row(robot.name, given, f"{seconds:.1f}", "; ".join(assumed), str(done.returncode), told)
 
 
@@ -134,9 +137,10 @@ def words_of(robot: Robot, folder: Path) -> tuple[list[str], str]:
 def motion_of(urdf: str) -> Trajectory:
     """Five positions about the middle of the joints' limits, a second apart."""
     try:
-        joints = load_urdf(urdf).moving_joints
+        robot = load_urdf(urdf)
     except NothingToMeasure:
-        joints = load_urdf(urdf, geometry="visual").moving_joints
+        robot = load_urdf(urdf, geometry="visual")
+    joints = [joint for joint in robot.moving_joints if turns(joint)]  # grippers and lifts rest
     rng = np.random.default_rng(SEED)
     bounds = np.array([_bounds(joint) for joint in joints])
     middle, half = bounds.mean(axis=1), 0.5 * (bounds[:, 1] - bounds[:, 0])

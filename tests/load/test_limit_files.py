@@ -133,6 +133,13 @@ def test_what_ros_wraps_it_in_is_taken_off(wrapped):
     assert parse_joint_limits(wrapped.format(inner).encode()) == parse_joint_limits(LIMITS.encode())
 
 
+def test_degrees_that_are_tagged_are_degrees():
+    found = parse_joint_limits(
+        LIMITS.replace("max_velocity: 0.4", "max_velocity: !degrees  90.0").encode()
+    )
+    assert found["shoulder"].motion.velocity == math.pi / 2
+
+
 def test_tolerances_are_kept_and_told(tmp_path):
     case = load(tmp_path, None, CONTROLLERS)
     assert case.robots[0].path_tolerances == {
@@ -164,7 +171,8 @@ def test_controllers_of_ros_1_and_several_of_one_joint(tmp_path):
         ("min_position: -0.5", "min_position: 1.5", BadInput, "lies outside the robot's -1 to 1"),
         ("has_position_limits: true", "has_position_limits: yes", BadInput, "'yes' is given; true or false"),
         ("joint_limits:", "limits:", MissingKey, "'joint_limits' is missing; MoveIt's file"),
-        ("max_velocity: 0.4", "max_velocity: !degrees 20", BadInput, "line 9: the tag '!degrees'"),
+        ("max_velocity: 0.4", "max_velocity: !feet 20", BadInput, "line 9: the tag '!feet'"),
+        ("max_velocity: 0.4", "max_velocity: !degrees x", BadInput, "max_velocity: 'x' is given; a finite number"),
     ],
 )  # fmt: skip
 def test_bad_limits_are_one_line(tmp_path, old, new, fault, says):

@@ -80,6 +80,13 @@ def test_a_name_of_several_groups_needs_the_group(tmp_path):
     assert case.robots[0].fixed_positions == {"lift": 0.02}
 
 
+def test_a_state_of_no_group_has_its_name_alone(tmp_path):
+    document = srdf(state().replace(' group="arm"', ""))
+    assert load(tmp_path, document=document).robots[0].fixed_positions == {"lift": 0.05}
+    (one,) = read_states(tmp_path / "arm.srdf", InputFiles(tmp_path))
+    assert one.full_name == "home"
+
+
 def test_joints_that_cannot_be_set_are_left_out_with_a_note(tmp_path):
     more = '<joint name="flange" value="1"/><joint name="root_joint" value="0 0 1 0 0 0 1"/>'
     case = load(tmp_path, document=srdf(state(JOINTS + more)))

@@ -1,6 +1,7 @@
 """xacro: what it makes, only where it is asked for; what it reads is hashed, what it cannot do is one line."""
 
 import json
+import math
 
 import pytest
 
@@ -58,8 +59,8 @@ def test_what_it_reads_is_hashed_and_what_it_did_is_told(tmp_path):
     assert paths == [
         "arm/urdf/arm.urdf.xacro", "arm/urdf/parts.xacro", "arm/urdf/sizes.yaml", "case.yaml", "path.csv",
     ]  # fmt: skip
-    (note,) = [note for note in case.robots[0].robot.notes if "xacro made URDF" in note]
-    assert "Python in it and in arm/urdf/parts.xacro, arm/urdf/sizes.yaml was evaluated" in note
+    (note,) = [note for note in case.robots[0].robot.notes if "xacro evaluated it" in note]
+    assert "the Python in it and in arm/urdf/parts.xacro, arm/urdf/sizes.yaml;" in note
     assert note.endswith("defaults size:=0.2")
 
 
@@ -109,6 +110,37 @@ def test_packages_are_found_by_our_rules(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "src" / "arm"))
     (note,) = [note for note in made(lone).notes if "ROS_PACKAGE_PATH" in note]
     assert "leads to $(find arm_description) as src/arm" in note
+
+
+def test_a_package_in_a_workspace_is_found_by_its_manifest(tmp_path):
+    main = write_package(tmp_path / "src")
+    lone = tmp_path / "lone.xacro"
+    lone.write_text(main.read_text())
+    assert b'name="upper"' in made(lone, package_dirs=(tmp_path / "src",)).urdf
+
+
+def test_defaults_that_are_paths_are_the_same_on_every_machine(tmp_path):
+    main = MAIN.replace('default="0.2"', 'default="$(find arm_description)/urdf/sizes.yaml"')
+    path = write_package(tmp_path, main.replace("$(arg size)", "${1 if '$(arg size)' else 2}"))
+    assert made(path).notes[0].endswith("defaults size:=sizes.yaml")
+
+
+def test_an_srdf_of_xacro_is_evaluated_where_the_robot_is(tmp_path):
+    path = write_case(tmp_path, "xacro: true, srdf: arm.srdf.xacro, joints: {state: up}")
+    state = (
+        '<group_state name="up" group="${g}"><joint name="shoulder" value="${pi/4}"/></group_state>'
+    )
+    (tmp_path / "arm.srdf.xacro").write_text(body(f'<xacro:property name="g" value="a"/>{state}'))
+    path.write_text(path.read_text().replace("trajectory: path.csv", "").replace(
+        "pose: {xyz: [2, 0, 0]}", "moves: door.csv"))  # fmt: skip
+    (tmp_path / "door.csv").write_text("time,x,y,z,qx,qy,qz,qw\n0,2,0,0,0,0,0,1\n1,3,0,0,0,0,0,1\n")
+    case = load_case(path)
+    assert case.robots[0].fixed_positions == {"shoulder": math.pi / 4}
+    assert "arm.srdf.xacro" in [source.path for source in case.sources]
+    path.write_text(path.read_text().replace("arm/urdf/arm.urdf.xacro, xacro: true", "plain.urdf"))
+    (tmp_path / "plain.urdf").write_bytes(made(tmp_path / "arm/urdf/arm.urdf.xacro").urdf)
+    with pytest.raises(BadSyntax, match="not an SRDF file; `xacro: true` beside urdf"):
+        load_case(path)
 
 
 @pytest.mark.parametrize(
