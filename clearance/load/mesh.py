@@ -44,6 +44,9 @@ _READERS: dict[str, Callable[[bytes, UpAxis, float], Triangles]] = {
 CAD = (".step", ".stp")
 """Formats of surfaces that become facets within a tolerance."""
 
+_SCANS = (".pcd", ".xyz", ".asc", ".csv", ".txt")
+"""Suffixes of files that are scans, if anything (`cloud`)."""
+
 OPEN = "the surface is open: it has no inside"
 """The note on a mesh of which no part is closed; the same text for all, so that one line can name them all."""
 
@@ -105,7 +108,8 @@ def triangles_from_bytes(
     """The triangles of a mesh file as they are in it, before anything is mended."""
     suffix = Path(name).suffix.lower()
     if suffix not in _READERS:
-        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS))
+        hint = "; a scan is read as points: {file: …, radius: …}" if suffix in _SCANS else ""
+        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS) + hint)
     return checked(_READERS[suffix](data, up_axis, tolerance))
 
 
