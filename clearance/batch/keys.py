@@ -11,33 +11,20 @@ import functools
 import hashlib
 import platform
 from collections.abc import Iterable
-from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import PurePath
 
 from clearance.batch.item import Item
 from clearance.import_closure import PACKAGE, digest_of
-from clearance.world.case import Case, Source
 
 FORMAT = 1
 """Of the rows; another one makes all keys new."""
 
+DAY = "(day)"
+"""Stands among the files of a case that has waivers, with the day in place of a hash."""
+
 LIBRARIES = ("numpy", "numba", "llvmlite", "scipy", "trimesh", "shapely", "lxml", "ruamel.yaml")
 """Those that can change a row beside this package; pyarrow's numbers are exact."""
-
-
-DAY = "<day>"
-"""Where the day is read from that waivers are held against: no file, but what a row depends on all the same."""
-
-
-def today() -> str:
-    """The day, in UTC, as `run.Question` takes it."""
-    return str(datetime.now(UTC).date())
-
-
-def day_of(case: Case) -> tuple[Source, ...]:
-    """The day as something that was read, where a case has waivers: its row is of that day alone."""
-    return (Source("day of waivers", today(), 0, DAY),) if case.waivers else ()
 
 
 @functools.cache

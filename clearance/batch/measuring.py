@@ -9,13 +9,13 @@ import json
 import time
 import traceback
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 from clearance.batch.file_hashes import Seen, seen
 from clearance.batch.item import Item
-from clearance.batch.keys import day_of, key_of, program
+from clearance.batch.keys import DAY, key_of, program
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
 from clearance.errors import ClearanceError, Incomplete
@@ -126,9 +126,9 @@ class _Work:
             text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
             self.faults.append(Fault(item.number, text, traceback.format_exc()))
             return
-        case = found.case
-        key = key_of(item, [(one.path, one.sha256) for one in case.sources])
-        inputs = inputs_text(found.kept)
+        case, day = found.case, day_of(item, found.case)
+        key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *day)])
+        inputs = inputs_text((*found.kept, *day))
         self.rows.append({"key": key, "file": item.file, "inputs": inputs} | row)
         reason = row["reasons"][0] if row["reasons"] else ""
         told = (row["status"], row["exit_code"], row["clearance"], reason)
@@ -168,18 +168,17 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
     given = item.trajectory
     if given is None:
         case = load_case(item.file)
-        return _of_today(case, case.sources)
+        return ReadItem(case, case.sources)
     cell = _cell(item.file, batch)
     reading = Reading.model_validate(json.loads(given.reading))
     asked = reading.model_copy(update={"file": given.path})
     case = with_trajectory_file(cell, asked, item.name, given.robot)
-    return _of_today(case, cell.files.sources)
+    return ReadItem(case, cell.files.sources)
 
 
-def _of_today(case: Case, kept: tuple[Source, ...]) -> ReadItem:
-    """The case with the day among what it was made from, if that decides its row."""
-    day = day_of(case)
-    return ReadItem(replace(case, sources=(*case.sources, *day)), (*kept, *day))
+def day_of(item: Item, case: Case) -> tuple[Source, ...]:
+    """The day as if it were a file, where the case has waivers that may end on one."""
+    return (Source(DAY, item.options.today, 0),) if case.waivers else ()
 
 
 @lru_cache(maxsize=CELLS)

@@ -1,11 +1,11 @@
 """A batch in one process: only what is missing or has changed is measured, and the answer has the same bytes."""
 
 import os
+from datetime import date
 
 import pyarrow.parquet as pq
 import pytest
 
-from clearance.batch import keys, plan
 from clearance.batch.engine import InThisProcess
 from clearance.batch.keys import key_of
 from clearance.batch.manifest import Changes, items_of
@@ -83,23 +83,6 @@ def test_a_case_file_is_known_by_all_that_it_was_made_from(tmp_path):
     assert run_here(manifest, tmp_path / "out")[0].measured == []
     write_path(tmp_path / "in" / "t001.csv", 0.01)
     assert run_here(manifest, tmp_path / "out")[0].measured == ["case1"]
-
-
-def test_a_case_with_waivers_is_measured_again_on_another_day(manifest, tmp_path, monkeypatch):
-    """On another day a waiver may have expired: no row of yesterday says what today's verdict is."""
-    cell = manifest.parent / "cell.yaml"
-    cell.write_text(CELL + "waivers: [waivers.yaml]\n")
-    waiver = "{between: [slider, wall], at_least: 0.03, reason: soft, by: N. N., until: 9999-12-31}"
-    (manifest.parent / "waivers.yaml").write_text(f"- {waiver}\n")
-    _, found = run_here(manifest, tmp_path / "out")
-    expected = ["stale waiver", "stale waiver", "clear", "stale waiver", "contact"]
-    assert list(statuses(found).values()) == expected
-    told, _ = run_here(manifest, tmp_path / "out")
-    assert told.measured == []
-    for module in (keys, plan):
-        monkeypatch.setattr(module, "today", lambda: "2999-01-01")
-    told, _ = run_here(manifest, tmp_path / "out")
-    assert len(told.measured) == 5
 
 
 def test_fresh_measures_all_again(manifest, tmp_path):
@@ -224,3 +207,22 @@ def test_the_table_of_cases_is_what_any_tool_reads(manifest, tmp_path):
     assert table.column_names[:3] == ["case", "key", "status"]
     assert table["clearance"].to_pylist()[0] == pytest.approx(0.4)
     assert len(table["curve"][0].as_py()) == 3
+
+
+def test_where_a_case_has_waivers_the_day_decides(manifest, tmp_path):
+    (manifest.parent / "waivers.yaml").write_text(
+        "- {between: [slider, wall], case: t002, at_least: 0.03, reason: seen, by: me, "
+        "until: 2027-03-31}\n"
+    )
+    (manifest.parent / "cell.yaml").write_text(CELL + "waivers: [waivers.yaml]\n")
+
+    def run_on(day):
+        return run_here(manifest, tmp_path / "out", changes=Changes(today=date.fromisoformat(day)))
+
+    told, found = run_on("2027-03-31")
+    assert len(told.measured) == 5 and statuses(found)["t002"] in ("clear", "near")
+    waived = [row["waived"] for row in found.findings.to_pylist() if row["case"] == "t002"]
+    assert "seen (me)" in waived
+    assert run_on("2027-03-31")[0].measured == []
+    told, found = run_on("2027-04-01")
+    assert len(told.measured) == 5 and statuses(found)["t002"] == "violated"

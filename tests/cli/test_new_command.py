@@ -25,6 +25,8 @@ ARM = TWO_JOINTS.replace(
     '<link name="tip"><collision><origin xyz="0 0 1.5"/><geometry><sphere radius="0.1"/></geometry>'
     "</collision></link>",
 )
+_HEAD, _, _TAIL = MESSAGE.partition("  attached_collision_objects:")
+PLANNING = _HEAD + _TAIL[_TAIL.index("allowed_collision_matrix:") :]
 SRDF = """<robot name="arm"><disable_collisions link1="base" link2="upper" reason="Adjacent"/>
 <disable_collisions link1="upper" link2="tip" reason="Adjacent"/>
 <group_state name="home" group="arm"><joint name="shoulder" value="0"/><joint name="lift" value="0.02"/>
@@ -47,7 +49,7 @@ def cell(tmp_path, monkeypatch):
         "arm.urdf": ARM, "one.urdf": TWO_JOINTS, "arm.srdf": SRDF,
         "path.csv": PATH, "degrees.csv": DEGREES, "path.yaml": ROS2,
         "scene.yaml": SCENE, "door.csv": DOOR, "world.sdf": sdf(world(model(link(collision())))),
-        "planning.yaml": MESSAGE, "cell.scene": FIRST,
+        "planning.yaml": PLANNING, "held.yaml": MESSAGE, "cell.scene": FIRST,
     }  # fmt: skip
     (tmp_path / "cell").mkdir()
     for name, text in files.items():
@@ -86,6 +88,7 @@ def direct(scene, trajectory):
         ("scene.yaml", "degrees.csv"),
         ("world.sdf", "path.yaml"),
         ("planning.yaml", "path.csv"),
+        ("held.yaml", "path.csv"),
         ("cell.scene", "path.csv"),
     ],
 )
@@ -97,6 +100,8 @@ def test_it_has_the_results_of_the_files_it_is_made_from(capsys, scene, trajecto
     theirs = summary(capsys, path)
     origins = [[one.pop("origin", None) for one in told["obstacles"]] for _, told in (ours, theirs)]
     assert ours == theirs and len(origins[0]) == len(origins[1])
+    text = Path("out/case.yaml").read_text()
+    assert ("padding" in text and "allow:" in text) == (scene == "planning.yaml")
 
 
 def test_it_says_what_it_took_and_what_it_assumed(capsys):
