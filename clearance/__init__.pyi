@@ -1,4 +1,5 @@
 from .errors import BadInput, ClearanceError
+from .findings.finding import Finding
 from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
@@ -8,6 +9,7 @@ from .load.cloud import read_points
 from .load.mesh import read_mesh
 from .load.robot_formats import load_robot
 from .load.urdf import load_urdf
+from .load.waiver_file import load_waivers
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
 from .planar.deviation import deviation
@@ -39,6 +41,7 @@ from .world.robot import Robot
 from .world.rules import Allowance, Rule
 from .world.timing import Timing, Window
 from .world.trajectory import Trajectory
+from .world.waiver import Waiver
 
 __all__ = [
     "Allowance",
@@ -52,6 +55,7 @@ __all__ = [
     "Contact",
     "CrossCheck",
     "Curve",
+    "Finding",
     "Fit",
     "Intersection",
     "Limits",
@@ -77,6 +81,7 @@ __all__ = [
     "Timing",
     "Trajectory",
     "Undecided",
+    "Waiver",
     "Window",
     "Workspace",
     "__version__",
@@ -98,6 +103,7 @@ __all__ = [
     "load_case",
     "load_robot",
     "load_urdf",
+    "load_waivers",
     "minimum_distance",
     "penetration",
     "pipe",
