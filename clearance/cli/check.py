@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from dataclasses import replace
 from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
-    from clearance.findings.comparison import Comparison
+    from clearance.findings.findings_file import FindingList
     from clearance.run import Question, Run
     from clearance.world.case import Case
 
@@ -128,23 +128,17 @@ def check(
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
-    _require_extras(out, junit, cross_check, motion)
-    _require_places(out, junit, summary)
-    more = MoreFiles(png, glb, trajectory)
-    more.require_writable()
+    _require_extras(cross_check, motion)
+    outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
+    outputs.require_writable()
     _require_file(case_file)
-    from clearance.cli.comparison import print_comparison
-    from clearance.cli.kept import kept_rows
-    from clearance.cli.places import refuse_inputs_of_cases
-    from clearance.cli.progress import shown_progress
-    from clearance.run import Question, Resources, answer
+    from clearance.run import Question
     from clearance.tolerance import CERTIFY_GAP
 
     _compile_ahead(quiet)
-    outputs = _outputs(out, junit, summary, more)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
-    refuse_inputs_of_cases([case], outputs)
-    before = baseline_of(baseline, outputs)
+    outputs.refuse_inputs(case)
+    before = baseline_of(baseline, outputs.files)
     question = Question(
         case,
         need=need,
@@ -157,22 +151,52 @@ def check(
         paper_tolerance=paper_tolerance,
         today=today,
     )
-    ahead = more.made_ahead(question.case, motion)
-    with kept_rows(out, quiet) as rows:
-        with shown_progress(quiet or as_json, _passes(question)) as progress:
+    run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
+    return ExitCode(run.verdict.exit_code)
+
+
+class Terminal(NamedTuple):
+    """What is printed: the summary as JSON, nothing, or, where neither is asked for, words."""
+
+    as_json: bool
+    quiet: bool
+
+    @property
+    def has_words(self) -> bool:
+        """True if people read it."""
+        return not (self.as_json or self.quiet)
+
+
+def _answer(
+    question: Question,
+    before: FindingList | None,
+    outputs: Outputs,
+    jobs: int | None,
+    terminal: Terminal,
+) -> Run:
+    """Measures, writes what is wanted, and prints the verdict."""
+    from clearance.cli.kept import kept_rows
+    from clearance.cli.progress import shown_progress
+    from clearance.run import Resources, answer
+
+    ahead = outputs.more.made_ahead(question.case, question.motion)
+    with kept_rows(outputs.out, terminal.quiet) as rows:
+        with shown_progress(not terminal.has_words, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if out is not None or as_json or png or glb:
+            if outputs.tell_contacts or terminal.as_json:
                 run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
-        _write(run, out, junit, comparison)
-        notes = more.write(run, ahead)
-    _print(run, out, as_json, quiet)
-    if not (as_json or quiet):
-        more.print_written(notes)
+        outputs.write(run, comparison)
+        notes = outputs.more.write(run, ahead)
+    _print(run, outputs.out, terminal)
+    if terminal.has_words:
+        outputs.more.print_written(notes)
         if comparison is not None:
+            from clearance.cli.comparison import print_comparison
+
             print_comparison(comparison)
-    ForCi(summary, github).write(run, comparison, to_stderr=as_json)
-    return ExitCode(run.verdict.exit_code)
+    outputs.for_ci.write(run, comparison, to_stderr=terminal.as_json)
+    return run
 
 
 def _require_file(case_file: Path) -> None:
@@ -192,14 +216,6 @@ def _passes(question: Question) -> list[str]:
     return passes + ["cross-checking"] * question.cross_check + ["looking into contacts"]
 
 
-def _require_places(out: Path | None, junit: Path | None, summary: Path | None) -> None:
-    from clearance.cli.places import require_file_place, require_folder_place
-
-    require_folder_place(out)
-    require_file_place(junit)
-    require_file_place(summary, "--summary")
-
-
 def _case(
     case_file: Path,
     fail: float | None,
@@ -215,7 +231,7 @@ def _case(
     return replace(case, limits=with_levels(case.limits, fail, warn), accept=accepted)
 
 
-def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, motion: str) -> None:
+def _require_extras(cross_check: bool, motion: str) -> None:
     """Refuses, before anything is measured, what a missing library could not do in the end.
 
     Raises:
@@ -223,39 +239,10 @@ def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, mot
     """
     from clearance.extras import require
 
-    if out is not None:
-        require("report", "--out")
-    if junit is not None:
-        require("report", "--junit")
     if cross_check:
         require("crosscheck", "--cross-check")
     if motion == "simulated":
         require("simulate", "--motion simulated")
-
-
-def _outputs(
-    out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
-) -> list[Path]:
-    """The files that may be written; no two are the same.
-
-    Raises:
-        Unwritable: one would overwrite another.
-    """
-    if not (out or junit or summary or more.by_option):
-        return []
-    from clearance.errors import Unwritable
-    from clearance.report.output import OWN
-
-    report = [] if out is None else [out / name for name in OWN]
-    taken = {os.path.realpath(path): "is a file of the report" for path in report}
-    asked = {"--junit": junit, "--summary": summary, **more.by_option}
-    named = {option: path for option, path in asked.items() if path is not None}
-    for option, path in named.items():
-        if os.path.realpath(path) in taken:
-            problem = taken[os.path.realpath(path)]
-            raise Unwritable(problem, where=str(path), valid=f"{option} needs another name")
-        taken[os.path.realpath(path)] = f"is the file of {option}"
-    return [*report, *named.values()]
 
 
 def _compile_ahead(quiet: bool) -> None:
@@ -271,21 +258,12 @@ def _compile_ahead(quiet: bool) -> None:
         click.echo("compiling for this machine, once: about half a minute", err=True)
 
 
-def _write(run: Run, out: Path | None, junit: Path | None, comparison: Comparison | None) -> None:
-    if out is not None:
-        run.save(out, comparison)
-    if junit is not None:
-        from clearance.report import write_junit
-
-        write_junit(run.record, junit)
-
-
-def _print(run: Run, out: Path | None, as_json: bool, quiet: bool) -> None:
-    if as_json:
+def _print(run: Run, out: Path | None, terminal: Terminal) -> None:
+    if terminal.as_json:
         from clearance.report import json_text, summary_of
 
         click.echo(json_text(summary_of(run.record)), nl=False)
-    elif not quiet:
+    elif not terminal.quiet:
         from clearance.cli.verdict import print_verdict
 
         print_verdict(run, out)
