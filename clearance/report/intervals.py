@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.record import Record
 from clearance.simulate.replay_frames import codes_of
 from clearance.simulate.row_status import RowStatus
@@ -143,9 +144,10 @@ def _level_runs(record: Record) -> dict[str, np.ndarray]:
 
 def status_counts(record: Record) -> dict[str, int]:
     """How many steps have each status."""
-    counted = record.steps["status"].value_counts().to_pylist()
-    counts = {entry["values"]: entry["counts"] for entry in counted}
-    return {str(name): counts.get(str(name), 0) for name in STATUSES}
+    names = [str(name) for name in STATUSES]
+    codes = codes_of_names(record.steps["status"], names)
+    counts = np.bincount(codes[codes >= 0], minlength=len(names))
+    return dict(zip(names, counts.tolist(), strict=True))
 
 
 def _runs(inside: np.ndarray) -> np.ndarray:
