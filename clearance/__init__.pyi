@@ -2,10 +2,11 @@ from .errors import BadInput, ClearanceError
 from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
-from .geometry.shapes import box, capsule, cylinder, pipe, sphere
+from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
 from .load.cloud import read_points
 from .load.mesh import read_mesh
+from .load.robot_formats import load_robot
 from .load.urdf import load_urdf
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
@@ -90,10 +91,12 @@ __all__ = [
     "cylinder",
     "deviation",
     "distance",
+    "ellipsoid",
     "fit",
     "hausdorff",
     "intersect",
     "load_case",
+    "load_robot",
     "load_urdf",
     "minimum_distance",
     "penetration",

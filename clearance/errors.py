@@ -76,6 +76,10 @@ class UnknownJoint(BadInput):
     """A joint name that the robot does not have."""
 
 
+class UnknownState(BadInput):
+    """A state of joints by name that the robot's SRDF does not have, or of which it has several."""
+
+
 class UnknownRobot(BadInput):
     """A robot name that the case does not have."""
 
@@ -126,6 +130,10 @@ class Unwritable(ClearanceError):
 
 class Unavailable(ClearanceError):
     """An optional library that is needed for this call and is not installed."""
+
+
+class Incomplete(ClearanceError):
+    """Work that could not be finished; what was done stays, and the same command goes on with it."""
 
 
 @contextmanager

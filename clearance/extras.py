@@ -13,11 +13,14 @@ from importlib.util import find_spec
 from clearance.errors import Unavailable
 
 LIBRARIES = {
+    "batch": ("dask", "distributed"),
+    "cad": ("cascadio",),
     "contact": ("coacd", "manifold3d"),
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
-    "report": ("plotly", "meshcat", "matplotlib"),
-    "ros": ("rosbags",),
+    "mujoco": ("mujoco",),
+    "report": ("plotly", "meshcat", "matplotlib", "junitparser"),
+    "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
     "view": ("meshcat", "tornado", "umsgpack"),
 }

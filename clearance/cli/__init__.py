@@ -1,8 +1,8 @@
 """The command line: one file a command, and here what they share: exit codes and one-line errors.
 
 Exit codes: 0 clear; 1 a limit is violated; 2 bad input, or input that is suspect; 3 the
-cross-check disagrees (each puts those before it in doubt, so the greatest that holds goes); 70 a
-fault of this program, with its traceback; 130 interrupted.
+cross-check disagrees; 4 incomplete, the same command goes on (each puts those before it in doubt, so the greatest
+that holds goes); 70 a fault of this program, with its traceback; 130 interrupted.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ class ExitCode(IntEnum):
     VIOLATED = 1
     BAD_INPUT = 2
     DISAGREES = 3
+    INCOMPLETE = 4
     FAULT = 70  # EX_SOFTWARE: Python's own 1 would read as a violated limit
     INTERRUPTED = 130
     PIPE_CLOSED = 141
@@ -62,7 +63,7 @@ def _dispatch(arguments: list[str]) -> int:
     import click
 
     from clearance.cli.commands import clearance
-    from clearance.errors import ClearanceError
+    from clearance.errors import ClearanceError, Incomplete
 
     try:
         _require_text(arguments)
@@ -79,6 +80,9 @@ def _dispatch(arguments: list[str]) -> int:
     except click.ClickException as error:
         _say(f"error: {' '.join(error.format_message().split())}{_hint(error)}")
         return ExitCode.BAD_INPUT
+    except Incomplete as error:
+        _say(f"incomplete: {error}")
+        return ExitCode.INCOMPLETE
     except ClearanceError as error:
         _say(f"error: {error}")
         return ExitCode.BAD_INPUT

@@ -5,18 +5,22 @@ from __future__ import annotations
 import os
 import sys
 from dataclasses import replace
+from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
+from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
+    from clearance.findings.comparison import Comparison
     from clearance.run import Question, Run
-    from clearance.world.case import Case, Limits
+    from clearance.world.case import Case
 
 
 @click.command()
@@ -81,6 +85,8 @@ if TYPE_CHECKING:
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
+@more_files_options
+@ci_options
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
     case_file: Path,
@@ -100,16 +106,27 @@ def check(
     motion: str,
     as_json: bool,
     junit: Path | None,
+    png: Path | None,
+    glb: Path | None,
+    trajectory: Path | None,
+    waivers: tuple[Path, ...],
+    today: date | None,
+    baseline: Path | None,
+    summary: Path | None,
+    github: bool,
     quiet: bool,
 ) -> int:
     """Measures the least clearance of every step of CASE.yaml.
 
     The verdict is proven for the motion between the samples too. Without --out nothing is
     written. With it, the same command goes on where an interrupted one was. Exit code: 0 clear
-    (or near), 1 a limit is violated, 2 bad or suspect input, 3 the cross-check disagrees; the
-    greatest that holds.
+    (or near), 1 a limit is violated or a waiver is stale, 2 bad or suspect input, 3 the
+    cross-check disagrees; the greatest that holds. A baseline does not change it: `clearance
+    compare` has an exit code of its own.
     """
+    from clearance.cli.comparison import print_comparison
     from clearance.cli.kept import kept_rows
+    from clearance.cli.places import refuse_inputs_of_cases
     from clearance.cli.progress import shown_progress
     from clearance.run import Question, Resources, answer
     from clearance.tolerance import CERTIFY_GAP
@@ -118,11 +135,17 @@ def check(
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
-    _require_extras(out, cross_check, motion)
-    _require_places(out, junit)
+    _require_extras(out, junit, cross_check, motion)
+    _require_places(out, junit, summary)
+    more = MoreFiles(png, glb, trajectory)
+    more.require_writable()
     _compile_ahead(quiet)
+    outputs = _outputs(out, junit, summary, more)
+    case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
+    refuse_inputs_of_cases([case], outputs)
+    before = baseline_of(baseline, outputs)
     question = Question(
-        _case(case_file, _outputs(out, junit), fail_mm, warn_mm, accept),
+        case,
         need=need,
         method=method,
         motion=motion,
@@ -131,14 +154,23 @@ def check(
         cross_check=cross_check,
         contact=contact,
         paper_tolerance=paper_tolerance,
+        today=today,
     )
+    ahead = more.made_ahead(question.case, motion)
     with kept_rows(out, quiet) as rows:
         with shown_progress(quiet or as_json, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if out is not None or as_json:
+            if out is not None or as_json or png or glb:
                 run.record.work_out_contacts(progress)
-        _write(run, out, junit)
+        comparison = comparison_of(run, before)
+        _write(run, out, junit, comparison)
+        notes = more.write(run, ahead)
     _print(run, out, as_json, quiet)
+    if not (as_json or quiet):
+        more.print_written(notes)
+        if comparison is not None:
+            print_comparison(comparison)
+    ForCi(summary, github).write(run, comparison, to_stderr=as_json)
     return ExitCode(run.verdict.exit_code)
 
 
@@ -148,31 +180,30 @@ def _passes(question: Question) -> list[str]:
     return passes + ["cross-checking"] * question.cross_check + ["looking into contacts"]
 
 
-def _require_places(out: Path | None, junit: Path | None) -> None:
+def _require_places(out: Path | None, junit: Path | None, summary: Path | None) -> None:
     from clearance.cli.places import require_file_place, require_folder_place
 
     require_folder_place(out)
     require_file_place(junit)
+    require_file_place(summary, "--summary")
 
 
 def _case(
     case_file: Path,
-    outputs: list[Path],
     fail: float | None,
     warn: float | None,
     accept: tuple[str, ...],
 ) -> Case:
     """The case with what the command line changes of it."""
-    from clearance.cli.places import refuse_inputs_of_cases
     from clearance.load.case_file import load_case
+    from clearance.run.question import with_levels
 
     case = load_case(case_file)
-    refuse_inputs_of_cases([case], outputs)
     accepted = tuple(dict.fromkeys([*case.accept, *accept]))
-    return replace(case, limits=_limits(case.limits, fail, warn), accept=accepted)
+    return replace(case, limits=with_levels(case.limits, fail, warn), accept=accepted)
 
 
-def _require_extras(out: Path | None, cross_check: bool, motion: str) -> None:
+def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, motion: str) -> None:
     """Refuses, before anything is measured, what a missing library could not do in the end.
 
     Raises:
@@ -182,29 +213,35 @@ def _require_extras(out: Path | None, cross_check: bool, motion: str) -> None:
 
     if out is not None:
         require("report", "--out")
+    if junit is not None:
+        require("report", "--junit")
     if cross_check:
         require("crosscheck", "--cross-check")
     if motion == "simulated":
         require("simulate", "--motion simulated")
 
 
-def _outputs(out: Path | None, junit: Path | None) -> list[Path]:
-    """The files that may be written; the report's own are none for `junit`.
+def _outputs(
+    out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
+) -> list[Path]:
+    """The files that may be written; no two are the same.
 
     Raises:
-        Unwritable: it would overwrite one of them.
+        Unwritable: one would overwrite another.
     """
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 
     report = [] if out is None else [out / name for name in OWN]
-    if junit is None:
-        return report
-    if os.path.realpath(junit) in map(os.path.realpath, report):
-        raise Unwritable(
-            "is a file of the report", where=str(junit), valid="--junit needs another name"
-        )
-    return [*report, junit]
+    taken = {os.path.realpath(path): "is a file of the report" for path in report}
+    asked = {"--junit": junit, "--summary": summary, **more.by_option}
+    named = {option: path for option, path in asked.items() if path is not None}
+    for option, path in named.items():
+        if os.path.realpath(path) in taken:
+            problem = taken[os.path.realpath(path)]
+            raise Unwritable(problem, where=str(path), valid=f"{option} needs another name")
+        taken[os.path.realpath(path)] = f"is the file of {option}"
+    return [*report, *named.values()]
 
 
 def _compile_ahead(quiet: bool) -> None:
@@ -212,7 +249,7 @@ def _compile_ahead(quiet: bool) -> None:
     import warnings
 
     from clearance.cli import compile_ahead
-    from clearance.compile.kernel_cache import KernelCacheWarning
+    from clearance.kept_files import KernelCacheWarning
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)
@@ -220,32 +257,9 @@ def _compile_ahead(quiet: bool) -> None:
         click.echo("compiling for this machine, once: about half a minute", err=True)
 
 
-def _limits(given: Limits, fail: float | None, warn: float | None) -> Limits:
-    """The limits with what the command line changes; raising `fail` alone takes `warn` along, a rule's too that
-    gives no `fail` of its own.
-    """
-    if fail is None and warn is None:
-        return given
-    if fail is None:
-        fail = given.fail
-    if warn is None:
-        warn = max(given.warn, fail)
-    if warn < fail:
-        raise click.UsageError(
-            f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
-        )
-    rules = tuple(
-        replace(rule, warn=max(rule.warn, fail))
-        if rule.fail is None and rule.warn is not None
-        else rule
-        for rule in given.rules
-    )
-    return replace(given, fail=fail, warn=warn, rules=rules)
-
-
-def _write(run: Run, out: Path | None, junit: Path | None) -> None:
+def _write(run: Run, out: Path | None, junit: Path | None, comparison: Comparison | None) -> None:
     if out is not None:
-        run.save(out)
+        run.save(out, comparison)
     if junit is not None:
         from clearance.report import write_junit
 

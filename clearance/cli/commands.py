@@ -5,8 +5,11 @@ from __future__ import annotations
 import click
 
 from clearance import __version__
+from clearance.cli.batch import batch
 from clearance.cli.check import check
+from clearance.cli.comparison import compare
 from clearance.cli.convert import convert
+from clearance.cli.new import new
 from clearance.cli.profile import profile
 from clearance.cli.schema import schema
 from clearance.cli.srdf import srdf
@@ -20,8 +23,11 @@ def clearance() -> None:
     """How close a robot's path comes to anything, where, when, and how sure that is."""
 
 
+clearance.add_command(batch)
 clearance.add_command(check)
+clearance.add_command(compare)
 clearance.add_command(convert)
+clearance.add_command(new)
 clearance.add_command(profile)
 clearance.add_command(schema)
 clearance.add_command(srdf)

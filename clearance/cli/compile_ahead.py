@@ -23,7 +23,6 @@ import numba
 import clearance.kernels.motion.certify
 import clearance.kernels.search.body_pair  # noqa: F401 - both enter their kernels in the table
 from clearance.compile import kernel_table
-from clearance.compile.kernel_cache import cache_root
 from clearance.compile.kernel_table import (
     CERTIFY,
     FEATURES,
@@ -32,6 +31,7 @@ from clearance.compile.kernel_table import (
     SEPARATING_PLANES,
     TOGETHER,
 )
+from clearance.kept_files import cache_root
 from clearance.simulate.parts import usable_cores
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"

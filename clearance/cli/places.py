@@ -24,12 +24,12 @@ def require_folder_place(folder: Path | None) -> None:
     _require_writable(folder, folder)
 
 
-def require_file_place(file: Path | None) -> None:
+def require_file_place(file: Path | None, option: str = "--junit") -> None:
     """Raises `Unwritable` if `file` is given and is a folder, or cannot be made."""
     if file is None:
         return
     if file.is_dir():
-        raise Unwritable("is a folder", where=str(file), valid="--junit needs a file")
+        raise Unwritable("is a folder", where=str(file), valid=f"{option} needs a file")
     _require_writable(file, file.absolute().parent)
 
 

@@ -102,6 +102,8 @@ def _beside(verdict: Verdict) -> list[Text]:
     not_checked = ", ".join(f"{name} not checked" for name in verdict.not_checked)
     lines = [_row("", not_checked)] if not_checked else []
     lines += [_row("nearest", verdict.nearest)] if verdict.nearest else []
+    lines += [_row("waived", text) for text in verdict.waived]
+    lines += [_row("waivers", text) for text in verdict.stale]
     lines += [_row("violated", text) for text in verdict.broken]
     lines += [_row("unproven", verdict.unproven)] if verdict.unproven else []
     lines += [_row("suspect", _suspect(one)) for one in verdict.suspects]

@@ -1,4 +1,4 @@
-"""`clearance view`: a report's replay in the browser."""
+"""`clearance view`: a report's replay in the browser, or the report of one case of a batch."""
 
 from __future__ import annotations
 
@@ -8,12 +8,35 @@ import click
 
 
 @click.command()
-@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
-def view(folder: Path) -> None:
+@click.argument("folder", metavar="DIR|STORE", type=click.Path(path_type=Path))
+@click.argument("case", metavar="[CASE]", required=False)
+def view(folder: Path, case: str | None) -> None:
     """Shows the replay of a report folder in the browser: robot, scene and connecting line.
 
-    DIR is what `clearance check --out DIR` has written.
+    DIR is what `clearance check --out DIR` has written. With STORE, which `clearance batch` has
+    written, and the name of a CASE in it, that case's full report is written, and where it is.
     """
+    if case is not None:
+        _write_case(folder, case)
+        return
     from clearance.view import show
 
     show(folder)
+
+
+def _write_case(place: Path, name: str) -> None:
+    from clearance.batch.case_page import write_case_page
+    from clearance.batch.listed import item_called, read_list
+    from clearance.batch.output import rewrite_page
+    from clearance.batch.store import open_store
+    from clearance.cli.progress import shown_progress
+    from clearance.cli.verdict import print_verdict
+    from clearance.extras import require
+
+    require("report", "the page of a case")
+    store = open_store(place, make=False)
+    item = item_called(read_list(place), name)
+    with shown_progress(False, ["measuring", "certifying"]) as progress:
+        run, folder = write_case_page(place, item, progress)
+    rewrite_page(store)
+    print_verdict(run, folder)

@@ -6,7 +6,7 @@ with all that lies below it, level by level; large ones are therefore kept `apar
 numba's own cache looks only at the file of the function itself and would silently return old code when a
 callee in another kernel file has changed. Here the cache folder's name is a hash of the kernel's file and
 of every kernel file it imports, and of this one, so that an edit recompiles what depends on it and nothing else
-(`kernel_cache` says what is believed of what lies there).
+(`kept_files` says what is believed of what lies there).
 """
 
 from __future__ import annotations

@@ -11,10 +11,11 @@ from dataclasses import replace
 import pyarrow as pa
 
 from clearance.crosscheck.compare import compared
-from clearance.simulate.judged import Judged, SectionAnswer
+from clearance.simulate.judged import Judged
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import CrossCheck, Samples
 from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.steps import step_table
 
 

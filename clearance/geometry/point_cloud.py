@@ -65,7 +65,7 @@ class PointCloud(Polyhedron):
     def _fill_points(self, points: np.ndarray, radius: float) -> None:
         if not (isinstance(radius, int | float) and 0.0 < radius <= LARGEST):
             raise BadDimension(f"radius is {radius!r:.60}", valid="above 0 m")
-        self._fill(points, np.arange(len(points) + 1), np.arange(len(points)), 0.0)
+        self._fill(points, np.arange(len(points) + 1), np.arange(len(points)), 0.0, 0.0)
         object.__setattr__(self, "_ball_radius", float(radius))
 
     @classmethod

@@ -31,8 +31,13 @@ class ScenePlace:
     content: SceneContent = _NOTHING
 
 
-def read_schema(path: Path, files: InputFiles) -> tuple[schema.Case, ScenePlace]:
+def read_schema(
+    path: Path, files: InputFiles, model: type[schema.Case] = schema.Case
+) -> tuple[schema.Case, ScenePlace]:
     """The checked content of a case file, its scene's file in place of that file's name.
+
+    Args:
+        model: what it must be.
 
     Raises:
         BadInput: with the file and the field.
@@ -44,7 +49,7 @@ def read_schema(path: Path, files: InputFiles) -> tuple[schema.Case, ScenePlace]
     if isinstance(raw, dict) and isinstance(raw.get("scene"), str):
         scene_at = _scene_of(raw, path, files)
         raw = {**raw, "scene": scene_at.content.scene}
-    return validated(schema.Case, raw, path.name), scene_at
+    return validated(model, raw, path.name), scene_at
 
 
 def _scene_of(raw: dict[str, object], path: Path, files: InputFiles) -> ScenePlace:

@@ -24,6 +24,7 @@ from clearance.errors import (
     MissingKey,
     NotFinite,
 )
+from clearance.load.input_files import SHORT
 from clearance.world.names import checked_name
 
 if TYPE_CHECKING:
@@ -71,6 +72,14 @@ def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTabl
         file.seek(0)
         has_comma = any(b"," in chunk for chunk in iter(lambda: file.read(1 << 20), b""))
     return TextTable(opened, ";", "," if has_comma else ".", names)
+
+
+def note_on_separators(table: TextTable) -> list[str]:
+    """A line that says so where columns are separated otherwise than by commas."""
+    if table.delimiter == ",":
+        return []
+    decimals = ", decimals written with commas" if table.decimal == "," else ""
+    return [f"columns are separated by semicolons{decimals}"]
 
 
 def header_of(table: TextTable, others: str) -> list[str]:
@@ -160,6 +169,11 @@ def _batches(table: TextTable, names: list[str]) -> Iterator[pa.RecordBatch]:
     parsing = arrow_csv.ParseOptions(delimiter=table.delimiter)
     try:
         with table.opened() as file, _native(file) as stream:
+            if stream.size() <= SHORT:  # threads cost more than they help
+                reading.use_threads = False
+                whole = arrow_csv.read_csv(stream, reading, parsing, types)
+                yield from whole.combine_chunks().to_batches()
+                return
             yield from arrow_csv.open_csv(stream, reading, parsing, types)
     except pa.ArrowException as error:
         raise _fault_in_rows(table, names) or BadSyntax(

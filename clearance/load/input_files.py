@@ -13,14 +13,19 @@ import os
 import stat
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from io import BufferedReader
+from functools import cached_property
+from io import BufferedReader, BytesIO
 from pathlib import Path
+from typing import BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
 from clearance.world.case import Source
 
-_PYBULLET_DATA = "pybullet_data:"
+PYBULLET_DATA = "pybullet_data:"
+
+SHORT = 2**20
+"""[bytes] Files up to this length are read once, whoever goes through them how often."""
 
 
 class InputFiles:
@@ -34,6 +39,7 @@ class InputFiles:
         self.folder = folder
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
+        self._held: set[Path] = set()
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -57,27 +63,50 @@ class InputFiles:
     def hold(self, path: Path, data: bytes) -> None:
         """Keeps what is written out in another file as the content of a file of its own, which is not on disk."""
         self._contents[Path(os.path.abspath(path))] = data
+        self._held.add(Path(os.path.abspath(path)))
 
-    def unread(self, path: Path) -> tuple[Callable[[], BufferedReader], int]:
-        """Opens a long file, again and again, and how many bytes it has; its checksum is remembered,
-        its content is not.
+    def is_held(self, path: Path) -> bool:
+        """Whether a file is not on disk."""
+        return Path(os.path.abspath(path)) in self._held
+
+    def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
+        """Opens a file, again and again, and how many bytes it has; its checksum is remembered, its content only
+        while a short one is read.
 
         Raises:
             MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
-        with _openable(self.shown(path)), _regular(path) as file:
+        if path in self._held:
+            data = self._contents[path]
+            return lambda: BytesIO(data), len(data)
+        shown, content = self.shown(path), b""
+        with _openable(shown), regular_file(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
-            digest = hashlib.file_digest(file, "sha256").hexdigest()
-        self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
-        return lambda: _regular(path), n_bytes
+            if n_bytes <= SHORT:
+                content = file.read()
+                digest, n_bytes = hashlib.sha256(content).hexdigest(), len(content)
+            else:
+                digest = hashlib.file_digest(file, "sha256").hexdigest()
+        self._sources[path] = Source(shown, digest, n_bytes, str(path))
+        return (lambda: BytesIO(content) if n_bytes <= SHORT else regular_file(path)), n_bytes
+
+    def of_more(self) -> InputFiles:
+        """The same folder, for further files: none is read yet."""
+        made = InputFiles(self.folder)
+        made.__dict__["_brought"] = self._brought
+        return made
+
+    @cached_property
+    def _brought(self) -> Path | None:
+        return _pybullet_data_folder()
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         path = Path(os.path.abspath(path))
-        brought = _pybullet_data_folder()
+        brought = self._brought
         if brought is not None and path.is_relative_to(brought):
-            return _PYBULLET_DATA + path.relative_to(brought).as_posix()
+            return PYBULLET_DATA + path.relative_to(brought).as_posix()
         return relative_path(path, self.folder)
 
 
@@ -87,7 +116,7 @@ def read_bytes(path: Path, shown: str) -> bytes:
     Raises:
         MissingFile: it is not there, is no file on disk, or cannot be read.
     """
-    with _openable(shown), _regular(path) as file:
+    with _openable(shown), regular_file(path) as file:
         return file.read()
 
 
@@ -95,7 +124,7 @@ class _NotRegular(OSError):
     """A pipe, socket or device."""
 
 
-def _regular(path: Path) -> BufferedReader:
+def regular_file(path: Path) -> BufferedReader:
     """Opens a file on disk; a pipe or a device, which may never end, is not waited for."""
     descriptor = os.open(
         path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
@@ -149,12 +178,12 @@ def resolved(given: str, folder: Path) -> Path:
     Raises:
         Unavailable: `pybullet_data:` without that package.
     """
-    if not given.startswith(_PYBULLET_DATA):
-        return folder / given
+    if not given.startswith(PYBULLET_DATA):
+        return Path(os.path.normpath(folder / given))  # also from a folder that is not there yet
     brought = _pybullet_data_folder()
     if brought is None:
         raise Unavailable(f"{given!r} needs the package pybullet", valid=install("simulate"))
-    return brought / given.removeprefix(_PYBULLET_DATA).lstrip("/")
+    return brought / given.removeprefix(PYBULLET_DATA).lstrip("/")
 
 
 def _pybullet_data_folder() -> Path | None:

@@ -10,6 +10,7 @@ from clearance.errors import BadDimension, BadInput, BadShape, nearest_name
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.moveit_values import Message, items, number, text
 from clearance.load.octree_file import file_of_message
+from clearance.load.off_file import off_text
 from clearance.load.scene_request import SceneRequest
 
 Row = dict[str, Any]
@@ -84,10 +85,7 @@ class SceneMeshes:
                 )
         name = f"{self._asked.path.name}.mesh{self._n_inline}.off"
         self._n_inline += 1
-        lines = ["OFF", f"{len(vertices)} {len(triangles)} 0"]
-        lines += [" ".join(map(repr, vertex)) for vertex in vertices]
-        lines += [" ".join(map(str, (3, *triangle))) for triangle in triangles]
-        self._asked.files.hold(self._asked.path.parent / name, "\n".join(lines).encode())
+        self._asked.files.hold(self._asked.path.parent / name, off_text(vertices, triangles))
         return {"mesh": {"file": name}}
 
     def octomap(self, given: Message) -> Row:

@@ -12,9 +12,12 @@ from pydantic import Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
 from clearance.geometry import shapes
-from clearance.load.pose_schema import Pose, TimedFile
+from clearance.load.mesh import CAD
+from clearance.load.pose_schema import Pose, PoseFile
 from clearance.load.shape_schema import Triple, with_shapes
+from clearance.load.step_file import COARSEST, FINEST
 from clearance.load.strict_model import Level, Name, StrictModel
+from clearance.tolerance import TESSELLATION
 
 
 def _is_double(number: int | float) -> bool:
@@ -52,9 +55,26 @@ class ScaledFile(StrictModel):
 
 
 class Mesh(ScaledFile):
-    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
+    """A mesh file; `tolerance` [m] is how far the facets of a CAD file may be off its surface."""
+
+    FILLED = frozenset({"tolerance"})
 
     collada_up_axis: Literal["ros", "file"] = "file"
+    tolerance: Annotated[float | None, Field(ge=FINEST, le=COARSEST)] = None
+
+    @model_validator(mode="after")
+    def _tolerance_of_cad(self) -> Mesh:
+        if self.tolerance is not None and not self.file.lower().endswith(CAD):
+            raise BadInput(
+                f"a tolerance of {self.file!r:.60} is given, whose faces are flat",
+                valid="of .step or .stp",
+            )
+        return self
+
+    @property
+    def tolerance_or_default(self) -> float:
+        """[m]."""
+        return TESSELLATION if self.tolerance is None else self.tolerance
 
 
 class LengthUnit(StrictModel):
@@ -103,7 +123,7 @@ class Obstacle(_Shaped):
     mesh: Mesh | None = None
     points: ScannedPoints | None = None
     on: Name | None = None
-    moves: TimedFile | None = None
+    moves: PoseFile | None = None
     padding: Level = 0.0
 
     @property

@@ -17,7 +17,7 @@ from clearance.load.moveit_objects import object_rows
 from clearance.load.moveit_shapes import Row, SceneMeshes
 from clearance.load.moveit_values import Message, Poses, items, message, messages, number, text
 from clearance.load.pose_row import pose_row
-from clearance.load.scene_request import SceneContent, SceneRequest
+from clearance.load.scene_request import HeldPart, SceneContent, SceneRequest
 
 OCTOMAP = "<octomap>"
 """The name of a map in MoveIt, by which its matrix may allow it."""
@@ -51,7 +51,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
             obstacles += _octomap(message(world, "octomap"), frames, meshes, poses)
         state = message(raw, "robot_state")
         with at("robot_state"):
-            attached, touching = _attached(state, meshes, poses)
+            attached, held = _attached(state, meshes, poses)
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
         padding = _padding(raw)
     rows = [*obstacles, *attached]
@@ -60,8 +60,9 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         {"obstacles": rows},
         (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(meshes.by_variable)),
         tuple(notices_on_stand_ins(meshes.stand_ins)),
-        allow=(*touching, *_by_obstacle(matrix, rows)),
+        allow=tuple(_by_obstacle(matrix, rows)),
         link_padding=padding,
+        held=tuple(held),
     )
 
 
@@ -110,18 +111,18 @@ def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -
 
 def _attached(
     state: Message, meshes: SceneMeshes, poses: Poses
-) -> tuple[list[Row], list[tuple[str, str]]]:
-    """The obstacles that ride on links, and which links may touch which of them."""
+) -> tuple[list[Row], list[HeldPart]]:
+    """The obstacles that ride on links, and what each may touch."""
     rows: list[Row] = []
-    touching: list[tuple[str, str]] = []
+    held: list[HeldPart] = []
     for where, given in messages(state, "attached_collision_objects"):
         with at(where):
             link = text(given, "link_name")
-            links = dict.fromkeys([link, *_touch_links(given)])
+            touch = tuple(dict.fromkeys(_touch_links(given)))
             for row in _held(message(given, "object"), link, meshes, poses):
                 rows.append(row | {"on": link})
-                touching += [(one, row["name"]) for one in links]
-    return rows, touching
+                held.append(HeldPart(row["name"], link, touch))
+    return rows, held
 
 
 def _touch_links(given: Message) -> list[str]:
@@ -185,10 +186,23 @@ def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses)
 
 def _lost(raw: Message, state: Message) -> Iterator[str]:
     """What has no place in a scene."""
-    if items(message(state, "joint_state"), "name"):
+    joints = [message(state, key) for key in ("joint_state", "multi_dof_joint_state")]
+    if any(items(one, name) for one in joints for name in ("name", "joint_names")):
         yield "the robot's state is not taken: joints are as the case says"
     if raw.get("is_diff") is True:
         yield "it is a difference to another scene, of which nothing is known"
+    world = message(raw, "world")
+    n_named = sum(
+        len(items(one, "subframe_names"))
+        for _, one in (*messages(world, "collision_objects"), *_objects_held(state))
+    )
+    if n_named:
+        yield f"{n_named} subframes of objects are passed over: nothing here is given in them"
+
+
+def _objects_held(state: Message) -> Iterator[tuple[str, Message]]:
+    for where, given in messages(state, "attached_collision_objects"):
+        yield where, message(given, "object")
 
 
 def _on_rounded(poses: Poses) -> Iterator[str]:

@@ -11,16 +11,18 @@ from pathlib import Path
 from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_name
 from clearance.load import schema
 from clearance.load.allow import checked_links
-from clearance.load.input_files import resolved
+from clearance.load.input_files import InputFiles, resolved
+from clearance.load.joints_schema import states_of
+from clearance.load.limit_files import limited, note_on_accelerations
 from clearance.load.mesh_store import MeshStore
-from clearance.load.motion_names import check_not_given_twice
+from clearance.load.resting import resting_positions
 from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest
 from clearance.load.srdf import read_srdf
 from clearance.load.timed_files import trajectory_of
+from clearance.load.xacro_file import SUFFIX, checked_args, hold_expanded
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
-from clearance.world.moving_joints import require_moving_joints
 from clearance.world.robot import Robot
 from clearance.world.rules import matches
 
@@ -48,32 +50,24 @@ class RobotReader:
         """
         given, field = entry.robot, entry.field
         request = self._request(given, field)
-        robot = self._robot(request, given.name, field)
-        trajectory = None
-        if entry.trajectory is not None:
-            where = entry.trajectory_field
-            read = trajectory_of(entry.trajectory, where, self._folder, robot, self._files)
-            trajectory = read.trajectory
-            self.notes += read.notes
-        with at(f"{field}.joints"):
-            require_moving_joints(robot, given.joints)
-            check_not_given_twice(given.joints, trajectory.joint_names if trajectory else ())
+        self._expand_srdf(given, field, request)
+        limits = limited(entry, self._robot(request, given.name, field), self._folder, self._files)
+        robot = limits.robot
+        self.notes += limits.notes
         with at(f"{field}.exclude_links"):
             exclude_links = checked_links(given.exclude_links, robot.link_names)
         with at(f"{field}.padding"):
             padding = _padding(given.padding, robot.link_names)
         placed = PlacedRobot(
             robot=robot,
-            trajectory=trajectory,
-            fixed_positions=dict(given.joints),
             exclude_links=exclude_links,
             urdf_path=str(request.path),
             package_dirs=tuple(map(str, request.package_dirs)),
             self_clearance=self._self_clearance(given, field, robot),
             padding=padding,
+            motion_limits=limits.motion_limits,
+            path_tolerances=limits.path_tolerances,
         )
-        if entry.trajectory is not None:
-            placed = replace(placed, timing=entry.trajectory.timing)
         if given.base.on is not None:
             return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
         return replace(placed, world_from_base=given.base.matrix())
@@ -82,8 +76,31 @@ class RobotReader:
         package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
         with at(f"{field}.package_dirs"):
             _refuse_missing_folders(given.package_dirs, package_dirs)
-        path = resolved(given.urdf, self._folder)
-        return RobotRequest(path, package_dirs, given.geometry, given.collada_up_axis)
+        if given.xacro_args and not given.xacro:
+            raise BadInput(
+                "arguments of xacro, which is not used",
+                where=f"{field}.xacro_args",
+                valid="xacro: true",
+            )
+        with at(f"{field}.xacro_args"):
+            args = checked_args(given.xacro_args)
+        return RobotRequest(
+            resolved(given.urdf, self._folder),
+            package_dirs,
+            given.geometry,
+            given.collada_up_axis,
+            given.xacro,
+            args,
+        )
+
+    def _expand_srdf(self, given: schema.Robot, field: str, request: RobotRequest) -> None:
+        """Makes an SRDF of xacro's what it stands for, where xacro is allowed."""
+        if given.srdf is None or not given.xacro or not given.srdf.endswith(SUFFIX):
+            return
+        path = resolved(given.srdf, self._folder)
+        if not self._files.is_held(path):
+            with at(f"{field}.srdf"):
+                self.notes += hold_expanded(path, request.package_dirs, self._files)
 
     def _robot(self, request: RobotRequest, name: str | None, field: str) -> Robot:
         if request not in self._read:
@@ -106,15 +123,40 @@ class RobotReader:
         return SelfClearance(matrix, given.trust_never)
 
 
+def in_motion(
+    entry: schema.RobotEntry, placed: PlacedRobot, folder: Path, files: InputFiles
+) -> tuple[PlacedRobot, tuple[str, ...]]:
+    """The robot of an entry with its trajectory, the others of its joints at rest; and a line each on how.
+
+    Args:
+        placed: as it stands. folder: against which paths are looked up.
+
+    Raises:
+        BadInput: with the field and the file.
+    """
+    asked, trajectory = entry.trajectory, None
+    notes: tuple[str, ...] = ()
+    if asked is not None:
+        field = entry.trajectory_field
+        trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
+        path = str(resolved(asked.file, folder))
+        placed = replace(placed, trajectory=trajectory, timing=asked.timing, trajectory_path=path)
+    moved = trajectory.joint_names if trajectory else ()
+    resting = resting_positions(entry, placed.robot, moved, folder, files)
+    on_limits = note_on_accelerations(placed.motion_limits, trajectory)
+    return replace(placed, fixed_positions=resting.positions), (*notes, *resting.notes, *on_limits)
+
+
 def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:
     """Refuses fields about excused pairs where they would excuse nothing."""
     if not given.self_clearance:
         for key in ("srdf", "trust_never"):
-            if getattr(given, key):
+            if getattr(given, key) and not (key == "srdf" and states_of(given.joints)):
                 raise BadInput(
                     "it excuses pairs of links, which are not measured",
                     where=f"{field}.{key}",
-                    valid="self_clearance: true, or no such field",
+                    valid="self_clearance: true, or no such field"
+                    + (", or a state of it: joints: {state: …}" if key == "srdf" else ""),
                 )
     elif given.srdf is None and given.trust_never:
         raise BadInput(

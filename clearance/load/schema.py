@@ -9,11 +9,12 @@ text, no `true`, no NaN). Not for: reading files, or names that must exist in th
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import AfterValidator, Field, model_validator
 
 from clearance.errors import BadInput, MissingKey, nearest_name
+from clearance.load.joints_schema import Joints
 from clearance.load.limits_schema import Allowed, Limits
 from clearance.load.obstacle_schema import Scene
 from clearance.load.pose_schema import Base, TrajectoryFile, window_of
@@ -37,16 +38,20 @@ class Robot(StrictModel):
 
     name: Annotated[Name, AfterValidator(_without_stroke)] | None = None
     urdf: Name
+    xacro: bool = False
+    xacro_args: dict[str, str | bool | int | float] = {}
     package_dirs: list[Name] = []
     base: Base = Base()
     trajectory: TrajectoryFile | None = None
     exclude_links: list[Name] = []
-    joints: dict[str, float] = {}
+    joints: Joints = {}
     geometry: Literal["collision", "visual", "collision_or_visual"] = "collision"
     collada_up_axis: Literal["ros", "file"] = "ros"
     self_clearance: bool = False
     srdf: Name | None = None
     trust_never: bool = False
+    joint_limits: Name | None = None
+    controllers: Name | None = None
     padding: dict[str, Level] = {}
 
 
@@ -145,6 +150,8 @@ class Case(StrictModel):
     """A whole case file; `scene` may be a path, which is followed before this is checked."""
 
     FILLED = frozenset({"trajectory"})
+    MOVES: ClassVar[bool] = True
+    """Something must move."""
 
     name: Name | None = None
     robot: Robot | None = None
@@ -158,6 +165,7 @@ class Case(StrictModel):
     contact_response: bool = False
     profiles: list[Profile] = []
     accept: list[Kind] = []
+    waivers: list[Name] = []
     report: Report | None = None
 
     @model_validator(mode="before")
@@ -190,7 +198,7 @@ class Case(StrictModel):
                     valid="one of them",
                 )
         moving = any(obstacle.moves is not None for obstacle in self.scene.obstacles)
-        if not moving and all(entry.trajectory is None for entry in entries):
+        if self.MOVES and not moving and all(entry.trajectory is None for entry in entries):
             raise MissingKey("'trajectory' is missing", valid="nothing moves without one")
         return self
 
@@ -205,6 +213,12 @@ class Case(StrictModel):
         if self.trajectory is not None:
             return RobotEntry(field, robot, self.trajectory, "trajectory")
         return RobotEntry(field, robot, robot.trajectory, f"{field}.trajectory")
+
+
+class Cell(Case):
+    """A case file that may leave out what moves: trajectories are given to it one after another."""
+
+    MOVES = False
 
 
 _NEEDED = {

@@ -17,13 +17,13 @@ from string import Template
 from typing import Any
 
 import numpy as np
-from markupsafe import escape
+from markupsafe import Markup, escape
 
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
 from clearance.report.markup import element
 from clearance.report.pair_curves import PairCurves
-from clearance.report.sections import badge_text, header, sections
+from clearance.report.sections import NOTHING, badge_text, header, sections
 from clearance.report.wording import contact_text, count
 from clearance.simulate.replay import Replay
 from clearance.simulate.replay_bodies import LINK
@@ -41,12 +41,14 @@ def page_of(
     replay: Replay,
     pictures: dict[str, str] | None = None,
     curves: PairCurves | None = None,
+    findings: Markup = NOTHING,
 ) -> str:
     """The whole page.
 
     Args:
         pictures: SVG of each profile by its name.
         curves: each pair's own, if every pair was measured at every step.
+        findings: the section of what each rule comes to.
 
     Raises:
         Unavailable: meshcat is installed without its viewer.
@@ -57,7 +59,7 @@ def page_of(
         style=_own("page.css"),
         header=header(summary),
         stage_note=_stage_note(replay),
-        sections=sections(summary, pictures or {}),
+        sections=sections(summary, pictures or {}, findings),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
         data=_json_inside_script(_data(summary, replay) | _pairs(summary, replay, curves)),
         plotly=_inside_script(_plotly()),

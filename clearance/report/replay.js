@@ -207,10 +207,17 @@ class Replay {
         direction: new this.three.Vector3(0, 1, 0).applyQuaternion(contact.arrow.quaternion).toArray(),
         corners: contact.region.geometry.getAttribute("position").count,
       })),
+      camera: this.looks(),
       colour: "#" + this.material.color.getHexString(),
       bodies,
       hidden: this.data.bodies.filter((body, i) => !this.bodies[i].node.visible).map((body) => body.name),
     };
+  }
+
+  // Eye and target in the world frame.
+  looks() {
+    const {camera, controls} = this.viewer;
+    return [camera.position, controls.target].map((at) => [at.x, -at.z, at.y]);
   }
 
   worldBox(chosen, frames) {

@@ -23,11 +23,13 @@ from clearance.report.markup import (
 from clearance.report.matrix import matrix
 from clearance.report.profiles import profiles
 from clearance.report.rules import name_shown, rules
-from clearance.report.verdict import verdict_text
+from clearance.report.verdict import STALE, verdict_text
 from clearance.report.wording import count, joint_value, limits_text, mm, other_time, seconds
 
 MAX_EVENT_ROWS = 200
 """Most events printed on the page; all are in `summary.json`."""
+
+NOTHING = Markup("")
 
 _TITLES = {
     "clear": "clear",
@@ -35,6 +37,7 @@ _TITLES = {
     "violated": "limit violated",
     "contact": "contact",
     "suspect": "suspect input",
+    STALE: STALE,
 }
 
 
@@ -95,15 +98,18 @@ def _headline(summary: dict[str, Any]) -> Markup:
 
 def badge_text(summary: dict[str, Any]) -> str:
     """The verdict in a few words."""
-    status, measured, basis, disputed_by, clocks = (
-        summary[name] for name in ("verdict", "measured", "basis", "disputed_by", "clocks")
+    status, measured, basis, disputed_by, clocks, n_waivers = (
+        summary[name]
+        for name in ("verdict", "measured", "basis", "disputed_by", "clocks", "n_waivers")
     )
-    text = verdict_text(status, measured, basis, disputed_by, clocks, _TITLES.__getitem__)
+    title = _TITLES.__getitem__
+    text = verdict_text(status, measured, basis, disputed_by, clocks, n_waivers, title)
     return text[0].upper() + text[1:]
 
 
 def _badge_class(summary: dict[str, Any]) -> str:
-    return "violated" if summary["disputed_by"] else summary["verdict"]
+    failing = summary["disputed_by"] or summary["verdict"] == STALE
+    return "violated" if failing else summary["verdict"]
 
 
 def _beside(summary: dict[str, Any]) -> Markup:
@@ -112,9 +118,10 @@ def _beside(summary: dict[str, Any]) -> Markup:
         element("li", f"Suspect {one['kind']}: {one['text']}", class_="text-suspect")
         for one in summary["suspects"]
     ]
-    rows += [
-        element("li", f"Violated: {text}", class_="text-violated") for text in summary["broken"]
-    ]
+    failing = [*(f"Violated: {text}" for text in summary["broken"])]
+    failing += [text[0].upper() + text[1:] for text in summary["stale"]]
+    rows += [element("li", text, class_="text-violated") for text in failing]
+    rows += [element("li", f"Waived: {text}", class_="text-near") for text in summary["waived"]]
     doubts = [summary["unproven"]] if summary["unproven"] else []
     doubts += [f"Warning: {text}" for text in summary["warnings"]]
     rows += [element("li", text[0].upper() + text[1:], class_="text-near") for text in doubts]
@@ -156,8 +163,14 @@ def _cross_check_word(check: dict[str, Any] | None) -> str:
     return f"agrees with {check['peer']}" if check["agrees"] else f"disagrees with {check['peer']}"
 
 
-def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:
-    """All sections under the replay; `pictures`: SVG of each profile by its name."""
+def sections(
+    summary: dict[str, Any], pictures: dict[str, str], findings: Markup = NOTHING
+) -> Markup:
+    """All sections under the replay.
+
+    Args:
+        pictures: SVG of each profile by its name. findings: their section.
+    """
     return Markup("").join(
         [
             element(
@@ -166,6 +179,7 @@ def sections(summary: dict[str, Any], pictures: dict[str, str]) -> Markup:
                 element("div", events(summary), certainty(summary)),
                 class_="columns",
             ),
+            findings,
             rules(summary),
             cell_time(summary),
             contacts(summary),

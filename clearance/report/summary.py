@@ -99,6 +99,9 @@ def _verdict(verdict: Verdict) -> dict[str, Any]:
         "not_checked": list(verdict.not_checked),
         "nearer": verdict.nearest,
         "clocks": verdict.clocks,
+        "waived": list(verdict.waived),
+        "n_waivers": verdict.n_waivers,
+        "stale": list(verdict.stale),
     }
 
 

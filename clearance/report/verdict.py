@@ -5,11 +5,13 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clearance.report.finding_text import waived_lines
 from clearance.report.wording import (
     clock_text,
     count,
@@ -23,17 +25,25 @@ from clearance.report.wording import (
 from clearance.simulate.moment import Moment
 from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay_frames import codes_of
-from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.rule_answer import RuleAnswer, worst_of
 from clearance.simulate.status import STATUSES, Status
 from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import DEFAULT
+
+if TYPE_CHECKING:
+    from clearance.findings.judgement import Judgement
 
 SUSPECT = "suspect"
 """The status where the input is in doubt, whatever was measured."""
 
 MOTION, SAMPLES = "motion", "samples"
 """What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
+
+SURROUNDINGS = "surroundings (the scene is empty)"
+
+STALE = "stale waiver"
+"""The status where all would be well, but for a waiver that has expired or that nothing needs."""
 
 SELF_COLLISION = "self-collision"
 """What is not measured unless the case asks for it."""
@@ -46,8 +56,9 @@ class Verdict:
     """What a run comes to.
 
     Attributes:
-        status: "clear", "near", "violated", "contact", or "suspect" where input is in doubt and not accepted.
-        measured: the status by what was measured alone.
+        status: "clear", "near", "violated", "contact", "suspect" where input is in doubt and not accepted, or
+            "stale waiver" where a waiver has expired, or is not needed, and all else is well.
+        measured: the status by what was measured alone, less what is waived.
         basis: "motion" or "samples".
         reasons: why it is not clear, one line each.
         unproven: the one of them that says that a limit could not be proven though nothing below it occurs.
@@ -58,6 +69,8 @@ class Verdict:
         broken: rules of the case that are broken, beside its limits of clearance.
         nearest: the moment of least clearance of all, in one line, where that is not the one that stands worst.
         clocks: how far the actors' clocks may be apart for it to hold; empty for one clock.
+        waived: what is below a limit and waived, one line each. n_waivers: how many waivers that takes.
+        stale: what is wrong with waivers, one line each.
     """
 
     status: str
@@ -72,15 +85,19 @@ class Verdict:
     broken: tuple[str, ...] = ()
     nearest: str | None = None
     clocks: str = ""
+    waived: tuple[str, ...] = ()
+    n_waivers: int = 0
+    stale: tuple[str, ...] = ()
 
     @property
     def exit_code(self) -> int:
-        """0 clear or near, 1 violated or contact, 2 suspect, 3 a peer disagrees; the greatest that holds."""
+        """0 clear or near, 1 violated, contact or a stale waiver, 2 suspect, 3 a peer disagrees; the greatest that
+        holds."""
         if self.disputed_by is not None:
             return 3
         if self.status == SUSPECT:
             return 2
-        return 0 if self.measured in _PASSING else 1
+        return 0 if self.measured in _PASSING and not self.stale else 1
 
     @property
     def passed(self) -> bool:
@@ -89,9 +106,8 @@ class Verdict:
 
     def text(self, shown: Callable[[str], str] = str) -> str:
         """The verdict in a few words, the status written as `shown` says."""
-        return verdict_text(
-            self.status, self.measured, self.basis, self.disputed_by, self.clocks, shown
-        )
+        told = self.status, self.measured, self.basis, self.disputed_by, self.clocks
+        return verdict_text(*told, self.n_waivers, shown)
 
 
 def verdict_text(
@@ -100,16 +116,19 @@ def verdict_text(
     basis: str,
     disputed_by: str | None,
     clocks: str = "",
+    n_waivers: int = 0,
     shown: Callable[[str], str] = str,
 ) -> str:
     """A verdict in a few words; the arguments are as in `Verdict`."""
     text = shown(measured)
+    if n_waivers:
+        text += f" with {count(n_waivers, 'waiver')}"
     if basis == SAMPLES:
         text += " at the samples only" if measured in _PASSING else ", looked at the samples only"
     if clocks:
         text += f", {clocks}"
-    if status == SUSPECT:
-        text = f"{shown(SUSPECT)} (would be {text})"
+    if status in (SUSPECT, STALE):
+        text = f"{shown(status)} (would be {text})"
     return text if disputed_by is None else f"{text}, but {disputed_by} disagrees"
 
 
@@ -118,11 +137,15 @@ def verdict_of(record: Record) -> Verdict:
     notices = record.notices
     suspects = [notice for notice in notices if notice.severity is Severity.SUSPECT]
     open_suspects = tuple(one for one in suspects if one.kind not in record.case.accept)
-    measured = _measured(record)
+    judgement = _judgement(record)
+    measured = _measured(record, judgement)
     check = record.cross_check
     disputing = None if check is None or check.agrees else check
-    unproven = _unproven(record)
-    reasons = [reason for reason in (_occurring(record), unproven) if reason is not None]
+    judging = record.rules if judgement is None else judgement.judging
+    unproven = _unproven(record, judging)
+    reasons = [reason for reason in (_occurring(record, judging), unproven) if reason is not None]
+    stale = () if judgement is None else judgement.faults
+    reasons += stale
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
     broken = [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
     reasons += broken
@@ -131,7 +154,7 @@ def verdict_of(record: Record) -> Verdict:
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(f"{disputing.peer} disagrees at {n_steps}")
     return Verdict(
-        status=SUSPECT if open_suspects else measured,
+        status=SUSPECT if open_suspects else STALE if stale and measured in _PASSING else measured,
         measured=measured,
         basis=SAMPLES if record.certificate is None else MOTION,
         reasons=tuple(reasons),
@@ -143,11 +166,25 @@ def verdict_of(record: Record) -> Verdict:
         broken=tuple(broken),
         nearest=_nearest(record),
         clocks=clock_text(record.case.clock.slack),
+        waived=() if judgement is None else waived_lines(judgement),
+        n_waivers=0 if judgement is None else len(judgement.covering),
+        stale=stale,
     )
 
 
+def _judgement(record: Record) -> Judgement | None:
+    """What the waivers of the case make of it; None where it has none."""
+    if not record.case.waivers:
+        return None
+    from clearance.findings.judgement import judgement_of
+
+    return judgement_of(record)
+
+
 def _not_checked(case: Case) -> Iterator[str]:
-    """The robots whose links are not measured against one another."""
+    """That nothing stands around the robots, and those whose links are not measured against one another."""
+    if not case.obstacles:
+        yield SURROUNDINGS
     left_out = [placed.robot.name for placed in case.robots if not placed.self_clearance]
     if len(left_out) == len(case.robots):
         yield SELF_COLLISION
@@ -155,9 +192,12 @@ def _not_checked(case: Case) -> Iterator[str]:
         yield from (f"{SELF_COLLISION} of {name}" for name in left_out)
 
 
-def _measured(record: Record) -> str:
-    """The worst that any step, the motion between, a profile or a rule of the case says."""
-    worst = int(codes_of(record.steps).max())
+def _measured(record: Record, judgement: Judgement | None) -> str:
+    """The worst that any step, the motion between, a profile or a rule of the case says, less what is waived."""
+    if judgement is None:
+        worst = int(codes_of(record.steps).max())
+    else:
+        worst = STATUSES.index(Status(judgement.status))
     broken = any(notice.severity is Severity.VIOLATED for notice in record.notices)
     if broken or not all(answer.passed for answer in record.profiles):
         worst = max(worst, STATUSES.index(Status.VIOLATED))
@@ -183,10 +223,12 @@ def _judged_by(moment: Moment) -> str:
     return "" if moment.rule == DEFAULT else f", judged by rule {moment.rule!r}"
 
 
-def _occurring(record: Record) -> str | None:
-    """The moment that stands worst, if it is below a limit."""
-    worst = record.worst
-    return None if record.status_of(worst) == Status.CLEAR else moment_line(record, worst)
+def _occurring(record: Record, judging: Sequence[RuleAnswer]) -> str | None:
+    """The moment that stands worst of what decides, if it is below a limit."""
+    worst = record.worst if judging is record.rules else worst_of(judging)
+    if worst is None or record.status_of(worst) == Status.CLEAR:
+        return None
+    return moment_line(record, worst)
 
 
 def _nearest(record: Record) -> str | None:
@@ -195,10 +237,10 @@ def _nearest(record: Record) -> str | None:
     return None if nearest is record.worst else moment_line(record, nearest)
 
 
-def _unproven(record: Record) -> str | None:
+def _unproven(record: Record, judging: Sequence[RuleAnswer]) -> str | None:
     """The limit that the proof does not reach though nothing that was seen is below it."""
     for name in ("fail", "warn"):
-        for rule in record.rules:
+        for rule in judging:
             text = _not_reached(record, rule, name)
             if text is not None:
                 return text

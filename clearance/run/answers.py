@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import accumulate
 
 import numpy as np
@@ -17,18 +18,21 @@ from clearance.simulate import inside
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_sequence import ContactSequence
 from clearance.simulate.fingerprint import fingerprint
-from clearance.simulate.judged import Judged, SectionAnswer, judged
+from clearance.simulate.judged import Judged, judged
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import CrossCheck, ProfileAnswer, Record, Samples
+from clearance.simulate.record import CrossCheck, PairTest, ProfileAnswer, Record, Samples
 from clearance.simulate.replay_bodies import notes_on_drawing
-from clearance.simulate.resources import Resources
+from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
+from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
 from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.notice import Notice, Severity, listed, worst_first
+from clearance.world.pairs import names_of
 from clearance.world.phase import Phase
 from clearance.world.reach import require_within_reach
 from clearance.world.timeline import Timeline, timeline_of
@@ -306,4 +310,30 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         contacts=answers.contacts,
         profiles=answers.profiles,
         cross_check=answers.cross_check,
+        of_pairs=partial(_of_pairs, plan),
+        today=question.today,
+    )
+
+
+def _of_pairs(plan: MeasurementPlan, is_meant: PairTest) -> tuple[RuleAnswer, ...]:
+    """What the rules come to of some pairs alone, as if there were no others."""
+    question, case = plan.question, plan.question.case
+    parts = [_part(case, section, is_meant) for section in plan.sections.sections]
+    sections = tuple(part for part in parts if part.pairs)
+    if not sections:
+        return ()
+    found = [_of_section(question, section, DEFAULT_RESOURCES) for section in sections]
+    some = replace(plan.sections, sections=sections)
+    return judged(some, found, case, plan.motions).rules
+
+
+def _part(case: Case, section: Section, is_meant: PairTest) -> Section:
+    """The section with those of its pairs that are meant."""
+    rule = case.limits.rule_names[section.rule]
+    kept = [
+        i for i, pair in enumerate(section.pairs)
+        if is_meant(rule, names_of(case, pair.a), names_of(case, pair.b))
+    ]  # fmt: skip
+    return replace(
+        section, pairs=tuple(section.pairs[i] for i in kept), places=section.places[kept]
     )

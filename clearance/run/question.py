@@ -6,6 +6,7 @@ Not for: answering (`answers`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime
 
 import numpy as np
 
@@ -41,6 +42,8 @@ class Question:
         contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
             deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
             The verdict does not depend on it.
+        today: the day that the case's waivers are held against; that of the clock, in UTC, if not given; None
+            where it has none.
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
 
     Raises:
@@ -57,6 +60,7 @@ class Question:
     cross_check: bool = False
     contact: str = "events"
     paper_tolerance: float | None = None
+    today: date | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.case, Case):
@@ -85,6 +89,8 @@ class Question:
         _require_one_clock(self)
         _require_surfaces(self)
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
+        today = (self.today or datetime.now(UTC).date()) if self.case.waivers else None
+        object.__setattr__(self, "today", today)
         object.__setattr__(self, "case", replace(self.case, notices=notices_of(self.case)))
 
     @property
@@ -135,6 +141,33 @@ def limited(case: Case, limits: Limits | None) -> Case:
             f"limits are {limits!r:.60}", valid="a Limits, as Limits(fail=0.005, warn=0.02)"
         )
     return replace(case, limits=limits)
+
+
+def with_levels(limits: Limits, fail: float | None, warn: float | None) -> Limits:
+    """The limits with other levels [m]; None leaves one as it is.
+
+    Raising `fail` alone takes `warn` along, a rule's too that gives no `fail` of its own.
+
+    Raises:
+        BadInput: a warn limit below the fail limit.
+    """
+    if fail is None and warn is None:
+        return limits
+    if fail is None:
+        fail = limits.fail
+    if warn is None:
+        warn = max(limits.warn, fail)
+    if warn < fail:
+        raise BadInput(
+            f"the warn limit {warn * 1000:g} mm is below the fail limit {fail * 1000:g} mm"
+        )
+    rules = tuple(
+        replace(rule, warn=max(rule.warn, fail))
+        if rule.fail is None and rule.warn is not None
+        else rule
+        for rule in limits.rules
+    )
+    return replace(limits, fail=fail, warn=warn, rules=rules)
 
 
 def _checked_gap(gap: float) -> float:

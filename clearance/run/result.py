@@ -20,6 +20,8 @@ from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows
 if TYPE_CHECKING:
     import pyarrow as pa
 
+    from clearance.findings.comparison import Comparison
+    from clearance.findings.finding import Finding
     from clearance.report.intervals import Event
     from clearance.report.verdict import Verdict
 
@@ -130,8 +132,18 @@ class Run:
 
         return run_html(self.record)
 
-    def save(self, folder: str | Path) -> Path:
-        """Writes steps.parquet, steps.csv, summary.json and report.html into `folder`; returns it.
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What each rule comes to between which bodies, the worst first; what is waived is among it."""
+        from clearance.findings.of_record import findings_of
+
+        return findings_of(self.record)
+
+    def save(self, folder: str | Path, comparison: Comparison | None = None) -> Path:
+        """Writes steps.parquet, steps.csv, findings.json, summary.json and report.html into `folder`; returns it.
+
+        Args:
+            comparison: with a baseline, for the page.
 
         Raises:
             BadInput: no path. Unwritable: nothing is left half-written.
@@ -140,7 +152,7 @@ class Run:
 
         if not isinstance(folder, str | PathLike) or not str(folder):
             raise BadInput(f"the folder is {folder!r:.60}", valid="a path of a folder is needed")
-        write(self.record, folder, self.rows)
+        write(self.record, folder, self.rows, comparison)
         return Path(folder)
 
 

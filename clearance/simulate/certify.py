@@ -11,8 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.compile.kernel_table import call
-from clearance.geometry.edges import rings_of
-from clearance.kernels.mesh.surface import ANYTHING, Surface
 from clearance.kernels.motion.certify import (
     CertificateGoal,
     CertifiedMotion,
@@ -177,7 +175,7 @@ class _Work:
 
     def certify(self, bounds: IntervalBounds) -> Callable[[slice], tuple[int, np.ndarray]]:
         """Proves a part, into `bounds`; returns where it ends, and counters."""
-        world, surface = self.what.layout.world, with_whole_faces(self.what.layout.surface)
+        world, surface = self.what.layout.world, self.what.layout.whole_faces
 
         def run_part(span: slice) -> tuple[int, np.ndarray]:
             counts = _no_counts()
@@ -195,20 +193,6 @@ class _Work:
 
 def _no_counts() -> np.ndarray:
     return np.zeros(len(COUNTERS), dtype=np.int64)
-
-
-def with_whole_faces(surface: Surface) -> Surface:
-    """The surface in which every face owns all its corners and edges, not only those it answers for."""
-    starts, corners = surface.face_starts, surface.face_vertices
-    ahead = rings_of(starts).ahead
-    is_edge = ahead != np.arange(len(ahead))  # a point of a cloud has none
-    return surface._replace(
-        vertex_starts=starts,
-        owned_vertices=corners,
-        edge_starts=np.concatenate([[0], np.cumsum(is_edge)])[starts],
-        owns=np.full(len(starts) - 1, ANYTHING, dtype=np.uint16),
-        owned_edges=np.stack([corners, corners[ahead]], axis=1)[is_edge],
-    )
 
 
 def path_of(links: Links, case: Case, motions: Sequence[Motion], steps: slice) -> JointPath:

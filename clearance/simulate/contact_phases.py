@@ -15,7 +15,7 @@ from clearance.progress import Progress
 from clearance.simulate.contact import find_contacts
 from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.contact_sequence import ContactSequence, StepContact
-from clearance.simulate.judged import SectionAnswer
+from clearance.simulate.section_answer import SectionAnswer
 from clearance.world.case import Case
 
 

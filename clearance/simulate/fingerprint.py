@@ -19,6 +19,7 @@ from clearance.world.kinematics import kinematic_tree_arrays
 from clearance.world.motion import Motion
 from clearance.world.mount import Mount
 from clearance.world.pairs import Pair
+from clearance.world.robot import Robot
 
 _ENTRY = PACKAGE / "run" / "__init__.py"
 _BEFORE_AND_AFTER = ("load", "profiles", "crosscheck", "report", "view")
@@ -65,6 +66,17 @@ def fingerprint(
     return digest.hexdigest()
 
 
+def robot_digest(robot: Robot) -> str:
+    """sha256 of a robot's joints and of the shapes of its links."""
+    digest = hashlib.sha256()
+    for body in robot.bodies:
+        digest.update(body.name.encode())
+        _add_shape(digest, body.shape)
+    digest.update(repr((robot.link_names, robot.joints)).encode())
+    _add(digest, *kinematic_tree_arrays(robot))
+    return digest.hexdigest()
+
+
 def sources() -> list[Path]:
     """The files of this package that decide a run's rows."""
     return import_closure([_ENTRY], leave_out=_BEFORE_AND_AFTER)
@@ -78,6 +90,7 @@ def _add_mount(digest: hashlib._Hash, mount: Mount | None) -> None:
 
 def _add_shape(digest: hashlib._Hash, shape: Polyhedron) -> None:
     _add(digest, shape.vertices, shape.face_starts, shape.face_vertices)
+    digest.update(repr(shape.shortfall).encode())
     if shape.ball_radius:
         digest.update(repr(shape.ball_radius).encode())
 

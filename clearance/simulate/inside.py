@@ -16,9 +16,10 @@ from clearance.query.inside import Doubt, doubt_of
 from clearance.simulate.names import pair_names
 from clearance.simulate.sections import Section, SectionPlan
 from clearance.world.case import Case
+from clearance.world.cell import once_a_cell
 from clearance.world.forest import link_poses_at
 from clearance.world.notice import Notice, Severity
-from clearance.world.pairs import Pair
+from clearance.world.pairs import BodyIndex, Pair
 
 AT_ONCE = 1024
 """Steps whose poses are looked at together."""
@@ -43,7 +44,7 @@ def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
     names = pair_names(case, pairs)
     waiting = doubts_of(case, pairs)
     for start in range(0, section.phase.n_steps if waiting else 0, AT_ONCE):
-        poses = link_poses_at(case, motions, slice(start, start + AT_ONCE))
+        poses = BodyPoses(case, link_poses_at(case, motions, slice(start, start + AT_ONCE)))
         for i, doubt in list(waiting.items()):
             step = _first_in_doubt(case, pairs[i], doubt, poses)
             if step is not None:
@@ -56,6 +57,11 @@ def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
 
 def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
     """What can be in doubt, by the pairs of which something can be."""
+    return dict(_doubts_of(case, tuple(pairs)))
+
+
+@once_a_cell(16)
+def _doubts_of(case: Case, pairs: tuple[Pair, ...]) -> dict[int, Doubt]:
     doubts = {i: doubt_of(*_shapes(case, pair)) for i, pair in enumerate(pairs)}
     return {i: doubt for i, doubt in doubts.items() if doubt is not None}
 
@@ -63,7 +69,7 @@ def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
 def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> np.ndarray:
     """(n,) whether a pair is in doubt and not in contact, at `poses` (n, links, 4, 4) of all links."""
     found = np.zeros(len(poses), dtype=bool)
-    for k in _in_doubt(case, pair, doubt, poses):
+    for k in _in_doubt(case, pair, doubt, BodyPoses(case, poses)):
         found[k] = True
     return found
 
@@ -80,16 +86,34 @@ def _shapes(case: Case, pair: Pair) -> tuple[Polyhedron, Polyhedron]:
     return pair.a.shape_in(case), pair.b.shape_in(case)
 
 
-def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> int | None:
+class BodyPoses:
+    """The poses of bodies at some steps, each worked out once.
+
+    Args:
+        link_poses: (n, links, 4, 4) `world_from_link` [m] of the case's forest.
+    """
+
+    def __init__(self, case: Case, link_poses: np.ndarray) -> None:
+        self._case, self._link_poses = case, link_poses
+        self._of: dict[BodyIndex, np.ndarray] = {}
+
+    def of(self, body: BodyIndex) -> np.ndarray:
+        """(n, 4, 4) `world_from_body` [m]."""
+        if body not in self._of:
+            self._of[body] = body.poses_in(self._case, self._link_poses)
+        return self._of[body]
+
+
+def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses) -> int | None:
     """The first of the steps, of which `poses` are given, at which a pair is in doubt and not in contact."""
     return next(_in_doubt(case, pair, doubt, poses, along_a_way=True), None)
 
 
 def _in_doubt(
-    case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray, along_a_way: bool = False
+    case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses, along_a_way: bool = False
 ) -> Iterator[int]:
     one, other = _shapes(case, pair)
-    of_one, of_other = pair.a.poses_in(case, poses), pair.b.poses_in(case, poses)
+    of_one, of_other = poses.of(pair.a), poses.of(pair.b)
     for k in np.flatnonzero(doubt.at(of_one, of_other, along_a_way)):
         if not distance(one, other, pose_a=of_one[k], pose_b=of_other[k]).contact:
             yield int(k)

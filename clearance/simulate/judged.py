@@ -17,20 +17,14 @@ from clearance.simulate.measure import Measurement, Minima
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
 from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.rule_pairs import RulePairs
+from clearance.simulate.sample_moments import SampleMoments
+from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan
 from clearance.simulate.status import sample_codes
 from clearance.world.case import Case
 from clearance.world.motion import Motion
 from clearance.world.rules import DEFAULT
-
-
-@dataclass(frozen=True, eq=False)
-class SectionAnswer:
-    """What was found of a section; pairs and steps are the section's own, distances without padding."""
-
-    section: Section
-    found: Measurement
-    certificate: Certificate | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +80,8 @@ def judged(
         certificate = joined_certificates(own, n_steps, limits.rule_names[rule])
         name = limits.rule_names[rule]
         moment_at = partial(samples.at, found, name)
-        rules.append(RuleAnswer(name, limits.of_rule(rule), found, certificate, moment_at))
+        pairs = RulePairs(own, name)
+        rules.append(RuleAnswer(name, limits.of_rule(rule), found, certificate, moment_at, pairs))
     if len(rules) == 1:
         only = rules[0]
         return Judged((only,), only.measurement, None, only.measurement, only.certificate)
@@ -95,33 +90,6 @@ def judged(
     least = np.argmin([_or_far(rule.measurement.clearance) for rule in rules], axis=0)
     nearest = _chosen([rule.measurement for rule in rules], least)
     return Judged(tuple(rules), found, worst, nearest, _over_rules(rules))
-
-
-@dataclass(frozen=True, eq=False)
-class SampleMoments:
-    """The moments of steps; names of the bodies of each pair, and the robots' motions."""
-
-    names: tuple[list[str], list[str]]
-    motions: Sequence[Motion]
-
-    def at(self, found: Measurement, rule: str, step: int) -> Moment:
-        """The moment of a step whose clearance is known."""
-        pair, points = int(found.pair[step]), found.points[step].tolist()
-        time_b = None if found.times_b is None else float(found.times_b[step])
-        return Moment(
-            step=step,
-            time=float(self.motions[0].times[step]),
-            between=False,
-            clearance=float(found.clearance[step]),
-            link=self.names[0][pair],
-            obstacle=self.names[1][pair],
-            point_link=tuple(points[0]),
-            point_obstacle=tuple(points[1]),
-            positions=tuple(motion.positions[step] for motion in self.motions),
-            rule=rule,
-            touches=bool(found.touches(slice(step, step + 1))[0]),
-            time_b=None if time_b is None or np.isnan(time_b) else time_b,
-        )
 
 
 def joined(answers: Sequence[SectionAnswer], n_steps: int, n_pairs: int) -> Measurement:

@@ -12,10 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from clearance.geometry.edges import rings_of
 from clearance.geometry.tree import join
-from clearance.kernels.mesh.surface import Surface
+from clearance.kernels.mesh.surface import ANYTHING, Surface
 from clearance.kernels.motion.world import World
 from clearance.world.case import Case, Limits
+from clearance.world.cell import once_a_cell
 from clearance.world.forest import WORLD, carried_by, forest_of, joined_positions
 from clearance.world.kinematics import poses_by_link, seen_from
 from clearance.world.motion import Motion
@@ -46,6 +48,11 @@ class Layout:
     def is_in_world(self) -> bool:
         """True if all pairs are measured in the world, their bodies in order."""
         return bool((self.references == IN_WORLD).all() and not self.swapped.any())
+
+    @cached_property
+    def whole_faces(self) -> Surface:
+        """The surface as `with_whole_faces` makes it."""
+        return with_whole_faces(self.surface)
 
     def to_world(self, positions: np.ndarray, pairs: np.ndarray, points: np.ndarray) -> None:
         """Takes witness points to the world, and to the order of the pair's bodies, in place.
@@ -97,6 +104,11 @@ class _Place(NamedTuple):
 
 def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     """The layout of the bodies in `pairs`."""
+    return _laid_out(case, tuple(pairs))
+
+
+@once_a_cell(2)
+def _laid_out(case: Case, pairs: tuple[Pair, ...]) -> Layout:
     solids = sorted({body for pair in pairs for body in pair}, key=_links_first)
     number = {body: i for i, body in enumerate(solids)}
     frames = np.array([body.frame_in(case) for body in solids])
@@ -130,6 +142,20 @@ def lay_out(case: Case, pairs: Sequence[Pair]) -> Layout:
     )
     shapes = [body.shape_in(case) for body in solids]
     return Layout(join(shapes), world, references, swapped)
+
+
+def with_whole_faces(surface: Surface) -> Surface:
+    """The surface in which every face owns all its corners and edges, not only those it answers for."""
+    starts, corners = surface.face_starts, surface.face_vertices
+    ahead = rings_of(starts).ahead
+    is_edge = ahead != np.arange(len(ahead))  # a point of a cloud has none
+    return surface._replace(
+        vertex_starts=starts,
+        owned_vertices=corners,
+        edge_starts=np.concatenate([[0], np.cumsum(is_edge)])[starts],
+        owns=np.full(len(starts) - 1, ANYTHING, dtype=np.uint16),
+        owned_edges=np.stack([corners, corners[ahead]], axis=1)[is_edge],
+    )
 
 
 def positions_at(case: Case, motions: Sequence[Motion], steps: np.ndarray | range) -> np.ndarray:

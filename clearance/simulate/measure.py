@@ -251,15 +251,29 @@ def measure(
 
 def pairs_in_contact(what: PairsInMotion, steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(k,) places in `steps` (n,) and (k,) pairs in contact there, in order; nothing that is apart is measured."""
+    rows, pairs, _ = pairs_within(what, steps, 0.0)
+    return rows, pairs
+
+
+def pairs_within(
+    what: PairsInMotion, steps: np.ndarray, within: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(k,) places in `steps` (n,), (k,) pairs within [m] there, in order, and (k,) how far apart they are [m].
+
+    Nothing that is farther apart is measured.
+    """
     work = _Sweep(what, Resources(jobs=1))
-    goal = Goal(np.zeros(work.n_pairs), True, False)
-    found = []
+    goal = Goal(np.full(work.n_pairs, within * NOT_LESS), True, False)
+    rows, pairs, distances = [_NO_STEPS], [_NO_STEPS], [np.empty(0)]
     for span in parts(len(steps), sparse=True):
         every = np.full((span.stop - span.start, work.n_pairs), np.inf)
-        rows = _no_pair_rows(work.n_pairs, work.n_pairs, every)
-        work.sweep_steps(steps[span], goal, _rows_of(None, span), rows)
-        found.append(np.argwhere(every <= 0.0) + [span.start, 0])
-    return tuple(np.concatenate(found).T)
+        found = _no_pair_rows(work.n_pairs, work.n_pairs, every)
+        work.sweep_steps(steps[span], goal, _rows_of(None, span), found)
+        near = np.nonzero(every <= within)
+        rows.append(near[0] + span.start)
+        pairs.append(near[1])
+        distances.append(every[near])
+    return np.concatenate(rows), np.concatenate(pairs), np.concatenate(distances)
 
 
 def _every_pair(work: _Sweep) -> Measurement:

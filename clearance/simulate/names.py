@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from clearance.world.case import Case
+from clearance.world.cell import once_a_cell
 from clearance.world.pairs import Pair
 
 SIDES = ("body_a", "body_b")
@@ -17,6 +18,11 @@ LINK_AND_OBSTACLE = ("link", "obstacle")
 
 def pair_names(case: Case, pairs: Sequence[Pair]) -> tuple[list[str], list[str]]:
     """The two bodies of each pair; links carry their robot's name where there are several."""
+    return _pair_names(case, tuple(pairs))
+
+
+@once_a_cell(16)
+def _pair_names(case: Case, pairs: tuple[Pair, ...]) -> tuple[list[str], list[str]]:
     return [pair.a.name_in(case) for pair in pairs], [pair.b.name_in(case) for pair in pairs]
 
 

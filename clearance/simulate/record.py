@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from datetime import date
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pyarrow as pa
@@ -15,7 +15,7 @@ from clearance.simulate.contact_sequence import ContactSequence, StepContact
 from clearance.simulate.every_pair import EveryPair
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import columns_of, sides_in
-from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.rule_answer import RuleAnswer, standing_worst, worst_of
 from clearance.simulate.status import status_of
 from clearance.world.case import Case, Omission
 from clearance.world.motion import Motion
@@ -23,8 +23,10 @@ from clearance.world.notice import Notice
 from clearance.world.rules import DEFAULT
 from clearance.world.timeline import Timeline
 
-if TYPE_CHECKING:
-    pass
+PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
+"""Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
+
+OfPairs = Callable[[PairTest], tuple[RuleAnswer, ...]]
 
 
 @dataclass(frozen=True)
@@ -168,6 +170,9 @@ class Record(Samples):
         notices: what a reader of the verdict must know: of the case, and found while measuring.
         rules: what each rule comes to; one, "default", where the case has no rules.
         timeline: when what moves how.
+        of_pairs: what the rules come to of some of the pairs alone, by which they are: the rule's name and the
+            names that each body goes by; measured and proven anew when asked. None where no more can be asked.
+        today: the day that waivers are held against; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic" or "simulated".
     """
@@ -187,6 +192,8 @@ class Record(Samples):
     notices: tuple[Notice, ...] = ()
     contacts: ContactSequence | tuple[()] = ()
     profiles: tuple[ProfileAnswer, ...] = ()
+    of_pairs: OfPairs | None = None
+    today: date | None = None
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
@@ -224,21 +231,16 @@ class Record(Samples):
     @cached_property
     def worst_sample(self) -> Moment:
         """The step that stands worst against what judges it; without rules, the first of least clearance."""
-        return self._worst({rule: rule.worst_sample for rule in self.rules})
+        worst = standing_worst((rule, rule.worst_sample) for rule in self.rules)
+        assert worst is not None
+        return worst
 
     @cached_property
     def worst(self) -> Moment:
         """The same of the whole motion, between two steps if a certificate has found a lesser moment there."""
-        return self._worst({rule: rule.worst for rule in self.rules})
-
-    @staticmethod
-    def _worst(moments: dict[RuleAnswer, Moment | None]) -> Moment:
-        standing = [
-            (rule.standing_of(moment), i, moment)
-            for i, (rule, moment) in enumerate(moments.items())
-            if moment is not None
-        ]
-        return min(standing, key=lambda row: row[:2])[2]
+        worst = worst_of(self.rules)
+        assert worst is not None
+        return worst
 
     @cached_property
     def nearest(self) -> Moment:

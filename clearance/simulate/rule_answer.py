@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,6 +16,7 @@ from clearance.world.case import Limits
 
 if TYPE_CHECKING:
     from clearance.simulate.measure import Measurement
+    from clearance.simulate.rule_pairs import RulePairs
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +27,7 @@ class RuleAnswer:
         name: of the rule, "default" for the limits that hold where no rule does.
         measurement: of all steps; pairs are those of the run. certificate: None where nothing is proven.
         moment_at: the moment of a step whose clearance is known.
+        pairs: its pairs one by one; None where only the nearest of each step is known.
     """
 
     name: str
@@ -33,6 +35,7 @@ class RuleAnswer:
     measurement: Measurement
     certificate: Certificate | None
     moment_at: Callable[[int], Moment]
+    pairs: RulePairs | None = None
 
     @cached_property
     def worst_sample(self) -> Moment | None:
@@ -74,3 +77,18 @@ def _lesser(known: Moment | None, between: Moment | None) -> Moment | None:
     if known.touches:
         return known
     return between if between.touches or between.clearance < known.clearance else known
+
+
+def standing_worst(moments: Iterable[tuple[RuleAnswer, Moment | None]]) -> Moment | None:
+    """Of moments, each with the rule that judges it, the one that stands worst, the first of those alike."""
+    standing = [
+        (rule.standing_of(moment), i, moment)
+        for i, (rule, moment) in enumerate(moments)
+        if moment is not None
+    ]
+    return min(standing, key=lambda row: row[:2])[2] if standing else None
+
+
+def worst_of(rules: Iterable[RuleAnswer]) -> Moment | None:
+    """The moment that stands worst of some rules; None where none is known."""
+    return standing_worst((rule, rule.worst) for rule in rules)

@@ -41,9 +41,8 @@ from clearance.simulate.certify import (
     joint_path,
     no_finer_than_rounding,
     with_turning_balls,
-    with_whole_faces,
 )
-from clearance.simulate.layout import lay_out
+from clearance.simulate.layout import lay_out, with_whole_faces
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import pair_names
 from clearance.simulate.parts import in_order, parts

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +22,9 @@ from clearance.errors import (
 from clearance.geometry.pose import validated_pose
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry, require_one_carrier
+from clearance.world.cell import Cell, cell_of, once_a_cell
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name, require_own_names
@@ -32,6 +35,7 @@ from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT, Allowance, Rule, checked_level
 from clearance.world.timing import AS_GIVEN, Timing
 from clearance.world.trajectory import Trajectory
+from clearance.world.waiver import Waiver
 
 if TYPE_CHECKING:
     from clearance.sketch.sketch import Sketch
@@ -133,6 +137,9 @@ class PlacedRobot:
         exclude_links: links that are not measured.
         self_clearance: whether its links are measured against one another, and which pairs are excused.
         padding: [m] by how much the clearance of links is lessened, by link.
+        motion_limits: how fast joints may be, where more than the robot's own file is known.
+        path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
+        trajectory_path: the file that the trajectory is from; empty where it is from none.
     """
 
     robot: Robot
@@ -146,6 +153,9 @@ class PlacedRobot:
     mount: Mount | None = None
     timing: Timing = AS_GIVEN
     padding: dict[str, float] = field(default_factory=dict)
+    motion_limits: dict[str, MotionLimit] = field(default_factory=dict)
+    path_tolerances: dict[str, PathTolerance] = field(default_factory=dict)
+    trajectory_path: str = ""
 
     def __post_init__(self) -> None:
         with at("world_from_base"):
@@ -250,6 +260,7 @@ class Case:
         notes: what loading had to mend or assume, one line each.
         notices: suspect input and warnings that only loading can find; `plausibility.notices_of` adds the rest.
         accept: kinds of suspect input that do not make the verdict suspect.
+        waivers: which bodies may come nearer than their rule says; of several for a pair the last counts.
         profiles: outlines that the sweep must keep to.
         sign_off: for the report; None where it has no such fields.
     """
@@ -265,6 +276,7 @@ class Case:
     profiles: tuple[ReservedSpace, ...] = ()
     notices: tuple[Notice, ...] = ()
     accept: tuple[str, ...] = ()
+    waivers: tuple[Waiver, ...] = ()
     sign_off: SignOff | None = None
     carries: tuple[Carry, ...] = ()
     clock: Clock = COMMON
@@ -273,20 +285,22 @@ class Case:
         if not self.robots:
             raise NothingToMeasure(f"case {self.name!r} has no robot", valid="at least one")
         checked_name(self.name)
-        require_own_names("robot", [placed.robot.name for placed in self.robots])
-        require_own_names("obstacle", [obstacle.name for obstacle in self.obstacles])
-        for placed in self.robots:
-            require_own_names("link", list(placed.robot.link_names))
-            _require_surfaces(placed.robot)
-        if len(self.robots) > 1:
-            _require_names_apart(self.robots, self.obstacles)
-        elif self.robots[0].self_clearance or self._stand_on_others:
-            _require_other_names(self.robots[0].robot, self.obstacles)
-        require_one_carrier(self.carries)
         allow = (
             row if isinstance(row, Allowance) else Allowance((row[0], row[1])) for row in self.allow
         )
         object.__setattr__(self, "allow", tuple(allow))
+        _require_bodies(self)
+
+    @cached_property
+    def cell(self) -> Cell:
+        """What of it no trajectory changes, as a key."""
+        held: list[object] = [*self.obstacles]
+        told: list[Hashable] = [self.allow, self.limits, self.carries, self.clock]
+        for placed in self.robots:
+            held += [placed.robot, placed.mount, placed.self_clearance]
+            told += [placed.world_from_base.tobytes(), placed.exclude_links]
+            told.append(tuple(sorted(placed.padding.items())))
+        return cell_of(held, tuple(told))
 
     def prefix_of(self, placed: PlacedRobot) -> str:
         """What stands before the names of a robot's links in tables: nothing where there is one robot."""
@@ -317,14 +331,35 @@ class Case:
         Raises:
             BadInput: no such robot or joint, or numbers that are no trajectory.
         """
-        i_robot = _index_of(self.robots, robot)
+        i_robot = index_of_robot(self.robots, robot)
         placed = self.robots[i_robot]
         names = placed.joints_given if joint_names is None else tuple(joint_names)
-        moved = replace(placed, trajectory=Trajectory(times, names, positions, velocities))
+        trajectory = Trajectory(times, names, positions, velocities)
+        moved = replace(placed, trajectory=trajectory, trajectory_path="")
         return replace(self, robots=(*self.robots[:i_robot], moved, *self.robots[i_robot + 1 :]))
 
 
-def _index_of(robots: Sequence[PlacedRobot], name: str | None) -> int:
+@once_a_cell(16)
+def _require_bodies(case: Case) -> None:
+    """Nothing, if what can be named can be told apart, and links have surfaces."""
+    require_own_names("robot", [placed.robot.name for placed in case.robots])
+    require_own_names("obstacle", [obstacle.name for obstacle in case.obstacles])
+    for placed in case.robots:
+        require_own_names("link", list(placed.robot.link_names))
+        _require_surfaces(placed.robot)
+    if len(case.robots) > 1:
+        _require_names_apart(case.robots, case.obstacles)
+    elif case.robots[0].self_clearance or case._stand_on_others:
+        _require_other_names(case.robots[0].robot, case.obstacles)
+    require_one_carrier(case.carries)
+
+
+def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
+    """The place of the one robot of a name, or of the only one.
+
+    Raises:
+        UnknownRobot: there is no such one.
+    """
     names = [placed.robot.name for placed in robots]
     if name is None and len(names) == 1:
         return 0

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
 
 from clearance.errors import BadInput
 from clearance.world.case import Case
+from clearance.world.cell import once_a_cell
 from clearance.world.forest import owner_of
 from clearance.world.mount import Mount
 from clearance.world.pairs import OBSTACLE, BodyIndex
@@ -42,7 +42,7 @@ def _index(body: BodyIndex) -> int:
     return body.i_body if body.is_obstacle else body.i_robot
 
 
-@lru_cache(maxsize=16)
+@once_a_cell(16)
 def clocks_of(case: Case) -> dict[_Thing, int]:
     """The clock of each robot (False, i) and obstacle (True, i): the number of an actor, or `NO_CLOCK`.
 

@@ -22,15 +22,24 @@ def reach_of(placed: PlacedRobot) -> float:
 
 def chain_of(placed: PlacedRobot) -> float:
     """[m] the longest way from the root over joints' origins, sliding joints as far as they go."""
-    asked = placed.trajectory
-    columns = {} if asked is None else {name: i for i, name in enumerate(asked.joint_names)}
+    slides = dict(slides_of(placed))
     way = {placed.robot.link_names[0]: 0.0}
     for joint in placed.robot.joints:
         step = float(np.linalg.norm(joint.parent_from_joint[:3, 3]))
-        if asked is not None and joint.kind is JointKind.PRISMATIC and joint.name in columns:
-            step += float(np.abs(asked.positions[:, columns[joint.name]]).max(initial=0.0))
+        step += slides.get(joint.name, 0.0)
         way[joint.child] = way[joint.parent] + step
     return max(way.values())
+
+
+def slides_of(placed: PlacedRobot) -> tuple[tuple[str, float], ...]:
+    """How far [m] each sliding joint goes that is asked to."""
+    asked = placed.trajectory
+    columns = {} if asked is None else {name: i for i, name in enumerate(asked.joint_names)}
+    return tuple(
+        (joint.name, float(np.abs(asked.positions[:, columns[joint.name]]).max(initial=0.0)))
+        for joint in placed.robot.joints
+        if asked is not None and joint.kind is JointKind.PRISMATIC and joint.name in columns
+    )
 
 
 def length_of(body: Body) -> float:

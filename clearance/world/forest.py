@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from clearance.errors import BadInput, UnknownLink, at, nearest_name
 from clearance.kernels.motion.kinematics import FIXED, NO_COLUMN, NO_PARENT, Links
 from clearance.world.body import Obstacle
 from clearance.world.case import Case
+from clearance.world.cell import once_a_cell
 from clearance.world.kinematics import (
     all_links,
     floating_links,
@@ -65,7 +65,7 @@ class Forest:
         return WORLD if self.links.parents[link] == NO_PARENT else link
 
 
-@lru_cache(maxsize=16)
+@once_a_cell(16)
 def forest_of(case: Case) -> Forest:
     """The forest of a case in which nothing changes hands.
 

@@ -1,6 +1,6 @@
 """Joints beyond their limits: a warning or, where the case says so, a violation; far beyond is suspect.
 
-Not for: limits of velocity or effort, which the robot does not carry.
+Not for: how fast joints are (`joint_speeds`).
 """
 
 from __future__ import annotations
@@ -55,7 +55,8 @@ def notices_on_joints(placed: PlacedRobot, rule: str, before: str = "") -> list[
         text = f"CHECK LIMITS: {_told(far)}; is this another unit, or another robot?"
         notices.append(Notice(Severity.SUSPECT, "limits", text))
     if rule == "fail" and found:
-        notices.append(Notice(Severity.VIOLATED, "joint limits", _told(found)))
+        about = placed.robot.name
+        notices.append(Notice(Severity.VIOLATED, "joint limits", _told(found), about))
     elif near:
         notices.append(Notice(Severity.WARNING, "limits", _told(near)))
     return notices

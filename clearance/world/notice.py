@@ -32,11 +32,13 @@ class Notice:
             is broken makes it violated; a warning stands in the headline.
         kind: one of `KINDS`, or a word of its own for the others ("joint limits", "geometry", "package", …).
         text: one line: what was found, where, and what to do.
+        about: the name of what it is of, where several could have such a notice: the robot, for joint limits.
     """
 
     severity: Severity
     kind: str
     text: str
+    about: str = ""
 
 
 def worst_first(notices: Iterable[Notice]) -> tuple[Notice, ...]:

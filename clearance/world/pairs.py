@@ -14,6 +14,7 @@ from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.body import Body
 from clearance.world.carry import Carry
 from clearance.world.case import Case, Omission, SelfClearance
+from clearance.world.cell import once_a_cell
 from clearance.world.forest import WORLD, Forest, forest_of
 from clearance.world.phase import Phase
 from clearance.world.rules import matches
@@ -72,10 +73,11 @@ class BodyIndex(NamedTuple):
         return np.ascontiguousarray(link_poses[:, frame])
 
     def padding_in(self, case: Case) -> float:
-        """[m] By how much its clearance is lessened."""
+        """[m] By how much its clearance is lessened: what was asked for, and what its surface may fall short."""
+        shortfall = self.shape_in(case).shortfall
         if self.is_obstacle:
-            return case.obstacles[self.i_body].padding
-        return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0)
+            return case.obstacles[self.i_body].padding + shortfall
+        return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0) + shortfall
 
     def body_in(self, case: Case) -> Body:
         """Its name and shape."""
@@ -101,7 +103,7 @@ class Pair(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Selection:
-    """What is measured in a phase of a run.
+    """What is measured in a phase of a run; nobody changes it.
 
     Attributes:
         pairs: links and obstacles robot by robot, then links of one robot, then of two, then obstacles.
@@ -121,7 +123,10 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:
     Raises:
         NothingToMeasure: no pair is left.
     """
-    selection = _Selecting(case).selection()
+    rows = (case.allow, case.limits.rules)
+    always = (-np.inf, np.inf)
+    active = [tuple(row.is_active(*always, ()) for row in table) for table in rows]
+    selection = _selected(case, *active, (), frozenset(), frozenset())
     if not selection.pairs:
         raise nothing_to_measure()
     return selection.pairs, selection.unmeasured
@@ -129,8 +134,25 @@ def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:
 
 def selected_pairs(phase: Phase) -> Selection:
     """The pairs to measure in a phase; there may be none."""
-    absent = (phase.absent_robots, phase.absent_obstacles)
-    return _Selecting(phase.case, phase.span, phase.carried, *absent).selection()
+    case, span, carried = phase.case, phase.span, phase.carried
+    rows = (case.allow, case.limits.rules)
+    active = [tuple(row.is_active(*span, carried) for row in table) for table in rows]
+    who = tuple(sorted(carried.items()))
+    return _selected(case, *active, who, phase.absent_robots, phase.absent_obstacles)
+
+
+@once_a_cell(16)
+def _selected(
+    case: Case,
+    allow: tuple[bool, ...],
+    rules: tuple[bool, ...],
+    carried: tuple[tuple[str, Carry], ...],
+    absent_robots: frozenset[int],
+    absent_obstacles: frozenset[int],
+) -> Selection:
+    """The same, from which rows of `allow` and of rules are active, and who carries what."""
+    active = (allow, rules)
+    return _Selecting(case, active, dict(carried), absent_robots, absent_obstacles).selection()
 
 
 def nothing_to_measure() -> NothingToMeasure:
@@ -146,10 +168,10 @@ class _Selecting:
     """Sorts the pairs of a case, in a stretch of its run, into those that are measured and those that are not."""
 
     case: Case
-    span: tuple[float, float] = (-np.inf, np.inf)
-    carried: Mapping[str, Carry] = field(default_factory=dict)
-    absent_robots: frozenset[int] = frozenset()
-    absent_obstacles: frozenset[int] = frozenset()
+    active: tuple[tuple[bool, ...], tuple[bool, ...]]
+    carried: Mapping[str, Carry]
+    absent_robots: frozenset[int]
+    absent_obstacles: frozenset[int]
     found: Selection = field(default_factory=Selection)
 
     def __post_init__(self) -> None:
@@ -163,12 +185,9 @@ class _Selecting:
         self.obstacles = [
             BodyIndex(OBSTACLE, i) for i in obstacles if i not in self.absent_obstacles
         ]
-        self.allow = [row for row in case.allow if row.is_active(*self.span, self.carried)]
-        self.rules = [
-            (i, rule)
-            for i, rule in enumerate(case.limits.rules, start=1)
-            if rule.is_active(*self.span, self.carried)
-        ]
+        self.allow = [*itertools.compress(case.allow, self.active[0])]
+        rules = enumerate(case.limits.rules, start=1)
+        self.rules = [*itertools.compress(rules, self.active[1])]
 
     def selection(self) -> Selection:
         """All pairs, sorted."""

@@ -12,7 +12,8 @@ import numpy as np
 from clearance.geometry.shapes import SHAPES
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.extents import chain_of, greatest, length_of, metres, reach_of
+from clearance.world.cell import once_a_cell
+from clearance.world.extents import chain_of, greatest, length_of, metres, reach_of, slides_of
 from clearance.world.notice import Notice, Severity, listed
 from clearance.world.plausible_places import odd_places
 
@@ -29,6 +30,12 @@ FAR_ORIGIN = 20.0
 
 def notices_on_sizes(case: Case) -> list[Notice]:
     """What of the bodies and places of a case looks like another unit."""
+    return list(_notices(case, tuple(map(slides_of, case.robots))))
+
+
+@once_a_cell(16)
+def _notices(case: Case, slides: tuple) -> tuple[Notice, ...]:
+    """The same; of the motion only `slides`, as `slides_of` tells them, has a say."""
     told: list[str] = []
     for placed in case.robots:
         before = case.prefix_of(placed)
@@ -37,7 +44,7 @@ def notices_on_sizes(case: Case) -> list[Notice]:
     if not told:  # a robot that is odd itself is no measure for others
         reaches = [reach_of(placed) for placed in case.robots]
         told = [*_odd_obstacles(case.obstacles, reaches), *odd_places(case)]
-    return [Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told]
+    return tuple(Notice(Severity.SUSPECT, "units", f"CHECK UNITS: {text}") for text in told)
 
 
 def _odd_origins(placed: PlacedRobot, before: str) -> list[str]:

@@ -11,11 +11,12 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from scripts.bench.fuzz_readers import damaged, outcome
 from scripts.bench.fuzz_seeds import readers
+from tests.examples import some_slow
 
 READERS = readers()
 
 
-@pytest.mark.parametrize("kind", READERS)
+@pytest.mark.parametrize("kind", some_slow(READERS, {"case"}))
 def test_damaged_files_are_read_or_refused(kind, tmp_path):
     reader = READERS[kind]
     assert outcome(reader, reader.valid, tmp_path) == "read"

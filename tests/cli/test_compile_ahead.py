@@ -115,7 +115,7 @@ BEHIND_ONE_THAT_KEEPS_ITS_TURN = """
 import json, os
 from filelock import FileLock
 from clearance.cli import compile_ahead as ahead
-from clearance.compile.kernel_cache import cache_root
+from clearance.kept_files import cache_root
 ahead.LONGEST = 0
 there, (end, kept_open) = os.dup(1), os.pipe()
 os.dup2(end, 0)  # the first process lives

@@ -163,6 +163,7 @@ def anywhere(random, reach):
     return at(*(reach * random.normal(size=3)), turned)
 
 
+@pytest.mark.slow
 @examples(60)
 @example(0, "dented", "fan", 2.0, 0.0)
 @example(1, "crossing", "twice", 1.0, 4e-7)
@@ -204,6 +205,7 @@ def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
             of_b[i, j] = away >> j % WIDTH & 1
 
 
+@pytest.mark.slow
 @examples(30)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),

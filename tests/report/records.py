@@ -11,11 +11,11 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.judged import SampleMoments
 from clearance.simulate.measure import Measurement
 from clearance.simulate.names import LINK_AND_OBSTACLE, SIDES, columns_of, pair_names
 from clearance.simulate.record import CrossCheck, Disagreement, PairMinimum, Record
 from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.status import STATUSES
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, Omission, PlacedRobot, Source

@@ -27,7 +27,8 @@ from clearance.kernels.motion.sweep_goal import FirstLook, Goal, SweptSteps
 from clearance.kernels.motion.sweep_rows import PairRows, StepRows, SweepRows
 from clearance.kernels.motion.world import World
 from clearance.query.pair_query import Query
-from clearance.simulate.certify import joint_path, with_turning_balls, with_whole_faces
+from clearance.simulate.certify import joint_path, with_turning_balls
+from clearance.simulate.layout import with_whole_faces
 
 
 class Scene(NamedTuple):

@@ -24,6 +24,7 @@ from clearance.simulate import parts, resumable_rows
 from clearance.simulate.replay import replay_of
 from clearance.simulate.resumable_rows import open_resumable_rows
 from clearance.world.case import Case
+from tests.examples import first_fast
 
 ROOT = Path(__file__).parents[2]
 ASKED = {
@@ -99,7 +100,7 @@ def stopping_at(count: int) -> Callable[[int, int], None]:
     return progress
 
 
-@pytest.mark.parametrize("name", ASKED)
+@pytest.mark.parametrize("name", first_fast(ASKED, 3))
 def test_rows_on_disk_interrupted_and_on_threads_are_the_rows_in_memory(
     case: Case, name: str, tmp_path: Path
 ) -> None:

@@ -51,6 +51,7 @@ def escape(pieces, name, corners, pose, step):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @examples(4)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1e-3, 0.05, 1.0]))
 def test_pieces_hold_links_on_links_and_parts_in_hand_between_the_steps(seed, within):
@@ -72,6 +73,7 @@ def test_pieces_hold_links_on_links_and_parts_in_hand_between_the_steps(seed, wi
                     assert escape(pieces, name, shapes[name].vertices, pose, step) <= 0.0
 
 
+@pytest.mark.slow
 @examples(6)
 @given(st.integers(0, 2**32 - 1))
 def test_what_is_in_hand_belongs_to_the_robot_that_holds_it(seed):

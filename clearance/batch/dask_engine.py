@@ -1,0 +1,169 @@
+"""Cases spread over processes by Dask: a cluster of this machine's own, or one that is there already.
+
+This is the one file that imports Dask. Two tasks a worker are handed out at a time, each result is taken and let
+go at once, so the scheduler never holds more than the tasks in flight. What a worker that is lost had begun is
+done again by another; a task that takes several workers with it is cut into its cases, and a case that does is at
+fault itself. Not for: what a task is (`measuring`), nor the queue (`engine`).
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from clearance.batch.engine import Queue
+from clearance.batch.kernels import compile_ahead
+from clearance.batch.measuring import Done, Fault, Task, measure
+from clearance.errors import BadInput, Incomplete
+from clearance.extras import importing
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+AHEAD = 2
+"""Tasks a worker that are handed out at a time: one is measured, one waits."""
+
+LOST_WITH = 2
+"""Workers that a task may take with it before it is cut into its cases."""
+
+CONNECTING = 20
+"""[s] In which a scheduler must answer."""
+
+
+@contextmanager
+def local_cluster(jobs: int, say: Callable[[str], None]) -> Iterator[DaskEngine]:
+    """So many worker processes on this machine; kernels are compiled before they start.
+
+    Raises:
+        Unavailable: Dask is not installed.
+    """
+    compile_ahead(say)
+    with importing("batch", "more than one job"):
+        import distributed
+    with (
+        _settings(),
+        distributed.LocalCluster(
+            n_workers=jobs,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=None,
+            memory_limit=0,
+            silence_logs=logging.CRITICAL,
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield DaskEngine(client)
+
+
+@contextmanager
+def cluster_at(address: str) -> Iterator[DaskEngine]:
+    """The workers of a scheduler that runs already; each machine compiles once.
+
+    Raises:
+        Unavailable: Dask is not installed. BadInput: nothing answers there.
+    """
+    with importing("batch", "--scheduler"):
+        import distributed
+    with _settings():
+        try:
+            client = distributed.Client(address, timeout=CONNECTING)
+        except (OSError, ValueError) as error:
+            raise BadInput(
+                f"no scheduler answers ({type(error).__name__})",
+                where=f"--scheduler {address}",
+                valid="an address such as tcp://host:8786 of a dask scheduler of the same version",
+            ) from None
+        try:
+            yield DaskEngine(client)
+        finally:
+            client.close(timeout=1)
+
+
+@contextmanager
+def _settings() -> Iterator[None]:
+    """What Dask is told: say nothing by itself, and lose few workers to one task."""
+    import dask
+
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    with dask.config.set(
+        {
+            "distributed.scheduler.allowed-failures": LOST_WITH,
+            "distributed.logging": {"distributed": "critical"},
+            "distributed.admin.log-format": "%(message)s",
+            "distributed.comm.timeouts.connect": f"{CONNECTING}s",
+            "distributed.client.heartbeat": "1s",
+        }
+    ):
+        yield
+
+
+class DaskEngine:
+    """Hands the tasks of a queue to the workers of a cluster."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+
+    def results(self, queue: Queue) -> Iterator[Done]:
+        """What the tasks come to, as they come.
+
+        Raises:
+            Incomplete: the scheduler is gone, or no worker is left.
+        """
+        from distributed import as_completed
+
+        running: dict[Future, Task] = {}
+        finished = as_completed([])
+        try:
+            self._fill(queue, running, finished)
+            while running:
+                future = next(finished)
+                task = running.pop(future)
+                done = self._result(future, task, queue)
+                future.release()
+                if done is not None:
+                    queue.give_back(done.left)
+                self._fill(queue, running, finished)
+                if done is not None:
+                    yield done
+        finally:
+            for future in running:
+                future.release()
+
+    def _fill(self, queue: Queue, running: dict[Future, Task], finished: Any) -> None:
+        while len(running) < AHEAD * self._n_workers():
+            task = queue.task()
+            if task is None:
+                return
+            future = self._client.submit(measure_there, task, pure=False)
+            running[future] = task
+            finished.add(future)
+
+    def _n_workers(self) -> int:
+        return max(1, len(self._client.ncores() or ()))
+
+    def _result(self, future: Future, task: Task, queue: Queue) -> Done | None:
+        """What a task came to; None where its cases wait again, one by one."""
+        from distributed.client import FutureCancelledError
+        from distributed.scheduler import KilledWorker
+
+        try:
+            return future.result()
+        except KilledWorker:
+            if len(task.items) == 1:
+                text = "the worker processes that measured it have all died, of memory perhaps"
+                return Done((), (Fault(task.items[0].number, text),), b"", (), ())
+            queue.give_back(task.items, alone=True)
+            return None
+        except (FutureCancelledError, OSError) as error:
+            raise Incomplete(
+                f"the scheduler is gone ({type(error).__name__})",
+                valid="what was measured is kept; the same command goes on with the rest",
+            ) from None
+
+
+def measure_there(task: Task) -> Done:
+    """`measure` in a worker."""
+    compile_ahead()
+    return measure(task)

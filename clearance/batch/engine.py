@@ -1,0 +1,86 @@
+"""What hands cases to whoever measures them: tasks are cut from a queue, and what comes back in part goes on it.
+
+`InThisProcess` does all here and needs no library; `dask_engine` has workers. Which engine it was shows in no byte
+of the answer. Not for: what a task is (`measuring`).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from typing import Protocol
+
+from clearance.batch.item import Item
+from clearance.batch.keys import program
+from clearance.batch.measuring import Done, Task, measure
+
+MOST = 32
+"""Cases of a task: what is lost with a worker, at most."""
+
+SECONDS = 1.0
+"""After so long a task comes back with what it has."""
+
+
+class Queue:
+    """The cases that wait, in order.
+
+    Args:
+        batch: as in `measuring.Task`.
+    """
+
+    def __init__(self, items: Sequence[Item], batch: str) -> None:
+        self._waiting = deque(items)
+        self._alone: set[int] = set()
+        self._batch = batch
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def task(self) -> Task | None:
+        """The next cases, all of one cell; None where none waits."""
+        if not self._waiting:
+            return None
+        first = self._waiting.popleft()
+        items = [first]
+        while len(items) < MOST and self._goes_with(first):
+            items.append(self._waiting.popleft())
+        return Task(tuple(items), SECONDS, program(), self._batch)
+
+    def _goes_with(self, first: Item) -> bool:
+        """True if the next case can be in one task with another."""
+        if not self._waiting or first.number in self._alone:
+            return False
+        return self._waiting[0].file == first.file and self._waiting[0].number not in self._alone
+
+    def give_back(self, items: Sequence[Item], *, alone: bool = False) -> None:
+        """Puts cases before all others.
+
+        Args:
+            alone: each is a task of its own from now on.
+        """
+        self._waiting.extendleft(reversed(items))
+        if alone:
+            self._alone.update(item.number for item in items)
+
+
+class Engine(Protocol):
+    """Whoever measures."""
+
+    def results(self, queue: Queue) -> Iterator[Done]:
+        """What the tasks of a queue come to, in any order, until none is left.
+
+        Raises:
+            Incomplete: nobody is left who could measure.
+        """
+        ...
+
+
+class InThisProcess:
+    """Measures one case after another."""
+
+    def results(self, queue: Queue) -> Iterator[Done]:
+        """What the tasks come to, in order."""
+        while (task := queue.task()) is not None:
+            done = measure(task)
+            queue.give_back(done.left)
+            yield done

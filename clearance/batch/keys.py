@@ -1,0 +1,48 @@
+"""The key of a case: what decides its row, as one hash. Two cases of one key have the same row.
+
+It is of the program and its libraries, of what is asked, and of every file that was read, by content. The
+processor is not in it: another one may differ in the last bits, no more than the bounds allow. Not for: hashing
+files quickly (`file_hashes`).
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import platform
+from collections.abc import Iterable
+from importlib import metadata
+from pathlib import PurePath
+
+from clearance.batch.item import Item
+from clearance.import_closure import PACKAGE, digest_of
+
+FORMAT = 1
+"""Of the rows; another one makes all keys new."""
+
+LIBRARIES = ("numpy", "numba", "llvmlite", "scipy", "trimesh", "shapely", "lxml", "ruamel.yaml")
+"""Those that can change a row beside this package; pyarrow's numbers are exact."""
+
+
+@functools.cache
+def program() -> str:
+    """sha256 of all sources of this package, and of the versions below them."""
+    digest = hashlib.sha256(digest_of(sorted(PACKAGE.rglob("*.py"))).encode())
+    versions = [(name, metadata.version(name)) for name in (*LIBRARIES, "pyarrow")]
+    told = (FORMAT, versions, platform.python_version(), platform.machine())
+    digest.update(repr(told).encode())
+    return digest.hexdigest()
+
+
+def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:
+    """The key of an item.
+
+    Args:
+        files: path as shown and sha256 of each file that was read.
+    """
+    given, path = item.trajectory, PurePath(item.file)
+    told: tuple[object, ...] = (path.parent.name, path.name)  # a case without a name takes theirs
+    if given is not None:
+        told = (item.name, given.reading, given.robot)
+    asked = (program(), told, item.options, sorted(set(files)))
+    return hashlib.sha256(repr(asked).encode()).hexdigest()

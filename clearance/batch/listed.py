@@ -1,0 +1,76 @@
+"""The list of a store's last batch as JSON: which cases there are, for whoever asks about one of them later.
+
+Not for: what became of them (`store`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from clearance.batch.item import GivenTrajectory, Item
+from clearance.batch.options import Options
+from clearance.errors import BadInput, MissingFile, nearest_name
+from clearance.report.folder import write_file
+
+FILE_NAME = "batch.json"
+
+
+def write_list(place: Path, items: Sequence[Item]) -> None:
+    """Writes the list of a batch; what all cases have in common is there once.
+
+    Raises:
+        Unwritable: it cannot be written.
+    """
+    options = list(dict.fromkeys(item.options for item in items))
+    number = {one: i for i, one in enumerate(options)}
+    rows = [_told(item) | {"options": number[item.options]} for item in items]
+    content = {"options": [asdict(one) for one in options], "cases": rows}
+    write_file(place / FILE_NAME, (json.dumps(content, indent=0) + "\n").encode())
+
+
+def read_list(place: Path) -> list[Item]:
+    """The cases of the last batch.
+
+    Raises:
+        MissingFile: there was none. BadInput: it is damaged; the batch writes it anew.
+    """
+    path = place / FILE_NAME
+    try:
+        told = json.loads(path.read_text(encoding="utf-8"))
+        options = [Options(**one | {"accept": tuple(one["accept"])}) for one in told["options"]]
+        return [_item(i, row, options) for i, row in enumerate(told["cases"])]
+    except FileNotFoundError:
+        raise MissingFile(
+            "no batch was begun here", where=str(place), valid="`clearance batch … --out` first"
+        ) from None
+    except (OSError, ValueError, KeyError, TypeError, IndexError):
+        raise BadInput(
+            "the list of cases is damaged", where=str(path), valid="`clearance batch` once more"
+        ) from None
+
+
+def item_called(items: Sequence[Item], name: str) -> Item:
+    """The case of a name.
+
+    Raises:
+        BadInput: there is none; with the nearest name.
+    """
+    found = next((item for item in items if item.name == name), None)
+    if found is None:
+        names = [item.name for item in items]
+        raise BadInput(f"there is no case {name!r:.80}", valid=nearest_name(name, names))
+    return found
+
+
+def _told(item: Item) -> dict[str, object]:
+    told: dict[str, object] = {"name": item.name, "file": item.file}
+    return told if item.trajectory is None else told | {"trajectory": asdict(item.trajectory)}
+
+
+def _item(number: int, row: dict, options: Sequence[Options]) -> Item:
+    given = row.get("trajectory")
+    trajectory = None if given is None else GivenTrajectory(**given)
+    return Item(number, row["name"], row["file"], trajectory, options[row["options"]])

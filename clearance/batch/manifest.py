@@ -1,0 +1,164 @@
+"""Manifests, case files and patterns to the list of cases of a batch, in order, each with a name of its own.
+
+A pattern that nothing matches is refused; a file that is named and is not there is one case that cannot be read.
+Not for: reading cases (`measuring`).
+"""
+
+from __future__ import annotations
+
+import glob
+import os
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path, PurePath
+
+from clearance.batch.item import GivenTrajectory, Item
+from clearance.batch.options import Options
+from clearance.errors import BadInput, DuplicateName, MissingFile, at
+from clearance.load.input_files import read_bytes
+from clearance.load.manifest_schema import Manifest, Reading, is_manifest, load_manifest
+from clearance.world.names import checked_name
+
+
+@dataclass(frozen=True)
+class Changes:
+    """What the command line says instead of the manifests; None where it says nothing. Lengths in metres."""
+
+    need: str | None = None
+    certify: bool | None = None
+    certify_gap: float | None = None
+    fail: float | None = None
+    warn: float | None = None
+    accept: tuple[str, ...] = ()
+
+
+def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
+    """All cases, in the order in which they are given, those of a pattern by name.
+
+    Args:
+        arguments: paths or patterns of manifests and of case files.
+
+    Raises:
+        BadInput: a manifest that is none, a pattern that nothing matches, or two cases of one name.
+    """
+    found: dict[tuple[str, str, str | None], Item] = {}
+    plain: list[Path] = []
+    for argument in arguments:
+        for path in _matching(argument, Path()):
+            if _is_manifest(path):
+                for item in _of_manifest(path, changes):
+                    found.setdefault(_identity(item), item)
+            else:
+                plain.append(path)
+    for item in _of_cases(
+        plain, _common_folder(plain), "", _options(Manifest.model_construct(), changes)
+    ):
+        found.setdefault(_identity(item), item)
+    items = [replace(item, number=i) for i, item in enumerate(found.values())]
+    _require_own_names(items)
+    return items
+
+
+def _identity(item: Item) -> tuple[str, str, str | None]:
+    given = item.trajectory
+    return item.file, "" if given is None else given.path, None if given is None else given.robot
+
+
+def _is_manifest(path: Path) -> bool:
+    """False for a case file, and for what cannot be read: that is a case which tells why."""
+    try:
+        return is_manifest(read_bytes(path, path.name))
+    except MissingFile:
+        return False
+
+
+def _of_manifest(path: Path, changes: Changes) -> Iterator[Item]:
+    given = load_manifest(path)
+    with at(path.name):
+        options, folder = _options(given, changes), path.absolute().parent
+        before = f"{given.name}/" if given.name else ""
+        with at("cases"):
+            yield from _of_cases(_all_matching(given.cases or [], folder), folder, before, options)
+        if given.cell is None:
+            return
+        cell = os.path.abspath(folder / given.cell)
+        reading = _reading(given.read_as)
+        with at("trajectories"):
+            for one in _all_matching(given.trajectories or [], folder):
+                asked = GivenTrajectory(os.path.abspath(one), reading, given.robot)
+                yield Item(0, before + _name(one, folder), cell, asked, options)
+
+
+def _of_cases(paths: Sequence[Path], folder: Path, before: str, options: Options) -> Iterator[Item]:
+    for path in paths:
+        yield Item(0, before + _name(path, folder), os.path.abspath(path), None, options)
+
+
+def _options(given: Manifest, changes: Changes) -> Options:
+    """What is asked, of the manifest and the command line, which goes before."""
+    usual = Options()
+    certify = not given.samples_only if changes.certify is None else changes.certify
+    return Options(
+        need=changes.need or given.need or usual.need,
+        certify=certify,
+        certify_gap=changes.certify_gap or given.certify_gap or usual.certify_gap,
+        fail=given.limits.fail if changes.fail is None else changes.fail,
+        warn=given.limits.warn if changes.warn is None else changes.warn,
+        accept=tuple(dict.fromkeys([*given.accept, *changes.accept])),
+    )
+
+
+def _reading(given: Reading | None) -> str:
+    return (given or Reading.model_validate({})).model_dump_json(
+        exclude_defaults=True, exclude={"file"}
+    )
+
+
+def _all_matching(patterns: Sequence[str], folder: Path) -> list[Path]:
+    paths = [path for pattern in patterns for path in _matching(pattern, folder)]
+    return list(dict.fromkeys(paths))
+
+
+def _matching(pattern: str, folder: Path) -> list[Path]:
+    """The files of a pattern, by name; of a plain path that path, whether it is there or not.
+
+    Raises:
+        MissingFile: nothing matches.
+    """
+    place = folder / pattern
+    if place.exists() or not glob.has_magic(pattern):
+        return [place]
+    found = sorted(glob.glob(pattern, root_dir=str(folder), recursive=True))
+    if not found:
+        raise MissingFile(f"no file matches {pattern!r}", valid="a pattern of files that are there")
+    return [folder / one for one in found]
+
+
+def _name(path: Path, folder: Path) -> str:
+    """A file's path from a folder, without its suffix."""
+    relative = PurePath(os.path.relpath(path, folder or os.curdir))
+    return checked_name(relative.with_suffix("").as_posix())
+
+
+def _common_folder(paths: Sequence[Path]) -> Path:
+    """The folder that all files are in."""
+    if not paths:
+        return Path()
+    return Path(os.path.commonpath([path.absolute().parent for path in paths]))
+
+
+def _require_own_names(items: Sequence[Item]) -> None:
+    seen: dict[str, Item] = {}
+    for item in items:
+        other = seen.setdefault(item.name, item)
+        if other is not item:
+            raise DuplicateName(
+                f"two cases would be called {item.name!r}: {_file(other)} and {_file(item)}",
+                valid="a name: in each manifest, which goes before the names of its cases",
+            )
+    if not items:
+        raise BadInput("no case is given", valid="a manifest, case files, or a pattern of them")
+
+
+def _file(item: Item) -> str:
+    return os.path.relpath(item.file if item.trajectory is None else item.trajectory.path)

@@ -1,0 +1,181 @@
+"""Reads and answers cases, in whichever process: a task in, the rows of its cases out as a segment.
+
+A cell is read once in a process and stays for the next case in it. Not for: which process does what (`engine`).
+"""
+
+from __future__ import annotations
+
+import json
+import time
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+from clearance.batch.file_hashes import Seen, seen
+from clearance.batch.item import Item
+from clearance.batch.keys import key_of, program
+from clearance.batch.rows import inputs_text, row_of
+from clearance.batch.segments import segment_of
+from clearance.errors import ClearanceError, Incomplete
+from clearance.load.case_file import CellFile, load_case, load_cell, with_trajectory_file
+from clearance.load.manifest_schema import Reading
+from clearance.run import Resources, answer
+from clearance.world.case import Case, Source
+
+CELLS = 4
+"""Cells that stay read in a process; work comes cell by cell."""
+
+ONE_THREAD = Resources(jobs=1)
+
+
+@dataclass(frozen=True)
+class Task:
+    """Cases to be measured one after another.
+
+    Attributes:
+        seconds: after which no further case is begun; what is left comes back.
+        program: that the rows must be of. batch: another one for each batch, whose cells are read anew.
+    """
+
+    items: tuple[Item, ...]
+    seconds: float
+    program: str
+    batch: str
+
+
+class Measured(NamedTuple):
+    """What became of an item: its key, and what is told of it at once."""
+
+    number: int
+    key: str
+    status: str
+    exit_code: int
+    clearance: float | None
+    reason: str
+
+
+class Fault(NamedTuple):
+    """Why an item has no answer.
+
+    Attributes:
+        trace: where this program is at fault, else empty.
+    """
+
+    number: int
+    text: str
+    trace: str = ""
+
+
+@dataclass(frozen=True)
+class Done:
+    """What a task came to.
+
+    Attributes:
+        segment: the rows of `measured`, as `segments` writes them; empty without any.
+        read: the files that were read, as they were found. left: what was not begun.
+    """
+
+    measured: tuple[Measured, ...]
+    faults: tuple[Fault, ...]
+    segment: bytes
+    read: tuple[tuple[str, Seen], ...]
+    left: tuple[Item, ...]
+
+
+def measure(task: Task) -> Done:
+    """Measures the items of a task.
+
+    Raises:
+        Incomplete: this process runs another program than the one that asks.
+    """
+    if task.program != program():
+        raise Incomplete(
+            "a worker runs another version of clearance or of its libraries",
+            valid="the same versions wherever the batch runs",
+        )
+    work, begun = _Work(task.batch), time.monotonic()
+    for i, item in enumerate(task.items):
+        if i and time.monotonic() - begun > task.seconds:
+            return work.done(task.items[i:])
+        work.add(item)
+    return work.done(())
+
+
+class _Work:
+    """Gathers what becomes of items."""
+
+    def __init__(self, batch: str) -> None:
+        self.batch = batch
+        self.measured: list[Measured] = []
+        self.faults: list[Fault] = []
+        self.rows: list[dict[str, Any]] = []
+        self.read: dict[str, Seen] = {}
+
+    def add(self, item: Item) -> None:
+        read = time.time_ns()
+        try:
+            found = read_item(item, self.batch)
+            run = answer(item.options.question(found.case), ONE_THREAD)
+            row = row_of(run)
+        except ClearanceError as error:
+            self.faults.append(Fault(item.number, str(error)))
+            return
+        except Exception as error:
+            text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
+            self.faults.append(Fault(item.number, text, traceback.format_exc()))
+            return
+        case = found.case
+        key = key_of(item, [(one.path, one.sha256) for one in case.sources])
+        inputs = inputs_text(found.kept)
+        self.rows.append({"key": key, "file": item.file, "inputs": inputs} | row)
+        reason = row["reasons"][0] if row["reasons"] else ""
+        told = (row["status"], row["exit_code"], row["clearance"], reason)
+        self.measured.append(Measured(item.number, key, *told))
+        self._note(case.sources, read)
+
+    def _note(self, sources: Sequence[Source], read: int) -> None:
+        for one in sources:
+            if one.read_from not in self.read:
+                marks = seen(one.read_from, one.sha256, read)
+                if marks is not None:
+                    self.read[one.read_from] = marks
+
+    def done(self, left: tuple[Item, ...]) -> Done:
+        segment = segment_of(self.rows) if self.rows else b""
+        return Done(
+            tuple(self.measured), tuple(self.faults), segment, tuple(self.read.items()), left
+        )
+
+
+class ReadItem(NamedTuple):
+    """A case, and the files that it has in common with others of its cell, or all."""
+
+    case: Case
+    kept: tuple[Source, ...]
+
+
+def read_item(item: Item, batch: str = "") -> ReadItem:
+    """The case of an item.
+
+    Args:
+        batch: as in `Task`.
+
+    Raises:
+        BadInput: as `load_case`.
+    """
+    given = item.trajectory
+    if given is None:
+        case = load_case(item.file)
+        return ReadItem(case, case.sources)
+    cell = _cell(item.file, batch)
+    reading = Reading.model_validate(json.loads(given.reading))
+    asked = reading.model_copy(update={"file": given.path})
+    case = with_trajectory_file(cell, asked, item.name, given.robot)
+    return ReadItem(case, cell.files.sources)
+
+
+@lru_cache(maxsize=CELLS)
+def _cell(path: str, batch: str) -> CellFile:
+    return load_cell(path)

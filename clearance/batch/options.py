@@ -1,0 +1,47 @@
+"""What is asked of every case of a batch. Not for: which cases there are (`manifest`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from clearance.run import Question
+from clearance.run.question import with_levels
+from clearance.tolerance import CERTIFY_GAP
+from clearance.world.case import Case
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is asked of a case; its `repr` distinguishes it in keys.
+
+    Attributes:
+        need, certify, certify_gap: as in `run.Question`.
+        fail, warn: [m] limits instead of the case's, as `with_levels` takes them.
+        accept: kinds of suspect input that decide no verdict, beside the case's.
+    """
+
+    need: str = "limit"
+    certify: bool = True
+    certify_gap: float = CERTIFY_GAP
+    fail: float | None = None
+    warn: float | None = None
+    accept: tuple[str, ...] = ()
+
+    def question(self, case: Case) -> Question:
+        """The question about a case.
+
+        Raises:
+            BadInput: a warn limit below the fail limit.
+        """
+        limits = with_levels(case.limits, self.fail, self.warn)
+        accepted = tuple(dict.fromkeys([*case.accept, *self.accept]))
+        return Question(
+            replace(case, limits=limits, accept=accepted),
+            need=self.need,
+            certify=self.certify,
+            certify_gap=self.certify_gap,
+        )
+
+    def of_report(self) -> Options:
+        """The same for a full report, which shows every step."""
+        return replace(self, need="steps")

@@ -1,0 +1,112 @@
+"""Which cases of a batch the store has answered already, without reading a case: by the hashes of its files.
+
+A case whose files are all as they were when they were last read is what it was then. A file that was not there
+then, and would now be found before another (a mesh in an earlier package folder), goes unnoticed unless `rehash`
+or `fresh` asks for more. Not for: measuring the others (`measuring`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from clearance.batch.file_hashes import FileHashes
+from clearance.batch.item import GivenTrajectory, Item
+from clearance.batch.keys import key_of
+from clearance.batch.store import Store
+from clearance.load.input_files import InputFiles
+from clearance.load.rosbag_file import files_of
+
+Files = tuple[tuple[str, str], ...]
+"""Path as shown and sha256."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is known and what is to be done.
+
+    Attributes:
+        keys: of the items that the store has answered, by number. todo: the others, those of a cell together.
+    """
+
+    keys: dict[int, str]
+    todo: list[Item]
+
+
+def planned(
+    items: Sequence[Item], store: Store, hashes: FileHashes, *, fresh: bool = False
+) -> Plan:
+    """What of some items is to be done.
+
+    Args:
+        fresh: all of it.
+    """
+    keys: dict[int, str] = {}
+    look = _Look(store, hashes)
+    if not fresh:
+        for item in items:
+            key = look.key(item)
+            if key is not None:
+                keys[item.number] = key
+    todo = [item for item in items if item.number not in keys]
+    return Plan(keys, sorted(todo, key=lambda item: (item.file, item.number)))
+
+
+@dataclass(eq=False)
+class _Look:
+    """Finds the keys of items; what cases share is looked at once."""
+
+    store: Store
+    hashes: FileHashes
+    _shared: dict[str, Files | None] = field(default_factory=dict)
+    _of_folder: dict[str, InputFiles] = field(default_factory=dict)
+
+    def key(self, item: Item) -> str | None:
+        """The key of an item that the store has; None where it has none, or a file is another."""
+        own = self._own(item)
+        if own is None:
+            return None
+        for inputs in self.store.inputs.get(item.file, ()):
+            shared = self._as_before(inputs)
+            if shared is not None:
+                key = key_of(item, (*shared, *own))
+                if key in self.store:
+                    return key
+        return None
+
+    def _own(self, item: Item) -> Files | None:
+        """The files of the trajectory that a cell is given."""
+        given = item.trajectory
+        if given is None:
+            return ()
+        folder = str(Path(item.file).parent)
+        files = self._of_folder.setdefault(folder, InputFiles(Path(folder)))
+        return self._hashed((files.shown(path), str(path)) for path in _paths(given))
+
+    def _as_before(self, inputs: str) -> Files | None:
+        """The files that a case was made from, if each is as it was."""
+        if inputs not in self._shared:
+            told = json.loads(inputs)
+            found = self._hashed((shown, path) for shown, path, _ in told)
+            before = tuple((shown, sha256) for shown, _, sha256 in told)
+            self._shared[inputs] = before if found == before else None
+        return self._shared[inputs]
+
+    def _hashed(self, paths: Iterable[tuple[str, str]]) -> Files | None:
+        found = []
+        for shown, path in paths:
+            sha256 = self.hashes.of(path)
+            if sha256 is None:
+                return None
+            found.append((shown, sha256))
+        return tuple(found)
+
+
+def _paths(given: GivenTrajectory) -> list[Path]:
+    """The files of a trajectory: several where it is a bag."""
+    try:
+        return files_of(Path(given.path))
+    except OSError:
+        return [Path(given.path)]

@@ -1,0 +1,154 @@
+"""What a case comes to, as one row: the verdict, the moment that stands worst, a curve, and what was read.
+
+Not for: measuring (`measuring`), and rows on disk (`store`).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from clearance.findings.finding import Finding
+from clearance.findings.of_record import findings_of
+from clearance.run import Run
+from clearance.simulate.record import Record
+from clearance.world.case import Source
+
+ERROR = "error"
+"""The status of a case that cannot be read or answered."""
+
+CURVE = 64
+"""Numbers of a curve at most."""
+
+_TEXTS = pa.list_(pa.string())
+
+FINDING = pa.schema(
+    [
+        ("id", pa.string()),
+        ("kind", pa.string()),
+        ("rule", pa.string()),
+        ("body_a", pa.string()),
+        ("body_b", pa.string()),
+        ("occurrence", pa.int64()),
+        ("status", pa.string()),
+        ("clearance", pa.float64()),
+        ("proven", pa.float64()),
+        ("fail", pa.float64()),
+        ("warn", pa.float64()),
+        ("time", pa.float64()),
+        ("time_b", pa.float64()),
+        ("step", pa.int64()),
+        ("between", pa.bool_()),
+        ("start", pa.float64()),
+        ("end", pa.float64()),
+        ("first_step", pa.int64()),
+        ("last_step", pa.int64()),
+        ("point_a", pa.list_(pa.float64())),
+        ("point_b", pa.list_(pa.float64())),
+        ("text", pa.string()),
+    ]
+)
+"""What is kept of a `findings.finding.Finding`."""
+
+MOST_FINDINGS = 200
+"""Of one case, the worst."""
+
+VERDICT = pa.schema(
+    [
+        ("status", pa.string()),
+        ("exit_code", pa.int8()),
+        ("text", pa.string()),
+        ("measured", pa.string()),
+        ("basis", pa.string()),
+        ("need", pa.string()),
+        ("clearance", pa.float64()),
+        ("lower_bound", pa.float64()),
+        ("time", pa.float64()),
+        ("step", pa.int64()),
+        ("body_a", pa.string()),
+        ("body_b", pa.string()),
+        ("rule", pa.string()),
+        ("fail", pa.float64()),
+        ("warn", pa.float64()),
+        ("n_steps", pa.int64()),
+        ("start", pa.float64()),
+        ("end", pa.float64()),
+        ("reasons", _TEXTS),
+        ("warnings", _TEXTS),
+        ("not_checked", _TEXTS),
+        ("curve", pa.list_(pa.float32())),
+        ("n_findings", pa.int64()),
+        ("findings", pa.list_(pa.struct(FINDING))),
+    ]
+)
+"""Columns that follow from the case: what the room's notes say of `cases.parquet`."""
+
+STORED = pa.schema([("key", pa.string()), ("file", pa.string()), ("inputs", pa.string()), *VERDICT])
+"""Those of a segment: the key, the case file, and what was read beside the trajectory that it was given."""
+
+
+def row_of(run: Run) -> dict[str, Any]:
+    """The columns of `VERDICT` for a run."""
+    record, verdict = run.record, run.verdict
+    worst, times = record.worst, record.motions[0].times
+    certificate = record.certificate
+    limits, findings = record.rule(worst.rule).limits, findings_of(record)
+    return {
+        "status": verdict.status,
+        "exit_code": verdict.exit_code,
+        "text": verdict.text(),
+        "measured": verdict.measured,
+        "basis": verdict.basis,
+        "need": record.need,
+        "clearance": worst.clearance,
+        "lower_bound": None if certificate is None else float(certificate.lower_bound.min()),
+        "time": worst.time,
+        "step": worst.step,
+        "body_a": worst.link,
+        "body_b": worst.obstacle,
+        "rule": worst.rule,
+        "fail": limits.fail,
+        "warn": limits.warn,
+        "n_steps": len(times),
+        "start": float(times[0]),
+        "end": float(times[-1]),
+        "reasons": list(verdict.reasons),
+        "warnings": list(verdict.warnings),
+        "not_checked": list(verdict.not_checked),
+        "curve": curve_of(record),
+        "n_findings": len(findings),
+        "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
+    }
+
+
+def _told(finding: Finding) -> dict[str, Any]:
+    return {name: getattr(finding, name) for name in FINDING.names}
+
+
+def curve_of(record: Record) -> np.ndarray:
+    """(k,) float32 [m] the least clearance in each of equal stretches of steps, at most `CURVE`; where only a
+    bound is known, the bound. Rounded down.
+    """
+    clearance = record.clearances
+    bound = np.min([rule.measurement.lower_bound for rule in record.rules], axis=0)
+    reached = np.where(np.isnan(clearance), bound, clearance)
+    n_parts = min(len(reached), CURVE)
+    starts = np.arange(n_parts) * len(reached) // n_parts
+    least = np.minimum.reduceat(reached, starts)
+    near = least.astype(np.float32)
+    return np.where(near > least, np.nextafter(near, np.float32(-np.inf)), near)
+
+
+def error_row(text: str, exit_code: int) -> dict[str, Any]:
+    """The same for a case that has no answer."""
+    row = {field.name: None for field in VERDICT}
+    return row | {"status": ERROR, "exit_code": exit_code, "text": text, "reasons": [text]}
+
+
+def inputs_text(sources: Sequence[Source]) -> str:
+    """The files that a case was made from as JSON: path as shown, where it is, sha256."""
+    return json.dumps([[one.path, one.read_from, one.sha256] for one in sources])

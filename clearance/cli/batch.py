@@ -1,0 +1,143 @@
+"""`clearance batch`: many cases in, one verdict for all; `clearance batch status` asks how far one is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from clearance.cli import ExitCode
+from clearance.cli.options import Millimetres, OutputPath
+from clearance.world.notice import KINDS
+
+
+class _Commands(click.Group):
+    """A group in which what is no command's name is an argument of the first one."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """The arguments, the command's name before them where it is left out."""
+        if args and args[0] not in (*self.commands, *ctx.help_option_names):
+            args = ["check", *args]
+        return super().parse_args(ctx, args)
+
+
+@click.group(cls=_Commands, options_metavar="", subcommand_metavar="[check] … | status STORE")
+def batch() -> None:
+    """Many cases, measured once each and answered together.
+
+    `clearance batch MANIFEST.yaml --out STORE` checks; `clearance batch check --help` has its options.
+    """
+
+
+class _Shard(click.ParamType):
+    """A part of several, as 2/5."""
+
+    name = "i/n"
+
+    def convert(
+        self,
+        value: str | tuple[int, int],
+        param: click.Parameter | None,
+        ctx: click.Context | None,
+    ) -> tuple[int, int]:
+        """The two numbers."""
+        if isinstance(value, tuple):
+            return value
+        first, _, second = value.partition("/")
+        if not (first.isdecimal() and second.isdecimal() and 1 <= int(first) <= int(second)):
+            self.fail(f"{value!r} is no part; i/n with i from 1 to n, as 2/5", param, ctx)
+        return int(first), int(second)
+
+
+@batch.command()
+@click.argument("arguments", metavar="MANIFEST.yaml|CASE.yaml|GLOB…", nargs=-1, required=True)
+@click.option(
+    "--out",
+    "place",
+    metavar="STORE",
+    type=OutputPath(),
+    required=True,
+    help="The folder that keeps every case's row, and the answer.",
+)
+@click.option(
+    "--jobs", type=click.IntRange(min=1), help="Worker processes.  [default: all cores; same bytes]"
+)
+@click.option("--scheduler", metavar="ADDRESS", help="Use the workers of this dask scheduler.")
+@click.option("--shard", type=_Shard(), help="Measure every n-th case only, from the i-th on.")
+@click.option("--fresh", is_flag=True, help="Measure all again, whatever the store has.")
+@click.option("--rehash", is_flag=True, help="Read every input file, whatever its times say.")
+@click.option("--strict", is_flag=True, help="A case that cannot be read is exit code 2, not 1.")
+@click.option(
+    "--need",
+    type=click.Choice(["steps", "limit", "minimum"]),
+    help="As of check; the verdict is the same.  [default: limit]",
+)
+@click.option(
+    "--samples-only",
+    is_flag=True,
+    help="Look at the samples only: no proof for the motion between them.",
+)
+@click.option("--certify-mm", type=Millimetres(), help="As of check.  [default: 0.1]")
+@click.option("--fail-mm", type=Millimetres(), help="Fail limit instead of the cases'.")
+@click.option("--warn-mm", type=Millimetres(), help="Warn limit instead of the cases'.")
+@click.option(
+    "--accept",
+    metavar="KIND",
+    multiple=True,
+    type=click.Choice(KINDS),
+    help=f"Let no suspect input of this kind decide a verdict ({', '.join(KINDS)}).",
+)
+@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+def check(
+    arguments: tuple[str, ...],
+    place: Path,
+    jobs: int | None,
+    scheduler: str | None,
+    shard: tuple[int, int] | None,
+    fresh: bool,
+    rehash: bool,
+    strict: bool,
+    need: str | None,
+    samples_only: bool,
+    certify_mm: float | None,
+    fail_mm: float | None,
+    warn_mm: float | None,
+    accept: tuple[str, ...],
+    quiet: bool,
+) -> int:
+    """Checks many cases: those of manifests, case files and patterns of them.
+
+    Every row is kept in STORE as soon as it is there, so the same command goes on where an
+    interrupted one was, and measures only what has changed. Exit code: the greatest of all cases,
+    as of `clearance check`; 1 for one that cannot be read (2 with --strict); 4 where some are not
+    measured, as on a full disk.
+    """
+    from clearance.batch.manifest import Changes, items_of
+    from clearance.batch.store import open_store
+    from clearance.cli.batch_run import Asked, run_asked
+
+    if samples_only and certify_mm is not None:
+        raise click.UsageError("--samples-only proves nothing; leave out --certify-mm")
+    if jobs is not None and scheduler is not None:
+        raise click.UsageError("--jobs are of this machine; leave it out with --scheduler")
+    certify = False if samples_only else None
+    items = items_of(arguments, Changes(need, certify, certify_mm, fail_mm, warn_mm, accept))
+    asked = Asked(jobs, scheduler, shard, fresh, rehash, strict, quiet)
+    return run_asked(items, open_store(place, fresh=fresh), asked)
+
+
+@batch.command()
+@click.argument("place", metavar="STORE", type=click.Path(path_type=Path))
+def status(place: Path) -> int:
+    """How far the last batch of STORE is: done, missing, failed, and the worst.
+
+    Missing is what was never measured, and what is of files that have changed since. Exit code: the
+    greatest of the cases that are done; 4 where some are missing.
+    """
+    from clearance.batch.status import status_of
+    from clearance.batch.store import open_store
+    from clearance.cli.batch_verdict import print_status
+
+    found = status_of(open_store(place, make=False))
+    print_status(found)
+    return max(ExitCode.INCOMPLETE if found.n_missing else 0, found.answered.exit_code)

@@ -1,0 +1,112 @@
+"""Runs a batch for the command line: engine, progress, answer, exit code. Not for: its options (`batch`)."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from clearance.batch.answer import answer_of
+from clearance.batch.engine import Engine, InThisProcess
+from clearance.batch.item import Item
+from clearance.batch.listed import write_list
+from clearance.batch.output import write_answer
+from clearance.batch.run import Opener, Outcome, run_batch, shard_of
+from clearance.batch.store import Store
+from clearance.cli import ExitCode
+from clearance.cli.batch_progress import shown_progress
+from clearance.cli.batch_verdict import print_answer
+from clearance.extras import LIBRARIES, is_installed
+from clearance.simulate.parts import usable_cores
+
+FEW = 32
+"""Cases that one process has measured before others are ready to help."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What the command line says beside the cases."""
+
+    jobs: int | None
+    scheduler: str | None
+    shard: tuple[int, int] | None
+    fresh: bool
+    rehash: bool
+    strict: bool
+    quiet: bool
+
+
+def run_asked(items: Sequence[Item], store: Store, asked: Asked) -> int:
+    """Measures, writes the answer and prints it; the exit code.
+
+    Raises:
+        Incomplete: some cases are not measured, and why; the others are kept.
+    """
+    say = _silent if asked.quiet else _say
+    if store.n_damaged:
+        say(f"damaged rows of {store.n_damaged} segments are dropped, and measured again")
+    with store.locked():
+        write_list(store.place, items)
+    own = list(items) if asked.shard is None else shard_of(items, asked.shard)
+    outcome = Outcome(own)
+    try:
+        with shown_progress(asked.quiet) as watch:
+            open_engine = _opener(asked, say)
+            run_batch(outcome, store, open_engine, watch, fresh=asked.fresh, rehash=asked.rehash)
+        answer = answer_of(outcome, store, strict=asked.strict)
+        if asked.shard is None:
+            write_answer(answer, store)
+    except KeyboardInterrupt:
+        _say(f"interrupted: {len(outcome.keys):,} of {len(own):,} cases are kept")
+        return ExitCode.INTERRUPTED
+    if not asked.quiet:
+        print_answer(answer, store, outcome.n_cached, asked.shard)
+    return answer.exit_code
+
+
+def _opener(asked: Asked, say: Callable[[str], None]) -> Opener:
+    """Opens the engine that is asked for."""
+
+    @contextmanager
+    def opened(n_cases: int) -> Iterator[Engine]:
+        if asked.scheduler is not None:
+            from clearance.batch.dask_engine import cluster_at
+
+            with cluster_at(asked.scheduler) as engine:
+                yield engine
+            return
+        jobs = _jobs(asked.jobs, n_cases, say)
+        if jobs == 1:
+            from clearance.cli import compile_ahead
+
+            if compile_ahead.start():
+                say("compiling for this machine, once: about half a minute")
+            yield InThisProcess()
+            return
+        from clearance.batch.dask_engine import local_cluster
+
+        with local_cluster(jobs, say) as engine:
+            yield engine
+
+    return opened
+
+
+def _jobs(asked: int | None, n_cases: int, say: Callable[[str], None]) -> int:
+    """How many processes are of use."""
+    if asked is not None:
+        return min(asked, n_cases)
+    if n_cases <= FEW or usable_cores() == 1:
+        return 1
+    if not all(map(is_installed, LIBRARIES["batch"])):
+        say("one process measures; pip install 'clearance[batch]' brings more")
+        return 1
+    return usable_cores()
+
+
+def _say(line: str) -> None:
+    print(line, file=sys.stderr, flush=True)
+
+
+def _silent(line: str) -> None:
+    """Says nothing."""

@@ -1,0 +1,74 @@
+"""What a batch comes to, for a person at a terminal: counts first, then the worst cases. Not for: progress."""
+
+from __future__ import annotations
+
+import click
+
+from clearance.batch.answer import BatchAnswer
+from clearance.batch.output import PAGE
+from clearance.batch.status import BatchStatus
+from clearance.batch.store import Store
+from clearance.errors import shown
+from clearance.report.wording import count, mm
+
+MOST_LISTED = 10
+"""Failing cases in the terminal; all are on the page."""
+
+_BASES = {"motion": "proven for the motion", "samples": "looked at the samples only"}
+
+
+def print_answer(
+    answer: BatchAnswer, store: Store, n_cached: int, shard: tuple[int, int] | None
+) -> None:
+    """Prints the answer on stdout."""
+    n_cases = answer.cases.num_rows
+    part = "" if shard is None else f" (part {shard[0]} of {shard[1]})"
+    click.echo(f"{_headline(answer)}{part}")
+    _print_facts(answer)
+    click.echo(f"  cached      {n_cached:,} of {n_cases:,}")
+    _print_worst(answer)
+    if shard is None:
+        click.echo(f"  page        {shown(str(store.place / PAGE))}")
+    else:
+        click.echo(
+            "  page        the same command without --shard writes it once all parts are done"
+        )
+
+
+def print_status(status: BatchStatus) -> None:
+    """Prints how far a batch is on stdout."""
+    answer = status.answered
+    click.echo(f"{answer.cases.num_rows:,} of {count(status.n_cases, 'case')} done")
+    click.echo(f"  missing     {status.n_missing:,}")
+    click.echo(f"  failed      {len(answer.worst_first()):,}")
+    click.echo(f"  kept        {count(status.n_rows, 'row')} in all")
+    _print_facts(answer)
+    _print_worst(answer)
+
+
+def _headline(answer: BatchAnswer) -> str:
+    worst = next(reversed(answer.counts), "nothing").upper()
+    return f"{worst}  {count(answer.cases.num_rows, 'case')}: {_counted(answer)}"
+
+
+def _counted(answer: BatchAnswer) -> str:
+    return ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items())) or "none"
+
+
+def _print_facts(answer: BatchAnswer) -> None:
+    for basis, n in answer.bases.items():
+        click.echo(f"  basis       {count(n, 'case')} {_BASES[basis]}")
+    least = answer.least
+    if least is not None:
+        near = f"{mm(least['clearance'])} mm, {least['body_a']} - {least['body_b']}"
+        click.echo(shown(f"  least       {least['case']}: {near} at {least['time']:.3f} s"))
+
+
+def _print_worst(answer: BatchAnswer) -> None:
+    rows = answer.worst_first()
+    for i in rows[:MOST_LISTED]:
+        row = answer.cases.slice(i, 1).to_pylist()[0]
+        reason = row["reasons"][0] if row["reasons"] else row["text"]
+        click.echo(shown(f"  {row['status']:<10}  {row['case']}: {reason}"))
+    if len(rows) > MOST_LISTED:
+        click.echo(f"              and {len(rows) - MOST_LISTED:,} more, see the page")

@@ -1,0 +1,79 @@
+"""`clearance compare`: two runs side by side, as a table and, where one is wanted, a page.
+
+Not for: comparing (`findings.comparison`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from clearance.cli import ExitCode
+from clearance.cli.options import OutputPath
+
+if TYPE_CHECKING:
+    from clearance.findings.comparison import Comparison
+
+MOST_ROWS = 20
+"""Most findings told in a terminal."""
+
+
+def print_comparison(comparison: Comparison) -> None:
+    """What became of the findings, on stdout."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text
+
+    console = Console()
+    console = console if console.is_terminal else Console(width=160)
+    console.print(Text(f"  {comparison_text(comparison)}"), soft_wrap=True)
+    table = Table(box=None, pad_edge=False, padding=(0, 2))
+    for i, head in enumerate(HEADS):
+        shown = head if i else f"  {head}"
+        table.add_column(shown, justify="right" if head.endswith("mm") else "left")
+    rows = [row for row in comparison.rows if str(row.change) != "unchanged"]
+    for row in rows[:MOST_ROWS]:
+        change, *cells = comparison_cells(row)
+        table.add_row(Text(f"  {change}"), *(Text(cell) for cell in cells))
+    if rows:
+        console.print(table)
+    if len(rows) > MOST_ROWS:
+        console.print(Text(f"  and {len(rows) - MOST_ROWS} more"))
+
+
+@click.command()
+@click.argument("before", metavar="A", type=click.Path(path_type=Path))
+@click.argument("now", metavar="B", type=click.Path(path_type=Path))
+@click.option("--out", metavar="DIR", type=OutputPath(), help="Write a page with both curves here.")
+@click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
+def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
+    """Compares two runs of a case: report folders, or their findings.json.
+
+    Says what is new, worse, unchanged, better, gone, or not comparable and why. Exit code: 0 if B
+    breaks no rule that it is not known to have broken as much in A; 1 if it does, without a
+    waiver; 2 bad input.
+    """
+    from clearance.findings.comparison import compared
+    from clearance.findings.findings_file import read_findings
+
+    comparison = compared(read_findings(before), read_findings(now))
+    if out is not None:
+        _write(comparison, before, now, out)
+    if not quiet:
+        print_comparison(comparison)
+    return ExitCode.CLEAR if comparison.passed else ExitCode.VIOLATED
+
+
+def _write(comparison: Comparison, before: Path, now: Path, out: Path) -> None:
+    from clearance.cli.places import refuse_inputs, require_folder_place
+    from clearance.report.comparison_page import FILE_NAME, write_comparison
+    from clearance.report.output import OWN
+
+    require_folder_place(out)
+    inputs = [place / name for place in (before, now) if place.is_dir() for name in OWN]
+    refuse_inputs([out / FILE_NAME], [*inputs, before, now])
+    write_comparison(comparison, before, now, out)

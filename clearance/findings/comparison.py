@@ -1,0 +1,205 @@
+"""Two runs of a case held against each other: what is new, worse, unchanged, better, gone or not comparable.
+
+Findings are matched by kind, rule, bodies and occurrence. Not for: files (`findings_file`), nor how it is shown
+(`report.findings`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+from clearance.findings.finding import UNPROVEN, Finding
+from clearance.findings.findings_file import FindingList
+from clearance.findings.measured_as import MeasuredAs
+from clearance.simulate.status import STATUSES, Status
+
+TOLERANCE = 1e-4
+"""[m] A clearance that differs by no more is unchanged: how far a proven bound is from what occurs, by default."""
+
+_ALIKE = frozenset({"steps", "pairs", "limit"})
+"""What can be asked for without a change of what is found."""
+
+
+class Change(StrEnum):
+    """What became of a finding, in the order in which they are told."""
+
+    NEW = "new"
+    WORSE = "worse"
+    NOT_COMPARABLE = "not comparable"
+    UNCHANGED = "unchanged"
+    BETTER = "better"
+    GONE = "gone"
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A finding of one or both of two runs.
+
+    Attributes:
+        before, now: None where that run has none. why: why the two are not comparable.
+    """
+
+    change: Change
+    before: Finding | None
+    now: Finding | None
+    why: str = ""
+
+    @property
+    def finding(self) -> Finding:
+        """That of now, or of before where it is gone."""
+        found = self.now or self.before
+        assert found is not None
+        return found
+
+    @property
+    def alarms(self) -> bool:
+        """True if a rule is broken, without waiver, as it was not before for all that is known."""
+        told = (Change.NEW, Change.WORSE, Change.NOT_COMPARABLE)
+        return self.now is not None and self.now.fails and self.change in told
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two runs held against each other.
+
+    Attributes:
+        before, now: the cases' names. rows: new ones first, of each change the worst first.
+        whole: why nothing is comparable, where that is so.
+    """
+
+    before: str
+    now: str
+    rows: tuple[Compared, ...]
+    whole: str = ""
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """How many rows of each change there are, without those of which there are none."""
+        found = Counter(row.change for row in self.rows)
+        return {str(change): found[change] for change in Change if found[change]}
+
+    @property
+    def passed(self) -> bool:
+        """True if nothing alarms."""
+        return not any(row.alarms for row in self.rows)
+
+
+def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE) -> Comparison:
+    """The findings of now held against those of before.
+
+    Args:
+        tolerance: [m] a clearance that differs by no more is unchanged.
+    """
+    whole = _measured_otherwise(before.measured, now.measured)
+    rows = list(_Comparing(before, now, tolerance, whole).rows())
+    order = list(Change)
+    rows.sort(key=lambda row: (order.index(row.change), row.finding.standing))
+    return Comparison(before.case, now.case, tuple(rows), whole)
+
+
+def _measured_otherwise(before: MeasuredAs, now: MeasuredAs) -> str:
+    """Why nothing of two runs is comparable; empty where something is."""
+    for what in ("method", "motion", "basis", "certify_gap"):
+        one, other = getattr(before, what), getattr(now, what)
+        if one != other:
+            return f"{what.replace('_', ' ')} was {one}, and is {other}"
+    if before.need != now.need and not {before.need, now.need} <= _ALIKE:
+        return f"need was {before.need}, and is {now.need}"
+    return ""
+
+
+_Key = tuple[str, str, tuple[str, ...], int]
+
+
+@dataclass(frozen=True, eq=False)
+class _Comparing:
+    before: FindingList
+    now: FindingList
+    tolerance: float
+    whole: str
+
+    def rows(self) -> Iterator[Compared]:
+        old, new = (_by_key(found) for found in (self.before, self.now))
+        for key in dict.fromkeys([*new, *old]):
+            row = self._row(old.get(key), new.get(key))
+            if row is not None:
+                yield row
+
+    def _row(self, before: Finding | None, now: Finding | None) -> Compared | None:
+        one = now or before
+        assert one is not None
+        why = self.whole or self._changed_inputs(one)
+        if before is None or now is None:
+            if one.status == Status.CLEAR:
+                return None  # kept, and in the other run another pair of the rule was nearer
+            why = why or self._not_known(one, self.before if before is None else self.now)
+            change = Change.NEW if before is None else Change.GONE
+        else:
+            change = self._change(before, now)
+        return Compared(Change.NOT_COMPARABLE if why else change, before, now, why)
+
+    def _change(self, before: Finding, now: Finding) -> Change:
+        ranks = [STATUSES.index(Status(finding.status)) for finding in (before, now)]
+        if ranks[0] != ranks[1]:
+            return Change.WORSE if ranks[1] > ranks[0] else Change.BETTER
+        if before.clearance is None or now.clearance is None:
+            return Change.UNCHANGED
+        gained = now.clearance - before.clearance
+        if abs(gained) <= self.tolerance:
+            return Change.UNCHANGED
+        return Change.BETTER if gained > 0.0 else Change.WORSE
+
+    def _changed_inputs(self, finding: Finding) -> str:
+        """Why a finding of one run says nothing of the other: its robot or its rule is another."""
+        for robot in {self._robot_of(name) for name in (finding.body_a, finding.body_b)} - {""}:
+            if not self._same(robot):
+                return f"robot {robot!r} is another"
+        old, new = (
+            {rule.name: rule for rule in found.measured.rules} for found in (self.before, self.now)
+        )
+        if old.get(finding.rule) != new.get(finding.rule):
+            return f"rule {finding.rule!r} is another"
+        return ""
+
+    def _robot_of(self, body: str) -> str:
+        """The robot that a body is, or is a link of, in either run; empty for an obstacle."""
+        robots = [*self.before.measured.robots, *self.now.measured.robots]
+        return next((one.name for one in robots if body in (*one.links, one.name)), "")
+
+    def _same(self, robot: str) -> bool:
+        old, new = (
+            {one.name: one.sha256 for one in found.measured.robots}
+            for found in (self.before, self.now)
+        )
+        return robot in old and old.get(robot) == new.get(robot)
+
+    def _not_known(self, finding: Finding, other: FindingList) -> str:
+        """Why it is not known how a finding of one run stood in the other, which has none of it."""
+        if other.incomplete:
+            return other.incomplete
+        if other.not_listed:
+            return f"{other.not_listed} findings are not listed"
+        if self.before.measured.rules != self.now.measured.rules:
+            return "other rules may have judged it"
+        has_pair = finding.body_b and finding.kind != UNPROVEN
+        if has_pair and not other.measured.has_pair(finding.body_a, finding.body_b):
+            return (
+                "the pair was not measured" if other is self.before else "the pair is not measured"
+            )
+        return ""
+
+
+def _by_key(found: FindingList) -> dict[_Key, Finding]:
+    return {_key(finding): finding for finding in found.findings}
+
+
+def _key(finding: Finding) -> _Key:
+    """What a finding's name is of, without the case."""
+    bodies = tuple(sorted((finding.body_a, finding.body_b)))
+    if finding.kind == "profile":
+        bodies = ()
+    return finding.kind, finding.rule, bodies, finding.occurrence

@@ -1,0 +1,128 @@
+"""A finding: a rule that two bodies keep or break, and the name that it has in every run of its case.
+
+Not for: finding them (`of_record`), nor the file they are kept in (`findings_file`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+
+from clearance.simulate.status import STATUSES, Status
+
+CLEARANCE = "clearance"
+"""Two bodies and the limits of a rule."""
+
+UNPROVEN = "unproven"
+"""A limit of a rule that nothing seen is below, and that is not proven of the motion between the steps."""
+
+PROFILE = "profile"
+"""An outline that what the robot sweeps must keep to."""
+
+JOINT_LIMITS = "joint limits"
+"""The joints of a robot and their limits, where the case fails by them."""
+
+KINDS = (CLEARANCE, UNPROVEN, PROFILE, JOINT_LIMITS)
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class WaivedBy:
+    """The waiver that a finding is waived by.
+
+    Attributes:
+        at_least: [m] the clearance that it must keep. proven: [m] what is proven of the bodies that it is of, over
+            this finding; None at the samples only.
+        until: the last day that it holds, as 2027-03-31; empty for ever.
+    """
+
+    at_least: float
+    reason: str
+    by: str
+    until: str = ""
+    proven: float | None = None
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One rule, kept or broken by two bodies over one stretch of the motion.
+
+    Attributes:
+        id: 16 hexadecimal digits of the sha256 of case, kind, rule, bodies and occurrence; nothing else enters it.
+        kind: one of `KINDS`. rule: its name; of a profile that of the profile.
+        body_a, body_b: names; of what no two bodies do they are empty, or the second is.
+        occurrence: 0 for the first stretch along the motion in which the pair breaks the rule, then 1 and so on;
+            a pair that keeps it has one finding, 0.
+        status: "clear", "near", "violated" or "contact".
+        clearance: [m] the least, less padding; of a profile its gap; None where nothing was measured.
+        proven: [m] a lower bound for the motion over the stretch, that of all pairs of the rule; None at the
+            samples only.
+        fail, warn: [m] the limits.
+        time: [s] of the least. time_b: [s] when the second body is there, where its clock is another.
+        step: of that moment, or before it if it is `between` two.
+        start, end: [s] the stretch, from its first step to its last, or the next where it ends between two.
+            first_step, last_step: inside it.
+        point_a, point_b: [m] witness points in the world. joints: [rad] or [m] by name, at that moment.
+        text: what else is to say, one line.
+        waived: by what, if it is.
+    """
+
+    id: str
+    kind: str
+    rule: str
+    body_a: str
+    body_b: str
+    occurrence: int
+    status: str
+    clearance: float | None
+    proven: float | None
+    fail: float
+    warn: float
+    time: float | None = None
+    time_b: float | None = None
+    step: int | None = None
+    between: bool = False
+    start: float | None = None
+    end: float | None = None
+    first_step: int | None = None
+    last_step: int | None = None
+    point_a: Point | None = None
+    point_b: Point | None = None
+    joints: dict[str, float] | None = None
+    text: str = ""
+    waived: WaivedBy | None = None
+
+    @property
+    def broken(self) -> bool:
+        """True if the rule is broken, waived or not."""
+        return self.status in (Status.VIOLATED, Status.CONTACT)
+
+    @property
+    def fails(self) -> bool:
+        """True if the rule is broken and nothing waives that."""
+        return self.broken and self.waived is None
+
+    @property
+    def standing(self) -> tuple[int, float, str]:
+        """What findings are ordered by, the worst first: status, how far it is above the fail limit [m], id."""
+        margin = 0.0 if self.clearance is None else self.clearance - self.fail
+        return -STATUSES.index(Status(self.status)), margin, self.id
+
+
+@dataclass(frozen=True)
+class FindingName:
+    """What a finding's id is made of."""
+
+    case: str
+    kind: str
+    rule: str
+    bodies: tuple[str, ...]
+    occurrence: int = 0
+
+    @property
+    def id(self) -> str:
+        """16 hexadecimal digits, whatever the order of the bodies."""
+        told = [self.case, self.kind, self.rule, sorted(self.bodies), self.occurrence]
+        return hashlib.sha256(json.dumps(told).encode()).hexdigest()[:16]

@@ -1,0 +1,112 @@
+"""`findings.json`: the findings of a run, and what is needed to compare them with another run's.
+
+Not for: what a finding is (`finding`), nor comparing (`comparison`). The keys are in `NOTES.md`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from clearance.errors import BadInput, BadSyntax
+from clearance.findings.finding import Finding
+from clearance.findings.measured_as import MeasuredAs, measured_as
+from clearance.findings.of_record import findings_of, why_incomplete
+from clearance.load.input_files import read_bytes
+from clearance.load.schema_errors import place
+from clearance.simulate.record import Record
+
+FILE_NAME = "findings.json"
+
+FORMAT = 1
+"""Which keys there are: `NOTES.md`."""
+
+MOST_LISTED = 10_000
+"""Most findings in a file, the worst; how many more there are is said."""
+
+MOST_BYTES = 64 * 2**20
+"""Of a file that is read."""
+
+
+@dataclass(frozen=True)
+class FindingList:
+    """The findings of a run.
+
+    Attributes:
+        incomplete: why a pair below its warn limit may have no finding; empty where each has one.
+        not_listed: how many findings are left out, none worse than those that are there.
+        findings: the worst first.
+    """
+
+    case: str
+    incomplete: str
+    not_listed: int
+    measured: MeasuredAs
+    findings: tuple[Finding, ...]
+    format: int = FORMAT
+
+
+def finding_list_of(record: Record, findings: tuple[Finding, ...] | None = None) -> FindingList:
+    """The list of a record; `findings` are its own, if they are known."""
+    found = findings_of(record) if findings is None else findings
+    return FindingList(
+        case=record.case.name,
+        incomplete=why_incomplete(record),
+        not_listed=max(0, len(found) - MOST_LISTED),
+        measured=measured_as(record),
+        findings=found[:MOST_LISTED],
+    )
+
+
+def findings_text(found: FindingList) -> str:
+    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN."""
+    return json.dumps(asdict(found), indent=1, sort_keys=True, allow_nan=False) + "\n"
+
+
+def read_findings(path: str | Path) -> FindingList:
+    """The findings in a file, or in the file of that name in a report folder.
+
+    Raises:
+        MissingFile: it is not there. BadSyntax: no JSON. BadInput: not such a file, of another format, or too
+            long.
+    """
+    path = Path(path)
+    if path.is_dir():
+        path = path / FILE_NAME
+    data = read_bytes(path, str(path))
+    if len(data) > MOST_BYTES:
+        raise BadInput(f"{len(data)} bytes", where=str(path), valid=f"at most {MOST_BYTES}")
+    return _checked(_parsed(data, str(path)), str(path))
+
+
+def _parsed(data: bytes, shown: str) -> dict[str, Any]:
+    try:
+        raw = json.loads(data, parse_constant=_refused)
+    except (ValueError, RecursionError) as error:
+        raise BadSyntax(f"not JSON: {error}", where=shown, valid="findings.json of a run") from None
+    number = raw.get("format") if isinstance(raw, dict) else None
+    if number != FORMAT:
+        raise BadInput(
+            f"format {number!r:.40}", where=shown, valid=f"findings.json of format {FORMAT}"
+        )
+    return raw
+
+
+def _refused(name: str) -> float:
+    raise ValueError(f"{name} is no number")
+
+
+def _checked(raw: dict[str, Any], shown: str) -> FindingList:
+    from pydantic import TypeAdapter, ValidationError
+
+    try:
+        return TypeAdapter(FindingList).validate_python(raw)
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise BadInput(
+            first["msg"],
+            where=f"{shown}: {place(tuple(first['loc']))}",
+            valid="findings.json as a run writes it",
+        ) from None

@@ -1,0 +1,203 @@
+"""What a run comes to with its waivers: what they cover, what they do not, and which should go.
+
+Pairs that a waiver is of are measured and proven apart from all others, so that none hides behind what is waived.
+Not for: what a waiver is (`world.waiver`), nor the words of the verdict (`report.verdict`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from weakref import WeakKeyDictionary
+
+from clearance.findings.finding import UNPROVEN, Finding, FindingName, WaivedBy
+from clearance.findings.of_rule import RuleFindings
+from clearance.findings.standing import code_of
+from clearance.simulate.record import PairTest, Record
+from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.status import STATUSES, Status
+from clearance.world.waiver import Waiver
+
+VIOLATED = STATUSES.index(Status.VIOLATED)
+
+
+@dataclass(frozen=True, eq=False)
+class WaiverUse:
+    """What became of one waiver.
+
+    Attributes:
+        answers: what the rules come to of its pairs alone; empty where it has none, or is expired.
+        findings: those of its pairs that are not clear, waived where they are broken and it covers them.
+        fault: why it fails the run, in one line; empty where it does not.
+    """
+
+    waiver: Waiver
+    answers: tuple[RuleAnswer, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    fault: str = ""
+
+    @property
+    def used(self) -> bool:
+        """True if something needs it."""
+        return any(finding.broken for finding in self.findings)
+
+    @property
+    def covers(self) -> bool:
+        """True if all that needs it is covered."""
+        return self.used and not any(finding.fails for finding in self.findings)
+
+
+@dataclass(frozen=True, eq=False)
+class Judgement:
+    """The rules of a run, with its waivers.
+
+    Attributes:
+        findings: of all rules, the worst first. uses: of each waiver that is of this case.
+        rest: what the rules come to without the pairs that are waived.
+        n_of_others: waivers that are of other cases.
+    """
+
+    findings: tuple[Finding, ...]
+    rest: tuple[RuleAnswer, ...]
+    uses: tuple[WaiverUse, ...] = ()
+    n_of_others: int = 0
+
+    @property
+    def judging(self) -> tuple[RuleAnswer, ...]:
+        """What decides the verdict: the rest, and pairs that their waiver does not cover."""
+        failing = [answer for use in self.uses if not use.covers for answer in use.answers]
+        return (*self.rest, *failing)
+
+    @property
+    def covering(self) -> tuple[WaiverUse, ...]:
+        """The waivers that the run needs and keeps to."""
+        return tuple(use for use in self.uses if use.covers)
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """Why waivers fail the run, one line each."""
+        return tuple(use.fault for use in self.uses if use.fault)
+
+    @cached_property
+    def status(self) -> str:
+        """The worst of what decides the verdict."""
+        codes = [code_of(answer) for answer in self.judging]
+        kept = [f for use in self.covering for f in use.findings if f.waived is None]
+        codes += [STATUSES.index(Status(finding.status)) for finding in kept]
+        return str(STATUSES[max(codes, default=0)])
+
+
+_KNOWN: WeakKeyDictionary[Record, Judgement] = WeakKeyDictionary()
+
+
+def judgement_of(record: Record) -> Judgement:
+    """The judgement of a record; what it takes is measured once."""
+    if record not in _KNOWN:
+        _KNOWN[record] = _judged(record)
+    return _KNOWN[record]
+
+
+def _judged(record: Record) -> Judgement:
+    findings = of_rules(record, record.rules)
+    own = [waiver for waiver in record.case.waivers if waiver.is_of_case(record.case.name)]
+    n_of_others = len(record.case.waivers) - len(own)
+    if not own:
+        return Judgement(findings, record.rules, n_of_others=n_of_others)
+    return _Waiving(record, findings, tuple(own)).judgement(n_of_others)
+
+
+def of_rules(record: Record, rules: Sequence[RuleAnswer]) -> tuple[Finding, ...]:
+    """The findings of some rules, the worst first."""
+    found = [finding for rule in rules for finding in RuleFindings(record, rule)]
+    return tuple(sorted(found, key=lambda finding: finding.standing))
+
+
+@dataclass(frozen=True, eq=False)
+class _Waiving:
+    """A record held against the waivers that are of its case; `findings` are those without them."""
+
+    record: Record
+    findings: tuple[Finding, ...]
+    waivers: tuple[Waiver, ...]
+
+    def judgement(self, n_of_others: int) -> Judgement:
+        broken = any(finding.broken for finding in self.findings)
+        uses = tuple(self._use(i, broken) for i in range(len(self.waivers)))
+        used = {i for i, use in enumerate(uses) if use.used}
+        if not used:
+            return Judgement(self.findings, self.record.rules, uses, n_of_others)
+        rest = self._of_pairs(lambda *pair: self._owner(*pair) not in used)
+        findings = [*of_rules(self.record, rest), *(f for use in uses for f in use.findings)]
+        findings.sort(key=lambda finding: finding.standing)
+        return Judgement(tuple(findings), rest, uses, n_of_others)
+
+    def _of_pairs(self, is_meant: PairTest) -> tuple[RuleAnswer, ...]:
+        assert self.record.of_pairs is not None, "the record of a run can be asked again"
+        return self.record.of_pairs(is_meant)
+
+    def _owner(self, rule: str, one: tuple[str, ...], other: tuple[str, ...]) -> int:
+        """The last waiver that holds and is of a pair; -1 for none."""
+        own = [i for i, waiver in enumerate(self.waivers) if waiver.is_of(rule, one, other)]
+        return max((i for i in own if not self._expired(i)), default=-1)
+
+    def _expired(self, i: int) -> bool:
+        assert self.record.today is not None, "a case with waivers has a day"
+        return self.waivers[i].is_expired(self.record.today)
+
+    def _use(self, i: int, broken: bool) -> WaiverUse:
+        waiver = self.waivers[i]
+        if self._expired(i):
+            return WaiverUse(waiver, fault=f"{waiver} has expired on {waiver.until}")
+        answers = self._of_pairs(lambda *pair: self._owner(*pair) == i) if broken else ()
+        findings = [f for rule in answers for f in self._covered(waiver, rule)]
+        if not any(finding.broken for finding in findings):
+            return WaiverUse(waiver, fault=f"{waiver} is not needed: {self._why_not_needed(i)}")
+        failing = [finding for finding in findings if finding.fails]
+        fault = _fault(waiver, failing[0]) if failing else ""
+        return WaiverUse(waiver, answers, tuple(findings), fault)
+
+    def _covered(self, waiver: Waiver, rule: RuleAnswer) -> list[Finding]:
+        """What of a waiver's pairs is not clear; waived what breaks a rule and stays above the waiver's level."""
+        found = [one for one in RuleFindings(self.record, rule) if one.status != Status.CLEAR]
+        return [_waived(self._of_waiver(one, waiver), waiver) for one in found]
+
+    def _of_waiver(self, finding: Finding, waiver: Waiver) -> Finding:
+        """A finding without bodies as one of what the waiver is of."""
+        if finding.kind != UNPROVEN:
+            return finding
+        a, b = waiver.between
+        name = FindingName(self.record.case.name, finding.kind, finding.rule, waiver.between)
+        return replace(finding, id=name.id, body_a=a, body_b=b)
+
+    def _why_not_needed(self, i: int) -> str:
+        """Why nothing needs a waiver: what it names is not there, or keeps its rule."""
+        from clearance.findings.waiver_names import unknown_name
+
+        told = unknown_name(self.record, self.waivers[i])
+        return told or "what it is of keeps to its rule, or a later waiver is of it"
+
+
+def _waived(finding: Finding, waiver: Waiver) -> Finding:
+    """The finding as its waiver leaves it: waived if it stays above the waiver's level, as far as proven."""
+    known = [value for value in (finding.clearance, finding.proven) if value is not None]
+    if (
+        not finding.broken
+        or finding.status == Status.CONTACT
+        or not known
+        or min(known) < waiver.at_least
+    ):
+        return finding
+    until = str(waiver.until)
+    told = WaivedBy(waiver.at_least, waiver.reason, waiver.by, until, finding.proven)
+    return replace(finding, waived=told)
+
+
+def _fault(waiver: Waiver, failing: Finding) -> str:
+    """Why a waiver does not cover a finding."""
+    level = f"{waiver.at_least * 1000:g} mm"
+    if failing.status == Status.CONTACT:
+        return f"{waiver} is of no contact"
+    if failing.clearance is not None and failing.clearance < waiver.at_least:
+        return f"{waiver} is of at least {level}, and less occurs"
+    return f"{waiver} is of at least {level}, and that is not proven; a finer proof takes a smaller --certify-mm"

@@ -1,0 +1,132 @@
+"""How a run was measured: what must be alike for its findings to be compared with another run's.
+
+Where obstacles stand and how robots move is not among it: that is what changes from run to run, and what a
+comparison is about. Not for: comparing (`comparison`).
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from weakref import WeakKeyDictionary
+
+from clearance.simulate.fingerprint import robot_digest
+from clearance.simulate.record import Record
+from clearance.world.case import Limits, PlacedRobot
+from clearance.world.robot import Robot
+from clearance.world.rules import DEFAULT
+
+
+@dataclass(frozen=True)
+class MeasuredRobot:
+    """A robot: the sha256 of its joints, shapes and paddings, and the names of its links as findings have them."""
+
+    name: str
+    sha256: str
+    links: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MeasuredRule:
+    """A rule: its bodies (empty for the limits that hold without one), when it holds, and its limits [m]."""
+
+    name: str
+    between: tuple[str, ...]
+    when: str
+    fail: float
+    warn: float
+
+
+@dataclass(frozen=True)
+class MeasuredPairs:
+    """Each of some bodies was measured against each of others."""
+
+    a: tuple[str, ...]
+    b: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class MeasuredAs:
+    """How a run was measured.
+
+    Attributes:
+        need, method, motion: as in `run.Question`. basis: "motion" or "samples", what the verdict rests on.
+        certify_gap: [m] how far the bound may be below a distance that occurs; None at the samples only.
+        pairs: all that were measured at some time.
+    """
+
+    need: str
+    method: str
+    motion: str
+    basis: str
+    certify_gap: float | None
+    robots: tuple[MeasuredRobot, ...]
+    rules: tuple[MeasuredRule, ...]
+    pairs: tuple[MeasuredPairs, ...]
+
+    def has_pair(self, one: str, other: str) -> bool:
+        """True if two bodies were measured against each other."""
+        ends = {one, other}
+        return any(
+            ends & {*block.a} and ends & {*block.b} and ends <= {*block.a, *block.b}
+            for block in self.pairs
+        )
+
+
+def measured_as(record: Record) -> MeasuredAs:
+    """How a record was measured."""
+    certificate = record.certificate
+    return MeasuredAs(
+        need=record.need,
+        method=record.method,
+        motion=record.motion_kind,
+        basis="samples" if certificate is None else "motion",
+        certify_gap=None if certificate is None else float(certificate.gap),
+        robots=tuple(_robot(record, placed) for placed in record.case.robots),
+        rules=tuple(_rules(record.case.limits)),
+        pairs=tuple(_pairs(record)),
+    )
+
+
+def _robot(record: Record, placed: PlacedRobot) -> MeasuredRobot:
+    before = record.case.prefix_of(placed)
+    links = tuple(before + link for link in placed.robot.link_names)
+    shape = _digest(placed.robot)
+    told = repr((shape, sorted(placed.exclude_links), sorted(placed.padding.items())))
+    return MeasuredRobot(placed.robot.name, hashlib.sha256(told.encode()).hexdigest(), links)
+
+
+_DIGESTS: WeakKeyDictionary[Robot, str] = WeakKeyDictionary()
+"""Of robots that were asked about: a mesh of a million triangles is not hashed again for each run."""
+
+
+def _digest(robot: Robot) -> str:
+    if robot not in _DIGESTS:
+        _DIGESTS[robot] = robot_digest(robot)
+    return _DIGESTS[robot]
+
+
+def _rules(limits: Limits) -> Iterator[MeasuredRule]:
+    yield MeasuredRule(DEFAULT, (), "", limits.fail, limits.warn)
+    for i, rule in enumerate(limits.rules, start=1):
+        own = limits.of_rule(i)
+        yield MeasuredRule(rule.name, rule.between, rule.when, own.fail, own.warn)
+
+
+def _pairs(record: Record) -> Iterator[MeasuredPairs]:
+    """The pairs of a record; first bodies that have the same second ones together."""
+    seconds: dict[str, dict[str, None]] = {}
+    for a, b in _pair_names(record):
+        seconds.setdefault(a, {})[b] = None
+    blocks: dict[tuple[str, ...], list[str]] = {}
+    for a, others in seconds.items():
+        blocks.setdefault(tuple(sorted(others)), []).append(a)
+    for seconds_of, firsts in blocks.items():
+        yield MeasuredPairs(tuple(sorted(firsts)), seconds_of)
+
+
+def _pair_names(record: Record) -> Iterator[tuple[str, str]]:
+    for rule in record.rules:
+        if rule.pairs is not None:
+            yield from rule.pairs.names

@@ -1,0 +1,69 @@
+"""Occurrences: the stretches of a motion in which a pair is below a limit, so that noise makes no more of them.
+
+A stretch begins where the pair is below the release level and ends where it is not; it counts if the pair is below
+the fail limit in it. The release level is the warn limit, or `HYSTERESIS` above the fail limit where that is more:
+a pair that flickers about its limit is one occurrence, and a pair that parts and comes back is two. Not for: which
+pairs are near when (`simulate.rule_pairs`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from clearance.world.case import Limits
+
+HYSTERESIS = 0.001
+"""[m] Least distance that a pair must gain on the fail limit for an occurrence to end."""
+
+
+def release_level(limits: Limits) -> float:
+    """[m] What a pair must reach for an occurrence to end."""
+    return max(limits.warn, limits.fail + HYSTERESIS)
+
+
+@dataclass(frozen=True, eq=False)
+class NearCourse:
+    """When a pair is below the release level, and how near.
+
+    Positions count half steps: 2 i is step i, 2 i + 1 a moment between it and the next.
+
+    Attributes:
+        positions: (k,) increasing. clearances: (k,) [m]. touching: (k,).
+        bridges: (m,) positions of steps at which the pair is not known to be above the release level.
+    """
+
+    positions: np.ndarray
+    clearances: np.ndarray
+    touching: np.ndarray
+    bridges: np.ndarray
+
+    def worst(self, rows: slice) -> int:
+        """The first row of some that touches, or else of least clearance."""
+        touching = np.flatnonzero(self.touching[rows])
+        least = touching[0] if len(touching) else np.argmin(self.clearances[rows])
+        return rows.start + int(least)
+
+    def stretches(self) -> Iterator[slice]:
+        """The rows of each longest stretch without a break."""
+        steps = np.union1d(self.positions[self.positions % 2 == 0], self.bridges)
+        passed = steps[:-1][np.diff(steps) == 2] + 1  # between two steps at which it is near
+        covered = np.unique(np.concatenate([self.positions, steps, passed]))
+        group = np.cumsum(np.diff(covered, prepend=covered[:1]) > 1)
+        own = group[np.searchsorted(covered, self.positions)]
+        edges = [0, *(np.flatnonzero(np.diff(own)) + 1).tolist(), len(own)]
+        for start, stop in zip(edges, edges[1:], strict=False):
+            yield slice(start, stop)
+
+    @property
+    def nearest_stretch(self) -> slice:
+        """The rows of the stretch in which the pair is nearest."""
+        worst = self.worst(slice(0, len(self.positions)))
+        return next(rows for rows in self.stretches() if rows.start <= worst < rows.stop)
+
+    def broken(self, fail: float) -> list[slice]:
+        """The rows of each stretch in which the pair is below the fail limit [m], or at 0."""
+        below = (self.clearances < fail) | (self.clearances <= 0.0) | self.touching
+        return [rows for rows in self.stretches() if below[rows].any()]

@@ -1,0 +1,82 @@
+"""All findings of a record, the worst first. Not for: one rule's (`of_rule`), waiving them (`waivers`)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+
+from clearance.findings.finding import JOINT_LIMITS, PROFILE, Finding, FindingName
+from clearance.findings.judgement import judgement_of
+from clearance.simulate.record import ProfileAnswer, Record
+from clearance.simulate.status import Status
+from clearance.world.notice import Severity
+
+
+def findings_of(record: Record) -> tuple[Finding, ...]:
+    """The findings of a record, the worst first; each rule that judges something has one at least.
+
+    What its waivers cover is `waived`, and is there all the same.
+    """
+    found = [*judgement_of(record).findings]
+    found += [_of_profile(record, answer) for answer in record.profiles]
+    found += _of_joints(record)
+    return tuple(sorted(found, key=lambda finding: finding.standing))
+
+
+def why_incomplete(record: Record) -> str:
+    """Why a pair below its warn limit could have no finding of its own; empty where none can."""
+    if record.need == "minimum":
+        return "only the least of all steps was asked for (need 'minimum')"
+    if record.method == "paper":
+        return "of each step only the nearest pair is known (method 'paper')"
+    if record.case.clock.slack > 0.0:
+        return "where clocks are not tied only the nearest pair of each step is known"
+    return ""
+
+
+def _of_profile(record: Record, answer: ProfileAnswer) -> Finding:
+    status = Status.CLEAR if answer.passed else Status.VIOLATED
+    name = FindingName(record.case.name, PROFILE, answer.name, (), 0)
+    at = "" if answer.section is None else f" at {answer.section:g} m"
+    return Finding(
+        id=name.id,
+        kind=PROFILE,
+        rule=answer.name,
+        body_a=answer.link,
+        body_b="",
+        occurrence=0,
+        status=str(status),
+        clearance=float(answer.gap),
+        proven=float(answer.gap) if answer.mode != "nearest" else None,
+        fail=float(answer.limit),
+        warn=float(answer.limit),
+        time=float(record.motions[0].times[answer.step]),
+        step=int(answer.step),
+        text=f"{answer.mode}, {answer.plane}{at}",
+    )
+
+
+def _of_joints(record: Record) -> Iterator[Finding]:
+    """The joints beyond their limits, a finding a robot, where the case fails by them."""
+    numbers: Counter[tuple[str, str]] = Counter()
+    for notice in record.notices:
+        if notice.severity is not Severity.VIOLATED:
+            continue
+        occurrence = numbers[notice.kind, notice.about]
+        numbers[notice.kind, notice.about] += 1
+        bodies = (notice.about,)
+        name = FindingName(record.case.name, JOINT_LIMITS, notice.kind, bodies, occurrence)
+        yield Finding(
+            id=name.id,
+            kind=JOINT_LIMITS,
+            rule=notice.kind,
+            body_a=notice.about,
+            body_b="",
+            occurrence=occurrence,
+            status=str(Status.VIOLATED),
+            clearance=None,
+            proven=None,
+            fail=0.0,
+            warn=0.0,
+            text=notice.text,
+        )

@@ -1,0 +1,239 @@
+"""The findings of one rule: pair by pair, and what of its limits is not proven.
+
+A pair that breaks the rule has a finding for each occurrence, one that is only below the warn limit has one; where
+nothing is below that, the nearest pair has one. Not for: profiles and joints (`of_record`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding, FindingName
+from clearance.findings.occurrences import NearCourse, release_level
+from clearance.simulate.certificate import Certificate
+from clearance.simulate.moment import Moment
+from clearance.simulate.record import Record
+from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.rule_pairs import NearRows
+from clearance.simulate.status import Status, status_of
+
+
+@dataclass(frozen=True, eq=False)
+class RuleFindings:
+    """The findings of a rule of a record."""
+
+    record: Record
+    rule: RuleAnswer
+
+    def __iter__(self) -> Iterator[Finding]:
+        of_pairs = list(self._of_pairs()) if self._anything_near else []
+        unproven = self._unproven(of_pairs)
+        yield from of_pairs
+        if unproven is not None:
+            yield unproven
+        elif not of_pairs:
+            yield self._kept()
+
+    @property
+    def _anything_near(self) -> bool:
+        """True if a pair is seen below the warn limit."""
+        limit = max(self.rule.limits.warn, self.rule.limits.fail)
+        worst = self.rule.worst
+        return worst is not None and (worst.clearance < limit or worst.clearance <= 0.0)
+
+    def _of_pairs(self) -> Iterator[Finding]:
+        limits = self.rule.limits
+        for pair in np.union1d(self._rows.pairs, self._seen_pairs).tolist():
+            course = self._course(pair)
+            stretches = course.broken(limits.fail)
+            if not stretches and (course.clearances < limits.warn).any():
+                stretches = [course.nearest_stretch]
+            for occurrence, part in enumerate(stretches):
+                yield self._of_stretch(pair, course, part, occurrence)
+
+    @cached_property
+    def _rows(self) -> NearRows:
+        """All pairs below the release level at each step."""
+        level = release_level(self.rule.limits)
+        if self.rule.pairs is not None:
+            return self.rule.pairs.near(level)
+        found = self.rule.measurement
+        steps = np.flatnonzero((found.pair >= 0) & (found.clearance < level))
+        touching = found.touches(slice(None))[steps]
+        only = np.ones(len(steps), dtype=bool)
+        return NearRows(steps, found.pair[steps], found.clearance[steps], touching, only)
+
+    @cached_property
+    def _between(self) -> np.ndarray:
+        """(k,) the intervals in which a pair is seen below the release level nearer than at their ends."""
+        certificate = self.rule.certificate
+        if certificate is None:
+            return np.empty(0, dtype=np.int64)
+        near = certificate.upper_bound < release_level(self.rule.limits)
+        return np.flatnonzero((certificate.pair >= 0) & near)
+
+    @property
+    def _seen_pairs(self) -> np.ndarray:
+        certificate = self.rule.certificate
+        return np.empty(0, np.int64) if certificate is None else certificate.pair[self._between]
+
+    def _course(self, pair: int) -> NearCourse:
+        rows, certificate = self._rows, self.rule.certificate
+        own, intervals = rows.pairs == pair, self._between
+        parts = [(2 * rows.steps[own], rows.clearances[own], rows.touching[own])]
+        if certificate is not None:
+            intervals = intervals[certificate.pair[intervals] == pair]
+            upper = certificate.upper_bound[intervals]
+            touching = certificate.touches(slice(None))[intervals]
+            parts.append((2 * intervals + 1, upper, touching))
+        positions, clearances, touching = (
+            np.concatenate(column) for column in zip(*parts, strict=True)
+        )
+        order = np.argsort(positions)
+        bridges = 2 * np.unique(rows.steps[rows.nearest_only])
+        return NearCourse(positions[order], clearances[order], touching[order], bridges)
+
+    def _of_stretch(self, pair: int, course: NearCourse, rows: slice, occurrence: int) -> Finding:
+        place = course.worst(rows)
+        moment = self._moment(pair, int(course.positions[place]))
+        first, last = (int(p) for p in course.positions[[rows.start, rows.stop - 1]])
+        named = self._named(CLEARANCE, (moment.link, moment.obstacle), occurrence)
+        return self._at(named, moment, first, last)
+
+    def _moment(self, pair: int, position: int) -> Moment:
+        step = position // 2
+        if position % 2:
+            assert self.rule.certificate is not None
+            return self.rule.certificate.moment_of(step)
+        nearest = self.rule.measurement.pair[step] == pair
+        if nearest or self.rule.pairs is None:
+            return self.rule.moment_at(step)
+        return self.rule.pairs.moment(step, pair)
+
+    def _at(self, named: Finding, moment: Moment, first: int, last: int) -> Finding:
+        """A finding with its worst moment and its stretch, from one position to another."""
+        times = self.record.motions[0].times
+        return replace(
+            named,
+            status=status_of(moment.clearance, self.rule.limits, moment.touches),
+            clearance=float(moment.clearance),
+            proven=self._proven(slice(max(0, first // 2 - 1), last // 2 + 1)),
+            time=float(moment.time),
+            time_b=moment.time_b,
+            step=int(moment.step),
+            between=moment.between,
+            start=float(times[first // 2]),
+            end=float(times[min(last // 2 + last % 2, len(times) - 1)]),
+            first_step=first // 2,
+            last_step=last // 2,
+            point_a=_point(moment.point_link),
+            point_b=_point(moment.point_obstacle),
+            joints=joints_of(self.record, moment),
+        )
+
+    def _proven(self, intervals: slice) -> float | None:
+        """[m] What is proven of all pairs of the rule over some intervals."""
+        certificate = self.rule.certificate
+        return None if certificate is None else _least(certificate.lower_bound[intervals])
+
+    def _unproven(self, of_pairs: list[Finding]) -> Finding | None:
+        """The limit that is not proven between some steps, though nothing near there is seen below it."""
+        certificate = self.rule.certificate
+        if certificate is None:
+            return None
+        open_at = _not_reached(certificate, self.rule.limits.fail)
+        for one in of_pairs:
+            if one.broken and one.first_step is not None and one.last_step is not None:
+                open_at[max(0, one.first_step - 1) : one.last_step + 1] = False
+        if open_at.any():
+            return self._of_open(certificate, np.flatnonzero(open_at), "violated")
+        open_at = _not_reached(certificate, self.rule.limits.warn)
+        if of_pairs or not open_at.any():
+            return None
+        return self._of_open(certificate, np.flatnonzero(open_at), "near")
+
+    def _of_open(self, certificate: Certificate, open_at: np.ndarray, status: str) -> Finding:
+        worst = int(open_at[np.argmin(certificate.lower_bound[open_at])])
+        times = self.record.motions[0].times
+        seen = certificate.upper_bound[worst]
+        return replace(
+            self._named(UNPROVEN, (), 0),
+            status=status,
+            clearance=_finite(seen),
+            proven=_finite(certificate.lower_bound[worst]),
+            time=float(times[worst]),
+            step=worst,
+            between=True,
+            start=float(times[open_at[0]]),
+            end=float(times[min(open_at[-1] + 1, len(times) - 1)]),
+            first_step=int(open_at[0]),
+            last_step=int(open_at[-1]),
+            text="a finer proof takes a smaller --certify-mm",
+        )
+
+    def _kept(self) -> Finding:
+        """The nearest pair of a rule that is kept, or no pair where nothing nearer was asked for."""
+        moment = self.rule.worst
+        if moment is None:
+            return replace(self._named(CLEARANCE, (), 0), proven=self._all_proven)
+        position = 2 * moment.step + int(moment.between)
+        named = self._named(CLEARANCE, (moment.link, moment.obstacle), 0)
+        return replace(self._at(named, moment, position, position), proven=self._all_proven)
+
+    @property
+    def _all_proven(self) -> float | None:
+        if self.rule.certificate is not None:
+            return _least(self.rule.certificate.lower_bound)
+        known = np.isnan(self.rule.measurement.clearance)
+        return None if not known.all() else _least(self.rule.measurement.lower_bound)
+
+    def _named(self, kind: str, bodies: tuple[str, ...], occurrence: int) -> Finding:
+        """A finding of the rule of which nothing else is known: it is kept."""
+        limits, rule = self.rule.limits, self.rule.name
+        a, b = bodies or ("", "")
+        return Finding(
+            id=FindingName(self.record.case.name, kind, rule, bodies, occurrence).id,
+            kind=kind,
+            rule=rule,
+            body_a=a,
+            body_b=b,
+            occurrence=occurrence,
+            status=str(Status.CLEAR),
+            clearance=None,
+            proven=None,
+            fail=limits.fail,
+            warn=limits.warn,
+        )
+
+
+def joints_of(record: Record, moment: Moment) -> dict[str, float]:
+    """The positions [rad] or [m] of all moving joints at a moment; a robot's name before each where there are
+    several."""
+    found: dict[str, float] = {}
+    for motion, positions in zip(record.motions, moment.positions, strict=True):
+        before = record.case.prefix_of(motion.placed)
+        names = [joint.name for joint in motion.placed.robot.moving_joints]
+        found |= {f"{before}{name}": float(p) for name, p in zip(names, positions, strict=True)}
+    return found
+
+
+def _not_reached(certificate: Certificate, limit: float) -> np.ndarray:
+    """(n,) True where the motion to the next step is not proven above a limit [m] and not seen below it."""
+    return (certificate.lower_bound < limit) & (certificate.upper_bound >= limit)
+
+
+def _point(point: tuple[float, float, float]) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in point)
+    return x, y, z
+
+
+def _least(bounds: np.ndarray) -> float | None:
+    return _finite(bounds.min()) if len(bounds) else None
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,15 @@
+"""How a rule stands over all of a run: at its steps, and what is proven between. Not for: its findings."""
+
+from __future__ import annotations
+
+from clearance.simulate.certificate import motion_codes
+from clearance.simulate.rule_answer import RuleAnswer
+from clearance.simulate.status import STATUSES, Status
+
+
+def code_of(answer: RuleAnswer) -> int:
+    """The index into `STATUSES` of the worst of a rule, at a step or, as far as proven, between two."""
+    codes = [STATUSES.index(Status(answer.status))]
+    if answer.certificate is not None:
+        codes.append(int(motion_codes(answer.certificate, answer.limits, slice(None)).max()))
+    return max(codes)

@@ -1,0 +1,124 @@
+"""Two runs side by side as a page: both curves, and what became of each finding. No script is in it.
+
+Not for: comparing (`findings.comparison`), nor drawing the curves (`comparison_chart`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from string import Template
+
+import numpy as np
+from markupsafe import Markup, escape
+
+from clearance import __version__
+from clearance.errors import BadInput
+from clearance.findings.comparison import Change, Compared, Comparison
+from clearance.report.comparison_chart import Curve, chart
+from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text
+from clearance.report.folder import write_file
+from clearance.report.markup import element, section, table
+
+FILE_NAME = "comparison.html"
+
+MOST_ROWS = 1000
+"""Most findings in the table."""
+
+_HERE = Path(__file__).parent
+_TABLE = "steps.parquet"
+
+
+def write_comparison(comparison: Comparison, before: Path, now: Path, folder: Path) -> None:
+    """Writes the page into a folder.
+
+    Args:
+        before, now: the report folders, for their curves, or their findings.json, which have none.
+
+    Raises:
+        BadInput: a damaged table of steps. Unwritable: there is no way to write there.
+    """
+    curves = [curve for curve in (_curve("A", before), _curve("B", now)) if curve is not None]
+    page = page_of(comparison, curves, (str(before), str(now)))
+    write_file(folder / FILE_NAME, page.encode("utf-8"))
+
+
+def page_of(comparison: Comparison, curves: list[Curve], names: tuple[str, str]) -> str:
+    """The whole page."""
+    template = Template((_HERE / "comparison.html").read_text(encoding="utf-8"))
+    text = comparison_text(comparison)
+    return template.substitute(
+        title=escape(f"{comparison.now}: compared"),
+        style=(_HERE / "page.css").read_text(encoding="utf-8"),
+        header=_header(comparison, text),
+        content=_curves(comparison, curves, names) + _findings(comparison),
+        footer=element("p", f"clearance {__version__}"),
+    )
+
+
+def _header(comparison: Comparison, text: str) -> Markup:
+    kicker = element("p", "Clearance comparison", class_="kicker")
+    title = element("div", kicker, element("h1", comparison.now))
+    badge = "nothing new is broken" if comparison.passed else "new or worse"
+    classes = f"verdict {'clear' if comparison.passed else 'violated'}"
+    told = element("ul", element("li", text[0].upper() + text[1:]), class_="beside")
+    return element("div", title, element("p", badge, class_=classes), class_="title") + told
+
+
+def _curves(comparison: Comparison, curves: list[Curve], names: tuple[str, str]) -> Markup:
+    key = [
+        element("span", element("i"), f"{letter}: {name}", class_=letter.lower())
+        for letter, name in zip("AB", names, strict=True)
+    ]
+    if len(curves) < 2:
+        told = "Curves need two report folders, with their steps.parquet; findings.json has none."
+        return section(
+            "Clearance over time", element("div", *key, class_="key"), element("p", told)
+        )
+    fail = max((row.finding.fail for row in comparison.rows), default=0.0)
+    return section("Clearance over time", chart(curves, fail), element("div", *key, class_="key"))
+
+
+def _findings(comparison: Comparison) -> Markup:
+    if not comparison.rows:
+        return section(
+            "Findings", element("p", "Neither run has a finding that the other could have.")
+        )
+    heads = [f">{head}" if head.endswith("mm") else head for head in HEADS]
+    heads = [head[:1] + head[1:2].upper() + head[2:] if head[0] == ">" else head.capitalize()
+             for head in heads]  # fmt: skip
+    rows = [_row(row) for row in comparison.rows[:MOST_ROWS]]
+    more = len(comparison.rows) - len(rows)
+    notes = [element("p", f"{more} more are not listed.", class_="faint")] if more else []
+    return section("Findings", table(heads, rows), *notes)
+
+
+def _row(row: Compared) -> Markup:
+    change, before, now, *rest = comparison_cells(row)
+    cells = [element("td", element("strong", change) if row.alarms else change)]
+    cells += [
+        element("td", element("span", status, class_=f"tag {status}") if status else "")
+        for status in (before, now)
+    ]
+    classes = ["number", "number", None, None, None]
+    cells += [element("td", text, class_=kind) for text, kind in zip(rest, classes, strict=True)]
+    return element("tr", *cells, class_="faint" if row.change is Change.GONE else None)
+
+
+def _curve(name: str, place: Path) -> Curve | None:
+    """The curve of a report folder: the clearance of each step, or the bound where only that is known."""
+    if not (place / _TABLE).is_file():
+        return None
+    import pyarrow as pa
+    import pyarrow.parquet as parquet
+
+    try:
+        steps = parquet.read_table(place / _TABLE)
+        known = {column: steps[column].to_numpy() for column in ("time", "clearance")}
+        if "lower_bound" in steps.column_names:
+            bound = steps["lower_bound"].to_numpy()
+            known["clearance"] = np.where(np.isnan(known["clearance"]), bound, known["clearance"])
+    except (pa.ArrowException, KeyError, OSError, TypeError) as error:
+        raise BadInput(
+            f"no table of steps: {error!s:.100}", where=str(place / _TABLE), valid="a report folder"
+        ) from None
+    return Curve(name, known["time"].astype(np.float64), known["clearance"].astype(np.float64))

@@ -1,0 +1,98 @@
+"""A finding in words: what breaks which rule where, and who waives it. Not for: tables of them (`findings`)."""
+
+from __future__ import annotations
+
+from clearance.findings.finding import JOINT_LIMITS, PROFILE, UNPROVEN, Finding
+from clearance.findings.judgement import Judgement
+from clearance.report.wording import (
+    gap_text,
+    limit_mm,
+    mm,
+    of_rule,
+    other_time,
+    seconds,
+    span_text,
+)
+from clearance.world.rules import DEFAULT
+
+
+def finding_line(finding: Finding) -> str:
+    """What it is, how near, and when, in one line."""
+    if finding.kind == JOINT_LIMITS:
+        return f"{finding.rule}: {finding.text}"
+    if finding.kind == PROFILE:
+        kept = "kept" if not finding.broken else "not kept"
+        gap = "" if finding.clearance is None else f", {gap_text(finding.clearance)} mm"
+        return f"profile {finding.rule!r} {kept}{gap}, limit {limit_mm(finding.fail)} mm ({finding.text})"
+    if finding.kind == UNPROVEN:
+        return _unproven(finding)
+    if finding.clearance is None:
+        return (
+            f"nothing is below the warn limit of {limit_mm(finding.warn)} mm{of_rule(finding.rule)}"
+        )
+    return f"{_how_near(finding)}: {bodies_text(finding)} at {when_text(finding)}"
+
+
+def _how_near(finding: Finding) -> str:
+    assert finding.clearance is not None
+    if finding.status == "contact":
+        return f"contact{_judged_by(finding)}"
+    near = f"{mm(finding.clearance)} mm"
+    if finding.broken or finding.status == "near":
+        name, limit = ("fail", finding.fail) if finding.broken else ("warn", finding.warn)
+        return f"{near}, below the {name} limit of {limit_mm(limit)} mm{of_rule(finding.rule)}"
+    return f"{near}{_judged_by(finding)}"
+
+
+def _judged_by(finding: Finding) -> str:
+    return "" if finding.rule == DEFAULT else f", judged by rule {finding.rule!r}"
+
+
+def _unproven(finding: Finding) -> str:
+    name, limit = ("fail", finding.fail) if finding.broken else ("warn", finding.warn)
+    who = f": {bodies_text(finding)}" if finding.body_a else ""
+    proven = "" if finding.proven is None else f", at least {mm(finding.proven)} mm"
+    told = (
+        f"not proven to stay above the {name} limit of {limit_mm(limit)} mm{of_rule(finding.rule)}"
+    )
+    return f"{told}{proven}{who}, {stretch_text(finding)}; {finding.text}"
+
+
+def bodies_text(finding: Finding) -> str:
+    """The two bodies, and which of several stretches it is."""
+    names = " - ".join(name for name in (finding.body_a, finding.body_b) if name)
+    return f"{names} (occurrence {finding.occurrence + 1})" if finding.occurrence else names
+
+
+def when_text(finding: Finding) -> str:
+    """When it is least: `1.220 s, step 61`."""
+    if finding.time is None or finding.step is None:
+        return ""
+    where = f"step {finding.step}"
+    if finding.between:
+        where = f"between the steps {finding.step} and {finding.step + 1}"
+    return f"{seconds(finding.time)}, {where}{other_time(finding.body_b, finding.time_b)}"
+
+
+def stretch_text(finding: Finding) -> str:
+    """From when until when."""
+    if finding.start is None or finding.end is None:
+        return ""
+    return span_text(finding.start, finding.end)
+
+
+def waived_text(finding: Finding) -> str:
+    """How far it is waived, by whom, why and until when; empty where it is not."""
+    waived = finding.waived
+    if waived is None:
+        return ""
+    until = f" until {waived.until}" if waived.until else ""
+    return (
+        f"waived to at least {limit_mm(waived.at_least)} mm{until} by {waived.by}: {waived.reason}"
+    )
+
+
+def waived_lines(judgement: Judgement) -> tuple[str, ...]:
+    """What is waived, the worst first."""
+    waived = [finding for finding in judgement.findings if finding.waived is not None]
+    return tuple(f"{finding_line(finding)}; {waived_text(finding)}" for finding in waived)

@@ -1,0 +1,184 @@
+"""The test cases that a record is to a build server: what can fail by itself, and how it stands.
+
+Not for: writing them (`junit`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from clearance.findings.finding import CLEARANCE, UNPROVEN, Finding
+from clearance.findings.judgement import Judgement, judgement_of
+from clearance.findings.standing import code_of
+from clearance.report.finding_text import bodies_text, finding_line, waived_text
+from clearance.report.pair_judge import PairJudge
+from clearance.report.summary import certified_of
+from clearance.report.verdict import Verdict, moment_line, profile_text
+from clearance.report.wording import (
+    certified_text,
+    limit_mm,
+    limits_text,
+    mm,
+    moment_text,
+    of_rule,
+    seconds,
+)
+from clearance.simulate.record import PairMinimum, Record
+from clearance.simulate.rule_answer import RuleAnswer, worst_of
+from clearance.simulate.status import STATUSES, Status
+from clearance.world.notice import Severity
+from clearance.world.rules import DEFAULT
+
+VIOLATED = STATUSES.index(Status.VIOLATED)
+
+LIMIT = "LimitViolated"
+"""The kind of failure that a clearance below its fail limit is."""
+
+
+@dataclass(frozen=True)
+class TestResult:
+    """One test case.
+
+    Attributes:
+        group: of several that belong together. fault: the kind of failure; empty where it does not fail.
+    """
+
+    __test__ = False
+
+    group: str
+    name: str
+    text: str
+    fault: str = ""
+    skipped: bool = False
+
+
+def results_of(record: Record, verdict: Verdict) -> Iterator[TestResult]:
+    """All cases; that of the verdict, which comes first, fails exactly where the run is not passed."""
+    judgement = judgement_of(record)
+    yield _of_verdict(record, verdict)
+    yield from _of_waivers(judgement)
+    yield from _of_rules(record, judgement)
+    yield from _of_pairs(record, judgement)
+    for pair in record.unmeasured:
+        yield TestResult(pair.link, f"{pair.link} - {pair.obstacle}", pair.reason, skipped=True)
+    yield _of_certificate(record, judgement)
+    for answer in record.profiles:
+        fault = "" if answer.passed else "ProfileNotKept"
+        yield TestResult("profile", answer.name, profile_text(answer), fault)
+    yield from _of_cross_check(record)
+    yield from _of_notices(record)
+
+
+def _of_verdict(record: Record, verdict: Verdict) -> TestResult:
+    worst = record.worst
+    text = f"{verdict.text()}: least clearance {mm(worst.clearance)} mm at {moment_text(worst)}"
+    waived = [f"waived: {line}" for line in verdict.waived]
+    nearest = [f"nearest of all {verdict.nearest}"] if verdict.nearest else []
+    not_checked = [f"{name} not checked" for name in verdict.not_checked]
+    text = "; ".join([text, *verdict.reasons, *waived, *nearest, *not_checked])
+    return TestResult("verdict", "verdict", text, "" if verdict.passed else "NotPassed")
+
+
+def _of_waivers(judgement: Judgement) -> Iterator[TestResult]:
+    for use in judgement.uses:
+        fault = "StaleWaiver" if use.fault else ""
+        yield TestResult("waiver", str(use.waiver), use.fault or use.waiver.reason, fault)
+
+
+def _of_rules(record: Record, judgement: Judgement) -> Iterator[TestResult]:
+    """One case for each rule where there are any: it fails by its worst moment, or if its limit is not proven."""
+    limits = record.case.limits
+    if not limits.rules:
+        return
+    for i, name in enumerate(limits.rule_names):
+        if not any(answer.name == name for answer in record.rules):
+            yield TestResult("rule", name, "no pair is judged by it", skipped=True)
+            continue
+        own, answers = limits.of_rule(i), [one for one in judgement.judging if one.name == name]
+        text, worst = limits_text(own.fail, own.warn), worst_of(answers)
+        if worst is not None:
+            text = f"{moment_line(record, worst)}; {text}"
+        yield TestResult("rule", name, text, LIMIT if any(map(_is_violated, answers)) else "")
+
+
+def _is_violated(answer: RuleAnswer) -> bool:
+    return code_of(answer) >= VIOLATED
+
+
+def _of_pairs(record: Record, judgement: Judgement) -> Iterator[TestResult]:
+    """One case for each finding that is not clear, and for each pair without one, by each rule that judges it."""
+    told = set()
+    for finding in judgement.findings:
+        if finding.status != Status.CLEAR:
+            told.add((finding.body_a, finding.body_b, finding.rule))
+            yield _of_finding(finding)
+    judge = PairJudge.of(record)
+    for minimum in record.pair_minima:
+        if (minimum.link, minimum.obstacle, minimum.rule) not in told:
+            yield _of_minimum(judge, minimum)
+
+
+def _of_finding(finding: Finding) -> TestResult:
+    by = "" if finding.rule == DEFAULT else f" [{finding.rule}]"
+    name = f"{bodies_text(finding)}{by}"
+    group, text = finding.body_a, f"{finding_line(finding)} (finding {finding.id})"
+    if finding.kind == UNPROVEN:
+        group, name = "unproven", f"{name or 'the motion between the samples'}"
+    if finding.waived is not None:
+        return TestResult(group, name, f"{waived_text(finding)}; {text}", skipped=True)
+    near = "near miss: " if finding.status == Status.NEAR else ""
+    least = "clearance " if finding.kind == CLEARANCE and not near else ""
+    return TestResult(group, name, f"{near}{least}{text}", LIMIT if finding.broken else "")
+
+
+def _of_minimum(judge: PairJudge, minimum: PairMinimum) -> TestResult:
+    by = "" if minimum.rule == DEFAULT else f" [{minimum.rule}]"
+    name = f"{minimum.link} - {minimum.obstacle}{by}"
+    status = Status(judge.status_of(minimum))
+    at = (
+        f"at the samples {mm(minimum.clearance)} mm at step {minimum.step}, {seconds(minimum.time)}"
+    )
+    if status in (Status.VIOLATED, Status.CONTACT):
+        fail = judge.limits[minimum.rule].fail
+        limit = f"the fail limit{of_rule(minimum.rule)} is {limit_mm(fail)} mm"
+        return TestResult(minimum.link, name, f"clearance {at}; {limit}", LIMIT)
+    near = "near miss: " if status is Status.NEAR else ""
+    return TestResult(minimum.link, name, f"{near}least clearance {at}")
+
+
+def _of_certificate(record: Record, judgement: Judgement) -> TestResult:
+    group, name = "certificate", "motion between the samples"
+    if record.certificate is None:
+        text = "looked at the samples only: nothing is said about the motion between them"
+        return TestResult(group, name, text, skipped=True)
+    violated = any(map(_is_violated, judgement.judging))
+    text = certified_text(certified_of(record, record.certificate))
+    return TestResult(group, name, text, LIMIT if violated else "")
+
+
+def _of_cross_check(record: Record) -> Iterator[TestResult]:
+    check = record.cross_check
+    if check is None:
+        return
+    n_bad = len({row.step for row in check.disagreements})
+    text = (
+        f"{n_bad} of {check.n_steps} steps differ by more than {check.tolerance:g} m; "
+        f"greatest difference {check.greatest_difference:g} m at step {check.worst_step}"
+    )
+    fault = "" if check.agrees else "CrossCheckDisagrees"
+    yield TestResult("cross_check", f"agrees with {check.peer}", text, fault)
+
+
+_FAULTS = {Severity.SUSPECT: "SuspectInput", Severity.VIOLATED: "RuleBroken"}
+"""What kind of failure a notice is."""
+
+
+def _of_notices(record: Record) -> Iterator[TestResult]:
+    """Suspect input fails unless its kind is accepted, and so does a broken rule; a warning passes."""
+    for notice in record.notices:
+        fault = _FAULTS.get(notice.severity, "")
+        if notice.severity is Severity.SUSPECT and notice.kind in record.case.accept:
+            fault = ""
+        name = f"{notice.kind}: {notice.text}"
+        yield TestResult(str(notice.severity), name, notice.text, fault)

@@ -1,0 +1,85 @@
+"""A cell with a cart on a rail before a wall, and motions on it: small cases in any number, made in a moment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from pathlib import Path
+
+from clearance.batch.answer import BatchAnswer, answer_of
+from clearance.batch.engine import InThisProcess
+from clearance.batch.manifest import Changes, items_of
+from clearance.batch.output import write_answer
+from clearance.batch.run import Outcome, run_batch
+from clearance.batch.store import open_store
+
+URDF = """<robot name="cart"><link name="ground"/>
+  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
+    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
+
+CELL = """name: rail
+robot: {urdf: cart.urdf}
+scene:
+  obstacles:
+  - {name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0]}}
+limits: {fail: 0.05, warn: 0.3}
+"""
+
+MANIFEST = 'cell: cell.yaml\ntrajectories: "t*.csv"\n'
+
+ANSWER = ("batch.html", "cases.parquet", "findings.parquet", "junit.xml")
+
+
+def write_path(path: Path, nearest: float) -> None:
+    """A motion up to `nearest` [m] from the wall and half the way back."""
+    path.write_text(f"time,rail\n0,0\n1,{0.8 - nearest}\n2,{0.4}\n")
+
+
+def write_cell(folder: Path, nearest: Sequence[float]) -> Path:
+    """The manifest of a cell with a motion `t000.csv`, … for each distance [m]."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "cart.urdf").write_text(URDF)
+    (folder / "cell.yaml").write_text(CELL)
+    for i, one in enumerate(nearest):
+        write_path(folder / f"t{i:03d}.csv", one)
+    manifest = folder / "batch.yaml"
+    manifest.write_text(MANIFEST)
+    return manifest
+
+
+class Told:
+    """A watch that keeps what it is told."""
+
+    def __init__(self) -> None:
+        self.todo: list[str] = []
+        self.measured: list[str] = []
+
+    def begin(self, items, n_cached) -> None:
+        self.names = {item.number: item.name for item in items}
+        self.todo = list(self.names.values())
+
+    def tell(self, measured, faults) -> None:
+        self.measured += [self.names[one.number] for one in (*measured, *faults)]
+
+
+def run_here(manifest: Path, place: Path, *, strict: bool = False, engine=None, **options):
+    """Runs a batch in this process and writes its answer; what was measured, and the answer."""
+    items = items_of([str(manifest)], Changes())
+    store, told = open_store(place, fresh=options.get("fresh", False)), Told()
+    outcome = Outcome(items)
+    run_batch(outcome, store, lambda n: nullcontext(engine or InThisProcess()), told, **options)
+    answer = answer_of(outcome, store, strict=strict)
+    write_answer(answer, store)
+    return told, answer
+
+
+def answer_bytes(place: Path) -> dict[str, bytes]:
+    """The content of the answer's files."""
+    return {name: (place / name).read_bytes() for name in ANSWER if (place / name).exists()}
+
+
+def statuses(answer: BatchAnswer) -> dict[str, str]:
+    """The status of each case by name."""
+    names, found = (answer.cases[column].to_pylist() for column in ("case", "status"))
+    return dict(zip(names, found, strict=True))

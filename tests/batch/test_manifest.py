@@ -1,0 +1,109 @@
+"""Manifests, case files and patterns become a list of cases, each with a name of its own."""
+
+import pytest
+
+from clearance.batch.manifest import Changes, items_of
+from clearance.errors import BadInput, DuplicateName, MissingFile, MissingKey, UnknownKey
+from tests.batch.batches import CELL, write_cell
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_cell(tmp_path, [0.5, 0.2, 0.1])
+    return tmp_path
+
+
+def written(folder, text):
+    path = folder / "batch.yaml"
+    path.write_text(text)
+    return [str(path)]
+
+
+def names(arguments):
+    return [item.name for item in items_of(arguments, Changes())]
+
+
+def test_a_cell_times_trajectories_in_order_of_their_names(folder):
+    items = items_of([str(folder / "batch.yaml")], Changes())
+    assert [item.name for item in items] == ["t000", "t001", "t002"]
+    assert [item.number for item in items] == [0, 1, 2]
+    assert {item.file for item in items} == {str(folder / "cell.yaml")}
+
+
+def test_a_list_keeps_its_order_and_a_file_counts_once(folder):
+    text = 'cell: cell.yaml\ntrajectories: [t002.csv, "t*.csv"]\n'
+    assert names(written(folder, text)) == ["t002", "t000", "t001"]
+
+
+def test_the_name_of_a_manifest_goes_before_those_of_its_cases(folder):
+    text = 'name: line\ncell: cell.yaml\ntrajectories: "t00[01].csv"\n'
+    assert names(written(folder, text)) == ["line/t000", "line/t001"]
+
+
+def test_case_files_are_named_from_the_folder_that_they_share(folder):
+    for name in ("a", "b"):
+        (folder / name).mkdir()
+        (folder / name / "case.yaml").write_text(CELL)
+    assert names([str(folder / "*" / "case.yaml")]) == ["a/case", "b/case"]
+
+
+def test_manifests_and_case_files_go_together(folder):
+    (folder / "one.yaml").write_text(CELL)
+    found = names([str(folder / "batch.yaml"), str(folder / "one.yaml")])
+    assert found == ["t000", "t001", "t002", "one"]
+
+
+def test_options_of_the_manifest_and_of_the_command_line(folder):
+    text = 'cell: cell.yaml\ntrajectories: "t*.csv"\nneed: minimum\nlimits: {fail: 0.1}\n'
+    options = items_of(written(folder, text), Changes(warn=0.4, accept=("units",)))[0].options
+    assert (options.need, options.fail, options.warn, options.certify) == (
+        "minimum",
+        0.1,
+        0.4,
+        True,
+    )
+    assert options.accept == ("units",)
+    assert not items_of(written(folder, text), Changes(certify=False))[0].options.certify
+
+
+@pytest.mark.parametrize(
+    ("text", "fault", "told"),
+    [
+        ("cell: cell.yaml\n", MissingKey, "'trajectories' is missing"),
+        ("trajectories: t0.csv\n", MissingKey, "'cell' is missing"),
+        ("cases: []\n", BadInput, "1 values are needed"),
+        ("cell: cell.yaml\ntrajectorys: t.csv\n", UnknownKey, "'trajectories'"),
+        ("cell: c.yaml\ntrajectories: t.csv\nneed: pairs\n", BadInput, "batch.yaml: need"),
+        ('cell: cell.yaml\ntrajectories: "x*.csv"\n', MissingFile, "no file matches 'x*.csv'"),
+        ("cases: a.yaml\nrobot: left\n", BadInput, "there is no cell"),
+        (
+            "cell: c.yaml\ntrajectories: t.csv\nsamples_only: true\ncertify_gap: 0.1\n",
+            BadInput,
+            "samples_only proves nothing",
+        ),
+        (
+            "cell: c.yaml\ntrajectories: t.csv\nread_as: {file: t.csv}\n",
+            BadInput,
+            "read_as.file: a file is given; the files under trajectories",
+        ),
+    ],
+)
+def test_a_manifest_that_is_none_is_refused_in_one_line(folder, text, fault, told):
+    with pytest.raises(fault) as caught:
+        items_of(written(folder, text), Changes())
+    assert told in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_two_cases_of_one_name_are_refused(folder):
+    (folder / "other.yaml").write_text('cell: one.yaml\ntrajectories: "t*.csv"\n')
+    (folder / "one.yaml").write_text(CELL)
+    arguments = [str(folder / "batch.yaml"), str(folder / "other.yaml")]
+    assert len(names(arguments[:1])) == 3
+    with pytest.raises(DuplicateName, match="two cases would be called 't000'"):
+        names(arguments)
+
+
+def test_a_file_that_is_named_and_not_there_is_a_case(folder):
+    text = "cell: cell.yaml\ntrajectories: [t000.csv, gone.csv]\n"
+    assert names(written(folder, text)) == ["t000", "gone"]
+    assert names([str(folder / "gone.yaml")]) == ["gone"]

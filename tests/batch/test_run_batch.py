@@ -1,0 +1,208 @@
+"""A batch in one process: only what is missing or has changed is measured, and the answer has the same bytes."""
+
+import os
+
+import pyarrow.parquet as pq
+import pytest
+
+from clearance.batch.engine import InThisProcess
+from clearance.batch.keys import key_of
+from clearance.batch.manifest import Changes, items_of
+from clearance.batch.store import open_store
+from clearance.errors import Incomplete, Unwritable
+from clearance.load.case_file import load_cell, with_trajectory_file
+from clearance.load.pose_schema import TrajectoryFile
+from clearance.run import Question, answer
+from tests.batch.batches import (
+    CELL,
+    answer_bytes,
+    run_here,
+    statuses,
+    write_cell,
+    write_path,
+)
+
+NEAREST = [0.5, 0.2, 0.04, 0.35, -0.1]
+
+
+@pytest.fixture
+def manifest(tmp_path):
+    return write_cell(tmp_path / "in", NEAREST)
+
+
+def segments(place):
+    return sorted((place / "segments").glob("*.parquet"))
+
+
+def test_each_case_has_the_verdict_of_its_check(manifest, tmp_path):
+    _, found = run_here(manifest, tmp_path / "out")
+    expected = ["clear", "near", "violated", "clear", "contact"]
+    assert list(statuses(found).values()) == expected and found.exit_code == 1
+    cell = load_cell(manifest.parent / "cell.yaml")
+    for row in found.cases.to_pylist():
+        asked = TrajectoryFile(file=f"{row['case']}.csv")
+        run = answer(Question(with_trajectory_file(cell, asked, row["case"]), need="limit"))
+        assert (row["status"], row["clearance"]) == (run.verdict.status, run.worst["clearance"])
+        assert row["reasons"] == list(run.verdict.reasons) and row["basis"] == "motion"
+
+
+def test_the_second_run_measures_nothing_and_writes_the_same(manifest, tmp_path):
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == 5
+    first = answer_bytes(tmp_path / "out")
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert told.measured == [] and answer_bytes(tmp_path / "out") == first
+
+
+def test_only_what_has_changed_is_measured(manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    write_path(manifest.parent / "t001.csv", 0.01)
+    told, found = run_here(manifest, tmp_path / "out")
+    assert told.measured == ["t001"] and statuses(found)["t001"] == "violated"
+
+
+def test_a_change_of_the_cell_is_a_change_of_all(manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    (manifest.parent / "cell.yaml").write_text(CELL.replace("fail: 0.05", "fail: 0.25"))
+    told, found = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == 5 and statuses(found)["t001"] == "violated"
+    (manifest.parent / "cell.yaml").write_text(CELL)
+    told, found = run_here(manifest, tmp_path / "out")
+    assert told.measured == [] and statuses(found)["t001"] == "near"
+
+
+def test_a_case_file_is_known_by_all_that_it_was_made_from(tmp_path):
+    write_cell(tmp_path / "in", NEAREST)
+    for i in range(2):
+        (tmp_path / "in" / f"case{i}.yaml").write_text(CELL + f"trajectory: t00{i}.csv\n")
+    (tmp_path / "in" / "batch.yaml").write_text('cases: "case*.yaml"\n')
+    manifest = tmp_path / "in" / "batch.yaml"
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert told.measured == ["case0", "case1"]
+    assert run_here(manifest, tmp_path / "out")[0].measured == []
+    write_path(tmp_path / "in" / "t001.csv", 0.01)
+    assert run_here(manifest, tmp_path / "out")[0].measured == ["case1"]
+
+
+def test_fresh_measures_all_again(manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    first = answer_bytes(tmp_path / "out")
+    told, _ = run_here(manifest, tmp_path / "out", fresh=True)
+    assert len(told.measured) == 5 and answer_bytes(tmp_path / "out") == first
+    assert [path.name[:6] for path in segments(tmp_path / "out")] == ["000000", "000001"]
+
+
+def test_bad_input_among_others_is_told_and_the_others_are_done(manifest, tmp_path):
+    (manifest.parent / "t001.csv").write_text("time,rail\n0,0\n1,x\n")
+    (manifest.parent / "t003.csv").write_text("time,rial\n0,0\n1,1\n")
+    (manifest.parent / "t004.csv").unlink()
+    (manifest.parent / "t002.csv").unlink()
+    _, found = run_here(manifest, tmp_path / "out")
+    assert statuses(found) == {"t000": "clear", "t001": "error", "t003": "error"}
+    assert found.exit_code == 1
+    rows = {row["case"]: row for row in found.cases.to_pylist()}
+    assert "t001.csv: line 3: 'x' in column 'rail' is not a number" in rows["t001"]["text"]
+    assert "rial" in rows["t003"]["reasons"][0]
+    told, strict = run_here(manifest, tmp_path / "out", strict=True)
+    assert strict.exit_code == 2 and told.measured == ["t001", "t003"]
+
+
+def test_a_damaged_segment_is_dropped_and_its_cases_are_measured_again(manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    first = answer_bytes(tmp_path / "out")
+    (path,) = segments(tmp_path / "out")
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    assert open_store(tmp_path / "out").n_damaged == 1
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == 5 and answer_bytes(tmp_path / "out") == first
+
+
+def test_a_segment_that_is_cut_off_is_dropped(manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    (path,) = segments(tmp_path / "out")
+    os.truncate(path, 100)
+    assert len(run_here(manifest, tmp_path / "out")[0].measured) == 5
+
+
+def test_known_hashes_that_are_damaged_are_done_without(manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    (tmp_path / "out" / "files.parquet").write_bytes(b"PAR1")
+    assert run_here(manifest, tmp_path / "out")[0].measured == []
+
+
+def test_on_a_full_disk_what_was_kept_stays(manifest, tmp_path, monkeypatch):
+    import clearance.batch.store as room
+
+    kept, write = [], room.write_file
+
+    def full(path, content):
+        if path.parent.name == "segments":
+            if kept:
+                raise Unwritable("cannot write here: No space left on device", where=str(path))
+            kept.append(path)
+        write(path, content)
+
+    monkeypatch.setattr(room, "write_file", full)
+    monkeypatch.setattr("clearance.batch.engine.MOST", 2)
+    with pytest.raises(Incomplete, match="No space left on device") as caught:
+        run_here(manifest, tmp_path / "out")
+    assert "the same command goes on" in str(caught.value)
+    assert len(open_store(tmp_path / "out")) == 2
+    monkeypatch.setattr(room, "write_file", write)
+    told, found = run_here(manifest, tmp_path / "out")
+    assert told.measured == ["t002", "t003", "t004"] and found.cases.num_rows == 5
+
+
+def test_two_batches_on_one_store_keep_the_rows_of_both(manifest, tmp_path):
+    """One that begins and ends while the other measures."""
+
+    class Meanwhile(InThisProcess):
+        def results(self, queue):
+            run_here(other, tmp_path / "out")
+            yield from super().results(queue)
+
+    other = write_cell(tmp_path / "other", [0.15, 0.5])
+    _, found = run_here(manifest, tmp_path / "out", engine=Meanwhile())
+    assert list(statuses(found).values()) == ["clear", "near", "violated", "clear", "contact"]
+    assert run_here(other, tmp_path / "out")[0].measured == []
+    assert run_here(manifest, tmp_path / "out")[0].measured == []
+
+
+def test_a_folder_of_something_else_is_no_store(tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.tex").write_text("…")
+    with pytest.raises(Unwritable, match="is a folder of something else"):
+        open_store(tmp_path / "mine")
+    (tmp_path / "mine" / "store.json").write_text('{"format": 99}')
+    with pytest.raises(Unwritable, match="is a store of format 99"):
+        open_store(tmp_path / "mine")
+    with pytest.raises(Unwritable, match="there is no such folder"):
+        open_store(tmp_path / "nothing", make=False)
+
+
+def test_the_key_is_of_all_that_decides_a_row(manifest):
+    item = items_of([str(manifest)], Changes())[0]
+    files = [("cell.yaml", "a"), ("t000.csv", "b")]
+    key = key_of(item, files)
+    assert key == key_of(item, files[::-1])
+    assert key != key_of(item, [("cell.yaml", "a"), ("t000.csv", "c")])
+    others = [
+        Changes(need="steps"),
+        Changes(certify=False),
+        Changes(certify_gap=0.001),
+        Changes(fail=0.1),
+        Changes(warn=0.5),
+        Changes(accept=("units",)),
+    ]
+    keys = {key_of(items_of([str(manifest)], one)[0], files) for one in others}
+    assert len(keys | {key}) == 7
+
+
+def test_the_table_of_cases_is_what_any_tool_reads(manifest, tmp_path):
+    run_here(manifest, tmp_path / "out")
+    table = pq.read_table(tmp_path / "out" / "cases.parquet")
+    assert table.column_names[:3] == ["case", "key", "status"]
+    assert table["clearance"].to_pylist()[0] == pytest.approx(0.4)
+    assert len(table["curve"][0].as_py()) == 3

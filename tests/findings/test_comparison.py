@@ -1,0 +1,116 @@
+"""Two runs of a case: what is new, worse, unchanged, better, gone, and what is not comparable and why."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.findings.comparison import TOLERANCE, Change, compared
+from clearance.findings.findings_file import FindingList, finding_list_of
+from tests.findings.gates import load_gates, write_gates, write_way
+
+A, B = "gate_a", "gate_b"
+BEFORE = {A: (-0.5, 0.003), B: (0.5, 0.1)}
+
+
+def found(folder, gates, *extra, need="steps", certify=True, **changes) -> FindingList:
+    run = cl.check(load_gates(folder, gates, *extra, **changes), need=need, certify=certify)
+    return finding_list_of(run.record)
+
+
+@pytest.fixture
+def before(tmp_path) -> FindingList:
+    return found(tmp_path, BEFORE)
+
+
+def changes(before: FindingList, now: FindingList) -> list[tuple[str, str]]:
+    rows = compared(before, now).rows
+    return [(str(row.change), row.finding.body_b) for row in rows]
+
+
+TABLE = {
+    # what: gates of now, rows, passed
+    "nothing": (BEFORE, [("unchanged", A)], True),
+    "less than the tolerance": ({A: (-0.5, 0.003 - 0.9 * TOLERANCE), B: (0.5, 0.1)}, [("unchanged", A)], True),
+    "worse": ({A: (-0.5, 0.0028), B: (0.5, 0.1)}, [("worse", A)], False),
+    "contact": ({A: (-0.5, 0.0), B: (0.5, 0.1)}, [("worse", A)], False),
+    "better": ({A: (-0.5, 0.004), B: (0.5, 0.1)}, [("better", A)], True),
+    "only a near miss": ({A: (-0.5, 0.01), B: (0.5, 0.1)}, [("better", A)], True),
+    "gone": ({A: (-0.5, 0.15), B: (0.5, 0.1)}, [("gone", A)], True),
+    "new": ({A: (-0.5, 0.003), B: (0.5, 0.004)}, [("new", B), ("unchanged", A)], False),
+    "a new near miss": ({A: (-0.5, 0.003), B: (0.5, 0.012)}, [("new", B), ("unchanged", A)], True),
+    "moved along": ({A: (0.3, 0.003), B: (0.5, 0.1)}, [("unchanged", A)], True),
+    "a new gate": (BEFORE | {"c": (0.7, 0.001)}, [("not comparable", "c"), ("unchanged", A)], False),
+    "a gate less": ({B: (0.5, 0.1)}, [("not comparable", A)], True),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", TABLE)
+def test_what_became_of_each_finding(what, before, tmp_path):
+    gates, rows, passed = TABLE[what]
+    comparison = compared(before, found(tmp_path / "now", gates))
+    told = [(str(row.change), row.finding.body_b) for row in comparison.rows]
+    assert told == rows
+    assert comparison.passed is passed and not comparison.whole
+    assert sum(comparison.counts.values()) == len(comparison.rows)
+
+
+def test_what_was_asked_for_of_each_step_does_not_matter(before, tmp_path):
+    for need in ("limit", "pairs"):
+        assert changes(before, found(tmp_path / need, BEFORE, need=need)) == [("unchanged", A)]
+
+
+@pytest.mark.parametrize(
+    ("changed", "why"),
+    [
+        ({"need": "minimum"}, "need was steps, and is minimum"),
+        ({"certify": False}, "basis was motion, and is samples"),
+    ],
+)
+def test_what_is_measured_in_another_way_is_not_comparable(changed, why, before, tmp_path):
+    comparison = compared(before, found(tmp_path / "now", BEFORE, **changed))
+    assert comparison.whole == why and not comparison.passed
+    assert {row.change for row in comparison.rows} == {Change.NOT_COMPARABLE}
+
+
+def test_other_limits_are_not_comparable(before, tmp_path):
+    now = found(tmp_path / "now", BEFORE, limits="{fail: 0.006, warn: 0.02}")
+    (row,) = compared(before, now).rows
+    assert (row.change, row.why) == (Change.NOT_COMPARABLE, "rule 'default' is another")
+
+
+def test_another_robot_is_not_comparable(before, tmp_path):
+    now = found(tmp_path / "now", BEFORE)
+    robots = tuple(dataclasses.replace(r, sha256="0" * 64) for r in now.measured.robots)
+    now = dataclasses.replace(now, measured=dataclasses.replace(now.measured, robots=robots))
+    (row,) = compared(before, now).rows
+    assert (row.change, row.why) == (Change.NOT_COMPARABLE, "robot 'gantry_box' is another")
+
+
+def test_what_a_list_leaves_out_is_not_known(before, tmp_path):
+    now = found(tmp_path / "now", {A: (-0.5, 0.003), B: (0.5, 0.004)})
+    for cut in (
+        dataclasses.replace(before, incomplete="only the least"),
+        dataclasses.replace(before, not_listed=7),
+    ):
+        rows = compared(cut, now).rows
+        assert [(str(row.change), row.finding.body_b) for row in rows] == [
+            ("not comparable", B),
+            ("unchanged", A),
+        ]
+        assert rows[0].alarms and (cut.incomplete or "7 findings") in rows[0].why
+
+
+def test_a_second_occurrence_is_new(before, tmp_path):
+    path = write_gates(tmp_path / "now", BEFORE)
+    there_and_back = np.concatenate([np.linspace(-1, 1, 41), np.linspace(1, -1, 41)[1:]])
+    write_way(tmp_path / "now" / "way.csv", there_and_back)
+    now = finding_list_of(cl.check(path).record)
+    rows = compared(before, now).rows
+    assert [(str(row.change), row.finding.occurrence) for row in rows] == [
+        ("new", 1),
+        ("unchanged", 0),
+    ]

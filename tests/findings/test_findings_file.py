@@ -1,0 +1,80 @@
+"""findings.json reads back as it was written and gives the same bytes; a damaged one is refused in one line."""
+
+from __future__ import annotations
+
+import functools
+import json
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput, BadSyntax, MissingFile
+from clearance.findings.findings_file import (
+    FORMAT,
+    FindingList,
+    finding_list_of,
+    findings_text,
+    read_findings,
+)
+from clearance.world.case import Limits
+
+SCENES = Path(__file__).parents[2] / "scenes"
+
+
+@functools.cache
+def found() -> FindingList:
+    case = cl.load_case(SCENES / "box_box" / "case.yaml")
+    return finding_list_of(cl.check(case, limits=Limits(0.04, 0.06)).record)
+
+
+def test_a_list_reads_back_as_it_was_written(tmp_path):
+    (tmp_path / "findings.json").write_text(findings_text(found()))
+    assert found().findings[0].broken
+    assert read_findings(tmp_path) == read_findings(tmp_path / "findings.json") == found()
+    assert findings_text(read_findings(tmp_path)) == findings_text(found())
+
+
+def test_what_was_measured_is_there():
+    measured = found().measured
+    assert (measured.need, measured.method, measured.basis) == ("steps", "exact", "motion")
+    assert [(rule.name, rule.fail, rule.warn) for rule in measured.rules] == [
+        ("default", 0.04, 0.06)
+    ]
+    finding = found().findings[0]
+    assert measured.has_pair(finding.body_a, finding.body_b)
+    assert measured.has_pair(finding.body_b, finding.body_a)
+    assert not measured.has_pair(finding.body_a, "another")
+    assert not measured.has_pair(finding.body_b, finding.body_b)
+
+
+def changed(**changes: object) -> str:
+    return json.dumps(json.loads(findings_text(found())) | changes)
+
+
+@pytest.mark.parametrize(
+    ("text", "fault", "told"),
+    [
+        ("", BadSyntax, "not JSON"),
+        (findings_text(found())[:-40], BadSyntax, "not JSON"),
+        ("[" * 100_000, BadSyntax, "not JSON"),
+        (findings_text(found()).replace("0.06", "NaN"), BadSyntax, "NaN"),
+        ("[]", BadInput, "format None"),
+        (changed(format=FORMAT + 1), BadInput, f"format {FORMAT + 1}"),
+        (changed(findings=[{"id": 1}]), BadInput, "findings[0]"),
+        (changed(measured={}), BadInput, "measured"),
+        (changed(case=7), BadInput, "case"),
+    ],
+)
+def test_what_is_no_such_file_is_refused_in_one_line(text, fault, told, tmp_path):
+    path = tmp_path / "findings.json"
+    path.write_text(text)
+    with pytest.raises(fault) as error:
+        read_findings(path)
+    assert told in str(error.value) and str(path) in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_folder_without_findings_is_named(tmp_path):
+    with pytest.raises(MissingFile, match=r"findings\.json"):
+        read_findings(tmp_path)

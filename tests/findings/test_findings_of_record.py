@@ -1,0 +1,152 @@
+"""The findings of a run say what its verdict says, whatever was asked for, and keep their names."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.findings.finding import FindingName
+from clearance.findings.findings_file import finding_list_of
+from clearance.findings.of_record import findings_of, why_incomplete
+from clearance.report import verdict_of
+from clearance.world.case import Case, Limits
+from clearance.world.notice import Notice, Severity
+from clearance.world.rules import Rule
+from tests.report.records import record
+
+SCENES = Path(__file__).parents[2] / "scenes"
+RACK = Limits(0.06, 0.09)
+UNPROVEN = 0.0349784
+"""[m] A limit that nothing is below, by less than what can be proven."""
+
+
+@functools.cache
+def case(name: str) -> Case:
+    return cl.load_case(SCENES / name / "case.yaml")
+
+
+@functools.cache
+def run(name: str, limits: Limits | None = None, need: str = "steps", certify: bool = True):
+    return cl.check(case(name), need=need, limits=limits, certify=certify)
+
+
+@pytest.mark.parametrize("certify", [True, False])
+def test_findings_are_the_same_whatever_was_asked_for(certify):
+    known = {need: findings_of(run("iiwa_pipe_rack", RACK, need, certify).record)
+             for need in ("steps", "pairs", "limit")}  # fmt: skip
+    assert sum(finding.broken for finding in known["steps"]) > 3
+    for need in ("pairs", "limit"):
+        for one, other in zip(known["steps"], known[need], strict=True):
+            same = dataclasses.replace(
+                other, clearance=one.clearance, proven=one.proven, joints=one.joints,
+                point_a=one.point_a, point_b=one.point_b,
+            )  # fmt: skip
+            assert same == one
+            assert other.clearance == pytest.approx(one.clearance, abs=1e-12)
+
+
+@pytest.mark.parametrize("need", ["steps", "limit", "minimum"])
+@pytest.mark.parametrize("fail", [0.0, 0.0349, UNPROVEN, 0.04])
+def test_a_finding_is_broken_exactly_where_the_run_is(fail, need):
+    one = run("box_box", Limits(fail, max(fail, 0.02)), need)
+    found = findings_of(one.record)
+    assert any(finding.broken for finding in found) is not one.passed
+    assert found[0].status == one.verdict.measured
+    (worst, *_) = found
+    if worst.kind == "clearance":
+        assert worst.clearance == one.record.worst.clearance
+        assert worst.proven <= worst.clearance + 1e-9
+
+
+def test_a_limit_that_is_not_proven_is_a_finding_of_its_own():
+    worst = findings_of(run("box_box", Limits(UNPROVEN)).record)[0]
+    assert (worst.kind, worst.status, worst.body_a, worst.body_b) == (
+        "unproven", "violated", "", "",
+    )  # fmt: skip
+    assert worst.proven < UNPROVEN <= worst.clearance
+    assert worst.start < worst.end and "--certify-mm" in worst.text
+
+
+def test_every_rule_that_judges_something_has_a_finding():
+    for need in ("steps", "limit"):
+        found = findings_of(run("dual_arm_handover", None, need).record)
+        rules = [rule.name for rule in run("dual_arm_handover", None, need).record.rules]
+        assert sorted(finding.rule for finding in found) == sorted(rules) and len(rules) == 4
+        assert {finding.status for finding in found} == {"clear"}
+
+
+def test_a_rule_of_which_nothing_is_near_has_a_finding_without_bodies():
+    rules = (Rule(("lbr_iiwa_link_7", "floor"), name="floor", fail=0.001, warn=0.001),)
+    found = findings_of(run("iiwa_pipe_rack", Limits(0.06, 0.09, rules=rules), "limit").record)
+    told = {finding.rule: finding for finding in found}
+    floor = told["floor"]
+    assert floor.status == "clear" and floor.proven is not None and floor.proven >= 0.001
+
+
+def test_a_name_is_of_case_rule_bodies_and_occurrence_alone():
+    name = FindingName("cell", "clearance", "default", ("a", "b"))
+    assert name.id == FindingName("cell", "clearance", "default", ("b", "a")).id
+    others = [
+        dataclasses.replace(name, case="cell 2"),
+        dataclasses.replace(name, kind="unproven"),
+        dataclasses.replace(name, rule="fence"),
+        dataclasses.replace(name, bodies=("a", "c")),
+        dataclasses.replace(name, bodies=("a, b",)),
+        dataclasses.replace(name, occurrence=1),
+    ]
+    assert len({name.id, *(other.id for other in others)}) == 7
+    assert len(name.id) == 16
+
+
+def test_a_program_that_runs_slower_and_a_little_beside_keeps_its_names():
+    """Other times, other coordinates, more samples: the same names."""
+    before = run("iiwa_pipe_rack", RACK, "limit").record
+    (placed,) = before.case.robots
+    given = placed.asked
+    n = 2 * given.n_steps - 1
+    at = np.linspace(0, given.n_steps - 1, n)
+    columns = [np.interp(at, np.arange(given.n_steps), c) for c in given.positions.T]
+    positions = np.column_stack(columns) + 2e-4
+    times = 1.7 * np.interp(at, np.arange(given.n_steps), given.times) + 3.0
+    slower = before.case.with_trajectory(times, positions)
+    after = cl.check(slower, need="limit", limits=RACK).record
+    names = [{finding.id for finding in findings_of(one)} for one in (before, after)]
+    assert names[0] == names[1]
+
+
+def test_samples_alone_prove_nothing():
+    for finding in findings_of(run("iiwa_pipe_rack", RACK, "steps", False).record):
+        assert finding.proven is None and not finding.between
+
+
+def test_a_record_of_nearest_pairs_alone_has_findings_too():
+    one = record()
+    found = findings_of(one)
+    assert found[0].status == verdict_of(one).measured == "contact"
+    assert found[0].occurrence == 0 and found[0].clearance == one.worst.clearance
+
+
+def test_joints_beyond_their_limits_are_a_finding_a_robot():
+    notices = tuple(
+        Notice(Severity.VIOLATED, "joint limits", f"{name}: elbow by {by} rad", name)
+        for name, by in (("left", 0.1), ("right", 0.2))
+    )
+    one = dataclasses.replace(record(), notices=notices)
+    other = dataclasses.replace(record(), notices=notices[1:])
+    found, left = (
+        {f.id: f for f in findings_of(r) if f.kind == "joint limits"} for r in (one, other)
+    )
+    assert [f.body_a for f in found.values()] != [] and set(left) < set(found)
+    (right,) = left.values()
+    assert right.body_a == "right" and right.broken and "0.2 rad" in right.text
+
+
+def test_why_findings_may_be_missing_is_said():
+    assert why_incomplete(run("box_box").record) == ""
+    assert "minimum" in why_incomplete(run("box_box", None, "minimum").record)
+    assert finding_list_of(run("box_box").record).incomplete == ""

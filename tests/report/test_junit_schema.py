@@ -1,0 +1,90 @@
+"""JUnit XML keeps to its schema, whatever there is to say, and is red exactly where the run is not passed."""
+
+from __future__ import annotations
+
+import dataclasses
+from datetime import date
+
+import pytest
+
+import clearance as cl
+from clearance.report import junit, verdict_of, write_junit
+from clearance.run import Question, answer
+from clearance.world.case import Limits, Omission
+from clearance.world.notice import Notice, Severity
+from clearance.world.waiver import Waiver
+from tests.findings.gates import load_gates
+from tests.report.junit_schema import valid_suite
+from tests.report.records import disagreeing, record
+
+GATES = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004), "gate_c": (0.8, 0.015)}
+TWICE = Notice(Severity.WARNING, "geometry", "antenna")
+ODD = Notice(Severity.SUSPECT, "units", "<![CDATA[&\x00\ud800]]>" + "x" * 5000)
+
+RECORDS = {
+    "swing": record(),
+    "clear": record(limits=Limits()),
+    "disputed": record(cross_check=disagreeing()),
+    "one notice twice": record(notices=(TWICE, TWICE, TWICE)),
+    "odd letters": record(notices=(ODD,)),
+    "a pair left out": record(unmeasured=(Omission("gripper", "post", "a"), Omission("gripper", "post", "b"))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_a_record_keeps_to_the_schema(name, tmp_path):
+    write_junit(RECORDS[name], tmp_path / "junit.xml")
+    suite = valid_suite(tmp_path / "junit.xml")
+    assert (suite.get("failures") == "0") == verdict_of(RECORDS[name]).passed
+    first = (tmp_path / "junit.xml").read_bytes()
+    write_junit(RECORDS[name], tmp_path / "junit.xml")
+    assert first == (tmp_path / "junit.xml").read_bytes()
+
+
+@pytest.mark.parametrize("need", ["steps", "pairs", "limit", "minimum"])
+@pytest.mark.parametrize("waive", ["none", "a", "all", "stale"])
+def test_a_run_is_red_where_it_is_not_passed(need, waive, tmp_path):
+    patterns = {"none": [], "a": ["gate_a"], "all": ["gate_*"], "stale": ["gate_*", "gate_c"]}[
+        waive
+    ]
+    waivers = tuple(
+        Waiver(("box", gate), at_least=0.002, reason="it gives way", by="N. N.", until=date(2027, 1, 1))
+        for gate in patterns
+    )  # fmt: skip
+    case = dataclasses.replace(load_gates(tmp_path, GATES), waivers=waivers)
+    run = answer(Question(case, need=need, today=date(2026, 11, 1)))
+    write_junit(run.record, tmp_path / "junit.xml")
+    suite = valid_suite(tmp_path / "junit.xml")
+    failed = {case.get("name") for case in suite if case.find("failure") is not None}
+    assert ("verdict" in failed) == (not run.passed) and bool(failed) == (not run.passed)
+    skipped = {case.get("name"): case.find("skipped").get("message")
+               for case in suite if case.find("skipped") is not None}  # fmt: skip
+    waived = {f"box - {f.body_b}" for f in run.findings if f.waived is not None}
+    assert waived == {name for name, told in skipped.items() if "it gives way" in told}
+    if waive == "all":
+        assert run.passed and len(waived) == 2
+
+
+def test_each_time_that_a_limit_is_broken_is_a_case(tmp_path):
+    run = cl.check(load_gates(tmp_path, GATES))
+    write_junit(run.record, tmp_path / "junit.xml")
+    failed = {case.get("name"): case.find("failure") for case in valid_suite(tmp_path / "junit.xml")
+              if case.find("failure") is not None}  # fmt: skip
+    assert set(failed) == {"verdict", "box - gate_a", "box - gate_b", "motion between the samples"}
+    told = failed["box - gate_a"].get("message")
+    assert "3.000 mm" in told and "fail limit of 5 mm" in told and run.findings[0].id in told
+
+
+def test_a_file_has_room_for_what_fails_before_all_else(tmp_path, monkeypatch):
+    one = record()
+    whole = tmp_path / "whole.xml"
+    write_junit(one, whole)
+    monkeypatch.setattr(junit, "MOST_BYTES", 2500)
+    write_junit(one, tmp_path / "junit.xml")
+    suite = valid_suite(tmp_path / "junit.xml")
+    told = {each.get("name"): each.get("value") for each in suite.find("properties")}
+    n_whole = len(valid_suite(whole).findall("testcase"))
+    n_left_out = n_whole - len(suite.findall("testcase"))
+    assert n_left_out > 0 and told["cases_left_out"] == str(n_left_out)
+    assert suite.get("failures") == valid_suite(whole).get("failures")
+    assert (tmp_path / "junit.xml").stat().st_size < 2500 + 1000

@@ -1,0 +1,52 @@
+"""The pairs of a rule one by one are the same whatever was asked for, and those of the run with every pair."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.simulate.rule_pairs import NearRows
+
+SCENES = Path(__file__).parents[2] / "scenes"
+WITHIN = 0.08
+
+
+@functools.cache
+def checked(name: str, need: str = "steps") -> cl.Run:
+    return cl.check(cl.load_case(SCENES / name / "case.yaml"), need=need, certify=False)
+
+
+def near_rows(name: str, need: str, within: float = WITHIN) -> list[NearRows]:
+    return [rule.pairs.near(within) for rule in checked(name, need).record.rules]
+
+
+@pytest.mark.parametrize("name", ["iiwa_pipe_rack", "dual_arm_handover"])
+@pytest.mark.parametrize("need", ["steps", "limit"])
+def test_near_pairs_are_those_of_a_run_with_every_pair(name, need):
+    for found, true in zip(near_rows(name, need), near_rows(name, "pairs"), strict=True):
+        assert len(true.steps) > 0
+        np.testing.assert_array_equal(found.steps, true.steps)
+        np.testing.assert_array_equal(found.pairs, true.pairs)
+        np.testing.assert_allclose(found.clearances, true.clearances, rtol=0, atol=1e-12)
+        assert not found.nearest_only.any()
+        assert (true.clearances < WITHIN).all()
+
+
+def test_the_moment_of_a_pair_is_what_its_row_says():
+    (rule,) = checked("iiwa_pipe_rack").record.rules
+    rows = rule.pairs.near(WITHIN)
+    for i in (0, len(rows.steps) // 2, len(rows.steps) - 1):
+        moment = rule.pairs.moment(int(rows.steps[i]), int(rows.pairs[i]))
+        assert moment.step == rows.steps[i] and not moment.between
+        assert moment.clearance == pytest.approx(rows.clearances[i], abs=1e-12)
+        gap = np.linalg.norm(np.subtract(moment.point_link, moment.point_obstacle))
+        assert gap == pytest.approx(moment.clearance, abs=1e-9)
+
+
+def test_nothing_is_near_where_all_is_farther_apart():
+    (found,) = near_rows("box_box", "steps", within=1e-6)
+    assert len(found.steps) == len(found.pairs) == len(found.clearances) == 0
