@@ -128,8 +128,9 @@ class _Paths:
 def _moved(row: Mapping[str, Any], paths: _Paths) -> dict[str, Any]:
     """An obstacle with paths as they are to be written."""
     moved = dict(row)
-    if "mesh" in row:
-        moved["mesh"] = {**row["mesh"], "file": paths.written(row["mesh"]["file"])}
+    for kind in ("mesh", "points"):
+        if kind in row:
+            moved[kind] = {**row[kind], "file": paths.written(row[kind]["file"])}
     if isinstance(row.get("moves"), str):
         moved["moves"] = paths.written(row["moves"])
     elif "moves" in row:
