@@ -109,7 +109,7 @@ def _notes_on_limits(
         "velocity": [name for name, one in known.items() if one.motion.velocity < math.inf],
         "acceleration": [name for name, one in known.items() if one.motion.acceleration < math.inf],
     }
-    taken = [f"{kind} of {listed(names, 8)}" for kind, names in kinds.items() if names]
+    taken = [f"{kind} of {_joints(names, robot)}" for kind, names in kinds.items() if names]
     yield f"limits taken: {'; '.join(taken) or 'none'}"
     wider = [name for name, one in known.items() if _is_wider(one, by_name[name])]
     if wider:
@@ -120,6 +120,12 @@ def _notes_on_limits(
     unused = dict.fromkeys(key for one in known.values() for key in one.unused)
     if unused:
         yield f"not used: {listed([*unused], 8)}"
+
+
+def _joints(names: Collection[str], robot: Robot) -> str:
+    """Joints by name, or that they are all."""
+    moving = {joint.name for joint in robot.moving_joints}
+    return "all joints" if len(moving) > 1 and moving <= {*names} else listed([*names], 8)
 
 
 def _has_position(limits: FileLimits) -> bool:
@@ -162,11 +168,10 @@ def _notes_on_tolerances(
         if one.trajectory < math.inf
     ]
     free = [name for name, one in known.items() if one.trajectory == math.inf]
+    loose = _joints(free, robot)
     told = f"controllers {listed([one.name for one in controllers], 4)} let joints leave the path: "
     told += f"{listed(bounded, 8)} at most" if bounded else ""
-    told += ("; " if bounded and free else "") + (
-        f"{listed(free, 8)} as far as they go" if free else ""
-    )
+    told += ("; " if bounded and free else "") + (f"{loose} as far as they go" if free else "")
     yield f"{told}; no clearance is lessened by that"
     joints = [name for one in controllers for name in one.tolerances if name not in known]
     if joints:

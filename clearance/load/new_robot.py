@@ -12,6 +12,7 @@ from typing import Any
 
 from clearance.errors import NothingToMeasure
 from clearance.load import schema
+from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.notes import counted
 from clearance.load.pose_schema import TrajectoryFile
@@ -25,6 +26,13 @@ from clearance.world.trajectory import Trajectory
 
 _FILES = ("urdf", "srdf", "joint_limits", "controllers")
 """Keys of a robot that name files."""
+
+_BESIDE = {
+    "srdf": "pairs of links that may touch",
+    "joint_limits": "limits of joints",
+    "controllers": "path tolerances",
+}
+"""What the files say that may stand beside the robot's."""
 
 _FIRST = ("xacro", "xacro_args", "package_dirs")
 """Keys that stand beside the robot's file."""
@@ -63,14 +71,14 @@ class NewRobot:
 
     Attributes:
         keys: as it was read. rest: states for joints that the motion leaves alone.
-        taken: a line on what it is. notes: a line each.
+        taken, notes: a line each.
         is_seen_only: no link has a collision shape.
     """
 
     placed: PlacedRobot
     keys: Mapping[str, Any]
     rest: Sequence[str]
-    taken: str
+    taken: Sequence[str]
     notes: Sequence[str]
     is_seen_only: bool
 
@@ -159,11 +167,16 @@ def new_robot(given: Given, meshes: MeshStore) -> NewRobot:
         keys["geometry"] = "visual"
         placed, notes = _placed(keys, given, meshes)
     robot = placed.robot
-    taken = (
+    taken = [
         f"robot {robot.name!r} from {meshes.files.shown(Path(placed.urdf_path))}: "
         f"{counted(len(robot.link_names), 'link')}, {len(robot.bodies)} of them with a shape, "
         f"{counted(len(robot.moving_joints), 'joint')} to move"
-    )
+    ]
+    taken += [
+        f"{what} from {meshes.files.shown(resolved(given.keys[key], Path()))}"
+        for key, what in _BESIDE.items()
+        if key in given.keys
+    ]
     seen_only = "geometry" in keys and "geometry" not in given.keys
     return NewRobot(placed, keys, given.rest, taken, notes, seen_only)
 
@@ -176,9 +189,10 @@ def _placed(
     if given.trajectory is not None:
         motion = validated(TrajectoryFile, dict(given.trajectory), "trajectory")
     reader = RobotReader(Path(), meshes)
-    placed = reader.placed(schema.RobotEntry("robot", robot, motion, "trajectory"))
+    placed, on_motion = reader.moving(schema.RobotEntry("robot", robot, motion, "trajectory"))
     matrix = placed.self_clearance and placed.self_clearance.matrix
-    return placed, [*placed.robot.notes, *reader.notes, *(matrix.notes if matrix else ())]
+    told = (*placed.robot.notes, *reader.notes, *on_motion)
+    return placed, [*told, *(matrix.notes if matrix else ())]
 
 
 def _near_zero(joint: Joint) -> float:

@@ -133,7 +133,7 @@ def _robot_reader(name: str) -> Callable[[bytes, Path], object]:
         from clearance.load import schema
         from clearance.load.input_files import InputFiles
         from clearance.load.mesh_store import MeshStore
-        from clearance.load.robots import RobotReader, in_motion
+        from clearance.load.robots import RobotReader
 
         valid = {"arm.urdf": _BOXES, "m.stl": _binary_stl(), "arm.srdf": _SRDF}
         valid |= {"limits.yaml": _LIMITS, "control.yaml": _CONTROL}
@@ -141,8 +141,7 @@ def _robot_reader(name: str) -> Callable[[bytes, Path], object]:
             (folder / other).write_bytes(content)
         robot = schema.Robot.model_validate(_ROBOT)
         entry = schema.RobotEntry("robot", robot, None, "trajectory")
-        files = InputFiles(folder)
-        return in_motion(entry, RobotReader(folder, MeshStore(files)).placed(entry), folder, files)
+        return RobotReader(folder, MeshStore(InputFiles(folder))).moving(entry)
 
     return read
 

@@ -26,6 +26,8 @@ ARM = TWO_JOINTS.replace(
     '<link name="tip"><collision><origin xyz="0 0 1.5"/><geometry><sphere radius="0.1"/></geometry>'
     "</collision></link>",
 )
+_HEAD, _, _TAIL = MESSAGE.partition("  attached_collision_objects:")
+PLANNING = _HEAD + _TAIL[_TAIL.index("allowed_collision_matrix:") :]
 SRDF = """<robot name="arm"><disable_collisions link1="base" link2="upper" reason="Adjacent"/>
 <disable_collisions link1="upper" link2="tip" reason="Adjacent"/>
 <group_state name="home" group="arm"><joint name="shoulder" value="0"/><joint name="lift" value="0.02"/>
@@ -48,7 +50,7 @@ def cell(tmp_path, monkeypatch):
         "arm.urdf": ARM, "one.urdf": TWO_JOINTS, "arm.srdf": SRDF,
         "path.csv": PATH, "degrees.csv": DEGREES, "path.yaml": ROS2,
         "scene.yaml": SCENE, "door.csv": DOOR, "world.sdf": sdf(world(model(link(collision())))),
-        "planning.yaml": MESSAGE, "cell.scene": FIRST,
+        "planning.yaml": PLANNING, "held.yaml": MESSAGE, "cell.scene": FIRST,
     }  # fmt: skip
     (tmp_path / "cell").mkdir()
     for name, text in files.items():
@@ -67,7 +69,7 @@ def test_a_scan_and_an_octomap_come_along():
     """The scan stays where it is; the map that a message holds gets a file."""
     Path("cell/scan.xyz").write_text("2 0 0\n2 0 1\n")
     Path("cell/scene.yaml").write_text(
-        "obstacles: [{name: scan, points: {file: scan.xyz, radius: 0.6}}]\n"
+        "obstacles: [{name: scan, points: {file: scan.xyz, radius: 0.05}}]\n"
     )
     assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--check") in (0, 1)
     assert "file: ../cell/scan.xyz" in Path("out/scene.yaml").read_text()
@@ -105,6 +107,7 @@ def direct(scene, trajectory):
         ("scene.yaml", "degrees.csv"),
         ("world.sdf", "path.yaml"),
         ("planning.yaml", "path.csv"),
+        ("held.yaml", "path.csv"),
         ("cell.scene", "path.csv"),
     ],
 )
@@ -116,6 +119,8 @@ def test_it_has_the_results_of_the_files_it_is_made_from(capsys, scene, trajecto
     theirs = summary(capsys, path)
     origins = [[one.pop("origin", None) for one in told["obstacles"]] for _, told in (ours, theirs)]
     assert ours == theirs and len(origins[0]) == len(origins[1])
+    text = Path("out/case.yaml").read_text()
+    assert ("padding" in text and "allow:" in text) == (scene == "planning.yaml")
 
 
 def test_it_says_what_it_took_and_what_it_assumed(capsys):

@@ -16,6 +16,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from clearance.cli.commands import clearance
+from clearance.load.manifest_schema import Manifest
 from clearance.load.schema import Case
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
@@ -53,7 +54,10 @@ def test_every_block_says_what_it_is(page):
 @pytest.mark.peer
 @pytest.mark.parametrize("page", with_blocks("python", "bash"))
 def test_what_a_page_runs_runs(page, tmp_path, monkeypatch):
-    """Blocks of a page follow each other: files are written, Python shares its names, commands end well."""
+    """Blocks of a page follow each other: files are written, Python shares its names, commands end well.
+
+    As long as the page takes its reader: what is shown is run whole, reports and all.
+    """
     for folder in ("scenes", "robots"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     monkeypatch.chdir(tmp_path)
@@ -124,6 +128,8 @@ def test_case_files_keep_to_the_schema(block: CodeBlock):
     content = YAML(typ="safe").load(block.text)
     if {"robot", "robots"} & content.keys():
         Case.model_validate(content)
+    elif {"cases", "cell"} & content.keys():
+        Manifest.model_validate(content)
     else:
         assert set(content) <= {*Case.model_fields, "jobs"}
 

@@ -65,7 +65,7 @@ def test_the_narrower_limits_hold(tmp_path):
     }  # fmt: skip
     told = " | ".join(case.notes)
     assert (
-        "limits.yaml: limits taken: position of shoulder; velocity of shoulder, lift; acceleration of lift"
+        "limits.yaml: limits taken: position of shoulder; velocity of all joints; acceleration of lift"
         in told
     )
     assert "wider than the robot file's, which stay: position of shoulder" in told
