@@ -18,6 +18,7 @@ from tests.load.making import CUBE, PATH, cube_stl
 from tests.load.making_case import TWO_JOINTS
 from tests.load.making_messages import ROS2
 from tests.load.making_moveit import FIRST, MESSAGE
+from tests.load.making_octree import data_of, octree
 from tests.load.making_sdf import collision, link, model, sdf, world
 
 ARM = TWO_JOINTS.replace(
@@ -62,6 +63,24 @@ def cell(tmp_path, monkeypatch):
 
 def new(*words, robot="cell/arm.urdf"):
     return run(["new", "out", "--robot", robot, *map(str, words)])
+
+
+def test_a_scan_and_an_octomap_come_along():
+    """The scan stays where it is; the map that a message holds gets a file."""
+    Path("cell/scan.xyz").write_text("2 0 0\n2 0 1\n")
+    Path("cell/scene.yaml").write_text(
+        "obstacles: [{name: scan, points: {file: scan.xyz, radius: 0.05}}]\n"
+    )
+    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--check") in (0, 1)
+    assert "file: ../cell/scan.xyz" in Path("out/scene.yaml").read_text()
+    tree = data_of(octree({(9, 9, 9): True}))
+    Path("cell/scene.yaml").write_text(
+        f"world: {{octomap: {{octomap: {{id: OcTree, binary: true, resolution: 0.1, data: {tree}}}}}}}\n"
+    )
+    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--force") == 0
+    (held,) = Path("out").glob("*.octomap.bt")
+    assert held.read_bytes().startswith(b"# Octomap OcTree binary file")
+    assert load_case("out/case.yaml").obstacles[0].name == "<octomap>"
 
 
 def summary(capsys, path):

@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 import clearance as cl
+from clearance.load.mesh import mesh_from_bytes
+from clearance.report.still.glb import glb_of
+from clearance.report.still.picture import png_of
+from clearance.report.still.points import MOST, as_solids
+from clearance.report.still.scene import still_of
 from clearance.report.summary import summary_of
+from clearance.simulate.replay import replay_of
 from clearance.view import play
 from tests.made_cases import flying
 from tests.report.browser import chromium, executable
@@ -64,3 +70,20 @@ def test_the_live_viewer_draws_points():
     with play(cl.check(scanned()).record) as playback, chromium() as page:
         page.open(playback.url, f"window.viewer && {points}")
         assert page.run(points) == 1
+
+
+def test_stills_show_points_as_solids():
+    """In a picture and in a model; of many points some."""
+    record = cl.check(scanned()).record
+    still = still_of(replay_of(record))
+    sizes = sorted(len(triangles) for _, triangles in still.shapes)
+    assert sizes[-1] == 8 * 3600
+    assert png_of(record, replay_of(record)).startswith(b"\x89PNG")
+    shape = mesh_from_bytes(glb_of(record, replay_of(record)), "moment.glb")
+    assert shape.n_triangles > 8 * 3600
+    points = np.random.default_rng(1).uniform(-1.0, 1.0, (2 * MOST + 1, 3)).astype(np.float32)
+    vertices, triangles = as_solids(points, np.empty((0, 3), dtype=np.int32))
+    assert len(triangles) == 8 * (len(points) // 3 + 1)
+    assert np.abs(vertices[:6] - points[0]).max() == pytest.approx(0.002, rel=1e-3)
+    solid = cl.Polyhedron.from_triangles(vertices[:6], triangles[:8])
+    assert solid.closed and solid.volume > 0.0

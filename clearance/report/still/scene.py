@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from clearance.geometry.pose import pose_from_quaternion
+from clearance.report.still.points import as_solids
 from clearance.simulate.replay import Replay
 from clearance.simulate.replay_bodies import LINK, MOVING, PART, STANDING, DrawnBody
 from clearance.simulate.status import STATUSES
@@ -103,7 +104,7 @@ def still_of(replay: Replay) -> Still:
     overlap = next((i for i, one in enumerate(replay.contacts) if one.frame == frame), None)
     return Still(
         bodies,
-        replay.shapes,
+        tuple(as_solids(*shape) for shape in replay.shapes),
         tuple(nearest),
         replay.lines[frame].reshape(2, 3),
         colour,
