@@ -129,9 +129,9 @@ def make(
 
 
 def _robot(urdf: Path, package_dirs: tuple[Path, ...], geometry: str, up_axis: str) -> Robot:
-    from clearance.load.urdf import load_urdf
+    from clearance.load.robot_formats import load_robot
 
-    return load_urdf(
+    return load_robot(
         urdf,
         package_dirs=package_dirs,
         geometry=geometry,  # type: ignore[arg-type]  # one of the choices

@@ -5,12 +5,15 @@ Not for: where the robot stands, or how it moves (`robots`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from pathlib import Path
 
+from clearance.load.collada_file import UpAxis
 from clearance.load.foreign_files import is_mjcf
+from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.mjcf_robot import read_mjcf
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.urdf import read_urdf
 from clearance.world.robot import Robot
 
@@ -36,3 +39,24 @@ def read_robot(request: RobotRequest, meshes: MeshStore) -> Robot:
         BadInput: as the reader says, with the place in the file.
     """
     return READERS.get(request.path.suffix.lower(), read_urdf)(request, meshes)
+
+
+def load_robot(
+    path: str | Path,
+    *,
+    package_dirs: Sequence[str | Path] = (),
+    geometry: Geometry = "collision",
+    collada_up_axis: UpAxis = "ros",
+) -> Robot:
+    """The robot in a file of any format that is read, for cases that are made in memory.
+
+    Args:
+        path: of a URDF or MJCF file; or `pybullet_data:…`, as in a case file.
+        package_dirs, geometry, collada_up_axis: as in `RobotRequest`.
+
+    Raises:
+        BadInput: with the file and the element.
+    """
+    path = resolved(str(path), Path())
+    request = RobotRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
+    return read_robot(request, MeshStore(InputFiles(path.parent)))

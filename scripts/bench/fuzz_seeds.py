@@ -38,6 +38,7 @@ def readers() -> dict[str, Reader]:
         "PLY binary": ("m.ply", _ply_binary()),
         "OFF": ("m.off", _off()),
         "GLB": ("m.glb", _glb()),
+        "STEP": ("m.step", _step()),
     }
     made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
     return made | {
@@ -46,6 +47,8 @@ def readers() -> dict[str, Reader]:
         "profile": Reader("p.yaml", _PROFILE, _file_reader("p.yaml", _read_profile)),
         "sketch": Reader("s.yaml", SKETCH.read_bytes(), _file_reader("s.yaml", _read_sketch)),
         "URDF": Reader("arm.urdf", _URDF, _case_reader("arm.urdf")),
+        "MJCF": Reader("arm.xml", _MJCF, _mjcf_reader("arm.xml")),
+        "MJCF scene": Reader("world.xml", _MJCF, _mjcf_scene_reader("world.xml")),
         "case": Reader("case.yaml", _CASE, _case_reader("case.yaml")),
         "trajectory": Reader("path.csv", _PATH, _trajectory_reader("path.csv")),
         "trajectory semicolons": Reader("path.csv", _COMMAS, _trajectory_reader("path.csv")),
@@ -79,6 +82,30 @@ def _case_reader(name: str) -> Callable[[bytes, Path], object]:
         for other, content in (valid | {name: data}).items():
             (folder / other).write_bytes(content)
         return load_case(folder / "case.yaml")
+
+    return read
+
+
+def _mjcf_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.robot_formats import load_robot
+
+        (folder / name).write_bytes(data)
+        (folder / "m.stl").write_bytes(_binary_stl())
+        return load_robot(folder / name)
+
+    return read
+
+
+def _mjcf_scene_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.input_files import InputFiles
+        from clearance.load.scene_formats import read_scene
+        from clearance.load.scene_request import SceneRequest
+
+        (folder / name).write_bytes(data)
+        (folder / "m.stl").write_bytes(_binary_stl())
+        return read_scene(SceneRequest(folder / name, InputFiles(folder)))
 
     return read
 
@@ -214,6 +241,12 @@ def _glb() -> bytes:
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
+def _step() -> bytes:
+    from tests.load.making_step import cylinder_step
+
+    return cylinder_step().encode()
+
+
 def _dxf() -> bytes:
     """Written by ezdxf, so that it has all the tables that a drawing needs."""
     import ezdxf
@@ -266,6 +299,20 @@ _URDF = b"""<?xml version="1.0"?>
     <limit lower="0" upper="0.1" effort="1" velocity="1"/>
     <mimic joint="shoulder" multiplier="0.1" offset="0.01"/></joint>
 </robot>
+"""
+
+_MJCF = b"""<mujoco model="arm"><compiler autolimits="true" angle="radian"/>
+<default><geom solref="0.01 1"/><default class="seen"><geom contype="0" conaffinity="0"/></default></default>
+<asset><mesh name="m" file="m.stl" scale="0.1 0.2 0.3" refpos="0 0 1" refquat="1 0 1 0"/></asset>
+<worldbody><geom name="floor" type="plane" size="1 1 1"/>
+<body name="upper" pos="0 0 0.1" euler="0 0.1 0"><joint name="shoulder" axis="0 0 1" range="-1 1" ref="0.2"/>
+<joint name="slide" type="slide" axis="1 0 0" pos="0 0 0.1"/><geom size="0.1 0.2" type="capsule"/>
+<body name="tip" pos="0 0 1"><joint type="ball"/><geom type="mesh" mesh="m" pos="0 0 0.2" quat="1 0 0 1"/>
+<geom class="seen" type="ellipsoid" size="0.1 0.2 0.3"/></body></body>
+<replicate count="3" offset="0 1 0"><body name="post" pos="3 0 0"><geom type="box" size="0.1 0.1 1"/></body>
+</replicate>
+</worldbody><equality><joint joint1="slide" joint2="shoulder" polycoef="0 0.1 0 0 0"/></equality>
+<contact><exclude body1="upper" body2="tip"/></contact></mujoco>
 """
 
 _CASE = b"""name: small
