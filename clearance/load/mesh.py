@@ -121,6 +121,7 @@ def _solid(triangles: Triangles) -> LoadedMesh:
     given = Polyhedron.from_triangles(kept.vertices, kept.corners, excess=off, shortfall=off)
     shape = given.outward()
     notes = [
+        *_notes_on_facets(off),
         *triangles.notes,
         *_notes_on_copies(n_copies),
         *_notes_on_flat(n_without_area(kept), shape),
@@ -129,6 +130,15 @@ def _solid(triangles: Triangles) -> LoadedMesh:
         *_notes_on_open(shape.component_closed),
     ]
     return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+
+
+def _notes_on_facets(off: float) -> list[str]:
+    if not off:
+        return []
+    return [
+        f"facets of a CAD file, up to {off * 1e3:.3g} mm off its surface, which is taken off the clearance; "
+        "depths of contact are those of the facets"
+    ]
 
 
 def _notes_on_copies(n_copies: int) -> list[str]:
