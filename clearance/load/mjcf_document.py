@@ -9,13 +9,14 @@ Source: MuJoCo, XML reference (include, compiler, asset); model editing, `stripp
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
-from clearance.errors import BadInput, BadSyntax, MissingKey, at
+from clearance.errors import BadInput, BadSyntax, MissingKey, NotFinite, at
 from clearance.load.input_files import InputFiles
 
 if TYPE_CHECKING:
@@ -32,6 +33,14 @@ _NEEDED = ("compiler", "default", "asset", "worldbody", "contact", "equality")
 
 _IDLE = ("site", "camera", "light", "plugin", "texture", "skin", "layer")
 """Elements anywhere that have no surface to touch."""
+
+_NAMES = frozenset(
+    (
+        *("name", "class", "childclass", "model", "file", "prefix", "mesh", "hfield", "material"),
+        *("joint1", "joint2", "body1", "body2", "geom1", "geom2", "meshdir", "assetdir"),
+    )
+)
+"""Attributes that hold names, which may look like numbers."""
 
 _REFUSED = {
     "attach": "bodies of another model",
@@ -151,6 +160,7 @@ def _require_readable(root: Element) -> None:
                 f"<{tag}> {name!r:.60} is not read: it makes {what}",
                 valid="a model in which all bodies are written out",
             )
+    _require_finite(root)
     n_elements = sum(1 for _ in root.iter())
     n_made = sum(_copies(element) for element in root.iter("geom", "body", "joint", "freejoint"))
     if n_elements > MOST_ELEMENTS or n_made > MOST_MADE:
@@ -158,6 +168,24 @@ def _require_readable(root: Element) -> None:
             f"it makes {n_made} bodies, joints and geoms of {n_elements} elements",
             valid=f"{MOST_MADE} or fewer, of {MOST_ELEMENTS}",
         )
+
+
+def _require_finite(root: Element) -> None:
+    """Refuses numbers that are none, which MuJoCo takes for numbers that are not given."""
+    for element in root.iter():
+        for key, text in element.attrib.items():
+            if key not in _NAMES and not all(map(_is_finite, text.split())):
+                raise NotFinite(
+                    f"<{element.tag}> has {key}={text!r:.60}", valid="finite numbers are needed"
+                )
+
+
+def _is_finite(word: str) -> bool:
+    """False for a number that is not finite; True for what is no number."""
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return True
 
 
 def _copies(element: Element) -> int:

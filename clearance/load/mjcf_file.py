@@ -58,7 +58,7 @@ class MjcfSpec:
             import mujoco
         self._mujoco = mujoco
         files = _take_out_files(root)
-        with _refused():
+        with _refused(mujoco):
             self._spec = mujoco.MjSpec.from_string(etree.tostring(root, encoding="unicode"))
         texts = {mesh.get("name"): mesh for mesh in root.iterfind("asset/mesh")}
         self.meshes = {
@@ -89,7 +89,7 @@ class MjcfSpec:
             for beside in _BESIDE_POINTS:
                 if hasattr(mesh, beside):
                     setattr(mesh, beside, [])
-        with _refused():
+        with _refused(self._mujoco):
             compiled = spec.compile()
         return _Plain(self._mujoco, spec.modelname, compiled).model()
 
@@ -124,18 +124,23 @@ def _written(mesh: Any, file: str, element: Element | None) -> MjcfMesh:
 
 
 @contextmanager
-def _refused() -> Iterator[None]:
-    """Turns what MuJoCo says into one line; the lines of the document it counts are not those of the file."""
+def _refused(mujoco: Any) -> Iterator[None]:
+    """Turns what MuJoCo says into one line; the lines of the document it counts are not those of the file.
+
+    Its warnings, of masses and the like, would be printed, and written to a file where we are.
+    """
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda text: None)
     try:
-        with warnings.catch_warnings(
-            action="ignore"
-        ):  # of masses; else they are printed and logged
+        with warnings.catch_warnings(action="ignore"):
             yield
     except MemoryError:
         raise
     except Exception as error:  # FatalError is no ValueError
         text = re.sub(r",? *\(?line \d+\)?", "", " ".join(str(error).split()))
         raise BadSyntax(f"MuJoCo refuses it: {text.removeprefix('Error: '):.300}") from None
+    finally:
+        mujoco.set_mju_user_warning(before)
 
 
 class _Plain:

@@ -17,7 +17,7 @@ from clearance.load.mjcf_followers import with_followers
 from clearance.load.mjcf_model import MjcfGeom, MjcfModel
 from clearance.load.mjcf_shapes import MjcfShapes, compiled
 from clearance.load.mjcf_tree import joints_of
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.robot_tree import links_from_root
 from clearance.load.shape_kinds import chosen_kind, notes_on_bare, refuse_other_geometry, unseen
 from clearance.world.body import Body
@@ -40,17 +40,15 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         document = mjcf_document(request.path, meshes.files)
         model, shapes = compiled(document, request.package_dirs, meshes)
         names = [body.name for body in model.bodies]
+        known = frozenset(names)
         joints, notes, notices = with_followers(joints_of(model), model)
-        frames = [joint.child for joint in joints if joint.child not in set(names)]
+        frames = [joint.child for joint in joints if joint.child not in known]
         require_own_names("link", [*names, *frames])
         checked_name(model.name)
         link_names, ordered = links_from_root((*names, *frames), joints)
         kinds = _kinds(model)
         refuse_other_geometry(kinds, request.geometry)
-        measured = {
-            name: [geom for geom in geoms if _is(geom, chosen_kind(kinds[name], request.geometry))]
-            for name, geoms in _by_body(model).items()
-        }
+        measured = _measured(model, kinds, request.geometry)
         bodies = [_body(name, measured[name], shapes) for name in link_names if measured.get(name)]
     told = [*notes, *notes_on_parts(ordered), *_notes(model, kinds, measured)]
     file = request.path.name
@@ -89,6 +87,16 @@ def _kinds(model: MjcfModel) -> dict[str, frozenset[str]]:
         )
         for name, geoms in _by_body(model).items()
         if name != WORLD or geoms
+    }
+
+
+def _measured(
+    model: MjcfModel, kinds: dict[str, frozenset[str]], geometry: Geometry
+) -> dict[str, list[MjcfGeom]]:
+    """The geoms of each body that are of the kind that is asked for."""
+    return {
+        name: [geom for geom in geoms if _is(geom, chosen_kind(kinds[name], geometry))]
+        for name, geoms in _by_body(model).items()
     }
 
 

@@ -256,6 +256,26 @@ def test_a_file_cut_off_anywhere_is_refused(tmp_path):
             load_mjcf(tmp_path, whole[:n])
 
 
+@pytest.mark.parametrize(
+    "of",
+    [
+        '<geom size="nan"/>',
+        f'<body pos="nan 0 0">{BALL}</body>',
+        f'<body><joint ref="1e400"/>{BALL}</body>',
+        f'<body quat="1 0 0 -inf">{BALL}</body>',
+    ],
+)
+def test_what_is_no_number_is_refused_and_nothing_is_written_or_printed(
+    tmp_path, monkeypatch, capfd, of
+):
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    with pytest.raises(ClearanceError, match=r"finite numbers are needed"):
+        load_mjcf(tmp_path, mjcf(of))
+    assert list((tmp_path / "here").iterdir()) == []
+    assert capfd.readouterr() == ("", "")
+
+
 def test_no_library_no_reading(tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "mujoco", None)
     with pytest.raises(ClearanceError, match=r"reading MJCF needs mujoco.*clearance\[mujoco\]"):
