@@ -6,6 +6,7 @@ from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
 from .load.cloud import read_points
 from .load.mesh import read_mesh
+from .load.robot_formats import load_robot
 from .load.urdf import load_urdf
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
@@ -95,6 +96,7 @@ __all__ = [
     "hausdorff",
     "intersect",
     "load_case",
+    "load_robot",
     "load_urdf",
     "minimum_distance",
     "penetration",

@@ -160,7 +160,7 @@ def check(
     with kept_rows(out, quiet) as rows:
         with shown_progress(quiet or as_json, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if out is not None or as_json:
+            if out is not None or as_json or png or glb:
                 run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
         _write(run, out, junit, comparison)

@@ -141,9 +141,9 @@ def _robot(
     xacro: bool,
     xacro_args: dict[str, str],
 ) -> Robot:
-    from clearance.load.urdf import load_urdf
+    from clearance.load.robot_formats import load_robot
 
-    return load_urdf(
+    return load_robot(
         urdf,
         package_dirs=package_dirs,
         geometry=geometry,  # type: ignore[arg-type]  # one of the choices

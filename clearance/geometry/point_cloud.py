@@ -23,7 +23,7 @@ from clearance.kernels.arithmetic.union_find import joined_labels
 from clearance.tolerance import LARGEST
 
 MOST_POINTS = 20_000_000
-"""Some 600 bytes each while they are measured: 12 GB."""
+"""Some 500 bytes each while they are measured: 10 GB."""
 
 _CELL = 2.0 / np.sqrt(6.0) * (1.0 - 1e-8)
 """[-] Of the radius: edge of a cell, less what rounding can move a point from one to the next."""

@@ -131,7 +131,7 @@ def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     entries = given.entries()
     reader = RobotReader(path.parent, meshes)
     with at(path.name):
-        moving = [in_motion(entry, reader.placed(entry), path.parent, files) for entry in entries]
+        moving = [reader.moving(entry) for entry in entries]
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):

@@ -23,7 +23,7 @@ class CaseText:
         resting: what stands under `joints`. states: of the SRDF, one of which could stand there.
         scene: a file, or nothing. trajectory: a file; `motion` says where it comes from, `motion_notes` how it was
             read.
-        allow: pairs that are not measured.
+        carry: parts that links carry, as a case has them. allow: pairs that are not measured.
         remarks: why a key is as it is, by key.
     """
 
@@ -37,6 +37,7 @@ class CaseText:
     trajectory: str
     motion: str
     motion_notes: Sequence[str] = ()
+    carry: Sequence[Mapping[str, Any]] = ()
     allow: Sequence[tuple[str, str]] = ()
     remarks: Mapping[str, str] = field(default_factory=dict)
 
@@ -55,6 +56,9 @@ def _lines(case: CaseText) -> Iterator[str]:
     yield from _scene(case)
     yield from (f"# {shown(note)}" for note in case.motion_notes)
     yield f"trajectory: {flow(case.trajectory)}  # {shown(case.motion)}"
+    if case.carry:
+        yield "carry:  # from the scene's file, in which links hold them"
+        yield from (f"- {flow(one)}" for one in case.carry)
     yield from _allow(case)
     yield "limits:"
     yield "  fail: 0.0  # assumed: contact alone is a violation; 0.005 asks for 5 mm"

@@ -24,13 +24,13 @@ from clearance.errors import (
 )
 from clearance.load.joint_messages import JointMessage
 from clearance.load.message_documents import Fields, told
+from clearance.load.message_times import NANO, nanoseconds_in
 from clearance.load.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.trajectory import Trajectory
 
 _VALUES = ("positions", "velocities", "accelerations", "effort")
 _KEYS = (*_VALUES, "time_from_start")
-_CLOCKS = (("sec", "nanosec"), ("secs", "nsecs"))
 
 
 class _Point(NamedTuple):
@@ -139,22 +139,13 @@ def _seconds(given: Any) -> float:
         if not math.isfinite(given):
             raise NotFinite(f"{given} is given", valid="a finite number of seconds")
         return float(given)
-    for keys in _CLOCKS:
-        if isinstance(given, Fields) and keys[0] in given and set(given) <= set(keys):
-            seconds, nanoseconds = (_whole(given.get(key, 0)) for key in keys)
-            if seconds is not None and nanoseconds is not None and 0 <= nanoseconds < 10**9:
-                return (seconds * 10**9 + nanoseconds) / 10**9
+    nanoseconds = nanoseconds_in(given)
+    if nanoseconds is not None:
+        return nanoseconds / NANO
     raise BadTime(
         f"{told(given)} is given",
         valid="seconds, {sec, nanosec} or {secs, nsecs}, whole and fewer than 1e9 nanoseconds",
     )
-
-
-def _whole(given: Any) -> int | None:
-    """A whole number, which people write as 2.0 too; None for anything else."""
-    if type(given) is float and given.is_integer():
-        return int(given)
-    return given if type(given) is int else None
 
 
 def _refuse_standing(before: float, time: float) -> None:

@@ -11,12 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, BadTime
+from clearance.load.message_times import NANO
 from clearance.load.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.notice import listed
 from clearance.world.trajectory import Trajectory
-
-NANO = 10**9
 
 MOST_LEFT_OUT = 0.1
 """Share of the recording in which some joint may be unknown."""

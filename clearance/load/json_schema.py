@@ -42,7 +42,7 @@ def case_schema() -> dict[str, Any]:
     parts["Rule"]["anyOf"] = [{"required": ["fail"]}, {"required": ["warn"]}]
     for pose in ("Pose", "Base"):
         parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}
-    parts["TimedFile"] = _or_path(parts["TimedFile"], "a CSV file")
+    parts["PoseFile"] = _or_path(parts["PoseFile"], "a CSV file, or stamped poses in YAML or JSON")
     parts["TrajectoryFile"] = _or_path(
         parts["TrajectoryFile"], "a CSV file, a JointTrajectory in YAML or JSON, or a bag"
     )

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -62,7 +62,8 @@ def new_case(given: Given, folder: Path) -> NewCase:
     robot = new_robot(given, meshes)
     trajectory, source = _motion(given, robot, files)
     with at("scene"):
-        scene = new_scene(given.scene, given.package_dirs, robot.placed, meshes, folder)
+        moving = replace(robot.placed, trajectory=trajectory)
+        scene = new_scene(given.scene, given.package_dirs, moving, meshes, folder)
     motion = _Motion(
         trajectory, f"from {source}: {_told(trajectory)}", _notes_of(given, robot, files)
     )
@@ -163,6 +164,7 @@ def _text(
         trajectory=TRAJECTORY,
         motion=motion.source,
         motion_notes=motion.notes,
+        carry=scene.carry,
         allow=scene.allow,
         remarks=robot.remarks(motion.trajectory) | {"scene": scene.remark},
     )

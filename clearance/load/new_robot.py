@@ -16,7 +16,7 @@ from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.notes import counted
 from clearance.load.pose_schema import TrajectoryFile
-from clearance.load.robots import RobotReader, in_motion
+from clearance.load.robots import RobotReader
 from clearance.load.schema_errors import validated
 from clearance.load.written_paths import path_from
 from clearance.world.case import PlacedRobot
@@ -189,11 +189,10 @@ def _placed(
     if given.trajectory is not None:
         motion = validated(TrajectoryFile, dict(given.trajectory), "trajectory")
     reader = RobotReader(Path(), meshes)
-    entry = schema.RobotEntry("robot", robot, motion, "trajectory")
-    placed, motion_notes = in_motion(entry, reader.placed(entry), Path(), meshes.files)
+    placed, on_motion = reader.moving(schema.RobotEntry("robot", robot, motion, "trajectory"))
     matrix = placed.self_clearance and placed.self_clearance.matrix
-    matrix_notes = matrix.notes if matrix else ()
-    return placed, [*placed.robot.notes, *reader.notes, *motion_notes, *matrix_notes]
+    told = (*placed.robot.notes, *reader.notes, *on_motion)
+    return placed, [*told, *(matrix.notes if matrix else ())]
 
 
 def _near_zero(joint: Joint) -> float:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from clearance.errors import shown
+from clearance.load.held_parts import with_held_parts
 from clearance.load.input_files import PYBULLET_DATA, resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.notes import counted
@@ -22,6 +23,7 @@ from clearance.load.scene_rows import with_scene_rows
 from clearance.load.schema_errors import validated
 from clearance.load.written_paths import path_from
 from clearance.load.yaml_text import flow
+from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot
 
 SCENE = "scene.yaml"
@@ -34,12 +36,13 @@ class NewScene:
     Attributes:
         name: the scene's file; None where nothing stands around the robot. remark: beside it.
         contents: of the files to write, by name.
-        allow, padding: what its file says of links. taken, notes: a line each.
+        carry, allow, padding: what its file says of links. taken, notes: a line each.
     """
 
     name: str | None
     remark: str
     contents: Mapping[str, bytes] = field(default_factory=dict)
+    carry: Sequence[Mapping[str, Any]] = ()
     allow: Sequence[tuple[str, str]] = ()
     padding: Mapping[str, float] = field(default_factory=dict)
     taken: Sequence[str] = ()
@@ -55,7 +58,7 @@ def new_scene(
 ) -> NewScene:
     """The scene in a file, as a case in `folder` is to name it.
 
-    A file whose reader warns of something, or which says what a link holds, is named as it is.
+    A file whose reader warns of something is named as it is, so that each check warns of it too.
 
     Raises:
         BadInput: as its reader says.
@@ -67,16 +70,16 @@ def new_scene(
     content = read_scene(asked)
     rows = content.scene["obstacles"]  # type: ignore[index]  # as the reader checked
     taken = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
-    if content.notices or content.held:
-        why = "it says what the robot holds" if content.held else "it brings a warning"
-        told = (f"{taken}; it stays the file that it is, since {why}",)
-        return NewScene(path_from(folder, given), f"as it is, since {why}", taken=told)
+    if content.notices:
+        told = (f"{taken}; it stays the file that it is, since it brings a warning",)
+        return NewScene(path_from(folder, given), "as it is, since it brings a warning", taken=told)
     case, notes = _with_rows(content, asked, placed, meshes)
     contents = dict(_contents(rows, content, asked, folder))
     return NewScene(
         SCENE,
         f"from {asked.shown}",
         contents,
+        [_carried(carry) for carry in case.carries],
         [row.between for row in case.allow],
         case.robots[0].padding,
         (taken,),
@@ -90,7 +93,15 @@ def _with_rows(
     """The case with what the scene's file says of links, and notes on that."""
     scene = validated(Scene, content.scene, asked.shown)
     obstacles, _ = make_obstacles(scene.obstacles, asked.path.parent, meshes)
-    return with_scene_rows(Case("new", (placed,), obstacles), content)
+    case, row_notes = with_scene_rows(Case("new", (placed,), obstacles), content)
+    case, held_notes = with_held_parts(case, content)
+    return case, [*row_notes, *held_notes]
+
+
+def _carried(carry: Carry) -> dict[str, Any]:
+    """A part that is carried all the time, as a case file has it."""
+    touch = {"touch": list(carry.touch)} if carry.touch else {}
+    return {"part": carry.part, "by": carry.by, "from": carry.window.start, **touch}
 
 
 def _contents(
@@ -129,10 +140,10 @@ class _Paths:
 def _moved(row: Mapping[str, Any], paths: _Paths) -> dict[str, Any]:
     """An obstacle with paths as they are to be written."""
     moved = dict(row)
-    if "mesh" in row:
-        moved["mesh"] = {**row["mesh"], "file": paths.written(row["mesh"]["file"])}
-    if isinstance(row.get("moves"), str):
-        moved["moves"] = paths.written(row["moves"])
-    elif "moves" in row:
-        moved["moves"] = {**row["moves"], "file": paths.written(row["moves"]["file"])}
+    for key in {"mesh", "points", "moves"} & set(row):
+        given = row[key]
+        if isinstance(given, str):
+            moved[key] = paths.written(given)
+        else:
+            moved[key] = {**given, "file": paths.written(given["file"])}
     return moved

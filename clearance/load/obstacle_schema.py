@@ -13,7 +13,7 @@ from pydantic import Field, field_validator, model_validator
 from clearance.errors import BadDimension, BadInput
 from clearance.geometry import shapes
 from clearance.load.mesh import CAD
-from clearance.load.pose_schema import Pose, TimedFile
+from clearance.load.pose_schema import Pose, PoseFile
 from clearance.load.shape_schema import Triple, with_shapes
 from clearance.load.step_file import COARSEST, FINEST
 from clearance.load.strict_model import Level, Name, StrictModel
@@ -123,7 +123,7 @@ class Obstacle(_Shaped):
     mesh: Mesh | None = None
     points: ScannedPoints | None = None
     on: Name | None = None
-    moves: TimedFile | None = None
+    moves: PoseFile | None = None
     padding: Level = 0.0
 
     @property

@@ -42,8 +42,16 @@ class RobotReader:
         self._read: dict[RobotRequest, Robot] = {}
         self.notes: list[str] = []
 
-    def placed(self, entry: schema.RobotEntry) -> PlacedRobot:
-        """The robot of an entry.
+    def moving(self, entry: schema.RobotEntry) -> tuple[PlacedRobot, tuple[str, ...]]:
+        """The robot of an entry as `in_motion` gives it.
+
+        Raises:
+            BadInput: with the field and the file.
+        """
+        return in_motion(entry, self._standing(entry), self._folder, self._files)
+
+    def _standing(self, entry: schema.RobotEntry) -> PlacedRobot:
+        """The robot of an entry, without what it does.
 
         Raises:
             BadInput: with the field and the file.

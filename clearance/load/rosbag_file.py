@@ -22,6 +22,7 @@ from clearance.load.joint_messages import chosen, messages_in
 from clearance.load.joint_points import trajectory_of_message
 from clearance.load.joint_states import JointState, trajectory_of_states
 from clearance.load.message_documents import Fields
+from clearance.load.message_times import NANO
 from clearance.load.ros_definitions import DEFINITIONS
 from clearance.load.trajectory_request import Choice, ReadTrajectory
 from clearance.world.notice import listed
@@ -165,7 +166,7 @@ def _states(reader: AnyReader, topic: str) -> list[JointState]:
     states = []
     for recorded, message in _messages(reader, topic):
         stamp = message.header.stamp
-        stamped = stamp.sec * 10**9 + stamp.nanosec
+        stamped = stamp.sec * NANO + stamp.nanosec
         positions, names = message.position.tolist(), tuple(message.name)
         states.append(JointState(stamped or recorded, names, positions, len(message.velocity) > 0))
     return states

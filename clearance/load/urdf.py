@@ -54,14 +54,8 @@ def load_urdf(
         BadInput: with the file and the element.
     """
     path = resolved(str(path), Path())
-    request = RobotRequest(
-        path,
-        tuple(map(Path, package_dirs)),
-        geometry,
-        collada_up_axis,
-        xacro,
-        checked_args(xacro_args),
-    )
+    folders, args = tuple(map(Path, package_dirs)), checked_args(xacro_args)
+    request = RobotRequest(path, folders, geometry, collada_up_axis, xacro, args)
     return read_urdf(request, MeshStore(InputFiles(path.parent)))
 
 

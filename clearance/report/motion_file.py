@@ -44,6 +44,7 @@ def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
             nanosecond apart, in a message.
     """
     require_motion_file([motion.placed for motion in motions], shown)
+    is_yaml = PurePath(shown).suffix.lower() in (".yaml", ".yml")
     parts: list[bytes] = []
     notes: list[str] = []
     for motion in motions:
@@ -54,7 +55,9 @@ def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
         )
         with at(motion.placed.robot.name):
             content, changes = written(trajectory, shown)
+        if len(motions) > 1 and is_yaml:
+            content = f"# {motion.placed.robot.name}\n".encode() + content
         parts.append(content)
         notes += changes
-    between = b"---\n" if PurePath(shown).suffix.lower() != ".json" else b""
+    between = b"---\n" if is_yaml else b""
     return WrittenTrajectory(between.join(parts), tuple(dict.fromkeys(notes)))

@@ -2,19 +2,20 @@
 objects, nearest points, and the states of the robots then.
 
 There is an entry for each pair and rule that comes near or below a limit, the worst first, and the overall worst
-in any case. Pairs are at the samples; the worst moment of a rule is of the motion. Not for: how it is written
-(`moments_file`), nor ROS messages, of which none holds all of it.
+in any case. Pairs are at the samples; the worst moment of a rule is of the motion. Where the run asks for
+less than every step, pairs are not known, and `need` says so. Not for: how it is written (`moments_file`), nor ROS
+messages, of which none holds all of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from clearance.load.message_times import split_time
 from clearance.report.actors import paddings_of
 from clearance.report.pair_judge import PairJudge
 from clearance.report.verdict import verdict_of
@@ -28,7 +29,6 @@ FORMAT = "clearance-moments-1"
 MOST = 200
 """Entries; those that stand best are left out and counted."""
 
-NANO = 10**9
 ROBOT_LINK, WORLD_OBJECT, ROBOT_ATTACHED = "ROBOT_LINK", "WORLD_OBJECT", "ROBOT_ATTACHED"
 """Kinds of bodies, as `moveit_msgs/ContactInformation` names them."""
 
@@ -61,6 +61,7 @@ def moments_of(record: Record) -> dict[str, Any]:
         "format": FORMAT,
         "name": record.case.name,
         "verdict": verdict_of(record).status,
+        "need": record.need,
         "header": {"frame_id": "world"},
         "n_left_out": max(0, len(entries) - MOST),
         "moments": [_told(record, names, entry) for entry in entries[:MOST]],
@@ -145,9 +146,8 @@ def _told(record: Record, names: _Names, entry: _Entry) -> dict[str, Any]:
 
 
 def time_of(seconds: float) -> dict[str, int]:
-    """A time as a ROS 2 duration: whole seconds, and nanoseconds to the nearest."""
-    whole, nano = divmod(round(Fraction(seconds) * NANO), NANO)
-    return {"sec": whole, "nanosec": nano}
+    """A time as a duration of ROS 2."""
+    return dict(zip(("sec", "nanosec"), split_time(seconds), strict=True))
 
 
 def _vector(values: Any) -> dict[str, float]:

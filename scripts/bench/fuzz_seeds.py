@@ -13,10 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tests.load.making_clouds import pcd, ply, table
+from tests.load.making_octree import octree
 
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
 QUADS = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
 TRIANGLES = np.array([[q[0], q[i], q[i + 1]] for q in QUADS for i in (1, 2)])
+
+CELLS = {(0, 0, 0): True, (1, 0, 0): True, (0, -1, 2): False, (-9, 4, 4): True}
 
 SKETCH = Path(__file__).parents[2] / "scenes" / "sketches" / "d_cell.yaml"
 
@@ -40,6 +43,9 @@ def readers() -> dict[str, Reader]:
         "PLY binary": ("m.ply", _ply_binary()),
         "OFF": ("m.off", _off()),
         "GLB": ("m.glb", _glb()),
+        "STEP": ("m.step", _step()),
+        "octomap binary": ("m.bt", octree(CELLS)),
+        "octomap full": ("m.ot", octree(CELLS, full=True)),
     }
     made = {kind: Reader(name, data, _mesh_reader(name)) for kind, (name, data) in meshes.items()}
     for kind, (name, data) in _scans().items():
@@ -50,6 +56,8 @@ def readers() -> dict[str, Reader]:
         "profile": Reader("p.yaml", _PROFILE, _file_reader("p.yaml", _read_profile)),
         "sketch": Reader("s.yaml", SKETCH.read_bytes(), _file_reader("s.yaml", _read_sketch)),
         "URDF": Reader("arm.urdf", _URDF, _case_reader("arm.urdf")),
+        "MJCF": Reader("arm.xml", _MJCF, _mjcf_reader("arm.xml")),
+        "MJCF scene": Reader("world.xml", _MJCF, _mjcf_scene_reader("world.xml")),
         "case": Reader("case.yaml", _CASE, _case_reader("case.yaml")),
         "SRDF": Reader("arm.srdf", _SRDF, _robot_reader("arm.srdf")),
         "joint limits": Reader("limits.yaml", _LIMITS, _robot_reader("limits.yaml")),
@@ -60,6 +68,7 @@ def readers() -> dict[str, Reader]:
         "JointTrajectory": Reader("path.yaml", _MESSAGE, _trajectory_reader("path.yaml")),
         "JointTrajectory JSON": Reader("path.json", _MESSAGE_JSON, _trajectory_reader("path.json")),
         "pose table": Reader("door.csv", _POSES, _file_reader("door.csv", _read_poses)),
+        "poses stamped": Reader("door.yaml", _STAMPED, _file_reader("door.yaml", _read_poses)),
         "PlanningScene": Reader("cell.yaml", _PLANNING_SCENE, _scene_reader("cell.yaml")),
         "scene text": Reader("cell.scene", _SCENE_TEXT, _scene_reader("cell.scene")),
         "SDF": Reader("cell.sdf", _SDF, _scene_reader("cell.sdf")),
@@ -124,17 +133,39 @@ def _robot_reader(name: str) -> Callable[[bytes, Path], object]:
         from clearance.load import schema
         from clearance.load.input_files import InputFiles
         from clearance.load.mesh_store import MeshStore
-        from clearance.load.robots import RobotReader, in_motion
+        from clearance.load.robots import RobotReader
 
         valid = {"arm.urdf": _BOXES, "m.stl": _binary_stl(), "arm.srdf": _SRDF}
         valid |= {"limits.yaml": _LIMITS, "control.yaml": _CONTROL}
         for other, content in (valid | {name: data}).items():
             (folder / other).write_bytes(content)
         robot = schema.Robot.model_validate(_ROBOT)
-        files = InputFiles(folder)
-        reader = RobotReader(folder, MeshStore(files))
         entry = schema.RobotEntry("robot", robot, None, "trajectory")
-        return in_motion(entry, reader.placed(entry), folder, files)
+        return RobotReader(folder, MeshStore(InputFiles(folder))).moving(entry)
+
+    return read
+
+
+def _mjcf_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.robot_formats import load_robot
+
+        (folder / name).write_bytes(data)
+        (folder / "m.stl").write_bytes(_binary_stl())
+        return load_robot(folder / name)
+
+    return read
+
+
+def _mjcf_scene_reader(name: str) -> Callable[[bytes, Path], object]:
+    def read(data: bytes, folder: Path) -> object:
+        from clearance.load.input_files import InputFiles
+        from clearance.load.scene_formats import read_scene
+        from clearance.load.scene_request import SceneRequest
+
+        (folder / name).write_bytes(data)
+        (folder / "m.stl").write_bytes(_binary_stl())
+        return read_scene(SceneRequest(folder / name, InputFiles(folder)))
 
     return read
 
@@ -176,9 +207,10 @@ def _read_sketch(path: Path) -> object:
 
 
 def _read_poses(path: Path) -> object:
-    from clearance.load.pose_table_file import parse_pose_table
+    from clearance.load.pose_formats import read_poses
+    from clearance.load.pose_table_request import PoseRequest
 
-    return parse_pose_table(path.read_bytes(), path.name)
+    return read_poses(PoseRequest(lambda: path.open("rb"), path.stat().st_size), path.name)
 
 
 def _scene_reader(name: str) -> Callable[[bytes, Path], object]:
@@ -336,6 +368,12 @@ def _glb() -> bytes:
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
+def _step() -> bytes:
+    from tests.load.making_step import cylinder_step
+
+    return cylinder_step().encode()
+
+
 def _dxf() -> bytes:
     """Written by ezdxf, so that it has all the tables that a drawing needs."""
     import ezdxf
@@ -393,6 +431,19 @@ _URDF = b"""<?xml version="1.0"?>
 _BOXES = _URDF
 for _round in (b'<sphere radius="0.05"/>', b'<cylinder radius="0.01" length="0.1"/>'):
     _BOXES = _BOXES.replace(_round, b'<box size="0.1 0.1 0.1"/>')
+_MJCF = b"""<mujoco model="arm"><compiler autolimits="true" angle="radian"/>
+<default><geom solref="0.01 1"/><default class="seen"><geom contype="0" conaffinity="0"/></default></default>
+<asset><mesh name="m" file="m.stl" scale="0.1 0.2 0.3" refpos="0 0 1" refquat="1 0 1 0"/></asset>
+<worldbody><geom name="floor" type="plane" size="1 1 1"/>
+<body name="upper" pos="0 0 0.1" euler="0 0.1 0"><joint name="shoulder" axis="0 0 1" range="-1 1" ref="0.2"/>
+<joint name="slide" type="slide" axis="1 0 0" pos="0 0 0.1"/><geom size="0.1 0.2" type="capsule"/>
+<body name="tip" pos="0 0 1"><joint type="ball"/><geom type="mesh" mesh="m" pos="0 0 0.2" quat="1 0 0 1"/>
+<geom class="seen" type="ellipsoid" size="0.1 0.2 0.3"/></body></body>
+<replicate count="3" offset="0 1 0"><body name="post" pos="3 0 0"><geom type="box" size="0.1 0.1 1"/></body>
+</replicate>
+</worldbody><equality><joint joint1="slide" joint2="shoulder" polycoef="0 0.1 0 0 0"/></equality>
+<contact><exclude body1="upper" body2="tip"/></contact></mujoco>
+"""
 
 _CASE = b"""name: small
 robot: {urdf: arm.urdf, base: {xyz: [0, 0, 0.5], rpy: [0, 0, 1.57]}, exclude_links: [tip]}
@@ -486,6 +537,17 @@ _MESSAGE_JSON = b"""{"trajectory": [{"joint_trajectory": {"joint_names": ["shoul
 _POSES = (
     b"time,x,y,z,qx,qy,qz,qw\n0,1,-2.5,3e-1,0,0,0,1\n1.5,0,0,0,0.6,0,0,0.8\n2,0,0,0.125,1,0,0,0\n"
 )
+
+_STAMPED = b"""header:
+  stamp: {sec: 3, nanosec: 5}
+  frame_id: map
+pose:
+  position: {x: 1.0, y: -2.5, z: 0.5}
+  orientation: {x: 0.0, y: 0.0, z: 0.6, w: 0.8}
+---
+header: {stamp: {secs: 4, nsecs: 0}, frame_id: map}
+pose: {position: {x: 1.0, y: -2.5, z: 0.5}, orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}}
+"""
 
 _PLANNING_SCENE = b"""name: cell
 robot_state:

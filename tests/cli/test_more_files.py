@@ -64,6 +64,7 @@ def test_the_trajectory_back_gives_the_same_results(folder, path, name):
 def test_several_robots_are_documents_in_the_order_of_the_case(folder, capsys):
     Path("two.yaml").write_text(TWO)
     assert run(["check", "two.yaml", "--trajectory", "back.yaml"]) == 0
+    assert Path("back.yaml").read_text().startswith("# left\njoint_names")
     text = TWO.replace("trajectory: path.csv", "trajectory: {file: back.yaml, which: 1}")
     Path("again.yaml").write_text(
         text.replace("{file: path.csv, start: 0.5}", "{file: back.yaml, which: 2}")

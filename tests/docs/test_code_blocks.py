@@ -53,7 +53,10 @@ def test_every_block_says_what_it_is(page):
 @pytest.mark.peer
 @pytest.mark.parametrize("page", with_blocks("python", "bash"))
 def test_what_a_page_runs_runs(page, tmp_path, monkeypatch):
-    """Blocks of a page follow each other: files are written, Python shares its names, commands end well."""
+    """Blocks of a page follow each other: files are written, Python shares its names, commands end well.
+
+    As long as the page takes its reader: what is shown is run whole, reports and all.
+    """
     for folder in ("scenes", "robots"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     monkeypatch.chdir(tmp_path)

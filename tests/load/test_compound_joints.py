@@ -6,6 +6,7 @@ import pytest
 from clearance.errors import BadInput, DuplicateName
 from clearance.geometry.pose import pose_from_rpy
 from clearance.load.compound_joints import COMPOUND, chained
+from clearance.simulate.physics_model import write_physics_urdf
 from clearance.world.case import PlacedRobot
 from clearance.world.kinematics import link_poses
 from tests.load.making_case import changed, load_small
@@ -67,6 +68,14 @@ def test_every_kind_ends_at_the_child():
 def test_what_cannot_be_read_is_refused(tmp_path, urdf, fault, words):
     with pytest.raises(fault, match=words):
         load_urdf(tmp_path, urdf)
+
+
+def test_its_motion_cannot_be_simulated(tmp_path):
+    placed = PlacedRobot(
+        load_urdf(tmp_path, moving("floating")), urdf_path=str(tmp_path / "arm.urdf")
+    )
+    with pytest.raises(BadInput, match="motion with the floating joint 'free' cannot be simulated"):
+        write_physics_urdf(placed, tmp_path, False)
 
 
 FREE = robot(

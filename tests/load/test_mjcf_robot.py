@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
+import clearance as cl
 from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, NothingToMeasure
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest
+from clearance.simulate.physics_model import write_physics_urdf
 from clearance.world.robot import JointKind
 from tests.load.making_case import changed, load_small
 from tests.load.making_mjcf import BALL, load_mjcf, mjcf, tetrahedron_stl, write_mjcf
@@ -37,6 +39,19 @@ def test_a_case_names_it_as_a_robot(tmp_path):
     case = load_small(tmp_path, changed("arm.urdf", "arm.xml"), arm__xml=ARM)
     assert case.robots[0].robot.name == "toy"
     assert [source.path for source in case.sources] == ["arm.xml", "case.yaml", "path.csv"]
+
+
+def test_a_robot_of_any_format_is_loaded_by_its_file(tmp_path):
+    write_mjcf(tmp_path, ARM)
+    (tmp_path / "arm.urdf").write_text(robot(link(BOX, "a")))
+    assert cl.load_robot(tmp_path / "toy.xml").link_names == ("world", "upper", "hand")
+    assert cl.load_robot(str(tmp_path / "arm.urdf")).link_names == ("a",)
+
+
+def test_its_motion_cannot_be_simulated(tmp_path):
+    placed = cl.PlacedRobot(load_mjcf(tmp_path, ARM), urdf_path=str(tmp_path / "toy.xml"))
+    with pytest.raises(BadSyntax, match="its motion cannot be simulated; the robot as URDF"):
+        write_physics_urdf(placed, tmp_path, False)
 
 
 def test_an_xml_file_whose_root_is_robot_is_urdf(tmp_path):

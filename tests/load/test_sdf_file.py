@@ -34,6 +34,7 @@ SHAPES = [
         "<capsule><radius>0.3</radius><length>2</length></capsule>",
         cl.capsule(radius=0.3, length=2.0),
     ),
+    ("<ellipsoid><radii>0.3 0.2 0.1</radii></ellipsoid>", cl.ellipsoid((0.3, 0.2, 0.1))),
 ]
 
 

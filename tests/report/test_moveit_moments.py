@@ -58,6 +58,13 @@ def test_a_clear_run_has_its_worst_moment_alone():
     )
     told = read(moments_text(clear.record))
     assert len(told["moments"]) == 1 and told["moments"][0]["status"] == "clear"
+    assert told["need"] == "steps"
+
+
+def test_a_run_that_asks_for_less_says_so():
+    case = cell(WIDE, (sliding("arm", LEFT),), (box("wall", (0.1, 1, 1), at(1.6)),), ())
+    told = read(moments_text(cl.check(case, need="minimum").record))
+    assert told["need"] == "minimum" and len(told["moments"]) == 1
 
 
 def test_what_is_too_much_is_left_out_and_counted(monkeypatch):

@@ -10,7 +10,8 @@ from PIL import Image
 from clearance.report.still import drawing, raster
 from clearance.report.still.camera import Camera, at_gap, overview
 from clearance.report.still.clipping import segments_within, triangles_ahead
-from clearance.report.still.drawing import drawn
+from clearance.report.still.drawing import drawn as drawn_with
+from clearance.report.still.drawing import edges_of
 from clearance.report.still.edges import seen_edges
 from clearance.report.still.raster import NONE, Screen, covered, drawn_segments
 from clearance.report.still.scene import COLOURS, rgb, still_of
@@ -23,6 +24,10 @@ from clearance.report.still.picture import HEIGHT, WIDTH, png_of
 
 FORWARD = Camera(np.zeros(3), np.array([[0.0, -1, 0], [0, 0, 1], [1, 0, 0]]), 0.01)
 """Looks along x, z up."""
+
+
+def drawn(still, camera, width, height):
+    return drawn_with(still, camera, width, height, edges_of(still))
 
 
 def slow_owners(screen: Screen, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -32,14 +32,20 @@ EDGE_BIAS, GRID_BIAS = 2e-3, 0.0
 KEY_LIGHT = np.array([0.36, -0.48, 0.8])
 
 
-def drawn(still: Still, camera: Camera, width: int, height: int) -> np.ndarray:
-    """(height, width, 3) uint8 sRGB."""
+def drawn(
+    still: Still, camera: Camera, width: int, height: int, edges: Sequence[np.ndarray]
+) -> np.ndarray:
+    """(height, width, 3) uint8 sRGB.
+
+    Args:
+        edges: of each shape, as `edges_of` finds them.
+    """
     screen = Screen(camera, FINER * width, FINER * height)
-    image = np.broadcast_to(PAPER, (screen.height, screen.width, 3)).copy()
+    image = np.empty((screen.height, screen.width, 3), dtype=np.float32)
+    image[:] = PAPER
     depth = np.zeros(image.shape[:2])
     solid = [body for body in still.bodies if body.opacity == 1.0]
     clear = [body for body in still.bodies if body.opacity < 1.0]
-    edges = [seen_edges(*shape) for shape in still.shapes]
     _draw_solid(image, depth, screen, still, solid)
     _blend(image, drawn_segments(screen, _grid(still), depth, GRID_BIAS), GRID, 1.0)
     _blend(image, _edges(screen, still, solid, edges, depth), EDGE, SOLID_EDGE)
@@ -49,6 +55,11 @@ def drawn(still: Still, camera: Camera, width: int, height: int) -> np.ndarray:
     _draw_overlap(image, screen, still)
     _draw_line(image, screen, still)
     return _mean(image)
+
+
+def edges_of(still: Still) -> list[np.ndarray]:
+    """Of each shape (k, 2) vertices at the ends of the edges that are drawn."""
+    return [seen_edges(*shape) for shape in still.shapes]
 
 
 def _mean(image: np.ndarray) -> np.ndarray:
@@ -170,15 +181,16 @@ def _draw_overlap(image: np.ndarray, screen: Screen, still: Still) -> None:
     start, way = ends[0][:2], ends[1][:2] - ends[0][:2]
     tip = start + way / max(float(np.linalg.norm(way)), 1e-9) * ARROW_PIXELS * FINER
     for part in _arrow(start, tip):
-        _blend(image, _near(screen, *part), WAY_OUT, 1.0)
+        _stroke(image, *part, FINER * LINE_PIXELS / 2, WAY_OUT)
 
 
-def _arrow(start: np.ndarray, tip: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
-    yield start, tip, FINER * LINE_PIXELS / 2
+def _arrow(start: np.ndarray, tip: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """The segments of an arrow, from end to end [pixels]."""
+    yield start, tip
     back = 0.2 * (start - tip)
     for turn in (0.45, -0.45):
         turned = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
-        yield tip, tip + turned @ back, FINER * LINE_PIXELS / 2
+        yield tip, tip + turned @ back
 
 
 def _draw_line(image: np.ndarray, screen: Screen, still: Still) -> None:
@@ -186,23 +198,22 @@ def _draw_line(image: np.ndarray, screen: Screen, still: Still) -> None:
     ends = [screen.point(end) for end in still.line]
     for one in ends:
         if one is not None:
-            _blend(image, _near(screen, one[:2], one[:2], FINER * DOT_PIXELS), still.colour, 1.0)
+            _stroke(image, one[:2], one[:2], FINER * DOT_PIXELS, still.colour)
     if ends[0] is not None and ends[1] is not None:
-        _blend(
-            image,
-            _near(screen, ends[0][:2], ends[1][:2], FINER * LINE_PIXELS / 2),
-            still.colour,
-            1.0,
-        )
+        _stroke(image, ends[0][:2], ends[1][:2], FINER * LINE_PIXELS / 2, still.colour)
 
 
-def _near(screen: Screen, start: np.ndarray, end: np.ndarray, radius: float) -> np.ndarray:
-    """(rows, columns) whether a pixel's centre is within a radius of a segment, all in pixels."""
-    x, y = (
-        np.arange(screen.width) + 0.5 - start[0],
-        np.arange(screen.height)[:, None] + 0.5 - start[1],
-    )
+def _stroke(
+    image: np.ndarray, start: np.ndarray, end: np.ndarray, radius: float, colour: np.ndarray
+) -> None:
+    """Draws the pixels whose centres are within a radius of a segment, all in pixels."""
+    most = np.array(image.shape[1::-1], dtype=np.float64)
+    low = np.clip(np.minimum(start, end) - radius, 0.0, most).astype(np.int64)
+    high = np.clip(np.maximum(start, end) + radius + 1.0, 0.0, most).astype(np.int64)
+    x = np.arange(low[0], high[0])[None] + 0.5 - start[0]
+    y = np.arange(low[1], high[1])[:, None] + 0.5 - start[1]
     way = end - start
     length_sq = float(way @ way)
     share = np.clip((x * way[0] + y * way[1]) / length_sq, 0.0, 1.0) if length_sq > 0.0 else 0.0
-    return (x - share * way[0]) ** 2 + (y - share * way[1]) ** 2 <= radius**2
+    near = (x - share * way[0]) ** 2 + (y - share * way[1]) ** 2 <= radius**2
+    _blend(image[low[1] : high[1], low[0] : high[0]], near, colour, 1.0)

@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.extras import importing
 from clearance.report.still.camera import at_gap, overview
-from clearance.report.still.drawing import drawn
+from clearance.report.still.drawing import drawn, edges_of
 from clearance.report.still.scene import COLOURS, Still, still_of
 from clearance.report.verdict import Verdict, moment_line, verdict_of
 from clearance.report.wording import limits_text
@@ -56,11 +56,12 @@ def png_of(record: Record, replay: Replay) -> bytes:
 
 def _drawn(still: Still) -> np.ndarray:
     """(HEIGHT, WIDTH, 3) uint8 the moment, and the gap from near in a frame in the lower left corner."""
-    image = drawn(still, overview(still), WIDTH, HEIGHT)
+    edges = edges_of(still)
+    image = drawn(still, overview(still), WIDTH, HEIGHT, edges)
     bottom = HEIGHT - MARGIN
     framed = image[bottom - INSET_HEIGHT - 2 : bottom, MARGIN : MARGIN + INSET_WIDTH + 2]
     framed[:] = (118, 130, 143)
-    framed[1:-1, 1:-1] = drawn(still, at_gap(still), INSET_WIDTH, INSET_HEIGHT)
+    framed[1:-1, 1:-1] = drawn(still, at_gap(still), INSET_WIDTH, INSET_HEIGHT, edges)
     return image
 
 

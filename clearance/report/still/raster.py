@@ -14,8 +14,8 @@ import numpy as np
 from clearance.report.still.camera import FIELD_OF_VIEW, Camera
 from clearance.report.still.clipping import segments_ahead, segments_within, triangles_ahead
 
-AT_ONCE = 1 << 20
-"""Pixels of small triangles that are looked at together: some 100 MB."""
+AT_ONCE = 1 << 18
+"""Pixels of small triangles that are looked at together: some 50 MB."""
 
 SMALL = 4096
 """Pixels of a triangle's box up to which it is looked at with others."""
@@ -76,15 +76,16 @@ def covered(screen: Screen, corners: np.ndarray) -> Covered:
     window = _around(boxes)
     shape = (window.bottom - window.top, window.right - window.left)
     found = Covered(window, np.zeros(shape), np.full(shape, NONE, dtype=np.int64))
+    planes = _planes_of(flat)
     n_pixels = (boxes[:, 2] - boxes[:, 0]) * (boxes[:, 3] - boxes[:, 1])
     small = np.flatnonzero(n_pixels <= SMALL)
     ends = np.searchsorted(
         np.cumsum(n_pixels[small]), np.arange(AT_ONCE, n_pixels[small].sum(), AT_ONCE)
     )
     for rows in np.split(small, np.unique(ends)):
-        _cover_small(found, flat[rows], owners[rows], boxes[rows])
+        _cover_small(found, planes.of(rows), owners[rows], boxes[rows])
     for i in np.flatnonzero(n_pixels > SMALL):
-        _cover_large(found, flat[i], int(owners[i]), boxes[i])
+        _cover_large(found, planes.of(int(i)), int(owners[i]), boxes[i])
     return found
 
 
@@ -102,50 +103,63 @@ def _around(boxes: np.ndarray) -> Window:
     return Window(*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
 
 
-def _inside(
-    flat: tuple[np.ndarray, ...], x: np.ndarray, y: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Whether points are in triangles, and the triangles' depth there."""
-    a, b, c = flat
-    area = (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (
-        c[..., 0] - a[..., 0]
-    )
+class Planes(NamedTuple):
+    """Of triangles on the screen: what grows evenly over them, from their first corner.
+
+    Attributes:
+        corner: (..., 2) [pixels] the first corner.
+        slopes: (..., 3, 2) of the second corner's share, the third one's, and the depth, by x and by y.
+        depth: (...) at the first corner.
+    """
+
+    corner: np.ndarray
+    slopes: np.ndarray
+    depth: np.ndarray
+
+    def of(self, rows: np.ndarray | int) -> Planes:
+        """Those of some triangles."""
+        return Planes(self.corner[rows], self.slopes[rows], self.depth[rows])
+
+    def at(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Whether points are in the triangles, and the depth there."""
+        x, y = x - self.corner[..., 0], y - self.corner[..., 1]
+        second, third, depth = (
+            self.slopes[..., k, 0] * x + self.slopes[..., k, 1] * y for k in range(3)
+        )
+        return (second >= 0.0) & (third >= 0.0) & (second + third <= 1.0), self.depth + depth
+
+
+def _planes_of(flat: np.ndarray) -> Planes:
+    """The planes of triangles (n, 3, 3); of one without area nothing is inside."""
+    a, b, c = flat[:, 0], flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
+    area = b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0]
+    turned = np.stack([c[:, 1], -c[:, 0], -b[:, 1], b[:, 0]], axis=1).reshape(-1, 2, 2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        of_b = (
-            (x - a[..., 0]) * (c[..., 1] - a[..., 1]) - (y - a[..., 1]) * (c[..., 0] - a[..., 0])
-        ) / area
-        of_c = (
-            (b[..., 0] - a[..., 0]) * (y - a[..., 1]) - (b[..., 1] - a[..., 1]) * (x - a[..., 0])
-        ) / area
-    is_in = (of_b >= 0.0) & (of_c >= 0.0) & (of_b + of_c <= 1.0)
-    depth = a[..., 2] + of_b * (b[..., 2] - a[..., 2]) + of_c * (c[..., 2] - a[..., 2])
-    return is_in, depth
+        shares = turned / area[:, None, None]
+    depth = b[:, 2, None] * shares[:, 0] + c[:, 2, None] * shares[:, 1]
+    return Planes(a[:, :2], np.concatenate([shares, depth[:, None]], axis=1), a[:, 2])
 
 
-def _cover_small(found: Covered, flat: np.ndarray, owners: np.ndarray, boxes: np.ndarray) -> None:
+def _cover_small(found: Covered, planes: Planes, owners: np.ndarray, boxes: np.ndarray) -> None:
     """Takes in triangles, all pixels of their boxes at once."""
     wide, high = boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1]
-    of = np.repeat(np.arange(len(flat)), wide * high)
+    of = np.repeat(np.arange(len(boxes)), wide * high)
     place = np.arange(len(of)) - np.repeat(np.cumsum(wide * high) - wide * high, wide * high)
     x, y = boxes[of, 0] + place % wide[of], boxes[of, 1] + place // wide[of]
-    is_in, depth = _inside(tuple(flat[of, k] for k in range(3)), x + 0.5, y + 0.5)
-    of, x, y, depth = (
-        of[is_in],
-        x[is_in] - found.window.left,
-        y[is_in] - found.window.top,
-        depth[is_in],
-    )
+    is_in, depth = planes.of(of).at(x + 0.5, y + 0.5)
+    of, depth = of[is_in], depth[is_in]
+    x, y = x[is_in] - found.window.left, y[is_in] - found.window.top
     before = found.depth[y, x]
     np.maximum.at(found.depth, (y, x), depth)
     wins = (depth == found.depth[y, x]) & (depth > before)
     found.owner[y[wins], x[wins]] = owners[of[wins]]
 
 
-def _cover_large(found: Covered, flat: np.ndarray, owner: int, box: np.ndarray) -> None:
+def _cover_large(found: Covered, planes: Planes, owner: int, box: np.ndarray) -> None:
     """Takes in one triangle."""
     left, top, right, bottom = box.tolist()
     x, y = np.arange(left, right)[None] + 0.5, np.arange(top, bottom)[:, None] + 0.5
-    is_in, depth = _inside((flat[0], flat[1], flat[2]), x, y)
+    is_in, depth = planes.at(x, y)
     rows = slice(top - found.window.top, bottom - found.window.top)
     columns = slice(left - found.window.left, right - found.window.left)
     wins = is_in & (depth > found.depth[rows, columns])
