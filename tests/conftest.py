@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 
+import numba  # noqa: F401 - so that the compiler is at work from the start, as most tests want it
 import pytest
 
 from tests import examples

@@ -22,7 +22,7 @@ FAULT = 70
 
 VIOLATED, BAD_INPUT = 1, 2
 
-STATUSES = ("clear", "near", "violated", "contact", "suspect", ERROR)
+STATUSES = ("clear", "near", "stale waiver", "violated", "contact", "suspect", ERROR)
 """As a case's status can be, the better before the worse."""
 
 

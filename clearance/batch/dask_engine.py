@@ -9,8 +9,10 @@ fault itself. Not for: what a task is (`measuring`), nor the queue (`engine`).
 from __future__ import annotations
 
 import logging
+import signal
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING, Any
 
 from clearance.batch.engine import Queue
@@ -20,13 +22,16 @@ from clearance.errors import BadInput, Incomplete
 from clearance.extras import importing
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client, Future, LocalCluster
 
 AHEAD = 2
 """Tasks a worker that are handed out at a time: one is measured, one waits."""
 
 LOST_WITH = 2
 """Workers that a task may take with it before it is cut into its cases."""
+
+STARTS = 3
+"""Times that workers are tried to be started."""
 
 CONNECTING = 20
 """[s] In which a scheduler must answer."""
@@ -37,24 +42,52 @@ def local_cluster(jobs: int, say: Callable[[str], None]) -> Iterator[DaskEngine]
     """So many worker processes on this machine; kernels are compiled before they start.
 
     Raises:
-        Unavailable: Dask is not installed.
+        Unavailable: Dask is not installed. Incomplete: no workers can be started.
     """
     compile_ahead(say)
     with importing("batch", "more than one job"):
         import distributed
-    with (
-        _settings(),
-        distributed.LocalCluster(
-            n_workers=jobs,
-            threads_per_worker=1,
-            processes=True,
-            dashboard_address=None,
-            memory_limit=0,
-            silence_logs=logging.CRITICAL,
-        ) as cluster,
-        distributed.Client(cluster) as client,
-    ):
+    with _settings(), _workers(jobs) as cluster, distributed.Client(cluster) as client:
         yield DaskEngine(client)
+
+
+def _workers(jobs: int) -> LocalCluster:
+    """A cluster with its workers; where one dies as it starts, all are started anew."""
+    from distributed import LocalCluster
+
+    for left in reversed(range(STARTS)):
+        try:
+            with _deaf_to_interrupts():
+                return LocalCluster(
+                    n_workers=jobs,
+                    threads_per_worker=1,
+                    processes=True,
+                    dashboard_address=None,
+                    memory_limit=0,
+                    silence_logs=logging.CRITICAL,
+                )
+        except Exception as error:  # whatever is raised in the worker is raised here
+            if not left:
+                raise Incomplete(
+                    f"no worker processes can be started ({type(error).__name__}: {error})",
+                    valid="--jobs 1 needs none",
+                ) from None
+    raise AssertionError
+
+
+@contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Threads and processes that are started inside never see an interrupt from the terminal: this one ends
+    them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    resource_tracker.ensure_running()  # which would hear of interrupts again as it starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextmanager
@@ -85,13 +118,14 @@ def cluster_at(address: str) -> Iterator[DaskEngine]:
 def _settings() -> Iterator[None]:
     """What Dask is told: say nothing by itself, and lose few workers to one task."""
     import dask
+    import distributed  # noqa: F401 - sets up its loggers as it is imported
 
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in [*logging.root.manager.loggerDict, "tornado.application"]:
+        if name.startswith(("distributed", "tornado.application")):
+            logging.getLogger(name).setLevel(logging.CRITICAL)
     with dask.config.set(
         {
             "distributed.scheduler.allowed-failures": LOST_WITH,
-            "distributed.logging": {"distributed": "critical"},
-            "distributed.admin.log-format": "%(message)s",
             "distributed.comm.timeouts.connect": f"{CONNECTING}s",
             "distributed.client.heartbeat": "1s",
         }
@@ -100,10 +134,14 @@ def _settings() -> Iterator[None]:
 
 
 class DaskEngine:
-    """Hands the tasks of a queue to the workers of a cluster."""
+    """Hands the tasks of a queue to the workers of a cluster.
+
+    Attributes:
+        client: of the cluster.
+    """
 
     def __init__(self, client: Client) -> None:
-        self._client = client
+        self.client = client
 
     def results(self, queue: Queue) -> Iterator[Done]:
         """What the tasks come to, as they come.
@@ -136,12 +174,12 @@ class DaskEngine:
             task = queue.task()
             if task is None:
                 return
-            future = self._client.submit(measure_there, task, pure=False)
+            future = self.client.submit(measure_there, task, pure=False)
             running[future] = task
             finished.add(future)
 
     def _n_workers(self) -> int:
-        return max(1, len(self._client.ncores() or ()))
+        return max(1, len(self.client.ncores() or ()))
 
     def _result(self, future: Future, task: Task, queue: Queue) -> Done | None:
         """What a task came to; None where its cases wait again, one by one."""

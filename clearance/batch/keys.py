@@ -20,6 +20,9 @@ from clearance.import_closure import PACKAGE, digest_of
 FORMAT = 1
 """Of the rows; another one makes all keys new."""
 
+DAY = "(day)"
+"""Stands among the files of a case that has waivers, with the day in place of a hash."""
+
 LIBRARIES = ("numpy", "numba", "llvmlite", "scipy", "trimesh", "shapely", "lxml", "ruamel.yaml")
 """Those that can change a row beside this package; pyarrow's numbers are exact."""
 

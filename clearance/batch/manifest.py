@@ -10,6 +10,7 @@ import glob
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from datetime import UTC, date, datetime
 from pathlib import Path, PurePath
 
 from clearance.batch.item import GivenTrajectory, Item
@@ -22,7 +23,9 @@ from clearance.world.names import checked_name
 
 @dataclass(frozen=True)
 class Changes:
-    """What the command line says instead of the manifests; None where it says nothing. Lengths in metres."""
+    """What the command line says instead of the manifests; None where it says nothing. Lengths in metres; `today`
+    as in `run.Question`.
+    """
 
     need: str | None = None
     certify: bool | None = None
@@ -30,6 +33,7 @@ class Changes:
     fail: float | None = None
     warn: float | None = None
     accept: tuple[str, ...] = ()
+    today: date | None = None
 
 
 def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
@@ -105,6 +109,7 @@ def _options(given: Manifest, changes: Changes) -> Options:
         fail=given.limits.fail if changes.fail is None else changes.fail,
         warn=given.limits.warn if changes.warn is None else changes.warn,
         accept=tuple(dict.fromkeys([*given.accept, *changes.accept])),
+        today=(changes.today or datetime.now(UTC).date()).isoformat(),
     )
 
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from clearance.batch.file_hashes import Seen, seen
 from clearance.batch.item import Item
-from clearance.batch.keys import key_of, program
+from clearance.batch.keys import DAY, key_of, program
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
 from clearance.errors import ClearanceError, Incomplete
@@ -126,9 +126,9 @@ class _Work:
             text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
             self.faults.append(Fault(item.number, text, traceback.format_exc()))
             return
-        case = found.case
-        key = key_of(item, [(one.path, one.sha256) for one in case.sources])
-        inputs = inputs_text(found.kept)
+        case, day = found.case, day_of(item, found.case)
+        key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *day)])
+        inputs = inputs_text((*found.kept, *day))
         self.rows.append({"key": key, "file": item.file, "inputs": inputs} | row)
         reason = row["reasons"][0] if row["reasons"] else ""
         told = (row["status"], row["exit_code"], row["clearance"], reason)
@@ -174,6 +174,11 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
     asked = reading.model_copy(update={"file": given.path})
     case = with_trajectory_file(cell, asked, item.name, given.robot)
     return ReadItem(case, cell.files.sources)
+
+
+def day_of(item: Item, case: Case) -> tuple[Source, ...]:
+    """The day as if it were a file, where the case has waivers that may end on one."""
+    return (Source(DAY, item.options.today, 0),) if case.waivers else ()
 
 
 @lru_cache(maxsize=CELLS)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from datetime import date
 
 from clearance.run import Question
 from clearance.run.question import with_levels
@@ -18,6 +19,8 @@ class Options:
         need, certify, certify_gap: as in `run.Question`.
         fail, warn: [m] limits instead of the case's, as `with_levels` takes them.
         accept: kinds of suspect input that decide no verdict, beside the case's.
+        today: the day that waivers are held against, as 2027-03-31; it decides only cases that have some, so it is
+            not in the `repr`. Empty for the day that it is.
     """
 
     need: str = "limit"
@@ -26,6 +29,7 @@ class Options:
     fail: float | None = None
     warn: float | None = None
     accept: tuple[str, ...] = ()
+    today: str = field(default="", repr=False)
 
     def question(self, case: Case) -> Question:
         """The question about a case.
@@ -40,6 +44,7 @@ class Options:
             need=self.need,
             certify=self.certify,
             certify_gap=self.certify_gap,
+            today=date.fromisoformat(self.today) if self.today else None,
         )
 
     def of_report(self) -> Options:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.keys import key_of
+from clearance.batch.keys import DAY, key_of
 from clearance.batch.store import Store
 from clearance.load.input_files import InputFiles
 from clearance.load.rosbag_file import files_of
@@ -69,7 +69,7 @@ class _Look:
         if own is None:
             return None
         for inputs in self.store.inputs.get(item.file, ()):
-            shared = self._as_before(inputs)
+            shared = self._as_before(inputs, item.options.today)
             if shared is not None:
                 key = key_of(item, (*shared, *own))
                 if key in self.store:
@@ -85,13 +85,15 @@ class _Look:
         files = self._of_folder.setdefault(folder, InputFiles(Path(folder)))
         return self._hashed((files.shown(path), str(path)) for path in _paths(given))
 
-    def _as_before(self, inputs: str) -> Files | None:
-        """The files that a case was made from, if each is as it was."""
+    def _as_before(self, inputs: str, today: str) -> Files | None:
+        """The files that a case was made from, if each is as it was; where it has waivers, so must the day be."""
         if inputs not in self._shared:
             told = json.loads(inputs)
-            found = self._hashed((shown, path) for shown, path, _ in told)
-            before = tuple((shown, sha256) for shown, _, sha256 in told)
-            self._shared[inputs] = before if found == before else None
+            found = self._hashed((shown, path) for shown, path, _ in told if shown != DAY)
+            files = tuple((shown, sha256) for shown, _, sha256 in told if shown != DAY)
+            days = tuple((shown, day) for shown, _, day in told if shown == DAY)
+            same = found == files and all(day == today for _, day in days)
+            self._shared[inputs] = (*files, *days) if same else None
         return self._shared[inputs]
 
     def _hashed(self, paths: Iterable[tuple[str, str]]) -> Files | None:

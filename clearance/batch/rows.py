@@ -13,7 +13,6 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.findings.finding import Finding
-from clearance.findings.of_record import findings_of
 from clearance.run import Run
 from clearance.simulate.record import Record
 from clearance.world.case import Source
@@ -50,9 +49,10 @@ FINDING = pa.schema(
         ("point_a", pa.list_(pa.float64())),
         ("point_b", pa.list_(pa.float64())),
         ("text", pa.string()),
+        ("waived", pa.string()),
     ]
 )
-"""What is kept of a `findings.finding.Finding`."""
+"""What is kept of a `findings.finding.Finding`; of what waives it, the reason and by whom."""
 
 MOST_FINDINGS = 200
 """Of one case, the worst."""
@@ -96,7 +96,7 @@ def row_of(run: Run) -> dict[str, Any]:
     record, verdict = run.record, run.verdict
     worst, times = record.worst, record.motions[0].times
     certificate = record.certificate
-    limits, findings = record.rule(worst.rule).limits, findings_of(record)
+    limits, findings = record.rule(worst.rule).limits, run.findings
     return {
         "status": verdict.status,
         "exit_code": verdict.exit_code,
@@ -126,7 +126,9 @@ def row_of(run: Run) -> dict[str, Any]:
 
 
 def _told(finding: Finding) -> dict[str, Any]:
-    return {name: getattr(finding, name) for name in FINDING.names}
+    told = {name: getattr(finding, name) for name in FINDING.names}
+    waived = finding.waived
+    return told | {"waived": None if waived is None else f"{waived.reason} ({waived.by})"}
 
 
 def curve_of(record: Record) -> np.ndarray:

@@ -1,8 +1,8 @@
 """The command line: one file a command, and here what they share: exit codes and one-line errors.
 
-Exit codes: 0 clear; 1 a limit is violated; 2 bad input, or input that is suspect; 3 the
-cross-check disagrees; 4 incomplete, the same command goes on (each puts those before it in doubt, so the greatest
-that holds goes); 70 a fault of this program, with its traceback; 130 interrupted.
+Exit codes: 0 clear; 1 a limit is violated, or a waiver is stale; 2 bad input, or input that is suspect; 3 the
+cross-check disagrees; 4 incomplete, of several cases some have no answer yet (each puts those before it in doubt,
+so the greatest that holds goes); 70 a fault of this program, with its traceback; 130 interrupted.
 """
 
 from __future__ import annotations

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from datetime import date
 from pathlib import Path
 
 import click
 
 from clearance.cli import ExitCode
+from clearance.cli.for_ci import Day
 from clearance.cli.options import Millimetres, OutputPath
 from clearance.world.notice import KINDS
 
@@ -87,6 +89,11 @@ class _Shard(click.ParamType):
     type=click.Choice(KINDS),
     help=f"Let no suspect input of this kind decide a verdict ({', '.join(KINDS)}).",
 )
+@click.option(
+    "--today",
+    type=Day(),
+    help="The day that the cases' waivers are held against.  [default: today, in UTC]",
+)
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
     arguments: tuple[str, ...],
@@ -103,6 +110,7 @@ def check(
     fail_mm: float | None,
     warn_mm: float | None,
     accept: tuple[str, ...],
+    today: date | None,
     quiet: bool,
 ) -> int:
     """Checks many cases: those of manifests, case files and patterns of them.
@@ -121,7 +129,8 @@ def check(
     if jobs is not None and scheduler is not None:
         raise click.UsageError("--jobs are of this machine; leave it out with --scheduler")
     certify = False if samples_only else None
-    items = items_of(arguments, Changes(need, certify, certify_mm, fail_mm, warn_mm, accept))
+    changes = Changes(need, certify, certify_mm, fail_mm, warn_mm, accept, today)
+    items = items_of(arguments, changes)
     asked = Asked(jobs, scheduler, shard, fresh, rehash, strict, quiet)
     return run_asked(items, open_store(place, fresh=fresh), asked)
 

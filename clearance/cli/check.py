@@ -124,13 +124,6 @@ def check(
     cross-check disagrees; the greatest that holds. A baseline does not change it: `clearance
     compare` has an exit code of its own.
     """
-    from clearance.cli.comparison import print_comparison
-    from clearance.cli.kept import kept_rows
-    from clearance.cli.places import refuse_inputs_of_cases
-    from clearance.cli.progress import shown_progress
-    from clearance.run import Question, Resources, answer
-    from clearance.tolerance import CERTIFY_GAP
-
     if samples_only and (certify or certify_mm is not None):
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
@@ -139,6 +132,14 @@ def check(
     _require_places(out, junit, summary)
     more = MoreFiles(png, glb, trajectory)
     more.require_writable()
+    _require_file(case_file)
+    from clearance.cli.comparison import print_comparison
+    from clearance.cli.kept import kept_rows
+    from clearance.cli.places import refuse_inputs_of_cases
+    from clearance.cli.progress import shown_progress
+    from clearance.run import Question, Resources, answer
+    from clearance.tolerance import CERTIFY_GAP
+
     _compile_ahead(quiet)
     outputs = _outputs(out, junit, summary, more)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
@@ -172,6 +173,17 @@ def check(
             print_comparison(comparison)
     ForCi(summary, github).write(run, comparison, to_stderr=as_json)
     return ExitCode(run.verdict.exit_code)
+
+
+def _require_file(case_file: Path) -> None:
+    """Refuses a path that leads to no file, before all that a run needs is imported.
+
+    Raises:
+        MissingFile: as when it is read.
+    """
+    from clearance.load.input_files import require_file
+
+    require_file(case_file, case_file.name)
 
 
 def _passes(question: Question) -> list[str]:
@@ -229,6 +241,8 @@ def _outputs(
     Raises:
         Unwritable: one would overwrite another.
     """
+    if not (out or junit or summary or more.by_option):
+        return []
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 

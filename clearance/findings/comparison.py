@@ -143,6 +143,11 @@ class _Comparing:
         return Compared(Change.NOT_COMPARABLE if why else change, before, now, why)
 
     def _change(self, before: Finding, now: Finding) -> Change:
+        kept = [finding.status == Status.CLEAR for finding in (before, now)]
+        if (
+            kept[0] != kept[1]
+        ):  # what is clear is listed only where it is the nearest pair of its rule
+            return Change.NEW if kept[0] else Change.GONE
         ranks = [STATUSES.index(Status(finding.status)) for finding in (before, now)]
         if ranks[0] != ranks[1]:
             return Change.WORSE if ranks[1] > ranks[0] else Change.BETTER

@@ -16,11 +16,13 @@ from contextlib import contextmanager
 from functools import cached_property
 from io import BufferedReader, BytesIO
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
-from clearance.world.case import Source
+
+if TYPE_CHECKING:
+    from clearance.world.case import Source
 
 PYBULLET_DATA = "pybullet_data:"
 
@@ -41,6 +43,10 @@ class InputFiles:
         self._sources: dict[Path, Source] = {}
         self._held: set[Path] = set()
 
+    @cached_property
+    def _brought(self) -> Path | None:
+        return _pybullet_data_folder()
+
     @property
     def sources(self) -> tuple[Source, ...]:
         """Every file read so far, sorted by its shown path."""
@@ -56,8 +62,7 @@ class InputFiles:
         if path not in self._contents:
             data = read_bytes(path, self.shown(path))
             self._contents[path] = data
-            digest = hashlib.sha256(data).hexdigest()
-            self._sources[path] = Source(self.shown(path), digest, len(data), str(path))
+            self._note(path, hashlib.sha256(data).hexdigest(), len(data))
         return self._contents[path]
 
     def hold(self, path: Path, data: bytes) -> None:
@@ -80,15 +85,15 @@ class InputFiles:
         if path in self._held:
             data = self._contents[path]
             return lambda: BytesIO(data), len(data)
-        shown, content = self.shown(path), b""
-        with _openable(shown), regular_file(path) as file:
+        content = b""
+        with _openable(self.shown(path)), regular_file(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
             if n_bytes <= SHORT:
                 content = file.read()
                 digest, n_bytes = hashlib.sha256(content).hexdigest(), len(content)
             else:
                 digest = hashlib.file_digest(file, "sha256").hexdigest()
-        self._sources[path] = Source(shown, digest, n_bytes, str(path))
+        self._note(path, digest, n_bytes)
         return (lambda: BytesIO(content) if n_bytes <= SHORT else regular_file(path)), n_bytes
 
     def of_more(self) -> InputFiles:
@@ -97,9 +102,10 @@ class InputFiles:
         made.__dict__["_brought"] = self._brought
         return made
 
-    @cached_property
-    def _brought(self) -> Path | None:
-        return _pybullet_data_folder()
+    def _note(self, path: Path, digest: str, n_bytes: int) -> None:
+        from clearance.world.case import Source
+
+        self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
@@ -118,6 +124,16 @@ def read_bytes(path: Path, shown: str) -> bytes:
     """
     with _openable(shown), regular_file(path) as file:
         return file.read()
+
+
+def require_file(path: Path, shown: str) -> None:
+    """Refuses what `read_bytes` would refuse, without reading it.
+
+    Raises:
+        MissingFile: it is not there, is no file on disk, or cannot be read.
+    """
+    with _openable(shown), regular_file(path):
+        pass
 
 
 class _NotRegular(OSError):

@@ -31,7 +31,7 @@ def case_schema() -> dict[str, Any]:
     made = schema.Case.model_json_schema()
     parts, keys = made["$defs"], made["properties"]
     _without_nothing(made, parts)
-    keys["scene"] = _or_path(keys["scene"], "a YAML, SDF or MoveIt file with the scene")
+    keys["scene"] = _or_path(keys["scene"], "a YAML, SDF, MJCF or MoveIt file with the scene")
     keys["accept"]["items"]["enum"] = list(KINDS)
     made["oneOf"] = [{"required": ["robot"]}, {"required": ["robots"]}]
     made["anyOf"] = list(_what_moves())

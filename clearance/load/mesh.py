@@ -44,6 +44,9 @@ _READERS: dict[str, Callable[[bytes, UpAxis, float], Triangles]] = {
 CAD = (".step", ".stp")
 """Formats of surfaces that become facets within a tolerance."""
 
+_SCANS = (".pcd", ".xyz", ".asc", ".csv", ".txt")
+"""Suffixes of files that are scans, if anything (`cloud`)."""
+
 OPEN = "the surface is open: it has no inside"
 """The note on a mesh of which no part is closed; the same text for all, so that one line can name them all."""
 
@@ -105,7 +108,8 @@ def triangles_from_bytes(
     """The triangles of a mesh file as they are in it, before anything is mended."""
     suffix = Path(name).suffix.lower()
     if suffix not in _READERS:
-        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS))
+        hint = "; a scan is read as points: {file: …, radius: …}" if suffix in _SCANS else ""
+        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS) + hint)
     return checked(_READERS[suffix](data, up_axis, tolerance))
 
 
@@ -125,6 +129,7 @@ def _solid(triangles: Triangles) -> LoadedMesh:
     given = Polyhedron.from_triangles(kept.vertices, kept.corners, excess=off, shortfall=off)
     shape = given.outward()
     notes = [
+        *_notes_on_facets(off),
         *triangles.notes,
         *_notes_on_copies(n_copies),
         *_notes_on_flat(n_without_area(kept), shape),
@@ -133,6 +138,15 @@ def _solid(triangles: Triangles) -> LoadedMesh:
         *_notes_on_open(shape.component_closed),
     ]
     return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+
+
+def _notes_on_facets(off: float) -> list[str]:
+    if not off:
+        return []
+    return [
+        f"facets of a CAD file, up to {off * 1e3:.3g} mm off its surface, which is taken off the clearance; "
+        "depths of contact are those of the facets"
+    ]
 
 
 def _notes_on_copies(n_copies: int) -> list[str]:

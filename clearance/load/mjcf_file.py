@@ -33,6 +33,9 @@ _STAND_IN = np.array([[x, y, z] for x in (-0.3, 0.3) for y in (-0.4, 0.4) for z 
 
 _NO_CORNERS = np.zeros((0, 3), dtype=np.int64)
 
+_BESIDE_POINTS = ("usernormal", "userfacenormal", "usertexcoord", "userfacetexcoord")
+"""What a mesh may have for each point, and not every version of MuJoCo."""
+
 _LAST_SHOWN = 2
 """MuJoCo's viewer shows groups 0, 1 and 2 from the start."""
 
@@ -83,8 +86,9 @@ class MjcfSpec:
             mesh.scale, mesh.refpos, mesh.refquat = [1, 1, 1], [0, 0, 0], [1, 0, 0, 0]
             vertices, triangles = surfaces.get(mesh.name, (_STAND_IN, _NO_CORNERS))
             mesh.uservert, mesh.userface = vertices.ravel(), triangles.ravel()
-            mesh.usernormal, mesh.userfacenormal = [], []
-            mesh.usertexcoord, mesh.userfacetexcoord = [], []
+            for beside in _BESIDE_POINTS:
+                if hasattr(mesh, beside):
+                    setattr(mesh, beside, [])
         with _refused():
             compiled = spec.compile()
         return _Plain(self._mujoco, spec.modelname, compiled).model()

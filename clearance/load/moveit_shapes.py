@@ -9,7 +9,7 @@ from typing import Any
 from clearance.errors import BadDimension, BadInput, BadShape, nearest_name
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.moveit_values import Message, items, number, text
-from clearance.load.octree_file import file_of_message
+from clearance.load.octree_file import file_of_message, octree_of
 from clearance.load.off_file import off_text
 from clearance.load.scene_request import SceneRequest
 
@@ -88,11 +88,11 @@ class SceneMeshes:
         self._asked.files.hold(self._asked.path.parent / name, off_text(vertices, triangles))
         return {"mesh": {"file": name}}
 
-    def octomap(self, given: Message) -> Row:
-        """An octomap written out in the scene, kept likewise.
+    def octomap(self, given: Message) -> Row | None:
+        """An octomap written out in the scene, kept likewise; None where no cell of it is occupied.
 
         Raises:
-            BadInput: another kind of map, or data that are no bytes.
+            BadInput: another kind of map, data that are no bytes, or a tree that is cut off.
         """
         data = items(given, "data")
         if not all(type(byte) is int and -128 <= byte <= 255 for byte in data):
@@ -103,6 +103,8 @@ class SceneMeshes:
             number(given.get("resolution"), "resolution"),
             is_binary=given.get("binary") is True,
         )
+        if not len(octree_of(content).sizes):
+            return None
         name = f"{self._asked.path.name}.octomap.bt"
         self._asked.files.hold(self._asked.path.parent / name, content)
         return {"mesh": {"file": name}}

@@ -56,6 +56,8 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         padding = _padding(raw)
     rows = [*obstacles, *attached]
     notes = [*frames.notes(), *_lost(raw, state), *_on_rounded(poses)]
+    if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
+        notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
     return SceneContent(
         {"obstacles": rows},
         (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(meshes.by_variable)),
@@ -169,8 +171,12 @@ def _padding(raw: Message) -> dict[str, float]:
     return {link: padding for link, padding in found.items() if padding}
 
 
+def _octomap_data(world: Message) -> list[object]:
+    return items(message(message(world, "octomap"), "octomap"), "data")
+
+
 def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
-    """The obstacle of a map that is not empty, called `OCTOMAP` as in MoveIt."""
+    """The obstacle of a map with occupied cells, called `OCTOMAP` as in MoveIt."""
     tree = message(given, "octomap")
     if not items(tree, "data"):
         return
@@ -181,7 +187,9 @@ def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses)
             else np.eye(4)
         )
         placed = frames.of(given) @ origin
-        yield {"name": OCTOMAP, **meshes.octomap(tree), "pose": pose_row(placed)}
+        mapped = meshes.octomap(tree)
+        if mapped is not None:
+            yield {"name": OCTOMAP, **mapped, "pose": pose_row(placed)}
 
 
 def _lost(raw: Message, state: Message) -> Iterator[str]:

@@ -75,7 +75,8 @@ def _curves(comparison: Comparison, curves: list[Curve], names: tuple[str, str])
             "Clearance over time", element("div", *key, class_="key"), element("p", told)
         )
     fail = max((row.finding.fail for row in comparison.rows), default=0.0)
-    return section("Clearance over time", chart(curves, fail), element("div", *key, class_="key"))
+    picture = element("div", chart(curves, fail), class_="scroll")
+    return section("Clearance over time", picture, element("div", *key, class_="key"))
 
 
 def _findings(comparison: Comparison) -> Markup:
@@ -89,7 +90,7 @@ def _findings(comparison: Comparison) -> Markup:
     rows = [_row(row) for row in comparison.rows[:MOST_ROWS]]
     more = len(comparison.rows) - len(rows)
     notes = [element("p", f"{more} more are not listed.", class_="faint")] if more else []
-    return section("Findings", table(heads, rows), *notes)
+    return section("Findings", table(heads, rows, class_="findings"), *notes)
 
 
 def _row(row: Compared) -> Markup:

@@ -79,7 +79,7 @@ def _row(finding: Finding, since: Compared | None, compared: bool) -> Markup:
         element("td", when_text(finding)),
         element("td", stretch_text(finding)),
         *([element("td", since_text(since))] if compared else []),
-        element("td", waived_text(finding)),
+        element("td", waived_text(finding), class_="wide" if finding.waived else None),
         element("td", element("code", finding.id)),
     ]
     at: dict[str, object] = {}

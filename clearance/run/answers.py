@@ -315,9 +315,12 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
     )
 
 
-def _of_pairs(plan: MeasurementPlan, is_meant: PairTest) -> tuple[RuleAnswer, ...]:
+def _of_pairs(
+    plan: MeasurementPlan, is_meant: PairTest, need: str | None = None
+) -> tuple[RuleAnswer, ...]:
     """What the rules come to of some pairs alone, as if there were no others."""
-    question, case = plan.question, plan.question.case
+    case = plan.question.case
+    question = plan.question if need is None else replace(plan.question, need=need)
     parts = [_part(case, section, is_meant) for section in plan.sections.sections]
     sections = tuple(part for part in parts if part.pairs)
     if not sections:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import date
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 import pyarrow as pa
@@ -26,7 +27,12 @@ from clearance.world.timeline import Timeline
 PairTest = Callable[[str, tuple[str, ...], tuple[str, ...]], bool]
 """Whether a pair is meant: the name of its rule, and the names that each of its bodies goes by."""
 
-OfPairs = Callable[[PairTest], tuple[RuleAnswer, ...]]
+
+class OfPairs(Protocol):
+    """Measures and proves some pairs of a run alone."""
+
+    def __call__(self, is_meant: PairTest, need: str | None = None) -> tuple[RuleAnswer, ...]:
+        """What the rules come to of the pairs that are meant; `need` as of the run if it is not given."""
 
 
 @dataclass(frozen=True)
@@ -170,8 +176,7 @@ class Record(Samples):
         notices: what a reader of the verdict must know: of the case, and found while measuring.
         rules: what each rule comes to; one, "default", where the case has no rules.
         timeline: when what moves how.
-        of_pairs: what the rules come to of some of the pairs alone, by which they are: the rule's name and the
-            names that each body goes by; measured and proven anew when asked. None where no more can be asked.
+        of_pairs: what the rules come to of some of the pairs alone; None where no more can be asked.
         today: the day that waivers are held against; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic" or "simulated".

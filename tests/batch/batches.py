@@ -63,9 +63,11 @@ class Told:
         self.measured += [self.names[one.number] for one in (*measured, *faults)]
 
 
-def run_here(manifest: Path, place: Path, *, strict: bool = False, engine=None, **options):
+def run_here(
+    manifest: Path, place: Path, *, strict: bool = False, engine=None, changes=None, **options
+):
     """Runs a batch in this process and writes its answer; what was measured, and the answer."""
-    items = items_of([str(manifest)], Changes())
+    items = items_of([str(manifest)], changes or Changes())
     store, told = open_store(place, fresh=options.get("fresh", False)), Told()
     outcome = Outcome(items)
     run_batch(outcome, store, lambda n: nullcontext(engine or InThisProcess()), told, **options)

@@ -1,6 +1,7 @@
 """A batch in one process: only what is missing or has changed is measured, and the answer has the same bytes."""
 
 import os
+from datetime import date
 
 import pyarrow.parquet as pq
 import pytest
@@ -206,3 +207,22 @@ def test_the_table_of_cases_is_what_any_tool_reads(manifest, tmp_path):
     assert table.column_names[:3] == ["case", "key", "status"]
     assert table["clearance"].to_pylist()[0] == pytest.approx(0.4)
     assert len(table["curve"][0].as_py()) == 3
+
+
+def test_where_a_case_has_waivers_the_day_decides(manifest, tmp_path):
+    (manifest.parent / "waivers.yaml").write_text(
+        "- {between: [slider, wall], case: t002, at_least: 0.03, reason: seen, by: me, "
+        "until: 2027-03-31}\n"
+    )
+    (manifest.parent / "cell.yaml").write_text(CELL + "waivers: [waivers.yaml]\n")
+
+    def run_on(day):
+        return run_here(manifest, tmp_path / "out", changes=Changes(today=date.fromisoformat(day)))
+
+    told, found = run_on("2027-03-31")
+    assert len(told.measured) == 5 and statuses(found)["t002"] in ("clear", "near")
+    waived = [row["waived"] for row in found.findings.to_pylist() if row["case"] == "t002"]
+    assert "seen (me)" in waived
+    assert run_on("2027-03-31")[0].measured == []
+    told, found = run_on("2027-04-01")
+    assert len(told.measured) == 5 and statuses(found)["t002"] == "violated"

@@ -134,7 +134,7 @@ def told_by(script, folder, ends=0):
     here = folder / "work"
     here.mkdir()
     (here / "numba.py").write_text("open('trapped', 'w').close()\n")
-    (folder / "script.py").write_text(script)
+    (folder / "script.py").write_text(f"import numba  # so that the compiler counts\n{script}")
     settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(folder / "cache")}
     done = subprocess.run(
         [sys.executable, folder / "script.py"],
@@ -194,9 +194,9 @@ WHO_STARTS_PROCESSES = """
 import json, sys
 import clearance as cl
 from clearance.cli import run
-from clearance.compile.kernel_cache import KernelCache
+from clearance.compile.kernel_files import KernelFiles
 
-KernelCache.holds_any = lambda self: False  # the cache looks empty to who asks whether to start a process
+KernelFiles.holds_any = lambda self: False  # the cache looks empty to who asks whether to start a process
 started = []
 sys.addaudithook(lambda event, args: started.append(event) if event in {events} else None)
 box = cl.box((1.0, 1.0, 1.0))

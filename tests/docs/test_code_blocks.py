@@ -16,6 +16,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from clearance.cli.commands import clearance
+from clearance.load.manifest_schema import Manifest
 from clearance.load.schema import Case
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
@@ -127,6 +128,8 @@ def test_case_files_keep_to_the_schema(block: CodeBlock):
     content = YAML(typ="safe").load(block.text)
     if {"robot", "robots"} & content.keys():
         Case.model_validate(content)
+    elif {"cases", "cell"} & content.keys():
+        Manifest.model_validate(content)
     else:
         assert set(content) <= {*Case.model_fields, "jobs"}
 

@@ -39,6 +39,7 @@ TABLE = {
     "contact": ({A: (-0.5, 0.0), B: (0.5, 0.1)}, [("worse", A)], False),
     "better": ({A: (-0.5, 0.004), B: (0.5, 0.1)}, [("better", A)], True),
     "only a near miss": ({A: (-0.5, 0.01), B: (0.5, 0.1)}, [("better", A)], True),
+    "gone, and still the nearest": ({A: (-0.5, 0.05), B: (0.5, 0.1)}, [("gone", A)], True),
     "gone": ({A: (-0.5, 0.15), B: (0.5, 0.1)}, [("gone", A)], True),
     "new": ({A: (-0.5, 0.003), B: (0.5, 0.004)}, [("new", B), ("unchanged", A)], False),
     "a new near miss": ({A: (-0.5, 0.003), B: (0.5, 0.012)}, [("new", B), ("unchanged", A)], True),

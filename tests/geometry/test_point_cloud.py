@@ -82,3 +82,11 @@ def test_no_group_holds_points_whose_balls_are_apart():
             touch = touch @ touch
         groups = components_of(points, radius)
         assert touch[groups[:, None] == groups].all()
+
+
+def test_the_box_about_a_cloud_holds_its_balls():
+    points = np.random.default_rng(7).uniform(-1.0, 1.0, (50, 3)) + [1000.0, 0.0, 0.0]
+    cloud = PointCloud(points, 0.1)
+    low, high = cloud.box_about().bounds
+    assert (low <= points.min(axis=0) - 0.1).all() and (high >= points.max(axis=0) + 0.1).all()
+    assert (high - low <= np.ptp(points, axis=0) + 0.2 + 1e-11).all()

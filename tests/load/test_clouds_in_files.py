@@ -9,8 +9,10 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput, ClearanceError
 from clearance.geometry.point_cloud import PointCloud
+from clearance.load.case_file import load_case
 from clearance.load.cloud import cloud_from_bytes, read_points
 from clearance.load.lzf import decompressed
+from clearance.load.mesh import mesh_from_bytes
 from tests.load.making_clouds import XYZ, lzf, pcd, ply, table
 
 GAPS = "most of its balls of 10 mm touch no other: what is thinner than the gaps between them passes through"
@@ -250,3 +252,41 @@ def test_what_another_program_writes(form, tmp_path):
     else:
         assert as_set(found.vertices) == as_set(points[:, :3])
     assert isinstance(found, PointCloud)
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [("a.ply", ply(POINTS)), ("a.pcd", pcd(POINTS)), ("a.xyz", table(POINTS, " ", ""))],
+)
+def test_a_scan_under_mesh_is_told_where_it_belongs(name, data):
+    with pytest.raises(BadInput, match=re.escape("a scan is read as points: {file: …, radius: …}")):
+        mesh_from_bytes(data, name)
+
+
+def test_a_case_with_a_scan(tmp_path):
+    (tmp_path / "arm.urdf").write_text(ARM)
+    (tmp_path / "path.csv").write_text("time,j\n0,0\n1,1\n")
+    (tmp_path / "scan.csv").write_bytes(table(POINTS.astype(float) * 100.0, ",", "x,y,z"))
+    scan = "{file: scan.csv, radius: 0.3, scale: 10, units: {length: mm}}"
+    (tmp_path / "case.yaml").write_text(
+        "robot: {urdf: arm.urdf}\ntrajectory: path.csv\n"
+        f"scene: {{obstacles: [{{name: scan, points: {scan}}}]}}\n"
+    )
+    case = load_case(tmp_path / "case.yaml")
+    (obstacle,) = case.obstacles
+    assert obstacle.body.origin == "scan.csv" and obstacle.body.is_cloud
+    assert obstacle.body.shape.ball_radius == 0.3
+    assert np.allclose(as_set(obstacle.body.shape.vertices), as_set(POINTS), rtol=1e-15, atol=0.0)
+    assert "scan.csv" in {source.path for source in case.sources}
+    (told,) = [notice.text for notice in case.notices if "radius" in notice.text]
+    assert "each point of 'scan' has a radius of 0.3 m" in told
+    run = cl.check(case)
+    assert (run.worst["clearance"], run.worst["obstacle"]) == (0.0, "scan")
+    assert run.status == "suspect"
+
+
+ARM = """<robot name='arm'>
+<link name='base'><collision><geometry><box size='0.9 0.9 0.9'/></geometry></collision></link>
+<link name='tip'><collision><geometry><box size='0.2 0.2 0.2'/></geometry></collision></link>
+<joint name='j' type='continuous'><parent link='base'/><child link='tip'/></joint></robot>
+"""

@@ -79,6 +79,19 @@ def test_what_the_case_carries_is_left_to_it(tmp_path):
     assert carry.window.start == 0.5 and carry.touch == ("*",)
 
 
+def test_an_octomap_of_free_cells_is_no_obstacle(tmp_path):
+    """One cell, of log odds -0.405 and +0.847: free, and occupied."""
+    for bytes_, found in (([31, -103, -49, -66, 0], 0), ([220, 217, 88, 63, 0], 1)):
+        map_ = (
+            f"octomap: {{octomap: {{id: OcTree, resolution: 0.1, binary: false, data: {bytes_}}}}}"
+        )
+        content = content_of(tmp_path, LISTS.replace("world:", f"world:\n  {map_}"))
+        names = [row["name"] for row in content.scene["obstacles"]]
+        assert names.count("<octomap>") == found
+        told = any("no cell of the octomap is occupied" in note for note in content.notes)
+        assert told == (not found)
+
+
 def test_subframes_and_the_place_of_the_robot_are_said_to_be_passed_over(tmp_path):
     document = LISTS.replace("  - id: can\n", "  - id: can\n    subframe_names: [a, b]\n") + (
         "robot_state: {multi_dof_joint_state: {joint_names: [virtual_joint]}}\n"

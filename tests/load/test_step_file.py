@@ -31,7 +31,7 @@ def test_a_box_is_as_large_as_its_unit_says_and_lies_as_in_the_file(text, size):
     assert shape.closed and shape.n_faces == 6 and shape.volume > 0
 
 
-@pytest.mark.parametrize("tolerance", [1e-4, 1e-5])
+@pytest.mark.parametrize("tolerance", [1e-3, 5e-5])
 @pytest.mark.parametrize("unit", ["mm", "inch"])
 def test_a_cylinder_is_nowhere_farther_off_than_is_said(unit, tolerance):
     loaded = solid(cylinder_step(40.0, 30.0, unit), tolerance)
@@ -53,7 +53,8 @@ def test_the_accuracy_that_a_file_states_is_part_of_the_bound_and_scale_grows_it
     loaded = mesh_from_bytes(text.encode(), "part.stp", 2.0)
     assert loaded.shape.shortfall == pytest.approx(2 * (1e-4 + 5e-5), rel=1e-3)
     assert loaded.notes == (
-        "facets of a CAD file, up to 0.15 mm off its surface, which is taken off the clearance",
+        "facets of a CAD file, up to 0.3 mm off its surface, which is taken off the clearance; depths of contact "
+        "are those of the facets",
     )
 
 
@@ -61,9 +62,7 @@ def test_the_clearance_of_a_case_is_never_overstated(tmp_path):
     """A cylinder of 0.5 m stands 2 m along x before the cube of the arm, which reaches to 0.5 m."""
     case = load_small(
         tmp_path,
-        with_obstacle("mesh: {file: part.step, tolerance: 0.01}").replace(
-            "[base, post]", "[base, post]"
-        ),
+        with_obstacle("mesh: {file: part.step, tolerance: 0.01}"),
         trajectory="time,shoulder\n0,0\n1,0\n",
         part__step=cylinder_step(500.0, 2000.0),
     )

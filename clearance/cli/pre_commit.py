@@ -1,0 +1,48 @@
+"""`clearance pre-commit`: many case files, checked as far as their limits, one line each that is not passed.
+
+What the hook of `.pre-commit-hooks.yaml` calls with the files of a commit. Not for: a report (`check`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from clearance.cli import ExitCode
+
+_FILES = click.argument("files", metavar="CASE.yaml...", nargs=-1, type=click.Path(path_type=Path))
+
+
+@click.command("pre-commit")
+@_FILES
+def pre_commit(files: tuple[Path, ...]) -> int:
+    """Checks cases, and those that files list, as far as their limits; for a hook before a commit.
+
+    Says what is broken and nothing else. Exit code: the greatest of `clearance check --need
+    limit` on each.
+    """
+    from clearance.errors import ClearanceError
+    from clearance.load.case_list import cases_in
+
+    worst = ExitCode.CLEAR
+    for file in files:
+        try:
+            worst = max(worst, *(_checked(path) for path in cases_in(file)))
+        except ClearanceError as error:
+            click.echo(f"{file}: {error}", err=True)
+            worst = max(worst, ExitCode.BAD_INPUT)
+    return worst
+
+
+def _checked(path: Path) -> ExitCode:
+    from clearance.report.finding_text import finding_line
+    from clearance.run import check
+
+    run = check(path, need="limit")
+    if not run.passed:
+        click.echo(f"{path}: {run.verdict.text(str.upper)}")
+        told = [finding_line(finding) for finding in run.findings if finding.fails]
+        for line in told or run.verdict.reasons:
+            click.echo(f"  {line}")
+    return ExitCode(run.verdict.exit_code)

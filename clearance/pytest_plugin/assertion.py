@@ -1,0 +1,42 @@
+"""`assert_clear`: that two bodies keep their distance over a run, with a message to act on.
+
+Not for: collecting cases (`collected`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from clearance.run import Run
+
+
+def assert_clear(
+    run: Run, between: tuple[str, str] | None = None, at_least: float | None = None
+) -> None:
+    """Nothing, if bodies keep a clearance over the motion, as far as proven; at the samples where nothing is.
+
+    Args:
+        run: of `check`, or of the fixture `clearance_case`.
+        between: patterns of names of two bodies, in any order; all pairs if not given.
+        at_least: [m]; the fail limit of the rule that judges each pair if not given. Without it and `between`, the
+            run is passed.
+
+    Raises:
+        AssertionError: what comes nearer, how near, when, and what was asked for.
+        BadInput: no pair is measured between such bodies, with the nearest name.
+    """
+    __tracebackhide__ = True
+    if between is None and at_least is None:
+        faults = _reasons(run)
+    else:
+        from clearance.pytest_plugin.kept import faults_of
+
+        faults = faults_of(run, between or ("*", "*"), at_least)
+    if faults:
+        raise AssertionError("\n".join([f"{run.record.case.name} is not clear", *faults]))
+
+
+def _reasons(run: Run) -> list[str]:
+    verdict = run.verdict
+    return [] if verdict.passed else [verdict.text(), *verdict.reasons]

@@ -1,0 +1,241 @@
+"""Prints how fast a batch is: cases a second, two workers against one, what store and engine cost, memory, run
+two.
+
+    python scripts/bench/batch.py [--cases N] [--many N] [--scene NAME] [--csv FILE]
+
+`--cases` trajectories of 300 steps in one cell of `scenes/`, for both bases of a verdict; `--many` short ones for
+memory and for the second run. Rates are of processor time, after the cell is read and all is compiled: the median
+of tasks of 20 cases and the best of them, which says more on a busy machine. Two workers are held against one by
+the wall, in turns. The conditions are printed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+from inputs import ROOT
+from rich.console import Console
+from rows import write_csv
+
+from clearance.batch.answer import answer_of
+from clearance.batch.dask_engine import DaskEngine, local_cluster
+from clearance.batch.engine import InThisProcess
+from clearance.batch.item import Item
+from clearance.batch.keys import program
+from clearance.batch.manifest import Changes, items_of
+from clearance.batch.measuring import Task, measure
+from clearance.batch.output import write_answer
+from clearance.batch.run import Outcome, run_batch
+from clearance.batch.store import open_store
+from clearance.load.case_file import load_case
+
+COLUMNS = ("what", "value", "unit", "target")
+CHUNK = 20
+CART = """<robot name="cart"><link name="ground"/>
+  <link name="slider"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
+  <joint name="rail" type="prismatic"><parent link="ground"/><child link="slider"/>
+    <axis xyz="1 0 0"/><limit lower="-5" upper="5" effort="9" velocity="9"/></joint></robot>"""
+RAIL = """robot: {urdf: cart.urdf}
+scene: {obstacles: [{name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0]}}]}
+limits: {fail: 0.05, warn: 0.3}
+"""
+
+
+def main() -> None:
+    """Runs all parts."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--cases", type=int, default=1000)
+    parser.add_argument("--many", type=int, default=10_000)
+    parser.add_argument("--scene", default="iiwa_pipe_rack")
+    parser.add_argument("--csv", type=Path, help="write the rows here")
+    asked = parser.parse_args()
+    console = Console(width=120)
+    rows = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for row in [*_rates(folder, asked), *_bulk(folder, asked)]:
+            rows.append(dict(zip(COLUMNS, row, strict=True)))
+            console.print(f"{row[0]:<64} {row[1]:>10.3g} {row[2]:<12} {row[3]}", highlight=False)
+    load = " ".join(f"{value:.1f}" for value in os.getloadavg())
+    console.print(f"{os.cpu_count()} cores, load {load}", highlight=False)
+    if asked.csv:
+        write_csv(rows, COLUMNS, asked.csv, digits=4)
+
+
+def _rates(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
+    """One worker, store and engine, and two workers, in a cell of the scenes."""
+    manifest = scene_batch(folder / "scene", asked.scene, asked.cases)
+    for certify, basis in ((False, "samples"), (True, "motion")):
+        items = items_of([str(manifest)], Changes(certify=certify))
+        times = chunk_times(items)
+        what = f"{asked.scene}: cases a second, 1 core, {basis}"
+        yield what + " (median)", 1.0 / median(times), "1/s", ">= 200"
+        yield what + " (best)", 1.0 / min(times), "1/s", ">= 200"
+    yield "store and engine a case", 1000.0 * overhead(folder / "over", items), "ms", "<= 1"
+    one, two = (
+        min(wall(folder / f"w{jobs}-{k}", items, jobs) for k in range(2)) for jobs in (1, 2)
+    )
+    yield "2 workers against 1", one / two, "x", ">= 1.8"
+
+
+def chunk_times(items: list[Item]) -> list[float]:
+    """[s] of processor time a case in each task, the first two left out."""
+    times = []
+    for start in range(0, len(items), CHUNK):
+        own = tuple(items[start : start + CHUNK])
+        begun = time.process_time()
+        measure(Task(own, 1e9, program(), "bench"))
+        times.append((time.process_time() - begun) / len(own))
+    return times[2:]
+
+
+def overhead(place: Path, items: list[Item]) -> float:
+    """[s] a case of processor time in this process where two workers measure: all but measuring."""
+    with local_cluster(2, print) as engine:
+        _run(place / "warm", items[:64], engine)
+        begun = time.process_time()
+        _run(place / "all", items, engine)
+        return (time.process_time() - begun) / len(items)
+
+
+def wall(place: Path, items: list[Item], jobs: int) -> float:
+    """[s] a case by the wall, from the first cases on, with so many workers."""
+    with local_cluster(jobs, print) as engine:
+        _run(place / "warm", items[: 64 * jobs], engine)
+        begun = time.perf_counter()
+        _run(place / "all", items, engine)
+        return (time.perf_counter() - begun) / len(items)
+
+
+def _bulk(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
+    """Memory over many cases, and the second run of the same manifest."""
+    items = items_of([str(cart_batch(folder / "many", asked.many))], Changes())
+    with local_cluster(2, print) as engine:
+        resident = _Resident(engine, len(items))
+        _run(folder / "kept", items, engine, resident)
+    for name, (early, late) in resident.found().items():
+        yield f"{name}: resident after {len(items) // 10:,} cases", early, "MB", ""
+        yield f"{name}: resident after {len(items):,} cases", late, "MB", "flat"
+    n_bytes = sum(path.stat().st_size for path in (folder / "kept" / "segments").iterdir())
+    yield "store a case", n_bytes / len(items), "bytes", ""
+    for k in range(2):
+        begun = time.perf_counter()
+        items = items_of([str(folder / "many" / "batch.yaml")], Changes())
+        store, outcome = open_store(folder / "kept"), Outcome(items)
+        run_batch(outcome, store, _here, _Unseen())
+        known = time.perf_counter()
+        write_answer(answer_of(outcome, store), store)
+        ended = time.perf_counter()
+        assert outcome.n_cached == len(items)
+        name = "second run" if k == 0 else "third run"
+        yield (
+            f"{name}: cases a second, until all are known",
+            len(items) / (known - begun),
+            "1/s",
+            "",
+        )
+        yield (
+            f"{name}: cases a second, answer written",
+            len(items) / (ended - begun),
+            "1/s",
+            ">= 5000",
+        )
+    page = (folder / "kept" / "batch.html").stat().st_size
+    yield f"page of {len(items):,} cases", page / 1e6, "MB", ""
+
+
+class _Unseen:
+    def begin(self, items, n_cached) -> None:
+        pass
+
+    def tell(self, measured, faults) -> None:
+        pass
+
+
+class _Resident(_Unseen):
+    """Notes the memory of this process, which holds the scheduler, and of its workers, on the way."""
+
+    def __init__(self, engine: DaskEngine, n_items: int) -> None:
+        self._client, self._n = engine.client, n_items
+        self._done, self._early, self._late = 0, {}, {}
+
+    def tell(self, measured, faults) -> None:
+        before, self._done = self._done, self._done + len(measured) + len(faults)
+        if before < self._n // 10 <= self._done:
+            self._early = self._now()
+        if self._done >= self._n - 200:
+            self._late = self._now()
+
+    def _now(self) -> dict[str, float]:
+        workers = self._client.run(_resident)
+        return {"scheduler": _resident(), "workers, the greatest": max(workers.values())}
+
+    def found(self) -> dict[str, tuple[float, float]]:
+        """[MB] early and late, by who."""
+        return {name: (self._early[name], self._late[name]) for name in self._late}
+
+
+def _resident() -> float:
+    """[MB] of this process."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+
+def _run(place: Path, items: list[Item], engine, watch=None) -> None:
+    shutil.rmtree(place, ignore_errors=True)
+
+    @contextmanager
+    def opened(n_cases: int):
+        yield engine
+
+    run_batch(Outcome(items), open_store(place), opened, watch or _Unseen())
+
+
+@contextmanager
+def _here(n_cases: int) -> Iterator[InThisProcess]:
+    yield InThisProcess()
+
+
+def scene_batch(folder: Path, scene: str, n_cases: int, n_steps: int = 300) -> Path:
+    """A manifest of a scene's cell and its motion, each joint shifted by up to a few hundredths."""
+    source = ROOT / "scenes" / scene
+    folder.mkdir(parents=True)
+    if (source / "meshes").is_dir():
+        shutil.copytree(source / "meshes", folder / "meshes")
+    lines = (source / "case.yaml").read_text().splitlines()
+    cell = [line for line in lines if not line.startswith("trajectory:")]
+    (folder / "cell.yaml").write_text("\n".join(cell) + "\n")
+    given = load_case(source / "case.yaml").robots[0].asked
+    times = np.linspace(given.times[0], given.times[-1], n_steps)
+    moves = [np.interp(times, given.times, column) for column in given.positions.T]
+    header = ",".join(["time", *given.joint_names])
+    for k, rng in enumerate(np.random.default_rng(28).spawn(n_cases)):
+        shifted = np.column_stack([times, *moves])
+        shifted[:, 1:] += 0.01 * rng.standard_normal(len(moves))
+        np.savetxt(folder / f"t{k:06d}.csv", shifted, "%.6f", ",", header=header, comments="")
+    (folder / "batch.yaml").write_text('cell: cell.yaml\ntrajectories: "t*.csv"\n')
+    return folder / "batch.yaml"
+
+
+def cart_batch(folder: Path, n_cases: int) -> Path:
+    """A manifest of a cart before a wall, and short motions of it."""
+    folder.mkdir()
+    (folder / "cart.urdf").write_text(CART)
+    (folder / "cell.yaml").write_text(RAIL)
+    for k, far in enumerate(np.random.default_rng(28).uniform(0.0, 0.79, n_cases)):
+        (folder / f"t{k:06d}.csv").write_text(f"time,rail\n0,0\n1,{far:.4f}\n2,0.1\n")
+    (folder / "batch.yaml").write_text('cell: cell.yaml\ntrajectories: "t*.csv"\n')
+    return folder / "batch.yaml"
+
+
+if __name__ == "__main__":
+    main()

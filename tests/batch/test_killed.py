@@ -1,0 +1,139 @@
+"""Whatever is killed, at whatever moment: the same command goes on, and its answer has the bytes of an undisturbed
+one. With real processes; no test depends on how long anything takes.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+
+import numpy as np
+import pytest
+
+from tests.batch.batches import answer_bytes, run_here, write_cell
+from tests.batch.clusters import (
+    finished,
+    is_gone,
+    kill,
+    segments,
+    started,
+    until,
+    workers_of,
+)
+
+pytestmark = [
+    pytest.mark.cold,
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc"),
+]
+
+N_CASES = 160
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory):
+    """Manifest, and the answer of a batch in one process."""
+    folder = tmp_path_factory.mktemp("undisturbed")
+    nearest = np.random.default_rng(28).uniform(0.01, 0.75, N_CASES)
+    manifest = write_cell(folder / "in", nearest)
+    (folder / "in" / "t023.csv").write_text("time,rail\n0,0\n1,oops\n")
+    run_here(manifest, folder / "out")
+    return manifest, answer_bytes(folder / "out")
+
+
+def arguments(manifest, place, *more):
+    return [str(manifest), "--out", str(place), "--jobs", "2", *more]
+
+
+def test_two_workers_write_what_one_process_does(undisturbed, tmp_path):
+    manifest, expected = undisturbed
+    code, out, err = finished(*arguments(manifest, tmp_path / "out"))
+    assert (code, err) == (1, "") and f"{N_CASES} cases" in out and "1 error" in out
+    assert answer_bytes(tmp_path / "out") == expected
+
+
+def test_what_a_killed_worker_had_begun_is_done_again(undisturbed, tmp_path):
+    manifest, expected = undisturbed
+    batch = started(*arguments(manifest, tmp_path / "out"))
+    first = until(lambda: workers_of(batch.pid))[0]
+    kill(first)  # as it starts
+    until(lambda: segments(tmp_path / "out") or batch.poll() is not None)
+    for worker in workers_of(batch.pid)[:1]:
+        kill(worker)  # as it measures
+    out, err = batch.communicate(timeout=300)
+    assert (batch.returncode, err) == (1, ""), out
+    assert answer_bytes(tmp_path / "out") == expected
+
+
+@pytest.mark.parametrize("n_segments", [0, 2])
+def test_after_a_killed_command_the_same_one_goes_on(undisturbed, tmp_path, n_segments):
+    """The scheduler is in its process; its workers end with it."""
+    manifest, expected = undisturbed
+    batch = started(*arguments(manifest, tmp_path / "out"))
+    until(lambda: workers_of(batch.pid) and len(segments(tmp_path / "out")) >= n_segments)
+    workers = workers_of(batch.pid)
+    kill(batch.pid)
+    batch.communicate(timeout=300)
+    kept = len(segments(tmp_path / "out"))
+    assert kept >= n_segments
+    until(lambda: all(map(is_gone, workers)))
+    code, out, err = finished(*arguments(manifest, tmp_path / "out"))
+    assert (code, err) == (1, "")
+    assert answer_bytes(tmp_path / "out") == expected
+    cached = int(next(line for line in out.splitlines() if "cached" in line).split()[1])
+    assert (cached > 0) == (kept > 0)
+
+
+def test_an_interrupt_keeps_what_is_done_and_is_one_line(undisturbed, tmp_path):
+    manifest, expected = undisturbed
+    batch = started(*arguments(manifest, tmp_path / "out"))
+    until(lambda: segments(tmp_path / "out"))
+    os.killpg(batch.pid, signal.SIGINT)  # as a terminal does: all of them
+    out, err = batch.communicate(timeout=300)
+    if batch.returncode == 1:
+        pytest.skip("it was done before")
+    assert batch.returncode == 130 and out == ""
+    assert err.startswith("interrupted: ") and err.count("\n") == 1
+    assert finished(*arguments(manifest, tmp_path / "out"))[0] == 1
+    assert answer_bytes(tmp_path / "out") == expected
+
+
+def test_without_its_scheduler_a_batch_is_incomplete_and_goes_on(undisturbed, tmp_path):
+    manifest, expected = undisturbed
+    host = started("127.0.0.1", str(tmp_path / "address"), module=("tests.batch.scheduler",))
+    address = until(lambda: (tmp_path / "address").exists() and (tmp_path / "address").read_text())
+    asked = [str(manifest), "--out", str(tmp_path / "out"), "--scheduler", str(address)]
+    batch = started(*asked)
+    until(lambda: segments(tmp_path / "out"))
+    kill(host.pid)
+    host.communicate(timeout=300)
+    out, err = batch.communicate(timeout=300)
+    if batch.returncode == 1:
+        pytest.skip("it was done before")
+    assert (batch.returncode, out) == (4, "")
+    assert err.startswith("incomplete: the scheduler is gone") and err.count("\n") == 1
+    code, _, err = finished(*asked)
+    assert code == 2 and "no scheduler answers" in err and err.count("\n") == 1
+    assert finished(*arguments(manifest, tmp_path / "out"))[0] == 1
+    assert answer_bytes(tmp_path / "out") == expected
+
+
+def test_two_commands_on_one_store_at_once_both_answer(undisturbed, tmp_path):
+    manifest, expected = undisturbed
+    both = [started(*arguments(manifest, tmp_path / "out")[:-1], "1") for _ in range(2)]
+    for one in both:
+        _, err = one.communicate(timeout=300)
+        assert (one.returncode, err) == (1, "")
+    assert answer_bytes(tmp_path / "out") == expected
+
+
+def test_parts_by_other_queues_make_the_same_answer(undisturbed, tmp_path):
+    manifest, expected = undisturbed
+    for part in ("1/2", "2/2"):
+        code, out, _ = finished(*arguments(manifest, tmp_path / "out")[:-1], "1", "--shard", part)
+        assert code == 1 and f"(part {part.replace('/', ' of ')})" in out
+        assert answer_bytes(tmp_path / "out") == {}
+    code, out, _ = finished(*arguments(manifest, tmp_path / "out"))
+    assert code == 1 and f"cached      {N_CASES - 1} of {N_CASES}" in out
+    assert answer_bytes(tmp_path / "out") == expected

@@ -1,0 +1,98 @@
+"""`clearance batch` in this process: exit codes, what is printed, options, one line for every mistake."""
+
+import pytest
+
+from clearance.cli import run
+from tests.batch.batches import write_cell
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    write_cell(tmp_path, [0.5, 0.2, 0.04])
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def batch(*arguments):
+    return run(["batch", *arguments, "--jobs", "1"])
+
+
+def test_the_exit_code_is_that_of_the_worst(folder, capsys):
+    assert batch("batch.yaml", "--out", "store") == 1
+    told = capsys.readouterr()
+    lines = told.out.splitlines()
+    assert lines[0] == "VIOLATED  3 cases: 1 violated, 1 near, 1 clear" and told.err == ""
+    assert "  basis       3 cases proven for the motion" in lines
+    assert any("  violated    t002: 39.99 mm, below the fail limit of 50 mm" in x for x in lines)
+    assert lines[-1] == "  page        store/batch.html"
+    assert batch("batch.yaml", "--out", "store", "--fail-mm", "10") == 0
+    assert batch("batch.yaml", "--out", "store", "--quiet") == 1
+    assert "cached      0 of 3" in capsys.readouterr().out
+
+
+def test_samples_only_is_said(folder, capsys):
+    batch("batch.yaml", "--out", "store", "--samples-only")
+    assert "basis       3 cases looked at the samples only" in capsys.readouterr().out
+
+
+def test_bad_input_among_others_is_one_only_if_asked(folder, capsys):
+    (folder / "t002.csv").write_text("time,rail\n0,x\n")
+    assert batch("batch.yaml", "--out", "store") == 1
+    assert "  error       t002: cell.yaml: trajectory.file: t002.csv" in capsys.readouterr().out
+    assert batch("batch.yaml", "--out", "store", "--strict") == 2
+
+
+def test_status_tells_what_is_missing(folder, capsys):
+    batch("batch.yaml", "--out", "store")
+    capsys.readouterr()
+    assert run(["batch", "status", "store"]) == 1
+    assert capsys.readouterr().out.startswith("3 of 3 cases done\n  missing     0\n  failed      1")
+    (folder / "t000.csv").write_text("time,rail\n0,0\n1,0.1\n")
+    assert run(["batch", "status", "store"]) == 4
+    assert capsys.readouterr().out.startswith("2 of 3 cases done\n  missing     1\n  failed      1")
+
+
+def test_view_writes_the_page_of_one_case_and_links_it(folder, capsys):
+    batch("batch.yaml", "--out", "store")
+    assert run(["view", "store", "t001"]) == 0
+    (page,) = (folder / "store" / "cases").glob("t001-*/report.html")
+    assert "NEAR" in capsys.readouterr().out
+    linked = page.parent.relative_to(folder / "store").as_posix()
+    assert linked in (folder / "store" / "batch.html").read_text()
+    assert run(["view", "store", "t01"]) == 2
+    assert "there is no case 't01'; did you mean" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["batch.yaml"], "Missing option '--out'"),
+        (["x*.yaml", "--out", "store"], "no file matches 'x*.yaml'"),
+        (["batch.yaml", "--out", "cell.yaml"], "cell.yaml: is a file"),
+        (["batch.yaml", "--out", "."], "is a folder of something else"),
+        (["batch.yaml", "--out", "store", "--shard", "3/2"], "'3/2' is no part"),
+        (["batch.yaml", "--out", "store", "--samples-only", "--certify-mm", "1"], "proves nothing"),
+        (["batch.yaml", "--out", "store", "--warn-mm", "-1"], "'-1' is not a length"),
+        (["batch.yaml", "--out", "store", "--scheduler", "x"], "leave it out with --scheduler"),
+    ],
+)
+def test_a_mistake_is_one_line(folder, capsys, arguments, told):
+    assert batch(*arguments) == 2
+    err = capsys.readouterr().err
+    assert told in err and err.startswith("error: ") and err.count("\n") == 1
+    assert not (folder / "store").exists()
+
+
+def test_status_of_no_store_is_one_line(folder, capsys):
+    assert run(["batch", "status", "nothing"]) == 2
+    assert capsys.readouterr().err.startswith("error: nothing: there is no such folder")
+
+
+def test_without_dask_one_job_does(folder, capsys, monkeypatch):
+    from clearance.cli import batch_run
+
+    monkeypatch.setattr(batch_run, "is_installed", lambda name: False)
+    monkeypatch.setattr(batch_run, "FEW", 0)
+    monkeypatch.setattr(batch_run, "usable_cores", lambda: 2)
+    assert run(["batch", "batch.yaml", "--out", "store"]) == 1
+    assert "pip install 'clearance[batch]' brings more" in capsys.readouterr().err

@@ -1,0 +1,142 @@
+"""`clearance check` with waivers, baseline, summary and annotations; `clearance compare`; the hook's command."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from clearance.cli import run
+from tests.findings.gates import write_gates
+
+BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.1)}
+WORSE = {"gate_a": (-0.5, 0.0025), "gate_b": (0.5, 0.1)}
+CLEAR = {"gate_a": (-0.5, 0.05), "gate_b": (0.5, 0.1)}
+WAIVER = (
+    "- {between: [box, gate_a], at_least: 0.002, reason: gives way, by: N. N., until: 2027-03-31}\n"
+)
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("GITHUB_STEP_SUMMARY", raising=False)
+    monkeypatch.delenv("GITHUB_WORKSPACE", raising=False)
+    for name, gates in (("broken", BROKEN), ("worse", WORSE), ("clear", CLEAR)):
+        write_gates(tmp_path / name, gates)
+    (tmp_path / "waivers.yaml").write_text(WAIVER)
+    return tmp_path
+
+
+def check(*arguments: str) -> int:
+    return run(["check", *arguments])
+
+
+def test_a_waiver_and_its_day(place, capsys):
+    waived = ("broken/case.yaml", "--waivers", "waivers.yaml")
+    assert check(*waived, "--today", "2026-11-01") == 0
+    told = capsys.readouterr().out
+    assert told.startswith("CLEAR with 1 waiver") and "gives way" in told
+    assert check(*waived, "--today", "2027-04-01") == 1
+    assert "has expired on 2027-03-31" in capsys.readouterr().out
+    assert check("clear/case.yaml", "--waivers", "waivers.yaml", "--today", "2026-11-01") == 1
+    assert capsys.readouterr().out.startswith("STALE WAIVER (would be CLEAR)")
+
+
+def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, capsys):
+    given = ("broken/case.yaml", "--waivers", "waivers.yaml", "--today", "2026-11-01")
+    assert check(*given, "--json") == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert "waivers.yaml" in [one["path"] for one in summary["inputs"]]
+    assert summary["n_waivers"] == 1 and "gives way" in summary["waived"][0]
+    assert check(*given, "--summary", "waivers.yaml") == 2
+    assert "would overwrite" in capsys.readouterr().err
+    assert (place / "waivers.yaml").read_text() == WAIVER
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["--today", "1.4.2027"], "is no day, as 2027-03-31"),
+        (["--waivers", "no.yaml"], "there is no file"),
+        (["--baseline", "no"], "there is no file"),
+        (["--baseline", "waivers.yaml"], "not JSON"),
+        (["--out", "r", "--summary", "r/findings.json"], "a file of the report"),
+        (["--junit", "x.xml", "--summary", "x.xml"], "a file of the report, or of this run"),
+    ],
+)
+def test_bad_options_are_one_line_and_write_nothing(arguments, told, place, capsys):
+    before = sorted(place.rglob("*"))
+    assert check("broken/case.yaml", *arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and err.count("\n") == 1 and told in err
+    assert sorted(place.rglob("*")) == before
+
+
+def test_a_baseline_is_told_and_does_not_change_the_exit_code(place, capsys):
+    assert check("broken/case.yaml", "--out", "before", "--quiet") == 1
+    assert check("broken/case.yaml", "--baseline", "before") == 1
+    assert "since the baseline: 1 unchanged" in capsys.readouterr().out
+    assert check("worse/case.yaml", "--baseline", "before/findings.json", "--out", "now") == 1
+    assert "since the baseline: 1 worse" in capsys.readouterr().out
+    page = (place / "now" / "report.html").read_text()
+    assert "Since the baseline: 1 worse." in page and "worse, was 3.000 mm" in page
+    assert check("clear/case.yaml", "--baseline", "before") == 0
+    assert "since the baseline: 1 gone" in capsys.readouterr().out
+
+
+def test_a_baseline_is_not_overwritten(place, capsys):
+    assert check("broken/case.yaml", "--out", "before", "--quiet") == 1
+    assert check("broken/case.yaml", "--out", "before", "--baseline", "before") == 2
+    assert "would overwrite" in capsys.readouterr().err
+
+
+def test_github_is_told_on_the_row_and_in_the_step_summary(place, capsys, monkeypatch):
+    step = place / "step.md"
+    step.write_text("before\n")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(step))
+    assert check("broken/case.yaml", "--github", "--summary", "own.md") == 1
+    lines = capsys.readouterr().out.splitlines()
+    (told,) = [line for line in lines if line.startswith("::")]
+    assert told.startswith("::error file=broken/way.csv,line=9,")
+    assert step.read_text() == "before\n" + (place / "own.md").read_text()
+    assert check("broken/case.yaml", "--github", "--json") == 1
+    out, err = capsys.readouterr()
+    assert json.loads(out)["exit_code"] == 1 and "::error file=" in err
+
+
+def test_without_a_step_summary_that_is_said(place, capsys):
+    assert check("broken/case.yaml", "--github", "--quiet") == 1
+    out, err = capsys.readouterr()
+    assert out.startswith("::error file=") and "GITHUB_STEP_SUMMARY is not set" in err
+
+
+def test_two_runs_side_by_side(place, capsys):
+    for name in ("broken", "worse", "clear"):
+        check(f"{name}/case.yaml", "--out", f"of_{name}", "--quiet")
+    assert run(["compare", "of_broken", "of_worse", "--out", "page"]) == 1
+    assert "1 worse" in capsys.readouterr().out
+    page = (place / "page" / "comparison.html").read_text()
+    assert page.count("<polyline") == 2 and "new or worse" in page and "<script" not in page
+    assert run(["compare", "of_worse", "of_clear/findings.json", "--quiet"]) == 0
+    assert capsys.readouterr().out == ""
+    assert run(["compare", "of_worse", "of_clear/findings.json", "--out", "page"]) == 0
+    assert "Curves need two report folders" in (place / "page" / "comparison.html").read_text()
+    assert run(["compare", "of_worse", "no"]) == 2
+    (place / "of_worse" / "steps.parquet").write_bytes(b"no")
+    assert run(["compare", "of_worse", "of_clear", "--out", "other"]) == 2
+    assert "no table of steps" in capsys.readouterr().err
+
+
+def test_the_hook_checks_each_file_and_what_it_lists(place, capsys):
+    (place / "all.clearance.yaml").write_text("cases: ['*/case.yaml']\n")
+    assert run(["pre-commit", "clear/case.yaml"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert run(["pre-commit", "all.clearance.yaml"]) == 1
+    told = capsys.readouterr().out
+    assert "broken/case.yaml: VIOLATED" in told and "3.000 mm" in told and "clear" not in told
+    (place / "bad.clearance.yaml").write_text("cases: []\n")
+    assert run(["pre-commit", "bad.clearance.yaml", "broken/case.yaml"]) == 2
+    out, err = capsys.readouterr()
+    assert "broken/case.yaml: VIOLATED" in out and "no list of cases" in err

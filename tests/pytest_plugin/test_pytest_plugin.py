@@ -1,0 +1,239 @@
+"""The pytest plugin, run in pytest: what it collects, what fails and says what, and that it costs nothing."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import clearance as cl
+from clearance.errors import BadInput
+from clearance.pytest_plugin import assert_clear
+from tests.findings.gates import load_gates, write_gates
+
+pytest_plugins = ["pytester"]
+
+ROOT = Path(__file__).parents[2]
+HOME = Path.home()
+"""Where compiled kernels are kept; a run inside a test has another home, unless it is told."""
+A, B = "gate_a", "gate_b"
+BROKEN = {A: (-0.5, 0.003), B: (0.5, 0.1)}
+CLEAR = {A: (-0.5, 0.05), B: (0.5, 0.1)}
+RULES = (
+    "{fail: 0.005, warn: 0.02, rules: [{name: tight, between: [box, gate_b], fail: 0.001}, "
+    "{between: [box, gate_c], fail: 0.001}]}"
+)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def run(tmp_path_factory):
+    """A run and its report; pytest inside a test forgets what it imports, and numba can be imported once only."""
+    folder = tmp_path_factory.mktemp("gates")
+    made = cl.check(load_gates(folder, BROKEN), need="limit")
+    made.save(folder / "report")
+    return made
+
+
+def alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of all plugins that are installed none is loaded by itself."""
+    monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    monkeypatch.setenv("HOME", str(HOME))
+
+
+@pytest.fixture
+def inside(pytester, monkeypatch):
+    """Runs pytest with the plugin alone in the folder of the test."""
+    alone(monkeypatch)
+
+    def run(*arguments: str) -> pytest.RunResult:
+        return pytester.runpytest("-p", "clearance.pytest_plugin", *arguments)
+
+    return run
+
+
+def write_case(folder: Path, gates=BROKEN, name: str = "cell.clearance.yaml", **changes) -> Path:
+    return write_gates(folder, gates, **changes).rename(folder / name)
+
+
+def test_a_case_is_a_test_a_rule_and_one_for_the_verdict(inside, pytester):
+    gates = BROKEN | {"gate_c": (0.7, 0.1)}
+    write_case(pytester.path, gates, limits=RULES)
+    result = inside("-v")
+    result.assert_outcomes(passed=2, failed=2)
+    told = result.stdout.str()
+    assert "cell.clearance.yaml::rule default FAILED" in told
+    assert "cell.clearance.yaml::rule tight PASSED" in told
+    assert "cell.clearance.yaml::rule box - gate_c PASSED" in told
+    assert "cell.clearance.yaml::verdict FAILED" in told
+
+
+def test_a_failure_says_who_how_near_when_and_where_the_page_is(inside, pytester):
+    write_case(pytester.path)
+    told = inside("--clearance-out", "reports").stdout.str()
+    assert "3.000 mm, below the fail limit of 5 mm: box - gate_a at 0.350 s, step 7" in told
+    page = pytester.path / "reports" / "cell.clearance.yaml" / "report.html"
+    assert f"page: {page}" in told and page.is_file()
+    assert "Traceback" not in told and "collected.py" not in told
+    assert "--clearance-out DIR writes the page" in inside().stdout.str()
+
+
+def test_a_list_of_cases_by_patterns(inside, pytester):
+    write_case(pytester.path / "weld_1", CLEAR, "case.yaml")
+    write_case(pytester.path / "weld_2", BROKEN, "case.yaml")
+    (pytester.path / "all.clearance.yaml").write_text("cases: ['weld_*/case.yaml']\n")
+    result = inside("-v")
+    result.assert_outcomes(passed=2, failed=2)
+    told = result.stdout.str()
+    assert "all.clearance.yaml::weld_1/case.yaml::verdict PASSED" in told
+    assert "all.clearance.yaml::weld_2/case.yaml::rule default FAILED" in told
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("cases: ['no_*.yaml']", "no file is called 'no_*.yaml'"),
+        ("cases: ['../*.yaml']", "a pattern below the folder"),
+        ("cases: 7", "no list of cases"),
+        ("cases: [a.yaml]\nname: x", "no list of cases"),
+        ("- 1", "no mapping"),
+        ("a: [", "not YAML"),
+    ],
+)
+def test_a_bad_list_is_one_line_when_it_is_collected(text, told, inside, pytester):
+    (pytester.path / "all.clearance.yaml").write_text(text)
+    result = inside()
+    result.assert_outcomes(errors=1)
+    assert told in result.stdout.str() and "Traceback" not in result.stdout.str()
+
+
+def test_a_bad_case_fails_in_one_line(inside, pytester):
+    path = write_case(pytester.path)
+    path.write_text(path.read_text().replace("limits:", "limit:"))
+    result = inside()
+    result.assert_outcomes(failed=2)
+    assert "unknown key 'limit'; did you mean 'limits'?" in result.stdout.str()
+    assert "Traceback" not in result.stdout.str()
+
+
+def test_what_is_waived_is_skipped_and_a_stale_waiver_fails(inside, pytester):
+    (pytester.path / "waivers.yaml").write_text(
+        "- {between: [box, gate_a], at_least: 0.002, reason: gives way, by: N. N., until: 9999-01-01}\n"
+    )
+    write_gates(pytester.path, BROKEN, "waivers: [waivers.yaml]").rename(
+        pytester.path / "cell.clearance.yaml"
+    )
+    result = inside("-rs")
+    result.assert_outcomes(passed=1, skipped=1)
+    assert "by N. N.: gives way" in result.stdout.str()
+    write_gates(pytester.path, CLEAR, "waivers: [waivers.yaml]").rename(
+        pytester.path / "cell.clearance.yaml"
+    )
+    result = inside()
+    result.assert_outcomes(passed=1, failed=1)
+    assert "is not needed" in result.stdout.str()
+
+
+TESTS = """
+import pytest
+from clearance.pytest_plugin import assert_clear
+
+def test_of_a_case(clearance_case):
+    run = clearance_case("cell/case.yaml")
+    assert run.record.need == {need!r}
+    assert_clear(run, between=("box", "gate_b"), at_least=0.05)
+    with pytest.raises(AssertionError, match="3.000 mm, below the fail limit"):
+        assert_clear(run)
+"""
+
+
+@pytest.mark.parametrize("need", ["limit", "minimum"])
+def test_the_fixture_checks_a_case_by_its_path(need, inside, pytester):
+    write_gates(pytester.path / "cell", BROKEN)
+    pytester.makepyfile(TESTS.format(need=need))
+    inside("--clearance-need", need).assert_outcomes(passed=1)
+
+
+@pytest.mark.slow  # two workers import all that measures
+@pytest.mark.cold
+def test_with_several_workers(pytester, monkeypatch):
+    alone(monkeypatch)
+    for i, gates in enumerate((CLEAR, BROKEN)):
+        write_case(pytester.path / f"weld_{i}", gates, "case.yaml")
+    (pytester.path / "all.clearance.yaml").write_text("cases: ['weld_*/case.yaml']\n")
+    plugins = ("-p", "xdist.plugin", "-p", "clearance.pytest_plugin")
+    result = pytester.runpytest_subprocess(*plugins, "-n", "2", "--dist", "loadgroup")
+    result.assert_outcomes(passed=2, failed=2)
+    assert "box - gate_a at 0.350 s" in result.stdout.str()
+
+
+@pytest.mark.cold
+def test_the_plugin_imports_nothing_that_measures():
+    """Every pytest run of who has this package installed imports the plugin."""
+    heavy = "{'numba', 'numpy', 'pyarrow', 'pydantic', 'rich', 'ruamel'}"
+    script = (
+        f"import pytest; import clearance.pytest_plugin, sys; print({heavy} & {{*sys.modules}})"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, cwd=ROOT, check=True
+    )
+    assert done.stdout.strip() == "set()"
+
+
+def test_the_package_declares_its_plugin():
+    told = tomllib.loads((ROOT / "pyproject.toml").read_text())
+    assert told["project"]["entry-points"]["pytest11"] == {"clearance": "clearance.pytest_plugin"}
+
+
+def test_what_keeps_its_distance_is_clear(run):
+    assert_clear(run, between=("box", B))
+    assert_clear(run, between=(B, "b*"), at_least=0.0999)
+    assert_clear(run, at_least=0.0029)
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({}, "below the fail limit of 5 mm: box - gate_a"),
+        (
+            {"between": ("box", A)},
+            "box - gate_a: 3.000 mm at 0.350 s, step 7; the fail limit is 5 mm",
+        ),
+        (
+            {"at_least": 0.004},
+            "box - gate_a: 3.000 mm at 0.350 s, step 7; at least 4 mm was asked for",
+        ),
+        ({"between": ("box", B), "at_least": 0.2}, "box - gate_b: 100.0 mm at"),
+        ({"between": ("box", B), "at_least": 0.1}, "only 99.9"),
+    ],
+)
+def test_what_comes_nearer_is_told(run, asked, told):
+    with pytest.raises(AssertionError) as error:
+        assert_clear(run, **asked)
+    assert told in str(error.value) and "gates is not clear" in str(error.value)
+
+
+def test_pairs_that_are_not_there_are_an_error_with_the_nearest_name(run):
+    for between, told in (
+        (("box", "gate_aa"), "did you mean 'gate_a'?"),
+        ((A, B), "no pair is measured between"),
+    ):
+        with pytest.raises(BadInput, match="no") as error:
+            assert_clear(run, between=between)
+        assert told in str(error.value)
+
+
+def test_contact_is_never_clear(tmp_path):
+    run = cl.check(load_gates(tmp_path, {A: (0.0, 0.0)}, limits="{fail: 0}"))
+    with pytest.raises(AssertionError, match="contact at"):
+        assert_clear(run, between=("box", A), at_least=0.0)
+
+
+def test_pytest_collects_nothing_else(inside, pytester):
+    write_gates(pytester.path, BROKEN)
+    assert inside().ret == pytest.ExitCode.NO_TESTS_COLLECTED
+    shutil.rmtree(pytester.path / "reports", ignore_errors=True)

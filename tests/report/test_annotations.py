@@ -1,0 +1,162 @@
+"""Annotations and Markdown: on the right row, the worst ten, and no name can break out of either."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import clearance as cl
+from clearance.findings.comparison import compared
+from clearance.findings.findings_file import finding_list_of
+from clearance.load.trajectory_lines import line_of_sample
+from clearance.report import verdict_of
+from clearance.report.annotations import MOST, annotation_lines, command
+from clearance.report.markdown import MOST_ROWS, markdown, plain
+from clearance.report.trajectory_row import row_of, sample_at
+from clearance.run import Run
+from clearance.world.case import PlacedRobot
+from clearance.world.timing import Timing
+from clearance.world.trajectory import Trajectory
+from tests.findings.gates import load_gates, write_gates
+from tests.report.records import arm
+
+BROKEN = {"gate_a": (-0.5, 0.003), "gate_b": (0.5, 0.004)}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    return tmp_path_factory.mktemp("gates")
+
+
+@pytest.fixture(scope="module")
+def run(folder) -> Run:
+    return cl.check(load_gates(folder, BROKEN))
+
+
+def lines_of(run: Run, root: Path) -> list[str]:
+    return [*annotation_lines(run.record, run.verdict, run.findings, root)]
+
+
+def test_a_finding_is_annotated_on_the_row_of_its_moment(run, folder):
+    worst = run.findings[0]
+    rows = (folder / "way.csv").read_text().splitlines()
+    lines = lines_of(run, folder)
+    assert len(lines) == 2
+    assert lines[0].startswith(
+        f"::error file=way.csv,line={worst.step + 2},title=clearance%3A gates::3.000 mm"
+    )
+    assert float(rows[worst.step + 1].split(",")[0]) == pytest.approx(worst.time, abs=1e-6)
+
+
+def test_a_file_outside_the_repository_is_told_whole(run, tmp_path, folder):
+    assert f"file={folder / 'way.csv'}," in lines_of(run, tmp_path)[0]
+
+
+def test_at_most_ten_and_the_worst_first(tmp_path):
+    gates = {f"gate_{i}": (-0.9 + 0.15 * i, 0.001 + 1e-4 * i) for i in range(12)}
+    lines = lines_of(cl.check(load_gates(tmp_path, gates)), tmp_path)
+    assert len(lines) == MOST
+    assert [f"gate_{i} at" in line for i, line in enumerate(lines)] == [True] * MOST
+
+
+def test_a_run_that_is_clear_has_none(tmp_path):
+    assert lines_of(cl.check(load_gates(tmp_path, {"gate": (0.0, 0.1)})), tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        ("time,a\n0,1\n1,2\n", [2, 3, None]),
+        ("\n\ntime,a\n\n0,1\n\n1,2\n", [5, 7, None]),
+        ("time;a\n0;1,5\n1;2\n", [2, 3, None]),
+        ("0,1\n1,2\n", [1, 2, None]),
+    ],
+)
+def test_the_line_of_a_sample(text, lines, tmp_path):
+    (tmp_path / "way.csv").write_text(text)
+    assert [line_of_sample(str(tmp_path / "way.csv"), i) for i in range(3)] == lines
+
+
+def test_a_file_that_is_no_table_has_no_lines(tmp_path):
+    for name in ("way.yaml", "way.json", "gone.csv"):
+        assert line_of_sample(str(tmp_path / name), 0) is None
+
+
+def test_a_sample_is_that_at_or_before_a_time_of_the_run():
+    trajectory = Trajectory(np.array([0.0, 1.0, 2.0]), ("pan",), np.zeros((3, 1)))
+    placed = PlacedRobot(arm(), trajectory)
+    assert [sample_at(placed, t) for t in (-1.0, 0.0, 0.9, 1.0, 1.5, 9.0)] == [0, 0, 0, 1, 1, 2]
+    late = dataclasses.replace(placed, timing=Timing(start=5.0, rate=2.0, after="loop"))
+    assert [sample_at(late, t) for t in (5.0, 5.5, 6.25, 6.5)] == [0, 1, 0, 1]
+
+
+def test_a_trajectory_of_no_file_has_no_row(run):
+    given = run.record.case.robots[0].asked
+    case = run.record.case.with_trajectory(
+        given.times, given.positions, joint_names=given.joint_names
+    )
+    other = cl.check(case)
+    assert row_of(other.record, other.findings[0]) is None
+    assert lines_of(other, Path.cwd())[0].startswith("::error title=clearance%3A gates::")
+
+
+ANY_TEXT = st.text(max_size=60) | st.sampled_from(
+    ["::error::x", "a\n::error::x", "%0A::", "a,line=1::b", "--><script>", "| x |", "`x`", "![a](http://b)",
+     "<img src=x>", "@someone", "#1", "http://x.y", "www.x.y", "- a", "1. a", "[x]: y", "~~x~~", "a|b", "$x$"]
+)  # fmt: skip
+
+
+@given(ANY_TEXT, ANY_TEXT)
+def test_no_name_ends_a_command_or_begins_another(name, message):
+    line = command("error", {"file": name, "title": name}, message)
+    assert "\n" not in line and "\r" not in line
+    head, told = re.fullmatch(r"::error (file=[^:,]*,title=[^:,]*)::(.*)", line, re.DOTALL).groups()
+    for given_text, escaped in ((name, head.split(",")[0][5:]), (message, told)):
+        for sign, code in ((":", "%3A"), (",", "%2C"), ("\r", "%0D"), ("\n", "%0A"), ("%", "%25")):
+            escaped = escaped.replace(code, sign)
+        assert escaped == given_text
+
+
+@given(ANY_TEXT)
+def test_plain_text_stays_text_in_markdown(text):
+    shown = plain(text)
+    assert "\n" not in shown and not set("<>|`*_[]\\~$@!{}") & set(shown)
+    assert not re.search(r"(^[-+] |^\d[.)] |https?:/|www\.)", shown, re.IGNORECASE)
+    assert html.unescape(shown) == " ".join(
+        "".join(c if c.isprintable() else " " for c in text).split()
+    )
+
+
+def test_markdown_of_a_run(run, folder):
+    text = markdown(run.record, run.verdict, run.findings)
+    assert text.startswith("### gates: VIOLATED\n") and "self-collision not checked" in text
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert len(rows) == 4 and len({row.count("|") for row in rows}) == 1
+    assert "| violated | default limits | box - gate&#95;a | 3.000 | 5 | 2.9" in rows[2]
+    same = compared(finding_list_of(run.record), finding_list_of(run.record))
+    told = markdown(run.record, run.verdict, run.findings, same)
+    assert "since the baseline: 2 unchanged" in told and "unchanged, was 3.000 mm" in told
+
+
+def test_names_from_files_do_not_break_out_of_the_table(run):
+    finding = dataclasses.replace(
+        run.findings[0], body_a="a|b\n| x |", body_b="<script>", rule="`r`"
+    )
+    text = markdown(run.record, run.verdict, [finding] * (MOST_ROWS + 7))
+    rows = [line for line in text.splitlines() if line.startswith("|")]
+    assert len(rows) == MOST_ROWS + 2 and len({row.count("|") for row in rows}) == 1
+    assert "<script>" not in text and "`r`" not in text and "7 more findings." in text
+
+
+def test_a_clear_run_says_what_is_nearest(tmp_path):
+    one = cl.check(load_gates(tmp_path, {"gate": (0.0, 0.1)}))
+    text = markdown(one.record, verdict_of(one.record), one.findings)
+    assert "### gates: CLEAR" in text and "100.0 mm: box - gate" in text
+    assert write_gates(tmp_path, {"gate": (0.0, 0.1)}).is_file()
