@@ -58,7 +58,7 @@ def new_scene(
 ) -> NewScene:
     """The scene in a file, as a case in `folder` is to name it.
 
-    A file whose reader warns of something, or which says what a link holds, is named as it is.
+    A file whose reader warns of something is named as it is, so that each check warns of it too.
 
     Raises:
         BadInput: as its reader says.
@@ -70,10 +70,9 @@ def new_scene(
     content = read_scene(asked)
     rows = content.scene["obstacles"]  # type: ignore[index]  # as the reader checked
     taken = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
-    if content.notices or content.held:
-        why = "it says what the robot holds" if content.held else "it brings a warning"
-        told = (f"{taken}; it stays the file that it is, since {why}",)
-        return NewScene(path_from(folder, given), f"as it is, since {why}", taken=told)
+    if content.notices:
+        told = (f"{taken}; it stays the file that it is, since it brings a warning",)
+        return NewScene(path_from(folder, given), "as it is, since it brings a warning", taken=told)
     case, notes = _with_rows(content, asked, placed, meshes)
     contents = dict(_contents(rows, content, asked, folder))
     return NewScene(

@@ -95,6 +95,7 @@ def direct(scene, trajectory):
     case = YAML(typ="safe").load(Path("out/case.yaml").read_text())
     case["robot"].pop("padding", None)
     case.pop("allow", None)
+    case.pop("carry", None)
     case |= {"trajectory": trajectory} | ({} if scene is None else {"scene": scene})
     Path("out/direct.yaml").write_text(json.dumps(case))
     return "out/direct.yaml"
@@ -120,7 +121,8 @@ def test_it_has_the_results_of_the_files_it_is_made_from(capsys, scene, trajecto
     origins = [[one.pop("origin", None) for one in told["obstacles"]] for _, told in (ours, theirs)]
     assert ours == theirs and len(origins[0]) == len(origins[1])
     text = Path("out/case.yaml").read_text()
-    assert ("padding" in text and "allow:" in text) == (scene == "planning.yaml")
+    assert ("padding" in text) == (scene in ("planning.yaml", "held.yaml"))
+    assert ("\ncarry:" in text) == (scene == "held.yaml")
 
 
 def test_it_says_what_it_took_and_what_it_assumed(capsys):
@@ -189,6 +191,13 @@ def test_states_of_the_srdf_make_a_motion_and_rest(capsys):
     assert new(*words) == 0
     text = Path("out/case.yaml").read_text()
     assert "# state: home  # where a state of the SRDF says; it has [home, out]" in text
+
+
+def test_what_a_scene_says_is_held_is_carried_also_between_states():
+    words = ["--srdf", "cell/arm.srdf", "--states", "home,out", "--scene", "cell/held.yaml"]
+    assert new(*words) == 0
+    (carry,) = load_case("out/case.yaml").carries
+    assert (carry.part, carry.by, carry.window.start) == ("tool", "tip", 0.0)
 
 
 def test_limit_files_are_named_where_they_lie(capsys):
