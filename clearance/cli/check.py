@@ -15,11 +15,13 @@ from clearance.cli import ExitCode
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
+from clearance.tolerance import CERTIFY_GAP
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
     from clearance.run import Question, Run
+    from clearance.simulate.resumable_rows import MeasuredRows
     from clearance.world.case import Case
 
 
@@ -124,25 +126,15 @@ def check(
     cross-check disagrees; the greatest that holds. A baseline does not change it: `clearance
     compare` has an exit code of its own.
     """
-    from clearance.cli.comparison import print_comparison
     from clearance.cli.kept import kept_rows
-    from clearance.cli.places import refuse_inputs_of_cases
-    from clearance.cli.progress import shown_progress
-    from clearance.run import Question, Resources, answer
-    from clearance.tolerance import CERTIFY_GAP
+    from clearance.run import Question
 
-    if samples_only and (certify or certify_mm is not None):
-        raise click.UsageError(
-            "--samples-only proves nothing; leave out --certify and --certify-mm"
-        )
+    _require_proof_wanted(samples_only, certify or certify_mm is not None)
     _require_extras(out, junit, cross_check, motion)
-    _require_places(out, junit, summary)
     more = MoreFiles(png, glb, trajectory)
-    more.require_writable()
-    _compile_ahead(quiet)
     outputs = _outputs(out, junit, summary, more)
-    case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
-    refuse_inputs_of_cases([case], outputs)
+    _compile_ahead(quiet)
+    case = _waived(_case(case_file, fail_mm, warn_mm, accept), waivers, outputs)
     before = baseline_of(baseline, outputs)
     question = Question(
         case,
@@ -158,20 +150,35 @@ def check(
     )
     ahead = more.made_ahead(question.case, motion)
     with kept_rows(out, quiet) as rows:
-        with shown_progress(quiet or as_json, _passes(question)) as progress:
-            run = answer(question, Resources(jobs, progress, rows))
-            if out is not None or as_json or png or glb:
-                run.record.work_out_contacts(progress)
+        run = _answered(question, jobs, rows, as_json or bool(out or png or glb), quiet or as_json)
         comparison = comparison_of(run, before)
         _write(run, out, junit, comparison)
         notes = more.write(run, ahead)
     _print(run, out, as_json, quiet)
-    if not (as_json or quiet):
-        more.print_written(notes)
-        if comparison is not None:
-            print_comparison(comparison)
+    _print_beside(more, notes, comparison, quiet or as_json)
     ForCi(summary, github).write(run, comparison, to_stderr=as_json)
     return ExitCode(run.verdict.exit_code)
+
+
+def _answered(
+    question: Question, jobs: int | None, rows: MeasuredRows, contacts: bool, quiet: bool
+) -> Run:
+    """What the question comes to, with its progress shown; its contacts are worked out if they are wanted."""
+    from clearance.cli.progress import shown_progress
+    from clearance.run import Resources, answer
+
+    with shown_progress(quiet, _passes(question)) as progress:
+        run = answer(question, Resources(jobs, progress, rows))
+        if contacts:
+            run.record.work_out_contacts(progress)
+    return run
+
+
+def _require_proof_wanted(samples_only: bool, certify: bool) -> None:
+    if samples_only and certify:
+        raise click.UsageError(
+            "--samples-only proves nothing; leave out --certify and --certify-mm"
+        )
 
 
 def _passes(question: Question) -> list[str]:
@@ -180,12 +187,28 @@ def _passes(question: Question) -> list[str]:
     return passes + ["cross-checking"] * question.cross_check + ["looking into contacts"]
 
 
-def _require_places(out: Path | None, junit: Path | None, summary: Path | None) -> None:
+def _require_places(
+    out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
+) -> None:
     from clearance.cli.places import require_file_place, require_folder_place
 
     require_folder_place(out)
     require_file_place(junit)
     require_file_place(summary, "--summary")
+    more.require_writable()
+
+
+def _waived(case: Case, waivers: tuple[Path, ...], outputs: list[Path]) -> Case:
+    """The case with the waivers of files, if no output goes over what it was made from.
+
+    Raises:
+        Unwritable: one does.
+    """
+    from clearance.cli.places import refuse_inputs_of_cases
+
+    case = with_waivers(case, waivers)
+    refuse_inputs_of_cases([case], outputs)
+    return case
 
 
 def _case(
@@ -224,14 +247,15 @@ def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, mot
 def _outputs(
     out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
 ) -> list[Path]:
-    """The files that may be written; no two are the same.
+    """The files that may be written, each where it can be; no two are the same.
 
     Raises:
-        Unwritable: one would overwrite another.
+        Unwritable: one cannot be written, or would overwrite another.
     """
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 
+    _require_places(out, junit, summary, more)
     report = [] if out is None else [out / name for name in OWN]
     taken = {os.path.realpath(path): "is a file of the report" for path in report}
     asked = {"--junit": junit, "--summary": summary, **more.by_option}
@@ -275,3 +299,16 @@ def _print(run: Run, out: Path | None, as_json: bool, quiet: bool) -> None:
         from clearance.cli.verdict import print_verdict
 
         print_verdict(run, out)
+
+
+def _print_beside(
+    more: MoreFiles, notes: list[str], comparison: Comparison | None, quiet: bool
+) -> None:
+    """What there is beside the verdict: files, and how it compares with a baseline."""
+    if quiet:
+        return
+    more.print_written(notes)
+    if comparison is not None:
+        from clearance.cli.comparison import print_comparison
+
+        print_comparison(comparison)
