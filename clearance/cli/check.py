@@ -15,7 +15,6 @@ from clearance.cli import ExitCode
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
-from clearance.tolerance import CERTIFY_GAP
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -130,10 +129,10 @@ def check(
     from clearance.run import Question
 
     _require_proof_wanted(samples_only, certify or certify_mm is not None)
-    _require_extras(out, junit, cross_check, motion)
     more = MoreFiles(png, glb, trajectory)
-    outputs = _outputs(out, junit, summary, more)
+    _require_possible(out, junit, summary, more, cross_check, motion)
     _compile_ahead(quiet)
+    outputs = _outputs(out, junit, summary, more)
     case = _waived(_case(case_file, fail_mm, warn_mm, accept), waivers, outputs)
     before = baseline_of(baseline, outputs)
     question = Question(
@@ -142,7 +141,7 @@ def check(
         method=method,
         motion=motion,
         certify=not samples_only,
-        certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
+        certify_gap=_gap(certify_mm),
         cross_check=cross_check,
         contact=contact,
         paper_tolerance=paper_tolerance,
@@ -181,17 +180,31 @@ def _require_proof_wanted(samples_only: bool, certify: bool) -> None:
         )
 
 
+def _gap(given: float | None) -> float:
+    """[m] How tight the bound is; the usual gap where none is given."""
+    from clearance.tolerance import CERTIFY_GAP
+
+    return CERTIFY_GAP if given is None else given
+
+
 def _passes(question: Question) -> list[str]:
     """What a run does over the steps, one after the other, as progress names it."""
     passes = ["measuring"] + ["certifying"] * question.certify
     return passes + ["cross-checking"] * question.cross_check + ["looking into contacts"]
 
 
-def _require_places(
-    out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
+def _require_possible(
+    out: Path | None,
+    junit: Path | None,
+    summary: Path | None,
+    more: MoreFiles,
+    cross_check: bool,
+    motion: str,
 ) -> None:
+    """Refuses, before anything is measured, what could not be done or written in the end."""
     from clearance.cli.places import require_file_place, require_folder_place
 
+    _require_extras(out, junit, cross_check, motion)
     require_folder_place(out)
     require_file_place(junit)
     require_file_place(summary, "--summary")
@@ -247,15 +260,14 @@ def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, mot
 def _outputs(
     out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
 ) -> list[Path]:
-    """The files that may be written, each where it can be; no two are the same.
+    """The files that may be written; no two are the same.
 
     Raises:
-        Unwritable: one cannot be written, or would overwrite another.
+        Unwritable: one would overwrite another.
     """
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 
-    _require_places(out, junit, summary, more)
     report = [] if out is None else [out / name for name in OWN]
     taken = {os.path.realpath(path): "is a file of the report" for path in report}
     asked = {"--junit": junit, "--summary": summary, **more.by_option}
