@@ -20,7 +20,6 @@ from clearance.world.notice import KINDS
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
     from clearance.run import Question, Run
-    from clearance.simulate.resumable_rows import MeasuredRows
     from clearance.world.case import Case
 
 
@@ -125,15 +124,25 @@ def check(
     cross-check disagrees; the greatest that holds. A baseline does not change it: `clearance
     compare` has an exit code of its own.
     """
+    from clearance.cli.comparison import print_comparison
     from clearance.cli.kept import kept_rows
-    from clearance.run import Question
+    from clearance.cli.places import refuse_inputs_of_cases
+    from clearance.cli.progress import shown_progress
+    from clearance.run import Question, Resources, answer
+    from clearance.tolerance import CERTIFY_GAP
 
-    _require_proof_wanted(samples_only, certify or certify_mm is not None)
+    if samples_only and (certify or certify_mm is not None):
+        raise click.UsageError(
+            "--samples-only proves nothing; leave out --certify and --certify-mm"
+        )
+    _require_extras(out, junit, cross_check, motion)
+    _require_places(out, junit, summary)
     more = MoreFiles(png, glb, trajectory)
-    _require_possible(out, junit, summary, more, cross_check, motion)
+    more.require_writable()
     _compile_ahead(quiet)
     outputs = _outputs(out, junit, summary, more)
-    case = _waived(_case(case_file, fail_mm, warn_mm, accept), waivers, outputs)
+    case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
+    refuse_inputs_of_cases([case], outputs)
     before = baseline_of(baseline, outputs)
     question = Question(
         case,
@@ -141,7 +150,7 @@ def check(
         method=method,
         motion=motion,
         certify=not samples_only,
-        certify_gap=_gap(certify_mm),
+        certify_gap=CERTIFY_GAP if certify_mm is None else certify_mm,
         cross_check=cross_check,
         contact=contact,
         paper_tolerance=paper_tolerance,
@@ -149,42 +158,20 @@ def check(
     )
     ahead = more.made_ahead(question.case, motion)
     with kept_rows(out, quiet) as rows:
-        run = _answered(question, jobs, rows, as_json or bool(out or png or glb), quiet or as_json)
+        with shown_progress(quiet or as_json, _passes(question)) as progress:
+            run = answer(question, Resources(jobs, progress, rows))
+            if out is not None or as_json or png or glb:
+                run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
         _write(run, out, junit, comparison)
         notes = more.write(run, ahead)
     _print(run, out, as_json, quiet)
-    _print_beside(more, notes, comparison, quiet or as_json)
+    if not (as_json or quiet):
+        more.print_written(notes)
+        if comparison is not None:
+            print_comparison(comparison)
     ForCi(summary, github).write(run, comparison, to_stderr=as_json)
     return ExitCode(run.verdict.exit_code)
-
-
-def _answered(
-    question: Question, jobs: int | None, rows: MeasuredRows, contacts: bool, quiet: bool
-) -> Run:
-    """What the question comes to, with its progress shown; its contacts are worked out if they are wanted."""
-    from clearance.cli.progress import shown_progress
-    from clearance.run import Resources, answer
-
-    with shown_progress(quiet, _passes(question)) as progress:
-        run = answer(question, Resources(jobs, progress, rows))
-        if contacts:
-            run.record.work_out_contacts(progress)
-    return run
-
-
-def _require_proof_wanted(samples_only: bool, certify: bool) -> None:
-    if samples_only and certify:
-        raise click.UsageError(
-            "--samples-only proves nothing; leave out --certify and --certify-mm"
-        )
-
-
-def _gap(given: float | None) -> float:
-    """[m] How tight the bound is; the usual gap where none is given."""
-    from clearance.tolerance import CERTIFY_GAP
-
-    return CERTIFY_GAP if given is None else given
 
 
 def _passes(question: Question) -> list[str]:
@@ -193,35 +180,12 @@ def _passes(question: Question) -> list[str]:
     return passes + ["cross-checking"] * question.cross_check + ["looking into contacts"]
 
 
-def _require_possible(
-    out: Path | None,
-    junit: Path | None,
-    summary: Path | None,
-    more: MoreFiles,
-    cross_check: bool,
-    motion: str,
-) -> None:
-    """Refuses, before anything is measured, what could not be done or written in the end."""
+def _require_places(out: Path | None, junit: Path | None, summary: Path | None) -> None:
     from clearance.cli.places import require_file_place, require_folder_place
 
-    _require_extras(out, junit, cross_check, motion)
     require_folder_place(out)
     require_file_place(junit)
     require_file_place(summary, "--summary")
-    more.require_writable()
-
-
-def _waived(case: Case, waivers: tuple[Path, ...], outputs: list[Path]) -> Case:
-    """The case with the waivers of files, if no output goes over what it was made from.
-
-    Raises:
-        Unwritable: one does.
-    """
-    from clearance.cli.places import refuse_inputs_of_cases
-
-    case = with_waivers(case, waivers)
-    refuse_inputs_of_cases([case], outputs)
-    return case
 
 
 def _case(
@@ -311,16 +275,3 @@ def _print(run: Run, out: Path | None, as_json: bool, quiet: bool) -> None:
         from clearance.cli.verdict import print_verdict
 
         print_verdict(run, out)
-
-
-def _print_beside(
-    more: MoreFiles, notes: list[str], comparison: Comparison | None, quiet: bool
-) -> None:
-    """What there is beside the verdict: files, and how it compares with a baseline."""
-    if quiet:
-        return
-    more.print_written(notes)
-    if comparison is not None:
-        from clearance.cli.comparison import print_comparison
-
-        print_comparison(comparison)
