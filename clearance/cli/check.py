@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
+    from clearance.findings.findings_file import FindingList
     from clearance.run import Question, Run
     from clearance.world.case import Case
 
@@ -129,22 +130,16 @@ def check(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
     _require_extras(out, junit, cross_check, motion)
-    _require_places(out, junit, summary)
-    more = MoreFiles(png, glb, trajectory)
-    more.require_writable()
+    files = _Files(out, junit, MoreFiles(png, glb, trajectory), ForCi(summary, github))
+    files.require_places()
     _require_file(case_file)
-    from clearance.cli.comparison import print_comparison
-    from clearance.cli.kept import kept_rows
-    from clearance.cli.places import refuse_inputs_of_cases
-    from clearance.cli.progress import shown_progress
-    from clearance.run import Question, Resources, answer
+    from clearance.run import Question
     from clearance.tolerance import CERTIFY_GAP
 
     _compile_ahead(quiet)
-    outputs = _outputs(out, junit, summary, more)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
-    refuse_inputs_of_cases([case], outputs)
-    before = baseline_of(baseline, outputs)
+    files.refuse_inputs(case)
+    before = baseline_of(baseline, files.outputs)
     question = Question(
         case,
         need=need,
@@ -157,22 +152,73 @@ def check(
         paper_tolerance=paper_tolerance,
         today=today,
     )
-    ahead = more.made_ahead(question.case, motion)
-    with kept_rows(out, quiet) as rows:
+    return _answered(question, files, before, jobs, as_json, quiet)
+
+
+def _answered(
+    question: Question,
+    files: _Files,
+    before: FindingList | None,
+    jobs: int | None,
+    as_json: bool,
+    quiet: bool,
+) -> ExitCode:
+    """Answers a question, writes the files that are wanted, and prints what is to be told."""
+    from clearance.cli.comparison import print_comparison
+    from clearance.cli.kept import kept_rows
+    from clearance.cli.progress import shown_progress
+    from clearance.run import Resources, answer
+
+    ahead = files.more.made_ahead(question.case, question.motion)
+    with kept_rows(files.out, quiet) as rows:
         with shown_progress(quiet or as_json, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if out is not None or as_json or png or glb:
+            if files.out is not None or as_json or files.more.png or files.more.glb:
                 run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
-        _write(run, out, junit, comparison)
-        notes = more.write(run, ahead)
-    _print(run, out, as_json, quiet)
+        _write(run, files.out, files.junit, comparison)
+        notes = files.more.write(run, ahead)
+    _print(run, files.out, as_json, quiet)
     if not (as_json or quiet):
-        more.print_written(notes)
+        files.more.print_written(notes)
         if comparison is not None:
             print_comparison(comparison)
-    ForCi(summary, github).write(run, comparison, to_stderr=as_json)
+    files.ci.write(run, comparison, to_stderr=as_json)
     return ExitCode(run.verdict.exit_code)
+
+
+@dataclass(frozen=True)
+class _Files:
+    """What is to be written, and where."""
+
+    out: Path | None
+    junit: Path | None
+    more: MoreFiles
+    ci: ForCi
+
+    def require_places(self) -> None:
+        """Refuses what could not be written in the end.
+
+        Raises:
+            Unavailable, Unwritable: with the option or the place.
+        """
+        _require_places(self.out, self.junit, self.ci.summary)
+        self.more.require_writable()
+
+    @property
+    def outputs(self) -> list[Path]:
+        """The files that may be written.
+
+        Raises:
+            Unwritable: one would overwrite another.
+        """
+        return _outputs(self.out, self.junit, self.ci.summary, self.more)
+
+    def refuse_inputs(self, case: Case) -> None:
+        """Raises `Unwritable` if a file that the case was made from would be overwritten."""
+        from clearance.cli.places import refuse_inputs_of_cases
+
+        refuse_inputs_of_cases([case], self.outputs)
 
 
 def _require_file(case_file: Path) -> None:
