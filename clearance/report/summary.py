@@ -19,12 +19,14 @@ from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.rules import rules_of, told_moment
 from clearance.report.verdict import Verdict, verdict_of
+from clearance.report.wording import count
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import LINK_AND_OBSTACLE
 from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
 from clearance.simulate.standing import standing_hint
 from clearance.world.body import Body
+from clearance.world.case import Case
 from clearance.world.motion import Motion
 
 FORMAT = 3
@@ -233,8 +235,15 @@ def notes_of(record: Record) -> list[str]:
         *robots,
         *record.notes,
         *record.contact_notes,
+        *_waivers_of_others(record.case),
     ]
     return list(dict.fromkeys(told))
+
+
+def _waivers_of_others(case: Case) -> list[str]:
+    """That some waivers are of other cases, and say nothing here."""
+    others = sum(not waiver.is_of_case(case.name) for waiver in case.waivers)
+    return [f"of other cases, and not looked at: {count(others, 'waiver')}"] if others else []
 
 
 def _finite(value: float) -> float | None:

@@ -154,6 +154,7 @@ def test_a_case_names_its_files_of_waivers(tmp_path):
     run = answer(Question(case, today=TODAY))
     assert run.passed and run.verdict.n_waivers == 1
     assert judgement_of(run.record).n_of_others == 1
+    assert "of other cases, and not looked at: 1 waiver" in run.summary["notes"]
 
 
 @pytest.mark.parametrize(
