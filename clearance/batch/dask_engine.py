@@ -127,7 +127,11 @@ def _settings() -> Iterator[None]:
         {
             "distributed.scheduler.allowed-failures": LOST_WITH,
             "distributed.comm.timeouts.connect": f"{CONNECTING}s",
-            "distributed.client.heartbeat": "1s",
+            "distributed.scheduler.work-stealing": False,
+            "distributed.scheduler.active-memory-manager.start": False,
+            "distributed.worker.profile.enabled": False,
+            "distributed.admin.tick.interval": "1s",
+            "distributed.admin.system-monitor.interval": "10s",
         }
     ):
         yield
