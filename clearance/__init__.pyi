@@ -1,10 +1,15 @@
 from .errors import BadInput, ClearanceError
+from .findings.finding import Finding
+from .geometry.point_cloud import PointCloud
 from .geometry.polyhedron import Polyhedron
 from .geometry.polytope import Polytope
-from .geometry.shapes import box, capsule, cylinder, pipe, sphere
+from .geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from .load.case_file import load_case
+from .load.cloud import read_points
 from .load.mesh import read_mesh
+from .load.robot_formats import load_robot
 from .load.urdf import load_urdf
+from .load.waiver_file import load_waivers
 from .planar.biarcs import biarcs
 from .planar.curve import Curve
 from .planar.deviation import deviation
@@ -36,6 +41,7 @@ from .world.robot import Robot
 from .world.rules import Allowance, Rule
 from .world.timing import Timing, Window
 from .world.trajectory import Trajectory
+from .world.waiver import Waiver
 
 __all__ = [
     "Allowance",
@@ -49,6 +55,7 @@ __all__ = [
     "Contact",
     "CrossCheck",
     "Curve",
+    "Finding",
     "Fit",
     "Intersection",
     "Limits",
@@ -56,6 +63,7 @@ __all__ = [
     "Nearest",
     "Obstacle",
     "PlacedRobot",
+    "PointCloud",
     "Polyhedron",
     "Polytope",
     "PoseTable",
@@ -73,6 +81,7 @@ __all__ = [
     "Timing",
     "Trajectory",
     "Undecided",
+    "Waiver",
     "Window",
     "Workspace",
     "__version__",
@@ -87,17 +96,21 @@ __all__ = [
     "cylinder",
     "deviation",
     "distance",
+    "ellipsoid",
     "fit",
     "hausdorff",
     "intersect",
     "load_case",
+    "load_robot",
     "load_urdf",
+    "load_waivers",
     "minimum_distance",
     "penetration",
     "pipe",
     "polygon_distance",
     "polygon_distances",
     "read_mesh",
+    "read_points",
     "shared_workspace",
     "sphere",
     "swept_profile",

@@ -76,6 +76,10 @@ class UnknownJoint(BadInput):
     """A joint name that the robot does not have."""
 
 
+class UnknownState(BadInput):
+    """A state of joints by name that the robot's SRDF does not have, or of which it has several."""
+
+
 class UnknownRobot(BadInput):
     """A robot name that the case does not have."""
 

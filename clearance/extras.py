@@ -14,11 +14,13 @@ from clearance.errors import Unavailable
 
 LIBRARIES = {
     "batch": ("dask", "distributed"),
+    "cad": ("cascadio",),
     "contact": ("coacd", "manifold3d"),
     "crosscheck": ("fcl",),
     "dxf": ("ezdxf",),
+    "mujoco": ("mujoco",),
     "report": ("plotly", "meshcat", "matplotlib", "junitparser"),
-    "ros": ("rosbags",),
+    "ros": ("rosbags", "xacro"),
     "simulate": ("pybullet", "pybullet_data", "pybullet_utils"),
     "view": ("meshcat", "tornado", "umsgpack"),
 }

@@ -1,30 +1,21 @@
 """Which files of this package a file imports, directly or not: what its results can depend on.
 
 The names of compiled kernels in the cache and the fingerprint of a run are hashes of such closures. A form of
-import that is overlooked here would let old code or old rows pass for new ones. So files are parsed, and a form
-whose target only a run can tell is refused. Not for: other packages.
+import that is overlooked here would let old code or old rows pass for new ones. So files are
+parsed (`import_statements`), and a form whose target only a run can tell is refused. Not for: other packages.
 """
 
 from __future__ import annotations
 
-import ast
 import functools
 import hashlib
-from collections.abc import Collection, Iterable, Iterator
+import os
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
+from clearance.import_statements import Statement, UnknownImport, statements_of
+
 PACKAGE = Path(__file__).parent
-
-_RUNNERS = frozenset(
-    {"import_module", "__import__", "exec", "eval", "reload", "run_path", "run_module"}
-)
-"""Functions that import, or run, what their argument says."""
-
-_HOLDS_STATEMENTS = (ast.stmt, ast.ExceptHandler, ast.match_case)
-
-
-class UnknownImport(Exception):
-    """An import whose target only a run can tell; the message says in which file and line."""
 
 
 def import_closure(
@@ -55,10 +46,17 @@ def digest_of(paths: Iterable[Path], package: Path = PACKAGE) -> str:
     """sha256 of files of the package, with their places in it."""
     digest = hashlib.sha256()
     for path in paths:
-        content = path.read_bytes()
+        found = os.stat(path)
+        content = _digest_of_content(path, found.st_mtime_ns, found.st_size)
         place = path.relative_to(package) if path.is_relative_to(package) else Path(path.name)
-        digest.update(f"{place.as_posix()} {len(content)}\n".encode() + content)
+        digest.update(f"{place.as_posix()} {content}\n".encode())
     return digest.hexdigest()
+
+
+@functools.cache
+def _digest_of_content(path: Path, modified: int, size: int) -> str:
+    """sha256 of a file, read once in a process while it stays as it is."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def _room_of(path: Path, package: Path) -> str:
@@ -72,77 +70,40 @@ def _imports(path: Path, package: Path) -> tuple[Path, ...]:
     if path == package / "__init__.py":
         return ()
     found: list[Path] = []
-    source = path.read_text(encoding="utf-8")
-    runs_text = any(name in source for name in _RUNNERS)
-    for node in _at_run_time(
-        ast.parse(source, str(path)), ast.AST if runs_text else _HOLDS_STATEMENTS
-    ):
-        if isinstance(node, ast.Import):
-            for alias in node.names:
-                found += _files_of(alias.name.split("."), package, _place(node, path), alias.asname)
-        elif isinstance(node, ast.ImportFrom):
-            parts = _absolute(node, path, package)
-            for alias in node.names:
-                found += _files_from(parts, alias.name, package, _place(node, path))
-        elif isinstance(node, ast.Call):
-            found += _called(node, path, package)
+    for one in statements_of(path):
+        place = f"{path}, line {one.line}"
+        if not one.names:
+            found += _files_of(tuple(one.module.split(".")), package, place, one.alias)
+        else:
+            parts = _absolute(one, path, package)
+            for name in one.names:
+                found += _files_from(parts, name, package, place)
     return tuple(found)
 
 
-def _at_run_time(tree: ast.AST, kinds: type | tuple[type, ...]) -> Iterator[ast.AST]:
-    """All nodes of some kinds in a file, without the branches that only type checkers read."""
-    waiting = [tree]
-    while waiting:
-        node = waiting.pop()
-        yield node
-        if isinstance(node, ast.If) and _last_name(node.test) == "TYPE_CHECKING":
-            waiting.extend(node.orelse)
-        else:
-            waiting.extend(
-                child for child in ast.iter_child_nodes(node) if isinstance(child, kinds)
-            )
-
-
-def _called(call: ast.Call, path: Path, package: Path) -> list[Path]:
-    """What a call imports: nothing, or the module that a literal names."""
-    name = _last_name(call.func)
-    if name not in _RUNNERS or (name in ("exec", "eval") and not isinstance(call.func, ast.Name)):
-        return []
-    known = name == "import_module" and len(call.args) == 1 and not call.keywords
-    if (
-        not known
-        or not isinstance(call.args[0], ast.Constant)
-        or not isinstance(call.args[0].value, str)
-    ):
-        raise UnknownImport(
-            f"{_place(call, path)}: what {name}() imports or runs is not known without running it"
-        )
-    return _files_of(call.args[0].value.split("."), package, _place(call, path), as_name="it")
-
-
-def _absolute(node: ast.ImportFrom, path: Path, package: Path) -> list[str]:
+def _absolute(one: Statement, path: Path, package: Path) -> tuple[str, ...]:
     """The module of `from … import`, dots at its front resolved."""
-    parts = node.module.split(".") if node.module else []
-    if node.level == 0:
+    parts = tuple(one.module.split(".")) if one.module else ()
+    if one.level == 0:
         return parts
     if not path.is_relative_to(package):
-        raise UnknownImport(f"{_place(node, path)}: a relative import outside the package")
-    inside = [package.name, *path.relative_to(package).with_suffix("").parts]
-    if node.level >= len(inside):
-        raise UnknownImport(f"{_place(node, path)}: a relative import leaves the package")
-    return [*inside[: -node.level], *parts]
+        raise UnknownImport(f"{path}, line {one.line}: a relative import outside the package")
+    inside = (package.name, *path.relative_to(package).with_suffix("").parts)
+    if one.level >= len(inside):
+        raise UnknownImport(f"{path}, line {one.line}: a relative import leaves the package")
+    return (*inside[: -one.level], *parts)
 
 
-def _files_from(parts: list[str], name: str, package: Path, place: str) -> list[Path]:
+def _files_from(parts: tuple[str, ...], name: str, package: Path, place: str) -> list[Path]:
     """The files of `from a.b import name`, where name is a module or something in one."""
     if not parts or parts[0] != package.name:
         return []
-    if name != "*" and _module_file([*parts, name], package) is not None:
-        return _files_of([*parts, name], package, place, as_name=name)
+    if name != "*" and _module_file((*parts, name), package) is not None:
+        return _files_of((*parts, name), package, place, as_name=name)
     return _files_of(parts, package, place, as_name=name)
 
 
-def _files_of(parts: list[str], package: Path, place: str, as_name: str | None) -> list[Path]:
+def _files_of(parts: tuple[str, ...], package: Path, place: str, as_name: str | None) -> list[Path]:
     """The module's file and the `__init__` of each folder above it."""
     if parts[0] != package.name:
         return []
@@ -156,20 +117,11 @@ def _files_of(parts: list[str], package: Path, place: str, as_name: str | None) 
     return [file for file in files if file is not None]
 
 
-def _module_file(parts: list[str], package: Path) -> Path | None:
+@functools.cache
+def _module_file(parts: tuple[str, ...], package: Path) -> Path | None:
     """The file of a module or of a folder of modules; None where there is none."""
-    stem = package.joinpath(*parts[1:])
-    for file in (stem / "__init__.py", stem.parent / f"{stem.name}.py"):
-        if file.is_file():
-            return file
+    stem = os.path.join(package, *parts[1:])
+    for file in (os.path.join(stem, "__init__.py"), f"{stem}.py"):
+        if os.path.isfile(file):
+            return Path(file)
     return None
-
-
-def _last_name(node: ast.AST) -> str:
-    if isinstance(node, ast.Attribute):
-        return node.attr
-    return node.id if isinstance(node, ast.Name) else ""
-
-
-def _place(node: ast.stmt | ast.expr, path: Path) -> str:
-    return f"{path}, line {node.lineno}"

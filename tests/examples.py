@@ -1,8 +1,13 @@
-"""How many examples a property draws: `ci` draws what the test asks for, `dev` a tenth, at least three.
+"""How many examples a test has in the fast lane, and how many in all.
 
-`pytest --hypothesis-profile dev` chooses; `ci` holds where nothing is chosen.
+Of random examples `dev` draws a tenth of what the test asks for, at least three, and `ci` all;
+`pytest --hypothesis-profile dev` chooses, and `ci` holds where nothing is chosen. Of listed examples, as seeds and
+names are, those that take long are marked `slow`.
 """
 
+from collections.abc import Collection, Iterable
+
+import pytest
 from hypothesis import settings
 
 PROFILES = {"ci": 100, "dev": 10}
@@ -18,4 +23,25 @@ def register() -> None:
 
 def examples(n: int) -> settings:
     """The settings of a property that draws `n` examples, or its profile's share of them."""
-    return settings(max_examples=max(3, n * settings.default.max_examples // 100))
+    return settings(max_examples=share_of(n))
+
+
+def share_of(n: int) -> int:
+    """`n`, or the profile's share of it: how many examples a test draws by itself."""
+    return max(3, n * settings.default.max_examples // 100)
+
+
+def first_fast(values: Iterable, n: int) -> list:
+    """All values for `parametrize`; those after the first `n` are marked `slow`."""
+    return [value if i < n else _slow(value) for i, value in enumerate(values)]
+
+
+def some_slow(values: Iterable, slow: Collection) -> list:
+    """All values for `parametrize`; those that are in `slow` are marked so."""
+    values = list(values)
+    assert set(slow) <= set(values), "a value that the test does not have"
+    return [_slow(value) if value in slow else value for value in values]
+
+
+def _slow(value: object) -> object:
+    return pytest.param(value, marks=pytest.mark.slow)

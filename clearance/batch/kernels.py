@@ -13,8 +13,8 @@ from contextlib import nullcontext
 import clearance.kernels.motion.certify
 import clearance.kernels.search.body_pair  # noqa: F401 - both enter their kernels in the table
 from clearance.compile import kernel_table
-from clearance.compile.kernel_cache import cache_root
 from clearance.compile.kernel_table import CERTIFY, REFINE, SEARCH, SEPARATING_PLANES
+from clearance.kept_files import cache_root
 
 NEEDED = (SEARCH, REFINE, SEPARATING_PLANES, CERTIFY)
 """What every case needs; others are compiled where a case comes to them."""

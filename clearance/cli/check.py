@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,11 +13,13 @@ import click
 
 from clearance.cli import ExitCode
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
+from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
     from clearance.findings.comparison import Comparison
+    from clearance.findings.findings_file import FindingList
     from clearance.run import Question, Run
     from clearance.world.case import Case
 
@@ -84,6 +86,7 @@ if TYPE_CHECKING:
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
+@more_files_options
 @ci_options
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
 def check(
@@ -104,6 +107,9 @@ def check(
     motion: str,
     as_json: bool,
     junit: Path | None,
+    png: Path | None,
+    glb: Path | None,
+    trajectory: Path | None,
     waivers: tuple[Path, ...],
     today: date | None,
     baseline: Path | None,
@@ -119,24 +125,21 @@ def check(
     cross-check disagrees; the greatest that holds. A baseline does not change it: `clearance
     compare` has an exit code of its own.
     """
-    from clearance.cli.comparison import print_comparison
-    from clearance.cli.kept import kept_rows
-    from clearance.cli.places import refuse_inputs_of_cases
-    from clearance.cli.progress import shown_progress
-    from clearance.run import Question, Resources, answer
-    from clearance.tolerance import CERTIFY_GAP
-
     if samples_only and (certify or certify_mm is not None):
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
     _require_extras(out, junit, cross_check, motion)
-    _require_places(out, junit, summary)
+    files = _Files(out, junit, MoreFiles(png, glb, trajectory), ForCi(summary, github))
+    files.require_places()
+    _require_file(case_file)
+    from clearance.run import Question
+    from clearance.tolerance import CERTIFY_GAP
+
     _compile_ahead(quiet)
-    outputs = _outputs(out, junit, summary)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
-    refuse_inputs_of_cases([case], outputs)
-    before = baseline_of(baseline, outputs)
+    files.refuse_inputs(case)
+    before = baseline_of(baseline, files.outputs)
     question = Question(
         case,
         need=need,
@@ -149,18 +152,84 @@ def check(
         paper_tolerance=paper_tolerance,
         today=today,
     )
-    with kept_rows(out, quiet) as rows:
+    return _answered(question, files, before, jobs, as_json, quiet)
+
+
+def _answered(
+    question: Question,
+    files: _Files,
+    before: FindingList | None,
+    jobs: int | None,
+    as_json: bool,
+    quiet: bool,
+) -> ExitCode:
+    """Answers a question, writes the files that are wanted, and prints what is to be told."""
+    from clearance.cli.comparison import print_comparison
+    from clearance.cli.kept import kept_rows
+    from clearance.cli.progress import shown_progress
+    from clearance.run import Resources, answer
+
+    ahead = files.more.made_ahead(question.case, question.motion)
+    with kept_rows(files.out, quiet) as rows:
         with shown_progress(quiet or as_json, _passes(question)) as progress:
             run = answer(question, Resources(jobs, progress, rows))
-            if out is not None or as_json:
+            if files.out is not None or as_json or files.more.png or files.more.glb:
                 run.record.work_out_contacts(progress)
         comparison = comparison_of(run, before)
-        _write(run, out, junit, comparison)
-    _print(run, out, as_json, quiet)
-    if comparison is not None and not (as_json or quiet):
-        print_comparison(comparison)
-    ForCi(summary, github).write(run, comparison, to_stderr=as_json)
+        _write(run, files.out, files.junit, comparison)
+        notes = files.more.write(run, ahead)
+    _print(run, files.out, as_json, quiet)
+    if not (as_json or quiet):
+        files.more.print_written(notes)
+        if comparison is not None:
+            print_comparison(comparison)
+    files.ci.write(run, comparison, to_stderr=as_json)
     return ExitCode(run.verdict.exit_code)
+
+
+@dataclass(frozen=True)
+class _Files:
+    """What is to be written, and where."""
+
+    out: Path | None
+    junit: Path | None
+    more: MoreFiles
+    ci: ForCi
+
+    def require_places(self) -> None:
+        """Refuses what could not be written in the end.
+
+        Raises:
+            Unavailable, Unwritable: with the option or the place.
+        """
+        _require_places(self.out, self.junit, self.ci.summary)
+        self.more.require_writable()
+
+    @property
+    def outputs(self) -> list[Path]:
+        """The files that may be written.
+
+        Raises:
+            Unwritable: one would overwrite another.
+        """
+        return _outputs(self.out, self.junit, self.ci.summary, self.more)
+
+    def refuse_inputs(self, case: Case) -> None:
+        """Raises `Unwritable` if a file that the case was made from would be overwritten."""
+        from clearance.cli.places import refuse_inputs_of_cases
+
+        refuse_inputs_of_cases([case], self.outputs)
+
+
+def _require_file(case_file: Path) -> None:
+    """Refuses a path that leads to no file, before all that a run needs is imported.
+
+    Raises:
+        MissingFile: as when it is read.
+    """
+    from clearance.load.input_files import require_file
+
+    require_file(case_file, case_file.name)
 
 
 def _passes(question: Question) -> list[str]:
@@ -210,27 +279,29 @@ def _require_extras(out: Path | None, junit: Path | None, cross_check: bool, mot
         require("simulate", "--motion simulated")
 
 
-def _outputs(out: Path | None, *beside: Path | None) -> list[Path]:
-    """The files that may be written; those beside the report are none of its own.
+def _outputs(
+    out: Path | None, junit: Path | None, summary: Path | None, more: MoreFiles
+) -> list[Path]:
+    """The files that may be written; no two are the same.
 
     Raises:
-        Unwritable: it would overwrite one of them.
+        Unwritable: one would overwrite another.
     """
+    if not (out or junit or summary or more.by_option):
+        return []
     from clearance.errors import Unwritable
     from clearance.report.output import OWN
 
-    found = [] if out is None else [out / name for name in OWN]
-    for path in beside:
-        if path is None:
-            continue
-        if os.path.realpath(path) in map(os.path.realpath, found):
-            raise Unwritable(
-                "is a file of the report, or of this run",
-                where=str(path),
-                valid="another name is needed",
-            )
-        found.append(path)
-    return found
+    report = [] if out is None else [out / name for name in OWN]
+    taken = {os.path.realpath(path): "is a file of the report" for path in report}
+    asked = {"--junit": junit, "--summary": summary, **more.by_option}
+    named = {option: path for option, path in asked.items() if path is not None}
+    for option, path in named.items():
+        if os.path.realpath(path) in taken:
+            problem = taken[os.path.realpath(path)]
+            raise Unwritable(problem, where=str(path), valid=f"{option} needs another name")
+        taken[os.path.realpath(path)] = f"is the file of {option}"
+    return [*report, *named.values()]
 
 
 def _compile_ahead(quiet: bool) -> None:
@@ -238,7 +309,7 @@ def _compile_ahead(quiet: bool) -> None:
     import warnings
 
     from clearance.cli import compile_ahead
-    from clearance.compile.kernel_cache import KernelCacheWarning
+    from clearance.kept_files import KernelCacheWarning
 
     if quiet:
         warnings.simplefilter("ignore", KernelCacheWarning)

@@ -8,7 +8,9 @@ from clearance import __version__
 from clearance.cli.batch import batch
 from clearance.cli.check import check
 from clearance.cli.comparison import compare
+from clearance.cli.compile_kernels import compile_kernels
 from clearance.cli.convert import convert
+from clearance.cli.new import new
 from clearance.cli.pre_commit import pre_commit
 from clearance.cli.profile import profile
 from clearance.cli.schema import schema
@@ -26,7 +28,9 @@ def clearance() -> None:
 clearance.add_command(batch)
 clearance.add_command(check)
 clearance.add_command(compare)
+clearance.add_command(compile_kernels)
 clearance.add_command(convert)
+clearance.add_command(new)
 clearance.add_command(pre_commit)
 clearance.add_command(profile)
 clearance.add_command(schema)

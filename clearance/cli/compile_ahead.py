@@ -18,12 +18,10 @@ import threading
 from contextlib import suppress
 from pathlib import Path
 
-import numba
-
 import clearance.kernels.motion.certify
 import clearance.kernels.search.body_pair  # noqa: F401 - both enter their kernels in the table
 from clearance.compile import kernel_table
-from clearance.compile.kernel_cache import cache_root
+from clearance.compile.jit import DISABLED
 from clearance.compile.kernel_table import (
     CERTIFY,
     FEATURES,
@@ -32,6 +30,7 @@ from clearance.compile.kernel_table import (
     SEPARATING_PLANES,
     TOGETHER,
 )
+from clearance.kept_files import cache_root
 from clearance.simulate.parts import usable_cores
 
 IS_SECOND = "CLEARANCE_COMPILES_AHEAD"
@@ -58,8 +57,7 @@ def start() -> bool:
 
 @functools.cache
 def _start_once() -> bool:
-    disabled = numba.config.DISABLE_JIT  # type: ignore[attr-defined]  # numba sets it at run time
-    if disabled or all(map(kernel_table.is_kept, FIRST)):
+    if DISABLED or all(map(kernel_table.is_kept, FIRST)):
         return False
     if cache_root() is not None and usable_cores() > 1 and _can_start():
         with suppress(OSError):  # then all is compiled here

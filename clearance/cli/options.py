@@ -1,4 +1,4 @@
-"""What several commands take from the command line: lengths in millimetres, and which motion is meant."""
+"""What several commands take from the command line: lengths in millimetres, which motion is meant, xacro."""
 
 from __future__ import annotations
 
@@ -56,3 +56,46 @@ motion_option = click.option(
     show_default=True,
     help="kinematic: the trajectory itself. simulated: what a controlled robot makes of it.",
 )
+
+
+class XacroArguments(click.ParamType):
+    """One argument of a xacro file, as xacro's own command line writes it."""
+
+    name = "name:=value"
+
+    def convert(
+        self, value: str, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[str, str]:
+        """Name and value."""
+        name, separator, given = value.partition(":=")
+        if not separator or not name:
+            self.fail(f"{value!r} is not an argument; name:=value", param, ctx)
+        return name, given
+
+
+def _by_name(
+    ctx: click.Context, param: click.Parameter, given: tuple[tuple[str, str], ...]
+) -> dict[str, str]:
+    if given and not ctx.params.get("xacro"):
+        raise click.UsageError("--xacro-arg says nothing without --xacro")
+    return dict(given)
+
+
+XACRO_OPTIONS = (
+    click.option(
+        "--xacro-arg",
+        "xacro_args",
+        metavar="NAME:=VALUE",
+        multiple=True,
+        type=XacroArguments(),
+        callback=_by_name,
+        help="An argument of the xacro file; may be given again.",
+    ),
+    click.option(
+        "--xacro",
+        is_flag=True,
+        is_eager=True,
+        help="Let xacro make URDF of the robot's file. It evaluates the Python in it.",
+    ),
+)
+"""How a robot's file is made into URDF."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from clearance.cli import ExitCode
-from clearance.cli.options import OutputPath
+from clearance.cli.options import XACRO_OPTIONS, OutputPath
 
 if TYPE_CHECKING:
     from clearance.world.robot import Robot
@@ -47,6 +47,7 @@ def _robot_options(command: _Command) -> _Command:
             type=click.Path(path_type=Path),
             help="Where package:// is looked for; may be given again.",
         ),
+        *XACRO_OPTIONS,
     ):
         command = option(command)
     return command
@@ -63,6 +64,8 @@ def audit(
     package_dirs: tuple[Path, ...],
     geometry: str,
     collada_up_axis: str,
+    xacro: bool,
+    xacro_args: dict[str, str],
     as_json: bool,
 ) -> int:
     """Whether the pairs that ROBOT.srdf excuses can ever meet within the joint limits of ROBOT.urdf.
@@ -76,7 +79,7 @@ def audit(
     from clearance.report.srdf import audit_headline, audit_rows, audit_summary
     from clearance.simulate.srdf_audit import audit as audited
 
-    robot = _robot(urdf, package_dirs, geometry, collada_up_axis)
+    robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
     matrix = load_srdf(srdf_file, robot)
     with shown_progress(as_json, ["auditing"]) as progress:
         pairs = audited(robot, matrix, progress)
@@ -99,6 +102,8 @@ def make(
     package_dirs: tuple[Path, ...],
     geometry: str,
     collada_up_axis: str,
+    xacro: bool,
+    xacro_args: dict[str, str],
     out: Path | None,
 ) -> int:
     """An SRDF for ROBOT.urdf: neighbours, and pairs that are proven never to meet, are excused.
@@ -114,7 +119,7 @@ def make(
     require_file_place(out)
     if out is not None:
         refuse_inputs([out], [urdf])
-    robot = _robot(urdf, package_dirs, geometry, collada_up_axis)
+    robot = _robot(urdf, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
     with shown_progress(False, ["proving"]) as progress:
         pairs = propose(robot, progress)
     text = proposed_srdf(robot, pairs)
@@ -128,14 +133,23 @@ def make(
     return ExitCode.CLEAR
 
 
-def _robot(urdf: Path, package_dirs: tuple[Path, ...], geometry: str, up_axis: str) -> Robot:
-    from clearance.load.urdf import load_urdf
+def _robot(
+    urdf: Path,
+    package_dirs: tuple[Path, ...],
+    geometry: str,
+    up_axis: str,
+    xacro: bool,
+    xacro_args: dict[str, str],
+) -> Robot:
+    from clearance.load.robot_formats import load_robot
 
-    return load_urdf(
+    return load_robot(
         urdf,
         package_dirs=package_dirs,
         geometry=geometry,  # type: ignore[arg-type]  # one of the choices
         collada_up_axis=up_axis,  # type: ignore[arg-type]
+        xacro=xacro,
+        xacro_args=xacro_args,
     )
 
 

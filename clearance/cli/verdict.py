@@ -231,7 +231,7 @@ def _pair_table(record: Record, nearest: Sequence[PairMinimum]) -> Table:
         table.add_column("rule")
     for pair in nearest:
         cells = [
-            f"  {pair.link}",
+            f"  {_not_a_command(pair.link)}",
             pair.obstacle,
             mm(pair.clearance),
             str(pair.step),
@@ -240,6 +240,11 @@ def _pair_table(record: Record, nearest: Sequence[PairMinimum]) -> Table:
         cells += [pair.rule] if record.case.limits.rules else []
         table.add_row(*(Text(cell) for cell in cells))
     return table
+
+
+def _not_a_command(name: str) -> str:
+    """A name that begins a line, so that no build server takes it for a command of its own."""
+    return repr(name) if name.startswith(("::", "##")) else name
 
 
 def _cross_check(check: CrossCheck) -> list[Text]:

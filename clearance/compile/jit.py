@@ -1,4 +1,4 @@
-"""The decorators of compiled functions: `kernel`, `inline`, `shared`, and `apart` in `kernel_table`.
+"""The decorators of compiled functions: `kernel`, `inline`, `shared`, `intrinsic`, and `apart` in `kernel_table`.
 
 `NOTES.md` has a table of which one a new function takes. A kernel that calls another one is optimised together
 with all that lies below it, level by level; large ones are therefore kept `apart`.
@@ -6,21 +6,35 @@ with all that lies below it, level by level; large ones are therefore kept `apar
 numba's own cache looks only at the file of the function itself and would silently return old code when a
 callee in another kernel file has changed. Here the cache folder's name is a hash of the kernel's file and
 of every kernel file it imports, and of this one, so that an edit recompiles what depends on it and nothing else
-(`kernel_cache` says what is believed of what lies there).
+(`kept_files` says what is believed of what lies there).
 """
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable
-from pathlib import Path
+from collections.abc import Callable, Sequence
+from typing import Any
 
-from numba import config
-from numba.extending import register_jitable
+from clearance.compile.deferred import defer, do_when_begun, is_begun, watch
+from clearance.compile.heap import HeapHandle
+from clearance.compile.kernel_files import KernelFiles, files_of
+from clearance.compile.ready_kernel import ReadyKernel
 
-from clearance.compile.kernel_cache import KernelCache
-from clearance.compile.numba_private import KernelForKernels, kernel_of
-from clearance.import_closure import digest_of, import_closure
+
+def _setting(name: str) -> bool:
+    """A setting of numba's; where one is made the compiler is at work from the start."""
+    if not is_begun():
+        return False
+    from numba import config
+
+    return bool(getattr(config, name))
+
+
+DISABLED = _setting("DISABLE_JIT")
+"""True where the functions run in Python as they stand."""
+
+CHECKS_BOUNDS = _setting("BOUNDSCHECK")
+"""True where every index is checked."""
 
 
 def kernel(function: Callable | None = None, *, reference_counts: bool = True) -> Callable:
@@ -37,19 +51,31 @@ def kernel(function: Callable | None = None, *, reference_counts: bool = True) -
     """
     if function is None:
         return functools.partial(kernel, reference_counts=reference_counts)
-    if config.DISABLE_JIT:
+    if DISABLED:
         return function
     assert function.__closure__ is None, (
         "what a closure holds is not in the name that it is kept under"
     )
-    compiled = kernel_of(function, reference_counts=reference_counts)
-    compiled._cache = KernelCache(function, _source_key(Path(function.__code__.co_filename)))
+    files = functools.cache(functools.partial(files_of, function))
+    make = functools.partial(_compiled, function, files, reference_counts)
+    if is_begun():
+        return make()
+    watch(function.__globals__)
+    return ReadyKernel(function, make, files)
+
+
+def _compiled(function: Callable, files: Callable[[], KernelFiles], counts: bool) -> Callable:
+    from clearance.compile.numba_private import KernelCache, kernel_of
+
+    compiled = kernel_of(function, reference_counts=counts)
+    compiled.kept = files()
+    compiled._cache = KernelCache(compiled.kept)
     return compiled
 
 
 def inline(
     function: Callable | None = None, *, force: bool = False, one_caller: bool = False
-) -> Callable:
+) -> Any:
     """A function compiled into each kernel that calls it; it has no cache entry and no way in from Python.
 
     Args:
@@ -63,8 +89,15 @@ def inline(
     assert not (force and one_caller), "either of them merges"
     if function is None:
         return functools.partial(inline, force=force, one_caller=one_caller)
-    if config.DISABLE_JIT:
+    if DISABLED:
         return function
+    make = functools.partial(_merged, function, force, one_caller)
+    return defer(function.__globals__, make)
+
+
+def _merged(function: Callable, force: bool, one_caller: bool) -> Callable:
+    from clearance.compile.numba_private import KernelForKernels, kernel_of
+
     options: dict[str, object] = {"inline": "always"} if one_caller else {}
     if force:
         options = {"forceinline": True, "reference_counts": False}
@@ -73,10 +106,36 @@ def inline(
 
 def shared(function: Callable) -> Callable:
     """A small function that kernels compile in, and that Python runs as it stands."""
-    return register_jitable(error_model="numpy")(function)
+
+    def register() -> None:
+        from numba.extending import register_jitable
+
+        register_jitable(error_model="numpy")(function)
+
+    do_when_begun(register)
+    return function
 
 
-@functools.cache
-def _source_key(path: Path) -> str:
-    """Names the sources of what is compiled from a file: its own, this room's and all that the file imports."""
-    return digest_of(import_closure([path, Path(__file__)]))[:16]
+def intrinsic(function: Callable | None = None, **options: object) -> Any:
+    """A function that says itself what is compiled of a call: numba's `intrinsic`."""
+    if function is None:
+        return functools.partial(intrinsic, **options)
+
+    def make() -> Any:
+        from numba import extending
+
+        as_asked = extending.intrinsic(**options) if options else extending.intrinsic
+        return as_asked(function)
+
+    return defer(function.__globals__, make)
+
+
+def lie_on_heap(handle: type[HeapHandle], fields: Sequence[str]) -> None:
+    """Makes `handle(*fields)` in a kernel a structure on the heap, of which Python has a `handle`."""
+
+    def lay() -> None:
+        from clearance.compile.numba_private import lay_on_heap
+
+        lay_on_heap(handle, fields)
+
+    do_when_begun(lay)

@@ -18,22 +18,17 @@ import subprocess
 import threading
 import zlib
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
-import numba
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 
-from clearance.compile.jit import kernel
-from clearance.compile.numba_private import (
-    borrow_tuple,
-    call_at,
-    elements_at,
-    entry_address,
-    lend_tuple,
-    plain,
-    stop_if,
-)
+from clearance.compile.jit import DISABLED, intrinsic, kernel
+from clearance.compile.ready_kernel import ReadyKernel
+
+if TYPE_CHECKING:
+    from numba import types
+
+    from clearance.compile.numba_private import Kernel
 
 (
     REFINE,
@@ -111,7 +106,7 @@ def call(function: Callable, *args: object) -> object:
 def is_kept(place: int) -> bool:
     """True if the kernel lies compiled in the cache, for this processor or others."""
     function, _ = _apart[place]
-    return function._cache.holds_any()
+    return function.kept.holds_any()
 
 
 def await_from(process: subprocess.Popen, places: Sequence[int]) -> None:
@@ -173,14 +168,38 @@ def _is_at_work_on(place: int) -> bool:
 def _compile_here(place: int) -> None:
     """Compiles a kernel in this process, or takes it from the cache, and writes its address down."""
     function, like = _apart[place]
-    argument_types = tuple(_type_of(argument) for argument in like())
     with _compiling:
-        function.compile(argument_types)
-        address, result = entry_address(function, argument_types)
-        _table[place] = address, _stamp(result, argument_types)
+        ready = function.loaded(_APART) if isinstance(function, ReadyKernel) else None
+        if ready is not None:
+            _table[place] = ready.address, ready.stamp
+            return
+        compiled = function.compiled() if isinstance(function, ReadyKernel) else function
+        _table[place] = _compile_apart(compiled, tuple(_type_of(value) for value in like()))
+
+
+def _compile_apart(compiled: Kernel, argument_types: tuple[types.Type, ...]) -> tuple[int, int]:
+    """The address and the stamp of a kernel, of which the machine code is kept for other processes."""
+    from clearance.compile.numba_private import code_of, entry_address, entry_of
+
+    compiled.compile(argument_types)
+    address, result = entry_address(compiled, argument_types)
+    stamp = _stamp(result, argument_types)
+    if compiled.kept.entry(_APART) is None:
+        made = compiled.overloads[argument_types]
+        code = code_of(made)
+        if code is not None:
+            compiled.kept.keep_entry(_APART, entry_of(made, code, stamp))
+    return address, stamp
+
+
+_APART = "apart"
+"""The one form of such a kernel, whose types its source says."""
 
 
 def _type_of(value: object) -> types.Type:
+    import numba
+    from numba import types
+
     if isinstance(value, LentArgument):
         return types.CPointer(numba.typeof(value.value))
     if isinstance(value, tuple):  # numba.typeof knows nothing of what is lent within
@@ -192,11 +211,15 @@ def _type_of(value: object) -> types.Type:
 
 
 def _stamp(result: types.Type, arguments: tuple[types.Type, ...]) -> int:
+    from clearance.compile.numba_private import plain
+
     return 1 + zlib.crc32(f"{plain(result)}{arguments}".encode())
 
 
 @intrinsic(prefer_literal=True)
 def _at_address(typing_context, table, place, result, args):
+    from clearance.compile.numba_private import call_at, elements_at, plain, stop_if
+
     argument_types = tuple(plain(kind) for kind in args)
     result_type = plain(result)
     stamp = _stamp(result_type, argument_types)
@@ -216,6 +239,10 @@ def _at_address(typing_context, table, place, result, args):
 
 @intrinsic
 def _lend(typing_context, value):
+    from numba import types
+
+    from clearance.compile.numba_private import lend_tuple, plain
+
     kind = types.CPointer(plain(value))
 
     def emit(context, builder, signature, values):
@@ -226,6 +253,8 @@ def _lend(typing_context, value):
 
 @intrinsic
 def _borrow(typing_context, lent):
+    from clearance.compile.numba_private import borrow_tuple
+
     def emit(context, builder, signature, values):
         return borrow_tuple(context, builder, lent.dtype, values[0])
 
@@ -236,7 +265,7 @@ def _at_no_address(table, place, result, args):
     return _apart[place][0](*args)
 
 
-at_address = _at_no_address if numba.config.DISABLE_JIT else _at_address
+at_address = _at_no_address if DISABLED else _at_address
 """`at_address(table, place, result, args)`: what the kernel at that place of the table gives for `args`, a tuple;
 `result` is any value of the type of its result."""
 
@@ -245,8 +274,8 @@ def _as_it_is(value):
     return value
 
 
-lend = _as_it_is if numba.config.DISABLE_JIT else _lend
+lend = _as_it_is if DISABLED else _lend
 """`lend(value)`: where a tuple lies while the caller runs; something else must hold its arrays for as long."""
 
-borrow = _as_it_is if numba.config.DISABLE_JIT else _borrow
+borrow = _as_it_is if DISABLED else _borrow
 """`borrow(lent)`: the tuple."""

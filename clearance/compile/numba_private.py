@@ -8,11 +8,12 @@ tests ran with. Not for: `numba.extending` and `numba.types`, which are document
 | `own_level` | `config.OPT` is read where LLVM's passes are chosen, under the compiler's lock |
 | `Kernel` | `CPUDispatcher`: `compile`, `get_call_template`; the flags of the caller; the option `_nrt` |
 | `KernelForKernels` | `CPUDispatcher`: `_insert`, `_compile_for_args` |
-| `KeptKernels` | `_Cache`; `CompileResult._reduce`, `_rebuild`; `magic_tuple` names the processor |
+| `KernelCache` | `_Cache`; `CompileResult._reduce`, `_rebuild`; `magic_tuple` names the processor |
+| `entry_of` | `CompileResult`: the object file, the names of its functions, environments |
 | `entry_address`, `call_at`, `stop_if` | the calling convention |
 | `lend_tuple`, `borrow_tuple` | a tuple is a value that can lie on the stack |
 | `elements_at`, `array_from` | an array is a structure; its `data` is where the first element lies |
-| `HeapType`, `lay_on_heap` | `numba.experimental.structref` |
+| `HeapType`, `lay_on_heap` | `numba.experimental.structref`; `box` and `unbox` of what it counts references with |
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from __future__ import annotations
 import gc
 import os
 import pickle
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
@@ -34,7 +36,13 @@ from numba.core.registry import CPUDispatcher, cpu_target
 from numba.core.serialize import dumps
 from numba.core.targetconfig import ConfigStack
 from numba.experimental import structref
+from numba.extending import NativeValue, box, unbox
 from numba.np.arrayobj import populate_array
+from numba.np.numpy_support import as_dtype
+
+from clearance.compile.heap import HeapHandle
+from clearance.compile.kernel_files import KernelFiles
+from clearance.compile.machine_code import Entry
 
 OWN_LEVEL = 1
 """LLVM's level for our functions: 40 % off the first run and 10 to 18 % off every later one (sweep, four scenes,
@@ -152,40 +160,49 @@ def _holds_arrays(kind: types.Type) -> bool:
     return isinstance(kind, types.Array)
 
 
-class KeptKernels(_Cache):
-    """Where a dispatcher asks for compiled forms and leaves them: as bytes, which `read` and `write` keep.
+class KernelCache(_Cache):
+    """Where a dispatcher asks for compiled forms and leaves them, in the files of its kernel.
 
-    A form goes by the name of its types, processor and settings (`read(named)`, `write(named, payload)`).
+    A form goes by the name of its types, processor and settings.
     """
 
     _enabled = True
 
+    def __init__(self, files: KernelFiles) -> None:
+        self._files = files
+
     @property
     def cache_path(self) -> str:
-        return ""
-
-    def read(self, named: str) -> bytes | None:
-        raise NotImplementedError
-
-    def write(self, named: str, payload: Callable[[], bytes]) -> None:
-        raise NotImplementedError
+        return self._files.folder
 
     def load_overload(self, sig: tuple, target_context: object) -> CompileResult | None:
         if not self._enabled:
             return None
         target_context.refresh()
-        payload = self.read(_form(sig, target_context.codegen()))
+        payload = self._files.read(_form(sig, target_context.codegen()), "kernel")
         if payload is None:
             return None
         try:
-            found = CompileResult._rebuild(target_context, *pickle.loads(payload))
-            return found if found.signature.args == tuple(sig) else None
+            kept = pickle.loads(payload)
+            found = CompileResult._rebuild(target_context, *kept)
         except Exception:  # of another build of numba or LLVM: compiled again, and written over
             return None
+        if found.signature.args != tuple(sig):
+            return None
+        _, _, (code, _) = kept[0]
+        found.library._compiled_object = code  # which it has let go of
+        self._keep_entry(sig, found, code)
+        return found
 
     def save_overload(self, sig: tuple, data: CompileResult) -> None:
         if self._enabled and not data.lifted and not data.library.has_dynamic_globals:
-            self.write(_form(sig, data.codegen), lambda: dumps(data._reduce()))
+            self._files.write(_form(sig, data.codegen), "kernel", lambda: dumps(data._reduce()))
+            self._keep_entry(sig, data, data.library._get_compiled_object())
+
+    def _keep_entry(self, sig: tuple, compiled: CompileResult, code: bytes) -> None:
+        form = form_of_types(sig)
+        if form is not None and self._files.entry(form) is None:
+            self._files.keep_entry(form, entry_of(compiled, code, 0))
 
     def enable(self) -> None:
         self._enabled = True
@@ -195,6 +212,53 @@ class KeptKernels(_Cache):
 
     def flush(self) -> None:
         """Nothing is held back."""
+
+
+def code_of(compiled: CompileResult) -> bytes | None:
+    """The object file of what was compiled in this process or taken from the cache, while it is held."""
+    return compiled.library._compiled_object
+
+
+def form_of_types(kinds: Sequence[types.Type]) -> tuple | None:
+    """As `form_of` of arguments of these types; None where no argument is told so."""
+    try:
+        return tuple(map(_form_of_type, kinds))
+    except NotImplementedError:
+        return None
+
+
+def _form_of_type(kind: types.Type) -> object:
+    if isinstance(kind, types.Array):
+        if not kind.aligned:
+            raise NotImplementedError
+        return as_dtype(kind.dtype).char, kind.ndim, kind.layout, kind.mutable
+    if isinstance(kind, types.BaseTuple):
+        made = getattr(kind, "instance_class", None)
+        name = "" if made is None else f"{made.__module__}.{made.__qualname__}"
+        return (name, *map(_form_of_type, kind))
+    if isinstance(kind, HeapType):
+        return str(kind)
+    if isinstance(kind, types.Number | types.Boolean):
+        return as_dtype(kind).char
+    raise NotImplementedError
+
+
+def entry_of(compiled: CompileResult, code: bytes, stamp: int) -> Entry | None:
+    """The machine code of a form, or None if it cannot stand alone."""
+    library, described = compiled.library, compiled.fndesc
+    if compiled.reload_init or compiled.lifted or library.has_dynamic_globals:
+        return None
+    environments = {
+        each.env_name: tuple(each.consts)
+        for each in (compiled.environment, *(compiled.referenced_envs or ()))
+    }
+    if b"numba" in pickle.dumps(tuple(environments.values())):
+        return None
+    place = (described.modname, described.qualname.split(".")[-1])
+    return Entry(
+        code, described.llvm_cpython_wrapper_name,
+        described.llvm_func_name, tuple(environments.items()), place, stamp,
+    )  # fmt: skip
 
 
 _SETTINGS = ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "LOOP_VECTORIZE", "SLP_VECTORIZE", "ENABLE_AVX")
@@ -273,19 +337,40 @@ def llvm_function(builder, name: str, kind: ir.FunctionType):
 
 
 class HeapType(types.StructRef):
-    """The compiler's type of a structure that lies on the heap: one subclass each, at the top of a module."""
+    """The compiler's type of a structure that lies on the heap: one subclass each."""
 
     def preprocess_fields(self, fields):
         """Fields of literal type are fields of that type."""
         return tuple((name, types.unliteral(kind)) for name, kind in fields)
 
 
-HeapHandle = structref.StructRefProxy
-"""What Python has of a structure on the heap: a subclass of it each."""
+def lay_on_heap(handle: type[HeapHandle], fields: Sequence[str]) -> None:
+    """Makes `handle(*fields)` in a kernel a structure on the heap.
 
-
-def lay_on_heap(kind: type[HeapType], handle: type, fields: Sequence[str]) -> None:
-    """Makes `handle(*fields)` in a kernel a structure of type `kind`."""
+    Its type, `{handle}Type` in the module of the handle, is found there by who reads back what was compiled.
+    """
+    name, module = f"{handle.__name__}Type", sys.modules[handle.__module__]
+    kind = type(name, (HeapType,), {"__module__": handle.__module__})
+    setattr(module, name, kind)
     structref.register(kind)
-    structref.define_boxing(kind, handle)
     structref.define_constructor(handle, kind, fields)
+    memory = types.MemInfoPointer(types.voidptr)
+
+    @box(kind)
+    def to_python(structure, value, c):
+        proxy = cgutils.create_struct_proxy(structure)(c.context, c.builder, value=value)
+        told = str(structure), dumps(structure)
+        parts = [c.pyapi.unserialize(c.pyapi.serialize_object(part)) for part in (handle, told)]
+        holder = c.box(memory, proxy.meminfo)
+        made = c.pyapi.call_function_objargs(parts[0], [parts[1], holder])
+        for each in (*parts, holder):
+            c.pyapi.decref(each)
+        return made
+
+    @unbox(kind)
+    def from_python(structure, given, c):
+        holder = c.pyapi.object_getattr_string(given, "_meminfo")
+        proxy = cgutils.create_struct_proxy(structure)(c.context, c.builder)
+        proxy.meminfo = c.unbox(memory, holder).value
+        c.pyapi.decref(holder)
+        return NativeValue(proxy._getvalue())

@@ -1,4 +1,4 @@
-"""Two runs of a case held against each other: what is new, worse, unchanged, better, gone or not comparable.
+"""A run held against a baseline: what is new, worse, unchanged, better, gone or not comparable.
 
 Findings are matched by kind, rule, bodies and occurrence. Not for: files (`findings_file`), nor how it is shown
 (`report.findings`).

@@ -7,7 +7,9 @@ from collections.abc import Iterator
 
 from clearance.findings.finding import JOINT_LIMITS, PROFILE, Finding, FindingName
 from clearance.findings.judgement import judgement_of
+from clearance.findings.occurrences import release_level
 from clearance.simulate.record import ProfileAnswer, Record
+from clearance.simulate.rule_pairs import MOST_NEAR_STEPS
 from clearance.simulate.status import Status
 from clearance.world.notice import Severity
 
@@ -31,6 +33,9 @@ def why_incomplete(record: Record) -> str:
         return "of each step only the nearest pair is known (method 'paper')"
     if record.case.clock.slack > 0.0:
         return "where clocks are not tied only the nearest pair of each step is known"
+    for rule in record.rules:
+        if rule.pairs is not None and rule.pairs.is_cut(release_level(rule.limits)):
+            return f"more than {MOST_NEAR_STEPS:,} steps are near; only the nearest pair of each is told"
     return ""
 
 

@@ -56,6 +56,17 @@ def node_cones(
     axis[:, wide] = 0.0
     cosine = np.cos(angle, where=~wide, out=np.zeros(n_nodes))
     sine = np.sin(angle, where=~wide, out=np.full(n_nodes, NO_CONE))
+    return _rows(axis, cosine, sine, boxes)
+
+
+def no_cones(boxes: np.ndarray) -> np.ndarray:
+    """(6 g, 4) `Surface.cones` of nodes that may hold the nearest point whatever way they are seen."""
+    n = len(boxes) // 12 * WIDTH
+    return _rows(np.zeros((3, n)), np.zeros(n), np.full(n, NO_CONE), boxes)
+
+
+def _rows(axis: np.ndarray, cosine: np.ndarray, sine: np.ndarray, boxes: np.ndarray) -> np.ndarray:
+    """(6 g, 4) `Surface.cones` of axes (3, n), cosines and sines of half angles (n,)."""
     half = boxes.reshape(-1, 12, WIDTH)[:, 9:].astype(np.float64)
     radius = OUTWARD * np.sqrt((half**2).sum(axis=1)).reshape(-1)
     with np.errstate(over="ignore"):  # an infinite radius says nothing of any direction

@@ -61,9 +61,11 @@ class Polyhedron:
         faces: for each face the indices of its three or more vertices in order, as any sequence of
             sequences or as an (m, k) array.
         excess: [m] how far the surface may stand outside the shape it stands for (0: it is the shape).
+        shortfall: [m] how far that shape may stand outside the surface: a case takes it off the clearance.
 
     Raises:
-        EmptyMesh: no faces. NotFinite: NaN or infinity. BadShape: not (n, 3). BadDimension: `excess` below 0.
+        EmptyMesh: no faces. NotFinite: NaN or infinity. BadShape: not (n, 3). BadDimension: `excess` or
+            `shortfall` below 0.
         BadPolygon: fewer than three vertices, an index out of range or twice in a row, a face that is
             clearly warped or not convex (`tolerance.FLATNESS`).
     """
@@ -72,24 +74,33 @@ class Polyhedron:
     face_starts: np.ndarray
     face_vertices: np.ndarray
     excess: float
+    shortfall: float
 
     def __init__(
         self,
         vertices: np.ndarray,
         faces: Sequence[Sequence[int]] | np.ndarray,
         excess: float = 0.0,
+        shortfall: float = 0.0,
     ) -> None:
         points = checked_vertices(vertices)
         starts, flat = flat_faces(faces)
         check_indices(len(points), starts, flat)
         check_flat_and_convex(points, starts, flat)
-        self._fill(points, starts, flat, excess)
+        self._fill(points, starts, flat, excess, shortfall)
 
     def _fill(
-        self, vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, excess: float
+        self,
+        vertices: np.ndarray,
+        starts: np.ndarray,
+        flat: np.ndarray,
+        excess: float,
+        shortfall: float,
     ) -> None:
-        if not 0.0 <= excess < np.inf:
-            raise BadDimension(f"excess is {excess}", valid="0 or more [m]")
+        for bound, given in (("excess", excess), ("shortfall", shortfall)):
+            if not 0.0 <= given < np.inf:
+                raise BadDimension(f"{bound} is {given}", valid="0 or more [m]")
+            object.__setattr__(self, bound, float(given))
         for name, value, kind in (
             ("vertices", vertices, np.float64),
             ("face_starts", starts, np.int64),
@@ -98,20 +109,34 @@ class Polyhedron:
             array = np.ascontiguousarray(value, dtype=kind)
             array.setflags(write=False)
             object.__setattr__(self, name, array)
-        object.__setattr__(self, "excess", float(excess))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """A copy from another process, whose arrays come back as writable."""
+        self.__dict__.update(state)
+        for array in (self.vertices, self.face_starts, self.face_vertices):
+            array.setflags(write=False)
 
     @classmethod
     def _of_valid(
-        cls, vertices: np.ndarray, starts: np.ndarray, flat: np.ndarray, excess: float = 0.0
+        cls,
+        vertices: np.ndarray,
+        starts: np.ndarray,
+        flat: np.ndarray,
+        excess: float = 0.0,
+        shortfall: float = 0.0,
     ) -> Self:
         """The polyhedron of flat faces that are known to be valid."""
         made = cls.__new__(cls)
-        made._fill(vertices, starts, flat, excess)
+        made._fill(vertices, starts, flat, excess, shortfall)
         return made
 
     @classmethod
     def from_triangles(
-        cls, vertices: np.ndarray, triangles: np.ndarray, excess: float = 0.0
+        cls,
+        vertices: np.ndarray,
+        triangles: np.ndarray,
+        excess: float = 0.0,
+        shortfall: float = 0.0,
     ) -> Self:
         """The surface of triangles, with coplanar neighbours merged exactly into convex polygons.
 
@@ -128,7 +153,9 @@ class Polyhedron:
         starts, flat = flat_faces(triangles)
         check_indices(len(points), starts, flat, allow_repeated=True)
         merged = merge_coplanar(points, flat.reshape(-1, 3))
-        return cls._of_valid(merged.vertices, merged.face_starts, merged.face_vertices, excess)
+        return cls._of_valid(
+            merged.vertices, merged.face_starts, merged.face_vertices, excess, shortfall
+        )
 
     @classmethod
     def from_trimesh(cls, mesh: Any) -> Self:
@@ -151,6 +178,11 @@ class Polyhedron:
             MissingFile, BadSyntax, EmptyMesh, NotFinite: as the attached reader, `clearance.load.mesh.read_mesh`.
         """
         return file_reader()(path, scale)
+
+    @property
+    def ball_radius(self) -> float:
+        """[m] of the balls about the points of a cloud; 0: of a surface there are none."""
+        return 0.0
 
     @property
     def n_faces(self) -> int:
@@ -277,7 +309,7 @@ class Polyhedron:
         entries = np.arange(len(self.face_vertices))
         mirrored = self.face_starts[ring.face] + self.face_starts[ring.face + 1] - 1 - entries
         flat = self.face_vertices[np.where(faces[ring.face], mirrored, entries)]
-        return self._of_valid(self.vertices, self.face_starts, flat, self.excess)
+        return self._of_valid(self.vertices, self.face_starts, flat, self.excess, self.shortfall)
 
     def transformed(self, pose: np.ndarray) -> Polyhedron:
         """The surface moved by a (4, 4) rigid motion [m], each coordinate to a few roundings.
@@ -287,7 +319,9 @@ class Polyhedron:
         """
         pose = validated_pose(pose)
         vertices = self.vertices @ pose[:3, :3].T + pose[:3, 3]
-        return self._of_valid(vertices, self.face_starts, self.face_vertices, self.excess)
+        return self._of_valid(
+            vertices, self.face_starts, self.face_vertices, self.excess, self.shortfall
+        )
 
     def scaled(self, factor: float | Sequence[float]) -> Polyhedron:
         """The surface with its coordinates times one factor, or times three; a mirrored one stays outward.
@@ -308,13 +342,16 @@ class Polyhedron:
         vertices = self.vertices * factors
         if not np.isfinite(vertices).all():
             raise NotFinite(f"scale {factors.tolist()} is too large", valid="finite coordinates")
-        excess = np.nextafter(self.excess * np.abs(factors).max(), np.inf) if self.excess else 0.0
-        made = self._of_valid(vertices, self.face_starts, self.face_vertices, excess)
+        grown = (
+            np.nextafter(bound * np.abs(factors).max(), np.inf) if bound else 0.0
+            for bound in (self.excess, self.shortfall)
+        )
+        made = self._of_valid(vertices, self.face_starts, self.face_vertices, *grown)
         return made.flipped() if np.prod(np.sign(factors)) < 0.0 else made
 
     @staticmethod
     def merged(parts: Sequence[Polyhedron]) -> Polyhedron:
-        """All faces of several surfaces as one; the greatest excess of them is its excess.
+        """All faces of several surfaces as one; the greatest excess and shortfall of them are its own.
 
         Raises:
             EmptyMesh: no parts.
@@ -333,4 +370,5 @@ class Polyhedron:
                 [part.face_vertices + shift for part, shift in zip(parts, shifts, strict=False)]
             ),
             max(part.excess for part in parts),
+            max(part.shortfall for part in parts),
         )

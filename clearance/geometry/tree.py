@@ -6,24 +6,31 @@ can serve a whole robot and scene. Not for: the search itself (`kernels.search.d
 
 from __future__ import annotations
 
+import itertools
 import weakref
 from collections.abc import Sequence
 
 import numpy as np
 
 from clearance.geometry.closing import Closing, closing_of
+from clearance.geometry.cloud_surface import cloud_surface
 from clearance.geometry.cones import face_cones, node_cones
 from clearance.geometry.copies import Copies, copies_of
 from clearance.geometry.edges import Ring, edge_keys, rings_of, twins
+from clearance.geometry.kept_shapes import kept, name_of
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.geometry.tree_nodes import nodes_over
 from clearance.kernels.arithmetic.lanes import WIDTH
 from clearance.kernels.mesh.face_planes import face_planes
 from clearance.kernels.mesh.surface import ANYTHING, LISTED, Surface
-from clearance.kernels.mesh.tree_build import build_tree, most_groups
 
 _built: weakref.WeakKeyDictionary[Polyhedron, Surface] = weakref.WeakKeyDictionary()
 _joined: weakref.WeakKeyDictionary[Polyhedron, tuple[tuple[weakref.ref, ...], Surface]]
 _joined = weakref.WeakKeyDictionary()
+
+LARGE = 200
+"""Faces of a shape whose searchable form is kept for later runs, in a file of its own."""
 
 _NO_CAPS = np.empty((0, 3))
 
@@ -31,7 +38,7 @@ _NO_CAPS = np.empty((0, 3))
 def surface_of(shape: Polyhedron) -> Surface:
     """The searchable form of one polyhedron, built at the first call."""
     if shape not in _built:
-        _built[shape] = _build(shape)
+        _built[shape] = cloud_surface(shape) if isinstance(shape, PointCloud) else _build(shape)
     return _built[shape]
 
 
@@ -46,9 +53,27 @@ def join(shapes: Sequence[Polyhedron]) -> Surface:
     if known is not None and len(known[0]) == len(shapes):
         if all(ref() is shape for ref, shape in zip(known[0], shapes, strict=True)):
             return known[1]
+    _take_kept([shape for shape in dict.fromkeys(shapes) if shape not in _built])
     joined = _join([surface_of(shape) for shape in shapes])
     _joined[shapes[0]] = (tuple(weakref.ref(shape) for shape in shapes), joined)
     return joined
+
+
+def _take_kept(shapes: Sequence[Polyhedron]) -> None:
+    """Builds solids, or takes from an earlier run what it has built: large ones each, small ones together."""
+    shapes = [shape for shape in shapes if not isinstance(shape, PointCloud)]
+    small = [shape for shape in shapes if shape.n_faces < LARGE]
+    for shape in shapes:
+        if shape.n_faces >= LARGE:
+            (_built[shape],) = _kept_surfaces([shape])
+    if sum(shape.n_faces for shape in small) >= LARGE:
+        _built.update(zip(small, _kept_surfaces(small), strict=True))
+
+
+def _kept_surfaces(shapes: Sequence[Polyhedron]) -> list[Surface]:
+    arrays = [(shape.vertices, shape.face_starts, shape.face_vertices) for shape in shapes]
+    name = name_of(*itertools.chain.from_iterable(arrays))
+    return kept(name, "surfaces", __file__, lambda: [_build(shape) for shape in shapes])
 
 
 def _join(parts: Sequence[Surface]) -> Surface:
@@ -91,6 +116,7 @@ def _join(parts: Sequence[Surface]) -> Surface:
         turns=stacked("turns"),
         cap_starts=starts("cap_starts", "caps"),
         caps=stacked("caps"),
+        radii=stacked("radii"),
     )
 
 
@@ -135,7 +161,7 @@ def _build(shape: Polyhedron) -> Surface:
     )
     twin = twins(corners, heads)
     copies = copies_of(corners, starts, ring, twin, bent)
-    centres, boxes, children = _tree(vertices[corners], starts, copies.kept)
+    centres, boxes, children = nodes_over(vertices[corners], starts, copies.kept)
     _, first_faces = np.unique(shape.face_component, return_index=True)
     probes = corners[starts[first_faces]]
     closing = closing_of(shape)
@@ -167,6 +193,7 @@ def _build(shape: Polyhedron) -> Surface:
         turns=_turns(copies, shape.component_closed[shape.face_component], closing),
         cap_starts=np.array([0, len(caps)]),
         caps=caps,
+        radii=np.zeros(1),
     )
 
 
@@ -248,15 +275,3 @@ def _cones(
     twin = twins(left, left[ring.ahead])
     axes[:, kept], angles[kept] = face_cones(ring, twin, vertices, left, normals[kept], bent[kept])
     return axes, angles
-
-
-def _tree(
-    corner_points: np.ndarray, starts: np.ndarray, faces: np.ndarray
-) -> tuple[np.ndarray, ...]:
-    """Centres, boxes and children of the nodes of a tree over some of the faces."""
-    most = most_groups(len(faces))
-    centres = np.empty((3 * most, WIDTH))
-    boxes = np.empty((12 * most, WIDTH), dtype=np.float32)
-    children = np.empty((WIDTH * most, 2), dtype=np.int32)
-    n = build_tree(corner_points, starts, faces.copy(), centres, boxes, children)
-    return centres[: 3 * n].copy(), boxes[: 12 * n].copy(), children[: WIDTH * n].copy()

@@ -16,15 +16,18 @@ from clearance.errors import BadInput, at
 from clearance.load import schema
 from clearance.load.allow import body_names, require_allowances, require_patterns
 from clearance.load.case_schema import ScenePlace, read_schema
+from clearance.load.compound_joints import require_placed
+from clearance.load.held_parts import with_held_parts
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.motion_names import note_on_joints_at_zero
 from clearance.load.motion_notes import notes_on_motion
 from clearance.load.plausibility import angle_notices, obstacle_notices, odd_angles, scale_notices
 from clearance.load.reserved import reserved_spaces
-from clearance.load.robots import RobotReader, with_trajectory
+from clearance.load.robots import RobotReader, in_motion
 from clearance.load.rows import allowances_of, carries_of, limits_of
 from clearance.load.scene_file import make_obstacles
+from clearance.load.scene_request import SceneContent
 from clearance.load.scene_rows import with_scene_rows
 from clearance.load.waiver_file import waivers_of
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
@@ -48,8 +51,18 @@ def load_case(path: str | PathLike[str]) -> Case:
     Raises:
         BadInput: what was wrong, in which file and field, and what would be valid.
     """
-    read = _read(Path(path), schema.Case)
-    return _finished(read, read.case, read.files.sources)
+    path = Path(path)
+    return read_case(path, InputFiles(path.parent))
+
+
+def read_case(path: Path, files: InputFiles) -> Case:
+    """The case in a YAML file, which is read through `files` as all that it names.
+
+    Raises:
+        BadInput: as `load_case`.
+    """
+    read = _read(path, schema.Case, files)
+    return _finished(read, read.case, files.sources)
 
 
 def load_cell(path: str | PathLike[str]) -> CellFile:
@@ -58,7 +71,8 @@ def load_cell(path: str | PathLike[str]) -> CellFile:
     Raises:
         BadInput: as `load_case`.
     """
-    return _read(Path(path), schema.Cell)
+    path = Path(path)
+    return _read(path, schema.Cell, InputFiles(path.parent))
 
 
 def with_trajectory_file(
@@ -83,11 +97,12 @@ def with_trajectory_file(
                 valid="no trajectory there, or another robot",
             )
         entry = entry._replace(trajectory=given, trajectory_field="trajectory")
-        placed, notes = with_trajectory(entry, cell.case.robots[i_robot], cell.path.parent, files)
+        placed, notes = in_motion(entry, cell.case.robots[i_robot], cell.path.parent, files)
     robots = tuple(placed if i == i_robot else one for i, one in enumerate(cell.case.robots))
     sources = sorted((*cell.files.sources, *files.sources), key=lambda source: source.path)
     case = replace(cell.case, robots=robots, name=checked_name(name))
-    return _finished(replace(cell, notes=(*cell.notes, *notes)), case, sources)
+    motion_notes = (*cell.motion_notes[:i_robot], notes, *cell.motion_notes[i_robot + 1 :])
+    return _finished(replace(cell, motion_notes=motion_notes), case, sources)
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +111,8 @@ class CellFile:
 
     Attributes:
         files: all that were read. entries: the robots as they are written.
-        case: without what is told of the motion. notes: on how files were taken. scene_notes: on the scene.
+        case: without what is told of the motion. notes: on how files were taken. motion_notes: robot by robot, on
+            trajectories and the joints that rest. scene_notes: on the scene. scene: what its file says.
     """
 
     path: Path
@@ -104,23 +120,24 @@ class CellFile:
     entries: tuple[schema.RobotEntry, ...]
     case: Case
     notes: tuple[str, ...]
+    motion_notes: tuple[tuple[str, ...], ...]
     scene_notes: tuple[str, ...]
+    scene: SceneContent
 
 
-def _read(path: Path, model: type[schema.Case]) -> CellFile:
-    files = InputFiles(path.parent)
+def _read(path: Path, model: type[schema.Case], files: InputFiles) -> CellFile:
     meshes = MeshStore(files)
     given, scene_at = read_schema(path, files, model)
     entries = given.entries()
     reader = RobotReader(path.parent, meshes)
     with at(path.name):
-        robots = tuple(reader.placed(entry) for entry in entries)
+        moving = [reader.moving(entry) for entry in entries]
     with at(scene_at.place):
         obstacles, scene_notes = make_obstacles(given.scene.obstacles, scene_at.folder, meshes)
     with at(path.name):
         case = Case(
             name=given.name or _name_of(path),
-            robots=robots,
+            robots=tuple(robot for robot, _ in moving),
             obstacles=obstacles,
             limits=limits_of(given.limits),
             allow=allowances_of(given.allow),
@@ -142,19 +159,32 @@ def _read(path: Path, model: type[schema.Case]) -> CellFile:
                 require_patterns(carry.touch, names)
     of_scene = (*scene_at.content.notes, *row_notes, *scene_notes)
     case = replace(case, profiles=profiles)
-    return CellFile(path, files, tuple(entries), case, tuple(reader.notes), of_scene)
+    return CellFile(
+        path=path,
+        files=files,
+        entries=tuple(entries),
+        case=case,
+        notes=tuple(reader.notes),
+        motion_notes=tuple(notes for _, notes in moving),
+        scene_notes=of_scene,
+        scene=scene_at.content,
+    )
 
 
 def _finished(read: CellFile, case: Case, sources: Sequence[Source]) -> Case:
     """The case, once all that moves is known, with all that is said of it."""
     with at(read.path.name):
+        for entry, placed in zip(read.entries, case.robots, strict=True):
+            require_placed(placed.robot, _placed_joints(placed), f"{entry.field}.joints")
+        case, held_notes = with_held_parts(case, read.scene)
         timeline = _run_through(case)
     several = len(case.robots) > 1
     notes = [note for entry, placed in zip(read.entries, case.robots, strict=True)
              for note in _robot_notes(entry, placed, several)]  # fmt: skip
     start, end = timeline.times[[0, -1]].tolist()
     on_motion = notes_on_motion(case, start, end)
-    told = (*notes, *dict.fromkeys(read.notes), *read.scene_notes, *on_motion)
+    on_robots = [*read.notes, *(note for robot in read.motion_notes for note in robot)]
+    told = (*notes, *dict.fromkeys(on_robots), *held_notes, *read.scene_notes, *on_motion)
     return replace(case, sources=tuple(sources), notes=told)
 
 
@@ -179,7 +209,8 @@ def _name_of(path: Path) -> str:
 def _notices(given: schema.Case) -> list[Notice]:
     """What of the bases and obstacles only the file shows."""
     entries, obstacles = given.entries(), given.scene.obstacles
-    scales = [(item.name, item.mesh.factors) for item in obstacles if item.mesh is not None]
+    files = [(item.name, item.mesh or item.points) for item in obstacles]
+    scales = [(name, file.factors) for name, file in files if file is not None]
     bases = [
         odd
         for entry in entries
@@ -205,13 +236,17 @@ def _require_mounts(case: Case, entries: Sequence[schema.RobotEntry], scene_at: 
 
 def _robot_notes(entry: schema.RobotEntry, placed: PlacedRobot, several: bool) -> list[str]:
     """What the file leaves open of a robot, and what was left out of it."""
-    asked = placed.trajectory
-    given = [*(asked.joint_names if asked else ()), *placed.fixed_positions]
-    notes = note_on_joints_at_zero(placed.robot, given, f"{entry.field}.joints")
+    notes = note_on_joints_at_zero(placed.robot, _placed_joints(placed), f"{entry.field}.joints")
     if several:
         notes = [f"robot {placed.robot.name!r}: {note}" for note in notes]
     matrix = placed.self_clearance and placed.self_clearance.matrix
     return [*notes, *(matrix.notes if matrix else ())]
+
+
+def _placed_joints(placed: PlacedRobot) -> list[str]:
+    """The joints that the trajectory moves or the case sets."""
+    moved = placed.trajectory.joint_names if placed.trajectory else ()
+    return [*moved, *placed.fixed_positions]
 
 
 def _waivers(given: schema.Case, path: Path, files: InputFiles) -> Iterator[Waiver]:

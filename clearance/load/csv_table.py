@@ -74,6 +74,14 @@ def as_written(opened: Opener, names: tuple[str, ...] | None = None) -> TextTabl
     return TextTable(opened, ";", "," if has_comma else ".", names)
 
 
+def note_on_separators(table: TextTable) -> list[str]:
+    """A line that says so where columns are separated otherwise than by commas."""
+    if table.delimiter == ",":
+        return []
+    decimals = ", decimals written with commas" if table.decimal == "," else ""
+    return [f"columns are separated by semicolons{decimals}"]
+
+
 def header_of(table: TextTable, others: str) -> list[str]:
     """The names of the columns, each once.
 

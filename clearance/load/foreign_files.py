@@ -13,15 +13,16 @@ from clearance.errors import BadSyntax
 _ADVICE = {
     "urdf": (
         "a URDF robot",
-        "name it in a case file: robot: {{urdf: {name}}}, beside scene and trajectory",
+        "name it in a case file: robot: {{urdf: {name}}}, beside scene and trajectory; or let "
+        "`clearance new` write one",
     ),
     "xacro": (
         "a xacro robot",
-        "turn it into URDF with the xacro command, and name that in a case file",
+        "name it in a case file: robot: {{urdf: {name}, xacro: true}}, which evaluates the Python in it",
     ),
     "srdf": (
         "a MoveIt SRDF",
-        "what it lets touch goes into the case file: allow: [[link, obstacle]]",
+        "name it in a case file: robot: {{srdf: {name}, self_clearance: true}}, beside urdf",
     ),
     "sdf": (
         "an SDF world or model",
@@ -29,7 +30,8 @@ _ADVICE = {
     ),
     "mjcf": (
         "a MuJoCo model",
-        "give the robot as URDF and what stands around it under scene: {{obstacles: […]}} of a case file",
+        "call it .xml and name it in a case file: robot: {{urdf: {name}}} for a robot, scene: {name} for what "
+        "stands around one",
     ),
     "scene": (
         "a MoveIt scene",
@@ -63,7 +65,7 @@ _LEFT = {
 _MESSAGES = {".yaml", ".yml", ".json"}
 """What is read as a trajectory of messages."""
 
-_MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf"}
+_MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf", ".step", ".stp"}
 
 _ROOT = re.compile(rb"\s*<(?:\w+:)?([A-Za-z_][\w.-]*)[\s/>]")
 
@@ -88,6 +90,12 @@ def refuse_foreign(data: bytes, shown: str, wanted: str) -> None:
         return
     what, remedy = _ADVICE[kind]
     raise BadSyntax(f"this is {what}, not {wanted}", where=shown, valid=remedy.format(name=name))
+
+
+def is_mjcf(data: bytes) -> bool:
+    """True for a file whose root element is that of MuJoCo's models."""
+    start = data[:65536].removeprefix(b"\xef\xbb\xbf").lstrip()
+    return start.startswith(b"<") and _xml_kind(start) == "mjcf"
 
 
 def _suffix(name: str) -> str:
@@ -117,7 +125,7 @@ def _xml_kind(start: bytes) -> str | None:
     root = _ROOT.match(start, _root_begins(start))
     tag = root[1].decode() if root else ""
     if tag != "robot":
-        return {"sdf": "sdf", "mujoco": "mjcf", "COLLADA": "mesh"}.get(tag)
+        return {"sdf": "sdf", "mujoco": "mjcf", "mujocoinclude": "mjcf", "COLLADA": "mesh"}.get(tag)
     if b"<xacro:" in start:
         return "xacro"
     groups = re.search(rb"<(disable_collisions|group|virtual_joint|end_effector)\b", start)

@@ -42,7 +42,7 @@ def read_glb(data: bytes) -> Triangles:
     Raises:
         BadSyntax: not GLB, cut off, or something in it that is not read. EmptyMesh, BadPolygon, NotFinite.
     """
-    document, binary = _chunks(data)
+    document, binary = chunks(data)
     _refuse_extensions(document)
     with np.errstate(all="ignore"):  # what overflows is refused when the whole is checked
         surface = joined(_Scene(document, binary).pieces())
@@ -53,7 +53,7 @@ def read_glb(data: bytes) -> Triangles:
     return Triangles(turned, surface.corners, notes)
 
 
-def _chunks(data: bytes) -> tuple[GltfObject, bytes]:
+def chunks(data: bytes) -> tuple[GltfObject, bytes]:
     """The document and the binary chunk, which may be empty."""
     words = np.frombuffer(data[: len(data) // 4 * 4], "<u4")
     if data[:4] != b"glTF" or len(words) < 5 or words[1] != 2:

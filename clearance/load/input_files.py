@@ -16,13 +16,15 @@ from contextlib import contextmanager
 from functools import cached_property
 from io import BufferedReader, BytesIO
 from pathlib import Path
-from typing import BinaryIO
+from typing import TYPE_CHECKING, BinaryIO
 
 from clearance.errors import MissingFile, Unavailable
 from clearance.extras import install
-from clearance.world.case import Source
 
-_PYBULLET_DATA = "pybullet_data:"
+if TYPE_CHECKING:
+    from clearance.world.case import Source
+
+PYBULLET_DATA = "pybullet_data:"
 
 SHORT = 2**20
 """[bytes] Files up to this length are read once, whoever goes through them how often."""
@@ -39,6 +41,11 @@ class InputFiles:
         self.folder = folder
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
+        self._held: set[Path] = set()
+
+    @cached_property
+    def _brought(self) -> Path | None:
+        return _pybullet_data_folder()
 
     @property
     def sources(self) -> tuple[Source, ...]:
@@ -55,13 +62,17 @@ class InputFiles:
         if path not in self._contents:
             data = read_bytes(path, self.shown(path))
             self._contents[path] = data
-            digest = hashlib.sha256(data).hexdigest()
-            self._sources[path] = Source(self.shown(path), digest, len(data), str(path))
+            self._note(path, hashlib.sha256(data).hexdigest(), len(data))
         return self._contents[path]
 
     def hold(self, path: Path, data: bytes) -> None:
         """Keeps what is written out in another file as the content of a file of its own, which is not on disk."""
         self._contents[Path(os.path.abspath(path))] = data
+        self._held.add(Path(os.path.abspath(path)))
+
+    def is_held(self, path: Path) -> bool:
+        """Whether a file is not on disk."""
+        return Path(os.path.abspath(path)) in self._held
 
     def unread(self, path: Path) -> tuple[Callable[[], BinaryIO], int]:
         """Opens a file, again and again, and how many bytes it has; its checksum is remembered, its content only
@@ -71,15 +82,18 @@ class InputFiles:
             MissingFile: it is not there, is no file on disk, or cannot be read.
         """
         path = Path(os.path.abspath(path))
-        shown, content = self.shown(path), b""
-        with _openable(shown), regular_file(path) as file:
+        if path in self._held:
+            data = self._contents[path]
+            return lambda: BytesIO(data), len(data)
+        content = b""
+        with _openable(self.shown(path)), regular_file(path) as file:
             n_bytes = os.fstat(file.fileno()).st_size
             if n_bytes <= SHORT:
                 content = file.read()
                 digest, n_bytes = hashlib.sha256(content).hexdigest(), len(content)
             else:
                 digest = hashlib.file_digest(file, "sha256").hexdigest()
-        self._sources[path] = Source(shown, digest, n_bytes, str(path))
+        self._note(path, digest, n_bytes)
         return (lambda: BytesIO(content) if n_bytes <= SHORT else regular_file(path)), n_bytes
 
     def of_more(self) -> InputFiles:
@@ -88,16 +102,17 @@ class InputFiles:
         made.__dict__["_brought"] = self._brought
         return made
 
-    @cached_property
-    def _brought(self) -> Path | None:
-        return _pybullet_data_folder()
+    def _note(self, path: Path, digest: str, n_bytes: int) -> None:
+        from clearance.world.case import Source
+
+        self._sources[path] = Source(self.shown(path), digest, n_bytes, str(path))
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         path = Path(os.path.abspath(path))
         brought = self._brought
         if brought is not None and path.is_relative_to(brought):
-            return _PYBULLET_DATA + path.relative_to(brought).as_posix()
+            return PYBULLET_DATA + path.relative_to(brought).as_posix()
         return relative_path(path, self.folder)
 
 
@@ -109,6 +124,16 @@ def read_bytes(path: Path, shown: str) -> bytes:
     """
     with _openable(shown), regular_file(path) as file:
         return file.read()
+
+
+def require_file(path: Path, shown: str) -> None:
+    """Refuses what `read_bytes` would refuse, without reading it.
+
+    Raises:
+        MissingFile: it is not there, is no file on disk, or cannot be read.
+    """
+    with _openable(shown), regular_file(path):
+        pass
 
 
 class _NotRegular(OSError):
@@ -169,12 +194,12 @@ def resolved(given: str, folder: Path) -> Path:
     Raises:
         Unavailable: `pybullet_data:` without that package.
     """
-    if not given.startswith(_PYBULLET_DATA):
-        return folder / given
+    if not given.startswith(PYBULLET_DATA):
+        return Path(os.path.normpath(folder / given))  # also from a folder that is not there yet
     brought = _pybullet_data_folder()
     if brought is None:
         raise Unavailable(f"{given!r} needs the package pybullet", valid=install("simulate"))
-    return brought / given.removeprefix(_PYBULLET_DATA).lstrip("/")
+    return brought / given.removeprefix(PYBULLET_DATA).lstrip("/")
 
 
 def _pybullet_data_folder() -> Path | None:

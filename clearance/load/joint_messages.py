@@ -16,6 +16,8 @@ _HOLDERS = (
     "joint_trajectory",
     "trajectory",
     "goal",
+    "request",
+    "result",
     "motion_plan_response",
     "planned_trajectory",
     "solution",

@@ -24,18 +24,19 @@ from clearance.errors import (
 )
 from clearance.load.joint_messages import JointMessage
 from clearance.load.message_documents import Fields, told
+from clearance.load.message_times import NANO, nanoseconds_in
 from clearance.load.trajectory_request import ReadTrajectory
 from clearance.world.names import checked_name
 from clearance.world.trajectory import Trajectory
 
 _VALUES = ("positions", "velocities", "accelerations", "effort")
 _KEYS = (*_VALUES, "time_from_start")
-_CLOCKS = (("sec", "nanosec"), ("secs", "nsecs"))
 
 
 class _Point(NamedTuple):
     time: float
     values: dict[str, list[float]]
+    lacks_nanoseconds: bool = False
 
 
 def trajectory_of_message(
@@ -109,7 +110,8 @@ def _point(given: Any, n_joints: int) -> _Point:
     if "time_from_start" not in given:
         raise MissingKey("'time_from_start' is missing")
     with at("time_from_start"):
-        return _Point(_seconds(given["time_from_start"]), values)
+        time = given["time_from_start"]
+        return _Point(_seconds(time), values, isinstance(time, Fields) and len(time) == 1)
 
 
 def _numbers(given: Any, key: str, n_joints: int) -> list[float]:
@@ -130,16 +132,16 @@ def _numbers(given: Any, key: str, n_joints: int) -> list[float]:
 
 
 def _seconds(given: Any) -> float:
-    """[s] the nearest double to what a number, or seconds and nanoseconds, say."""
+    """[s] the nearest double to what a number, or seconds and nanoseconds, say; without nanoseconds these are 0,
+    as for ROS's own commands.
+    """
     if type(given) in (int, float):
         if not math.isfinite(given):
             raise NotFinite(f"{given} is given", valid="a finite number of seconds")
         return float(given)
-    for keys in _CLOCKS:
-        if isinstance(given, Fields) and set(given) == set(keys):
-            seconds, nanoseconds = (given[key] for key in keys)
-            if type(seconds) is int and type(nanoseconds) is int and 0 <= nanoseconds < 10**9:
-                return (seconds * 10**9 + nanoseconds) / 10**9
+    nanoseconds = nanoseconds_in(given)
+    if nanoseconds is not None:
+        return nanoseconds / NANO
     raise BadTime(
         f"{told(given)} is given",
         valid="seconds, {sec, nanosec} or {secs, nsecs}, whole and fewer than 1e9 nanoseconds",
@@ -185,6 +187,9 @@ def _notes(points: list[_Point]) -> list[str]:
         )
     if any("effort" in point.values for point in points):
         notes.append("effort is not read")
+    n_whole = sum(point.lacks_nanoseconds for point in points)
+    if n_whole:
+        notes.append(f"{n_whole} times are seconds without nanoseconds, which are taken as 0")
     if first.time > 0.0:
         notes.append(
             f"the first point is at {first.time:g} s; how the robot gets there is not in the file"

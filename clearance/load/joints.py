@@ -8,15 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, at
+from clearance.load.compound_joints import chained, notes_on_parts
 from clearance.load.urdf_elements import number, numbers, pose_of
 from clearance.tolerance import REACH
 from clearance.world.mimics import masters_of
+from clearance.world.names import require_own_names
 from clearance.world.robot import Joint, JointKind, Mimic
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
-_KINDS = tuple(kind.value for kind in JointKind)
+_COMPOUND = ("planar", "floating")
+
+_KINDS = (*(kind.value for kind in JointKind), *_COMPOUND)
 
 
 def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
@@ -26,13 +30,14 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
         BadInput: a kind that is not supported, an axis of length zero, limits the wrong way round,
             a mimic that follows itself. UnknownJoint: a mimic of a joint that is not there.
     """
-    joints = []
+    joints: list[Joint] = []
     for element in root.iterfind("joint"):
         with at(f"joint {element.get('name')!r}"):
-            joints.append(_joint(element))
+            joints += _joints(element)
+    require_own_names("joint", [joint.name for joint in joints])
     masters = masters_of(joints)
     fixed = {joint.name for joint in joints if joint.kind is JointKind.FIXED}
-    notes: list[str] = []
+    notes = notes_on_parts(joints)
     for i, (joint, master, _, position) in enumerate(masters[joint.name] for joint in joints):
         if joint.mimic is not None and master in fixed:
             joints[i] = _at_rest(joint, position)
@@ -40,6 +45,22 @@ def joints_of(root: Element) -> tuple[list[Joint], list[str]]:
                 f"joint {joint.name!r} follows fixed joint {master!r} and stays at {position:g}"
             )
     return joints, notes
+
+
+def _joints(element: Element) -> list[Joint]:
+    """The joint of an element, or the parts of one of several degrees of freedom."""
+    kind = element.get("type")
+    if kind not in _COMPOUND:
+        return [_joint(element)]
+    if element.find("mimic") is not None:
+        raise BadInput(f"a {kind} joint has a <mimic>", valid="<mimic> of a joint of one axis")
+    if kind == "planar" and _axis(element.find("axis"), JointKind.PRISMATIC).tolist() != [0, 0, 1]:
+        raise BadInput(
+            "a planar joint whose axis is not z, the plane's x and y are not said",
+            valid='<axis xyz="0 0 1"/>, the plane turned by <origin rpy="…">',
+        )
+    parent, child = (element.find(end).get("link") for end in ("parent", "child"))
+    return chained(kind, element.get("name"), parent, child, pose_of(element))
 
 
 def _joint(element: Element) -> Joint:

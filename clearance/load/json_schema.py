@@ -9,9 +9,19 @@ from collections.abc import Iterator
 from typing import Any
 
 from clearance.load import schema
+from clearance.load.joints_schema import STATE
 from clearance.load.obstacle_schema import SHAPES
 from clearance.load.strict_model import StrictModel
 from clearance.world.notice import KINDS
+
+_NAMES_OF_STATES = {
+    "description": "a state of the SRDF, or several",
+    "anyOf": [
+        {"type": "number"},
+        {"type": "string", "minLength": 1},
+        {"type": "array", "items": {"type": "string", "minLength": 1}, "minItems": 1},
+    ],
+}
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -21,17 +31,18 @@ def case_schema() -> dict[str, Any]:
     made = schema.Case.model_json_schema()
     parts, keys = made["$defs"], made["properties"]
     _without_nothing(made, parts)
-    keys["scene"] = _or_path(keys["scene"], "a YAML, SDF or MoveIt file with the scene")
+    keys["scene"] = _or_path(keys["scene"], "a YAML, SDF, MJCF or MoveIt file with the scene")
     keys["accept"]["items"]["enum"] = list(KINDS)
     made["oneOf"] = [{"required": ["robot"]}, {"required": ["robots"]}]
     made["anyOf"] = list(_what_moves())
     factors = parts["Mesh"]["properties"]["scale"]
     parts["Mesh"]["properties"]["scale"] = {"anyOf": [{"type": "number"}, factors], "default": 1.0}
     _edit_obstacle(parts["Obstacle"])
+    parts["Robot"]["properties"]["joints"]["properties"] = {STATE: _NAMES_OF_STATES}
     parts["Rule"]["anyOf"] = [{"required": ["fail"]}, {"required": ["warn"]}]
     for pose in ("Pose", "Base"):
         parts[pose]["not"] = {"required": ["quat_xyzw", "rpy"]}
-    parts["TimedFile"] = _or_path(parts["TimedFile"], "a CSV file")
+    parts["PoseFile"] = _or_path(parts["PoseFile"], "a CSV file, or stamped poses in YAML or JSON")
     parts["TrajectoryFile"] = _or_path(
         parts["TrajectoryFile"], "a CSV file, a JointTrajectory in YAML or JSON, or a bag"
     )

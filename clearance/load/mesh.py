@@ -19,20 +19,33 @@ from clearance.load.collada_file import UpAxis, read_collada
 from clearance.load.gltf_file import read_glb
 from clearance.load.input_files import read_bytes
 from clearance.load.obj_file import read_obj
+from clearance.load.octree_file import read_octree
 from clearance.load.off_file import read_off
 from clearance.load.placing import Z_FROM_Y_UP
 from clearance.load.ply_file import read_ply
+from clearance.load.step_file import read_step
 from clearance.load.stl_file import read_stl
 from clearance.load.triangles import Triangles, checked, n_without_area, scaled, without_copies
+from clearance.tolerance import TESSELLATION
 
-_READERS: dict[str, Callable[[bytes, UpAxis], Triangles]] = {
-    ".stl": lambda data, _: read_stl(data),
-    ".obj": lambda data, _: read_obj(data),
-    ".dae": read_collada,
-    ".ply": lambda data, _: read_ply(data),
-    ".off": lambda data, _: read_off(data),
-    ".glb": lambda data, _: read_glb(data),
+_READERS: dict[str, Callable[[bytes, UpAxis, float], Triangles]] = {
+    ".stl": lambda data, *_: read_stl(data),
+    ".obj": lambda data, *_: read_obj(data),
+    ".dae": lambda data, up_axis, _: read_collada(data, up_axis),
+    ".ply": lambda data, *_: read_ply(data),
+    ".off": lambda data, *_: read_off(data),
+    ".glb": lambda data, *_: read_glb(data),
+    ".step": lambda data, _, tolerance: read_step(data, tolerance),
+    ".stp": lambda data, _, tolerance: read_step(data, tolerance),
+    ".bt": lambda data, *_: read_octree(data),
+    ".ot": lambda data, *_: read_octree(data),
 }
+
+CAD = (".step", ".stp")
+"""Formats of surfaces that become facets within a tolerance."""
+
+_SCANS = (".pcd", ".xyz", ".asc", ".csv", ".txt")
+"""Suffixes of files that are scans, if anything (`cloud`)."""
 
 OPEN = "the surface is open: it has no inside"
 """The note on a mesh of which no part is closed; the same text for all, so that one line can name them all."""
@@ -54,36 +67,50 @@ class LoadedMesh:
 
 
 def read_mesh(
-    path: str | PathLike[str], scale: float | Sequence[float] = 1.0, up_axis: UpAxis = "file"
+    path: str | PathLike[str],
+    scale: float | Sequence[float] = 1.0,
+    up_axis: UpAxis = "file",
+    tolerance: float = TESSELLATION,
 ) -> Polyhedron:
-    """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`).
+    """The solid in a mesh file (`.stl`, `.obj`, `.dae`, `.ply`, `.off`, `.glb`), CAD file (`.step`, `.stp`) or
+    octomap (`.bt`, `.ot`).
 
     Args:
         scale: factor of all axes or of each; negative mirrors, and the faces stay counter-clockwise
             from outside.
         up_axis: what becomes of a COLLADA file's `<up_axis>`: "file" obeys it, "ros" ignores it.
+        tolerance: [m] how far the facets of a CAD file may be off its surface. The solid's `shortfall` says how
+            far they are at most; a case takes it off the clearance, `distance` of two solids does not.
 
     Raises:
         MissingFile, BadSyntax, EmptyMesh, NotFinite, BadPolygon, BadDimension: with the file's name.
     """
     path = Path(path)
-    return mesh_from_bytes(read_bytes(path, path.name), path.name, scale, up_axis).shape
+    data = read_bytes(path, path.name)
+    return mesh_from_bytes(data, path.name, scale, up_axis, tolerance).shape
 
 
 def mesh_from_bytes(
-    data: bytes, name: str, scale: float | Sequence[float] = 1.0, up_axis: UpAxis = "file"
+    data: bytes,
+    name: str,
+    scale: float | Sequence[float] = 1.0,
+    up_axis: UpAxis = "file",
+    tolerance: float = TESSELLATION,
 ) -> LoadedMesh:
     """The solid in the content of a mesh file; `name` gives the format and stands in errors."""
     with at(name):
-        return _solid(scaled(triangles_from_bytes(data, name, up_axis), scale))
+        return _solid(scaled(triangles_from_bytes(data, name, up_axis, tolerance), scale))
 
 
-def triangles_from_bytes(data: bytes, name: str, up_axis: UpAxis = "file") -> Triangles:
+def triangles_from_bytes(
+    data: bytes, name: str, up_axis: UpAxis = "file", tolerance: float = TESSELLATION
+) -> Triangles:
     """The triangles of a mesh file as they are in it, before anything is mended."""
     suffix = Path(name).suffix.lower()
     if suffix not in _READERS:
-        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS))
-    return checked(_READERS[suffix](data, up_axis))
+        hint = "; a scan is read as points: {file: …, radius: …}" if suffix in _SCANS else ""
+        raise BadSyntax(f"unknown mesh format {suffix!r}", valid=", ".join(_READERS) + hint)
+    return checked(_READERS[suffix](data, up_axis, tolerance))
 
 
 def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
@@ -98,9 +125,11 @@ def mesh_file(vertices: np.ndarray, triangles: np.ndarray, kind: str) -> bytes:
 
 def _solid(triangles: Triangles) -> LoadedMesh:
     kept, n_copies = without_copies(triangles)
-    given = Polyhedron.from_triangles(kept.vertices, kept.corners)
+    off = triangles.off
+    given = Polyhedron.from_triangles(kept.vertices, kept.corners, excess=off, shortfall=off)
     shape = given.outward()
     notes = [
+        *_notes_on_facets(off),
         *triangles.notes,
         *_notes_on_copies(n_copies),
         *_notes_on_flat(n_without_area(kept), shape),
@@ -109,6 +138,15 @@ def _solid(triangles: Triangles) -> LoadedMesh:
         *_notes_on_open(shape.component_closed),
     ]
     return LoadedMesh(shape, len(triangles.corners), tuple(notes))
+
+
+def _notes_on_facets(off: float) -> list[str]:
+    if not off:
+        return []
+    return [
+        f"facets of a CAD file, up to {off * 1e3:.3g} mm off its surface, which is taken off the clearance; "
+        "depths of contact are those of the facets"
+    ]
 
 
 def _notes_on_copies(n_copies: int) -> list[str]:

@@ -1,5 +1,5 @@
-"""Where a mesh named in a URDF or SDF file lies, and a model: `package://…`, `model://…`, `file://…`, absolute, or
-relative.
+"""Where a mesh named in a URDF or SDF file lies, a model, and a package: `package://…`, `model://…`, `file://…`,
+absolute, or relative.
 
 Source: resolve-robotics-uri-py 0.6 (BSD), for what the variables of ROS and Gazebo mean. Not for: reading.
 """
@@ -92,6 +92,24 @@ def model_path(given: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPa
     return MeshPath(path)
 
 
+def package_folder(package: str, folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
+    """The folder of a package.
+
+    Args:
+        folder: of the file that names it.
+
+    Raises:
+        MissingFile: no such folder, with the places tried.
+    """
+    for place, variable in _package_folders(package or " ", folder, package_dirs):
+        if _is_there(place) and place.is_dir():
+            return MeshPath(place, variable=variable)
+    raise MissingFile(
+        f"there is no package {package!r}; looked for it {_places(folder, package_dirs)}",
+        valid="give its folder in robot.package_dirs",
+    )
+
+
 def _in_package(given: str, rest: str, urdf_folder: Path, package_dirs: Sequence[Path]) -> MeshPath:
     package, *parts = _parts(rest)
     for folder, variable in _package_folders(package, urdf_folder, package_dirs):
@@ -129,11 +147,23 @@ def _package_folders(
 ) -> Iterator[tuple[Path, str]]:
     """Folders that are the package, if they are there, the nearest first; and the variable that names each."""
     above = Path(os.path.abspath(urdf_folder))
-    near = [(folder, "") for folder in (*package_dirs, urdf_folder, *above.parents)]
-    for folder, variable in (*near, *_from_variables()):
+    near = [(folder, "") for folder in (urdf_folder, *above.parents)]
+    for folder, variable in (*((one, "") for one in package_dirs), *near, *_from_variables()):
         yield folder / package, variable
         if _is_package(folder, package):
             yield folder, variable
+        if folder in package_dirs:
+            yield from (
+                (below, "") for below in _packages_in(folder) if _is_package(below, package)
+            )
+
+
+def _packages_in(folder: Path) -> list[Path]:
+    """The packages in a folder, as a workspace has them, whatever their folders are called."""
+    try:
+        return sorted(below for below in folder.iterdir() if (below / "package.xml").is_file())
+    except OSError:
+        return []
 
 
 def _is_package(folder: Path, package: str) -> bool:

@@ -1,19 +1,29 @@
-"""The solids of one case's mesh files: each file is made once for each scale and up axis."""
+"""The bodies of one case's files of meshes and points: each is made once for each scale and up axis.
+
+Solids are kept for later runs.
+"""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
 
+from clearance.geometry.kept_shapes import kept, name_of
+from clearance.load import mesh
+from clearance.load.cloud import LoadedCloud, cloud_from_bytes
 from clearance.load.collada_file import UpAxis
 from clearance.load.input_files import InputFiles
-from clearance.load.mesh import LoadedMesh, mesh_from_bytes
+from clearance.load.mesh import CAD, LoadedMesh, mesh_from_bytes
+from clearance.tolerance import TESSELLATION
 
 Scale = tuple[float, float, float]
 
+SMALL = 4096
+"""Bytes below which a file is read in less time than what was made of it."""
+
 
 class MeshStore:
-    """Loads meshes through `files` and keeps them.
+    """Loads meshes and clouds through `files` and keeps them.
 
     Args:
         files: reads the files and remembers their checksums.
@@ -21,16 +31,58 @@ class MeshStore:
 
     def __init__(self, files: InputFiles) -> None:
         self.files = files
-        self._loaded: dict[tuple[str, Scale, UpAxis], LoadedMesh] = {}
+        self._loaded: dict[tuple[str, Scale, UpAxis, float], LoadedMesh] = {}
+        self._clouds: dict[tuple[str, float, Scale, bool], LoadedCloud] = {}
 
-    def load(self, path: Path, scale: Scale, up_axis: UpAxis = "file") -> LoadedMesh:
-        """The solid in a mesh file; the same object for the same file, scale and up axis.
+    def load(
+        self,
+        path: Path,
+        scale: Scale,
+        up_axis: UpAxis = "file",
+        tolerance: float = TESSELLATION,
+    ) -> LoadedMesh:
+        """The solid in a mesh file; the same object for the same file, scale, up axis and tolerance.
+
+        Args:
+            tolerance: [m] how far the facets of a CAD file may be off its surface.
 
         Raises:
             BadInput: as `mesh.read_mesh`, with the path as it is shown.
         """
-        key = (os.path.abspath(path), scale, up_axis)
+        key = (os.path.abspath(path), scale, up_axis, tolerance)
         if key not in self._loaded:
             data = self.files.read(path)
-            self._loaded[key] = mesh_from_bytes(data, self.files.shown(path), scale, up_axis)
+            shown = self.files.shown(path)
+            self._loaded[key] = _solid_of(data, shown, scale, up_axis, tolerance)
         return self._loaded[key]
+
+    def load_points(
+        self, path: Path, radius: float, scale: Scale, *, in_millimetres: bool = False
+    ) -> LoadedCloud:
+        """The cloud in a file of points; the same object for the same file, radius, scale and unit.
+
+        Raises:
+            BadInput: as `cloud.read_points`, with the path as it is shown.
+        """
+        key = (os.path.abspath(path), radius, scale, in_millimetres)
+        if key not in self._clouds:
+            data = self.files.read(path)
+            self._clouds[key] = cloud_from_bytes(
+                data, self.files.shown(path), radius, scale, in_millimetres=in_millimetres
+            )
+        return self._clouds[key]
+
+
+def _solid_of(
+    data: bytes, shown: str, scale: Scale, up_axis: UpAxis, tolerance: float
+) -> LoadedMesh:
+    """As `mesh_from_bytes`, which depends on the name by its suffix alone where it refuses nothing."""
+
+    def make() -> LoadedMesh:
+        return mesh_from_bytes(data, shown, scale, up_axis, tolerance)
+
+    suffix = Path(shown).suffix.lower()
+    if len(data) < SMALL or suffix in CAD:  # a CAD file's facets are not made by sources of ours
+        return make()
+    name = name_of(data, suffix, scale, up_axis)
+    return kept(name, "solid", str(mesh.__file__), make)

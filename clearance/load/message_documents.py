@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,8 +36,11 @@ class Fields(dict[str, Any]):
     line: int | None = None
 
 
-def yaml_documents(data: bytes) -> list[Any]:
+def yaml_documents(data: bytes, factors: Mapping[str, float] | None = None) -> list[Any]:
     """The documents of a YAML file that are not empty.
+
+    Args:
+        factors: what tags of numbers multiply by; other tags are refused.
 
     Raises:
         BadSyntax: not YAML, with a tag, too long or too deep. DuplicateName: a key twice.
@@ -46,7 +50,7 @@ def yaml_documents(data: bytes) -> list[Any]:
     _refuse_long(data, MOST_YAML)
     text = _text(data)
     _refuse_deep_brackets(data)
-    builder = _Builder()
+    builder = _Builder(factors or {})
     try:
         for event in YAML(typ="safe", pure=True).parse(text):
             builder.take(event)
@@ -91,7 +95,8 @@ class _Open(NamedTuple):
 class _Builder:
     """Takes the events of a YAML parser one by one."""
 
-    def __init__(self) -> None:
+    def __init__(self, factors: Mapping[str, float]) -> None:
+        self._factors = factors
         self.documents: list[Any] = []
         self._open: list[_Open] = []
         self._anchors: dict[str, Any] = {}
@@ -128,7 +133,9 @@ class _Builder:
         self._open.append(_Open(made, event.anchor, []))
 
     def _take_scalar(self, event: Any) -> None:
-        self._refuse_tag(event)
+        factor = self._factors.get(str(event.tag))
+        if factor is None:
+            self._refuse_tag(event)
         parent = self._open[-1] if self._open else None
         if parent is not None and isinstance(parent.made, Fields) and not parent.key:
             if event.value in parent.made:
@@ -137,7 +144,9 @@ class _Builder:
                 )
             parent.key.append(event.value)
         else:
-            value = _plain(event.value) if event.implicit[0] else event.value
+            value = _plain(event.value) if event.implicit[0] or factor else event.value
+            if factor is not None and isinstance(value, int | float):
+                value *= factor
             self._put(value, event, event.anchor)
 
     def _put(self, value: Any, event: Any, anchor: str | None) -> None:

@@ -8,6 +8,9 @@ from typing import Any
 
 from clearance.errors import BadDimension, BadInput, BadShape, nearest_name
 from clearance.load.mesh_paths import mesh_path
+from clearance.load.moveit_values import Message, items, number, text
+from clearance.load.octree_file import file_of_message, octree_of
+from clearance.load.off_file import off_text
 from clearance.load.scene_request import SceneRequest
 
 Row = dict[str, Any]
@@ -82,10 +85,28 @@ class SceneMeshes:
                 )
         name = f"{self._asked.path.name}.mesh{self._n_inline}.off"
         self._n_inline += 1
-        lines = ["OFF", f"{len(vertices)} {len(triangles)} 0"]
-        lines += [" ".join(map(repr, vertex)) for vertex in vertices]
-        lines += [" ".join(map(str, (3, *triangle))) for triangle in triangles]
-        self._asked.files.hold(self._asked.path.parent / name, "\n".join(lines).encode())
+        self._asked.files.hold(self._asked.path.parent / name, off_text(vertices, triangles))
+        return {"mesh": {"file": name}}
+
+    def octomap(self, given: Message) -> Row | None:
+        """An octomap written out in the scene, kept likewise; None where no cell of it is occupied.
+
+        Raises:
+            BadInput: another kind of map, data that are no bytes, or a tree that is cut off.
+        """
+        data = items(given, "data")
+        if not all(type(byte) is int and -128 <= byte <= 255 for byte in data):
+            raise BadInput("a byte is no whole number of -128 to 255", where="data", valid="bytes")
+        content = file_of_message(
+            bytes(byte & 255 for byte in data),
+            text(given, "id"),
+            number(given.get("resolution"), "resolution"),
+            is_binary=given.get("binary") is True,
+        )
+        if not len(octree_of(content).sizes):
+            return None
+        name = f"{self._asked.path.name}.octomap.bt"
+        self._asked.files.hold(self._asked.path.parent / name, content)
         return {"mesh": {"file": name}}
 
     def named(self, uri: str, scale: list[float]) -> Row:

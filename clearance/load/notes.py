@@ -1,4 +1,4 @@
-"""Notes on many files as one line each: what was found, in how many, and the first few by name."""
+"""Wording of notes: those on many files as one line each, and how many of something there are."""
 
 from __future__ import annotations
 
@@ -34,3 +34,8 @@ def short(file: str) -> str:
     """The end of a path: folder and name."""
     parts = PurePosixPath(file).parts
     return file if len(parts) <= 2 or ":" in file else "/".join(parts[-2:])
+
+
+def counted(n: int, what: str) -> str:
+    """`1 link`, `2 links`."""
+    return f"{n} {what}" if n == 1 else f"{n} {what}s"

@@ -6,15 +6,18 @@ Not for: reading mesh files (`scene_file`).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import field_validator, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from clearance.errors import BadDimension, BadInput
 from clearance.geometry import shapes
-from clearance.load.pose_schema import Pose, TimedFile
+from clearance.load.mesh import CAD
+from clearance.load.pose_schema import Pose, PoseFile
 from clearance.load.shape_schema import Triple, with_shapes
+from clearance.load.step_file import COARSEST, FINEST
 from clearance.load.strict_model import Level, Name, StrictModel
+from clearance.tolerance import TESSELLATION
 
 
 def _is_double(number: int | float) -> bool:
@@ -25,12 +28,11 @@ def _is_double(number: int | float) -> bool:
         return False
 
 
-class Mesh(StrictModel):
-    """A mesh file; `scale` is a number or one for each axis, negative to mirror."""
+class ScaledFile(StrictModel):
+    """A file whose coordinates are times `scale`: a number or one for each axis, negative to mirror."""
 
     file: Name
     scale: Triple = [1.0, 1.0, 1.0]
-    collada_up_axis: Literal["ros", "file"] = "file"
 
     @field_validator("scale", mode="before")
     @classmethod
@@ -52,7 +54,50 @@ class Mesh(StrictModel):
         return x, y, z
 
 
-SHAPES = (*shapes.SHAPES, "mesh")
+class Mesh(ScaledFile):
+    """A mesh file; `tolerance` [m] is how far the facets of a CAD file may be off its surface."""
+
+    FILLED = frozenset({"tolerance"})
+
+    collada_up_axis: Literal["ros", "file"] = "file"
+    tolerance: Annotated[float | None, Field(ge=FINEST, le=COARSEST)] = None
+
+    @model_validator(mode="after")
+    def _tolerance_of_cad(self) -> Mesh:
+        if self.tolerance is not None and not self.file.lower().endswith(CAD):
+            raise BadInput(
+                f"a tolerance of {self.file!r:.60} is given, whose faces are flat",
+                valid="of .step or .stp",
+            )
+        return self
+
+    @property
+    def tolerance_or_default(self) -> float:
+        """[m]."""
+        return TESSELLATION if self.tolerance is None else self.tolerance
+
+
+class LengthUnit(StrictModel):
+    """What the coordinates of a file are written in."""
+
+    length: Literal["m", "mm"] = "m"
+
+
+class ScannedPoints(ScaledFile):
+    """A file of points of a scan, each a ball of `radius` [m]; its coordinates are in `units`, times `scale`."""
+
+    FILLED = frozenset({"units"})
+
+    radius: Annotated[float, Field(gt=0)]
+    units: LengthUnit | None = None
+
+    @property
+    def in_millimetres(self) -> bool:
+        """True if the coordinates are."""
+        return self.units is not None and self.units.length == "mm"
+
+
+SHAPES = (*shapes.SHAPES, "mesh", "points")
 
 
 class NamedPose(StrictModel):
@@ -76,8 +121,9 @@ class Obstacle(_Shaped):
     FILLED = frozenset({"on", "moves"})
 
     mesh: Mesh | None = None
+    points: ScannedPoints | None = None
     on: Name | None = None
-    moves: TimedFile | None = None
+    moves: PoseFile | None = None
     padding: Level = 0.0
 
     @property

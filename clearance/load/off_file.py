@@ -6,6 +6,8 @@ n coordinates. Source: Geomview manual, OFF files.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from clearance.errors import BadSyntax, EmptyMesh, at
@@ -71,3 +73,11 @@ def _cut(points: np.ndarray, rows: list[list[bytes]]) -> Triangles:
         )
     checked(Triangles(points, np.repeat(flat, 3)))
     return Triangles(points, cut_rings(points, flat, counts))
+
+
+def off_text(vertices: Sequence[Sequence[float]], triangles: Sequence[Sequence[int]]) -> bytes:
+    """The content of an OFF file that is read back with the same numbers."""
+    lines = ["OFF", f"{len(vertices)} {len(triangles)} 0"]
+    lines += [" ".join(map(repr, vertex)) for vertex in vertices]
+    lines += [" ".join(map(str, (3, *triangle))) for triangle in triangles]
+    return "\n".join(lines).encode()

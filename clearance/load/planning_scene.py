@@ -16,7 +16,11 @@ from clearance.load.moveit_matrix import allowed_pairs
 from clearance.load.moveit_objects import object_rows
 from clearance.load.moveit_shapes import Row, SceneMeshes
 from clearance.load.moveit_values import Message, Poses, items, message, messages, number, text
-from clearance.load.scene_request import SceneContent, SceneRequest
+from clearance.load.pose_row import pose_row
+from clearance.load.scene_request import HeldPart, SceneContent, SceneRequest
+
+OCTOMAP = "<octomap>"
+"""The name of a map in MoveIt, by which its matrix may allow it."""
 
 _KEYS = {
     "world",
@@ -36,27 +40,31 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
     """The obstacles of a planning scene, what may touch them, and the padding of links.
 
     Raises:
-        BadInput: what is not read (octomap, scale of links, cone, plane), or is no message; with its field.
+        BadInput: what is not read (scale of links, cone, plane), or is no message; with its field.
     """
     with at(asked.shown):
         meshes, poses = SceneMeshes(asked), Poses()
         frames = _Frames(raw, poses)
-        _refuse_octomap(message(raw, "world"))
+        world = message(raw, "world")
         with at("world"):
-            obstacles = list(_world(message(raw, "world"), frames, meshes, poses))
+            obstacles = list(_world(world, frames, meshes, poses))
+            obstacles += _octomap(message(world, "octomap"), frames, meshes, poses)
         state = message(raw, "robot_state")
         with at("robot_state"):
-            attached, touching = _attached(state, meshes, poses)
+            attached, held = _attached(state, meshes, poses)
         matrix = allowed_pairs(message(raw, "allowed_collision_matrix"))
         padding = _padding(raw)
     rows = [*obstacles, *attached]
     notes = [*frames.notes(), *_lost(raw, state), *_on_rounded(poses)]
+    if _octomap_data(world) and all(row["name"] != OCTOMAP for row in rows):
+        notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
     return SceneContent(
         {"obstacles": rows},
         (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(meshes.by_variable)),
         tuple(notices_on_stand_ins(meshes.stand_ins)),
-        allow=(*touching, *_by_obstacle(matrix, rows)),
+        allow=tuple(_by_obstacle(matrix, rows)),
         link_padding=padding,
+        held=tuple(held),
     )
 
 
@@ -105,18 +113,18 @@ def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -
 
 def _attached(
     state: Message, meshes: SceneMeshes, poses: Poses
-) -> tuple[list[Row], list[tuple[str, str]]]:
-    """The obstacles that ride on links, and which links may touch which of them."""
+) -> tuple[list[Row], list[HeldPart]]:
+    """The obstacles that ride on links, and what each may touch."""
     rows: list[Row] = []
-    touching: list[tuple[str, str]] = []
+    held: list[HeldPart] = []
     for where, given in messages(state, "attached_collision_objects"):
         with at(where):
             link = text(given, "link_name")
-            links = dict.fromkeys([link, *_touch_links(given)])
+            touch = tuple(dict.fromkeys(_touch_links(given)))
             for row in _held(message(given, "object"), link, meshes, poses):
                 rows.append(row | {"on": link})
-                touching += [(one, row["name"]) for one in links]
-    return rows, touching
+                held.append(HeldPart(row["name"], link, touch))
+    return rows, held
 
 
 def _touch_links(given: Message) -> list[str]:
@@ -163,19 +171,46 @@ def _padding(raw: Message) -> dict[str, float]:
     return {link: padding for link, padding in found.items() if padding}
 
 
-def _refuse_octomap(world: Message) -> None:
-    if items(message(message(world, "octomap"), "octomap"), "data"):
-        raise BadInput(
-            "an octomap is not read", where="world.octomap", valid="no data, and boxes or meshes"
+def _octomap_data(world: Message) -> list[object]:
+    return items(message(message(world, "octomap"), "octomap"), "data")
+
+
+def _octomap(given: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
+    """The obstacle of a map with occupied cells, called `OCTOMAP` as in MoveIt."""
+    tree = message(given, "octomap")
+    if not items(tree, "data"):
+        return
+    with at("octomap"):
+        origin = (
+            poses.read(given["origin"], "position", "orientation")
+            if given.get("origin")
+            else np.eye(4)
         )
+        placed = frames.of(given) @ origin
+        mapped = meshes.octomap(tree)
+        if mapped is not None:
+            yield {"name": OCTOMAP, **mapped, "pose": pose_row(placed)}
 
 
 def _lost(raw: Message, state: Message) -> Iterator[str]:
     """What has no place in a scene."""
-    if items(message(state, "joint_state"), "name"):
+    joints = [message(state, key) for key in ("joint_state", "multi_dof_joint_state")]
+    if any(items(one, name) for one in joints for name in ("name", "joint_names")):
         yield "the robot's state is not taken: joints are as the case says"
     if raw.get("is_diff") is True:
         yield "it is a difference to another scene, of which nothing is known"
+    world = message(raw, "world")
+    n_named = sum(
+        len(items(one, "subframe_names"))
+        for _, one in (*messages(world, "collision_objects"), *_objects_held(state))
+    )
+    if n_named:
+        yield f"{n_named} subframes of objects are passed over: nothing here is given in them"
+
+
+def _objects_held(state: Message) -> Iterator[tuple[str, Message]]:
+    for where, given in messages(state, "attached_collision_objects"):
+        yield where, message(given, "object")
 
 
 def _on_rounded(poses: Poses) -> Iterator[str]:

@@ -19,6 +19,9 @@ LARGE_RADIUS = 5.0
 usual radius.
 """
 
+LARGE_BALL = 0.2
+"""[m] Points of a scan are millimetres to centimetres apart; 5 is 5 mm."""
+
 LARGE_SCALE = 100.0
 """[-] Mesh files are in metres or finer units, so that scales are 1 or less: 1000 is mistaken for 0.001."""
 
@@ -38,6 +41,10 @@ def obstacle_notices(obstacles: Sequence[Obstacle]) -> list[Notice]:
         radius = _radius(obstacle)
         if radius > LARGE_RADIUS:
             wide.append(f"obstacle {obstacle.name!r} has a radius of {radius:g} m")
+        if obstacle.points is not None and obstacle.points.radius > LARGE_BALL:
+            wide.append(
+                f"each point of {obstacle.name!r} has a radius of {obstacle.points.radius:g} m"
+            )
         turned += odd_angles(f"obstacle {obstacle.name!r}", obstacle.pose.rpy)
     hint = "lengths are in metres, is this millimetres?"
     notices = [units(f"{listed(wide)}; {hint}")] if wide else []
@@ -65,7 +72,7 @@ def scale_notices(scales: Sequence[tuple[str, Sequence[float]]]) -> list[Notice]
     """A notice if meshes, given by name, are made larger than any unit asks for."""
     large = [(name, max(map(abs, scale))) for name, scale in scales]
     odd = [
-        f"the mesh is scaled by {scale:g} ({name})" for name, scale in large if scale >= LARGE_SCALE
+        f"the file is scaled by {scale:g} ({name})" for name, scale in large if scale >= LARGE_SCALE
     ]
     if not odd:
         return []

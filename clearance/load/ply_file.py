@@ -12,6 +12,7 @@ import numpy as np
 from clearance.errors import BadSyntax, EmptyMesh, MissingKey, at
 from clearance.load.ply_elements import elements_of
 from clearance.load.ply_rows import PlyRows
+from clearance.load.points import Points
 from clearance.load.polygon_cut import cut_rings
 from clearance.load.strips import strip
 from clearance.load.triangles import Triangles, checked, refuse_missing_corners
@@ -31,8 +32,23 @@ def read_ply(data: bytes) -> Triangles:
     for flat, counts in _rings(elements, "tristrips", points, ends=True):
         corners += [_strips(ring) for ring in np.split(flat, np.cumsum(counts)[:-1])]
     if not sum(map(len, corners)):
-        raise EmptyMesh("the mesh has no faces", valid="at least one triangle is needed")
+        raise EmptyMesh(
+            "the mesh has no faces",
+            valid="at least one triangle is needed; a scan is read as points: {file: …, radius: …}",
+        )
     return Triangles(points, np.concatenate(corners))
+
+
+def read_ply_points(data: bytes) -> Points:
+    """The vertices of a PLY file, as points of a scan; faces are passed over.
+
+    Raises:
+        BadSyntax, MissingKey: as `read_ply`.
+    """
+    elements = elements_of(data)
+    faces = [name for name in ("face", "tristrips") if name in elements and elements[name].n_rows]
+    notes = ("its faces are passed over: only the vertices are taken",) if faces else ()
+    return Points(_points(elements), notes)
 
 
 def _points(elements: dict[str, PlyRows]) -> np.ndarray:

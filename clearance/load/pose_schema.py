@@ -1,6 +1,6 @@
 """The schema of where something is: poses, what it stands on, and files that say where it goes.
 
-Not for: reading those files (`trajectory_file`, `pose_table_file`).
+Not for: reading those files (`trajectory_file`, `pose_formats`).
 """
 
 from __future__ import annotations
@@ -82,6 +82,25 @@ class Units(StrictModel):
 
     angle: Literal["rad", "deg"] = "rad"
     length: Literal["m", "mm"] = "m"
+
+
+class LengthUnit(StrictModel):
+    """What the lengths of a table are written in."""
+
+    length: Literal["m", "mm"]
+
+
+class PoseFile(TimedFile):
+    """Poses over time and when they are followed; lengths of a table may be in other `units`."""
+
+    FILLED = frozenset({"units"})
+
+    units: LengthUnit | None = None
+
+    @property
+    def length(self) -> str | None:
+        """The unit of lengths, if it is said."""
+        return None if self.units is None else self.units.length
 
 
 class TrajectoryFile(TimedFile):

@@ -1,5 +1,6 @@
 """CSV to a pose table: columns `time` [s], `x,y,z` [m] and `qx,qy,qz,qw`, by name, in any order.
 
+What is written otherwise (units, semicolons, decimal commas) is told in a note.
 Not for: how a table is parsed (`csv_table`), nor where between its rows a body is (`world.pose_table`).
 """
 
@@ -9,50 +10,69 @@ import io
 
 import numpy as np
 
-from clearance.errors import BadPose, MissingKey, UnknownKey, at, nearest_name
+from clearance.errors import BadInput, BadPose, MissingKey, UnknownKey, at, nearest_name
+from clearance.load.column_units import Column, columns_in, in_own_units, note_on_units
 from clearance.load.csv_table import (
     TIME,
-    Opener,
     TextTable,
+    as_written,
     columns_of,
     header_of,
     line_of_row,
+    note_on_separators,
     refuse_standing_time,
     require_time,
 )
+from clearance.load.pose_table_request import PoseRequest, ReadPoses
 from clearance.tolerance import LARGEST, ROTATION
 from clearance.world.pose_table import PoseTable
 
 _POSITION, _QUATERNION = ("x", "y", "z"), ("qx", "qy", "qz", "qw")
+_SLIDES = dict.fromkeys(_POSITION, False)
+"""Which columns are lengths, as `column_units` asks of joints: none turns."""
+
 COLUMNS = (TIME, *_POSITION, *_QUATERNION)
 
 
-def read_pose_table(opened: Opener, n_bytes: int, shown: str) -> PoseTable:
-    """The samples in a file.
-
-    Args:
-        opened: opens the file, `n_bytes` long, again and again.
-        shown: the file's name, in errors too.
+def read_csv_poses(request: PoseRequest) -> ReadPoses:
+    """The samples in a CSV file.
 
     Raises:
         BadSyntax, BadShape, MissingKey, UnknownKey, DuplicateName, NotFinite, BadTime, BadPose: with the line.
+        BadInput: a unit that a column cannot have.
     """
-    with at(shown):
-        table = TextTable(opened)
-        names = header_of(table, ", ".join(COLUMNS[1:]))
-        require_time(names, ", ".join(COLUMNS[1:]))
-        _require_columns(names)
-        parts = [[TIME], _POSITION, _QUATERNION]
-        times, positions, quaternions = columns_of(table, n_bytes, names, parts)
-        refuse_standing_time(times[:, 0], table)
-        _refuse_far(positions, table)
-        _refuse_off_length_one(quaternions, table)
-        return PoseTable(times[:, 0], positions, quaternions)
+    table = as_written(request.opened)
+    header = header_of(table, ", ".join(COLUMNS[1:]))
+    columns = columns_in(header, _SLIDES, ("rad", request.length or "m"))
+    names = [column.name for column in columns]
+    require_time(names, ", ".join(COLUMNS[1:]))
+    _require_columns(names)
+    by_name = {column.name: column for column in columns}
+    _refuse_units(by_name)
+    parts = [[by_name[name] for name in part] for part in ([TIME], _POSITION, _QUATERNION)]
+    wanted = [[column.header for column in part] for part in parts]
+    times, positions, quaternions = columns_of(table, request.n_bytes, header, wanted)
+    for values, part in zip((times, positions), parts, strict=False):
+        in_own_units(values, part)
+    refuse_standing_time(times[:, 0], table)
+    _refuse_far(positions, table)
+    _refuse_off_length_one(quaternions, table)
+    notes = (*note_on_separators(table), *note_on_units(columns))
+    return ReadPoses(PoseTable(times[:, 0], positions, quaternions), notes)
 
 
 def parse_pose_table(data: bytes, shown: str) -> PoseTable:
-    """The samples in the content of a file, as `read_pose_table` finds them in the file."""
-    return read_pose_table(lambda: io.BytesIO(data), len(data), shown)
+    """The samples in the content of a CSV file, as `read_csv_poses` finds them in the file."""
+    with at(shown):
+        return read_csv_poses(PoseRequest(lambda: io.BytesIO(data), len(data))).table
+
+
+def _refuse_units(by_name: dict[str, Column]) -> None:
+    for name in _QUATERNION:
+        if by_name[name].unit is not None:
+            raise BadInput(
+                f"column {by_name[name].header!r} names a unit", valid="a quaternion has none"
+            )
 
 
 def _require_columns(names: list[str]) -> None:

@@ -10,6 +10,9 @@ if TYPE_CHECKING:
     from lxml.etree import _Element as Element
 
 
+ALLOW_XACRO = "xacro evaluates Python in it: `xacro: true` beside urdf, or --xacro, allows that"
+
+
 def robot_element(data: bytes, wanted: str) -> Element:
     """The root element of a document, its elements without a namespace; comments are gone.
 
@@ -37,8 +40,12 @@ def robot_element(data: bytes, wanted: str) -> Element:
             valid="write out what it stands for",
         )
     if any("xacro" in (etree.QName(element).namespace or "") for element in root.iter()):
+        otherwise = (
+            f"`xacro: true` beside urdf in a case makes {wanted} of it, as the xacro command does"
+        )
         raise BadSyntax(
-            "this is a xacro file", valid=f"turn it into {wanted} with the xacro command first"
+            f"this is a xacro file, not {wanted}",
+            valid=ALLOW_XACRO if wanted == "a URDF file" else otherwise,
         )
     _take_out_of(etree.QName(root).namespace, root)
     return root

@@ -5,15 +5,31 @@ Not for: where the robot stands, or how it moves (`robots`).
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType
 
+from clearance.load.collada_file import UpAxis
+from clearance.load.foreign_files import is_mjcf
+from clearance.load.input_files import InputFiles, resolved
 from clearance.load.mesh_store import MeshStore
-from clearance.load.robot_request import RobotRequest
+from clearance.load.mjcf_robot import read_mjcf
+from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.urdf import read_urdf
+from clearance.load.xacro_file import checked_args
 from clearance.world.robot import Robot
+
+
+def read_robot_xml(request: RobotRequest, meshes: MeshStore) -> Robot:
+    """The robot in a file that is called XML: MJCF by its root element, else URDF."""
+    data = meshes.files.read(request.path)
+    return (read_mjcf if is_mjcf(data) else read_urdf)(request, meshes)
+
 
 READERS: dict[str, Callable[[RobotRequest, MeshStore], Robot]] = {
     ".urdf": read_urdf,
+    ".mjcf": read_mjcf,
+    ".xml": read_robot_xml,
 }
 """By suffix in small letters; a file of another suffix is read as URDF."""
 
@@ -24,4 +40,29 @@ def read_robot(request: RobotRequest, meshes: MeshStore) -> Robot:
     Raises:
         BadInput: as the reader says, with the place in the file.
     """
-    return READERS.get(request.path.suffix.lower(), read_urdf)(request, meshes)
+    suffix = ".urdf" if request.xacro else request.path.suffix.lower()
+    return READERS.get(suffix, read_urdf)(request, meshes)
+
+
+def load_robot(
+    path: str | Path,
+    *,
+    package_dirs: Sequence[str | Path] = (),
+    geometry: Geometry = "collision",
+    collada_up_axis: UpAxis = "ros",
+    xacro: bool = False,
+    xacro_args: Mapping[str, str | bool | int | float] = MappingProxyType({}),
+) -> Robot:
+    """The robot in a file of any format that is read, for cases that are made in memory.
+
+    Args:
+        path: of a URDF or MJCF file; or `pybullet_data:…`, as in a case file.
+        package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
+
+    Raises:
+        BadInput: with the file and the element.
+    """
+    path = resolved(str(path), Path())
+    folders, args = tuple(map(Path, package_dirs)), checked_args(xacro_args)
+    request = RobotRequest(path, folders, geometry, collada_up_axis, xacro, args)
+    return read_robot(request, MeshStore(InputFiles(path.parent)))

@@ -21,9 +21,12 @@ class RobotRequest:
         geometry: which shapes are the robot's; "collision_or_visual" takes the visual ones of links that have no
             others.
         collada_up_axis: "ros" leaves COLLADA files as they lie, "file" turns them as their `<up_axis>` says.
+        xacro: the file is made into URDF by xacro first, which evaluates Python. xacro_args: its arguments.
     """
 
     path: Path
     package_dirs: tuple[Path, ...] = ()
     geometry: Geometry = "collision"
     collada_up_axis: UpAxis = "ros"
+    xacro: bool = False
+    xacro_args: tuple[tuple[str, str], ...] = ()

@@ -12,15 +12,17 @@ from clearance.errors import BadInput, MissingFile, UnknownLink, at, nearest_nam
 from clearance.load import schema
 from clearance.load.allow import checked_links
 from clearance.load.input_files import InputFiles, resolved
+from clearance.load.joints_schema import states_of
+from clearance.load.limit_files import limited, note_on_accelerations
 from clearance.load.mesh_store import MeshStore
-from clearance.load.motion_names import check_not_given_twice
+from clearance.load.resting import resting_positions
 from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest
 from clearance.load.srdf import read_srdf
 from clearance.load.timed_files import trajectory_of
+from clearance.load.xacro_file import SUFFIX, checked_args, hold_expanded
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
-from clearance.world.moving_joints import require_moving_joints
 from clearance.world.robot import Robot
 from clearance.world.rules import matches
 
@@ -40,46 +42,73 @@ class RobotReader:
         self._read: dict[RobotRequest, Robot] = {}
         self.notes: list[str] = []
 
-    def placed(self, entry: schema.RobotEntry) -> PlacedRobot:
-        """The robot of an entry.
+    def moving(self, entry: schema.RobotEntry) -> tuple[PlacedRobot, tuple[str, ...]]:
+        """The robot of an entry as `in_motion` gives it.
+
+        Raises:
+            BadInput: with the field and the file.
+        """
+        return in_motion(entry, self._standing(entry), self._folder, self._files)
+
+    def _standing(self, entry: schema.RobotEntry) -> PlacedRobot:
+        """The robot of an entry, without what it does.
 
         Raises:
             BadInput: with the field and the file.
         """
         given, field = entry.robot, entry.field
         request = self._request(given, field)
-        robot = self._robot(request, given.name, field)
-        with at(f"{field}.joints"):
-            require_moving_joints(robot, given.joints)
+        self._expand_srdf(given, field, request)
+        limits = limited(entry, self._robot(request, given.name, field), self._folder, self._files)
+        robot = limits.robot
+        self.notes += limits.notes
         with at(f"{field}.exclude_links"):
             exclude_links = checked_links(given.exclude_links, robot.link_names)
         with at(f"{field}.padding"):
             padding = _padding(given.padding, robot.link_names)
         placed = PlacedRobot(
             robot=robot,
-            fixed_positions=dict(given.joints),
             exclude_links=exclude_links,
             urdf_path=str(request.path),
             package_dirs=tuple(map(str, request.package_dirs)),
             self_clearance=self._self_clearance(given, field, robot),
             padding=padding,
+            motion_limits=limits.motion_limits,
+            path_tolerances=limits.path_tolerances,
         )
         if given.base.on is not None:
-            placed = replace(placed, mount=Mount(given.base.on, given.base.matrix()))
-        else:
-            placed = replace(placed, world_from_base=given.base.matrix())
-        if entry.trajectory is None:
-            return placed
-        moved, notes = with_trajectory(entry, placed, self._folder, self._files)
-        self.notes += notes
-        return moved
+            return replace(placed, mount=Mount(given.base.on, given.base.matrix()))
+        return replace(placed, world_from_base=given.base.matrix())
 
     def _request(self, given: schema.Robot, field: str) -> RobotRequest:
         package_dirs = tuple(resolved(text, self._folder) for text in given.package_dirs)
         with at(f"{field}.package_dirs"):
             _refuse_missing_folders(given.package_dirs, package_dirs)
-        path = resolved(given.urdf, self._folder)
-        return RobotRequest(path, package_dirs, given.geometry, given.collada_up_axis)
+        if given.xacro_args and not given.xacro:
+            raise BadInput(
+                "arguments of xacro, which is not used",
+                where=f"{field}.xacro_args",
+                valid="xacro: true",
+            )
+        with at(f"{field}.xacro_args"):
+            args = checked_args(given.xacro_args)
+        return RobotRequest(
+            resolved(given.urdf, self._folder),
+            package_dirs,
+            given.geometry,
+            given.collada_up_axis,
+            given.xacro,
+            args,
+        )
+
+    def _expand_srdf(self, given: schema.Robot, field: str, request: RobotRequest) -> None:
+        """Makes an SRDF of xacro's what it stands for, where xacro is allowed."""
+        if given.srdf is None or not given.xacro or not given.srdf.endswith(SUFFIX):
+            return
+        path = resolved(given.srdf, self._folder)
+        if not self._files.is_held(path):
+            with at(f"{field}.srdf"):
+                self.notes += hold_expanded(path, request.package_dirs, self._files)
 
     def _robot(self, request: RobotRequest, name: str | None, field: str) -> Robot:
         if request not in self._read:
@@ -102,36 +131,40 @@ class RobotReader:
         return SelfClearance(matrix, given.trust_never)
 
 
-def with_trajectory(
+def in_motion(
     entry: schema.RobotEntry, placed: PlacedRobot, folder: Path, files: InputFiles
 ) -> tuple[PlacedRobot, tuple[str, ...]]:
-    """The robot of an entry with the trajectory of its file, and a line each on how that was taken.
+    """The robot of an entry with its trajectory, the others of its joints at rest; and a line each on how.
 
     Args:
-        folder: against which its path is looked up.
+        placed: as it stands. folder: against which paths are looked up.
 
     Raises:
         BadInput: with the field and the file.
     """
-    asked = entry.trajectory
-    assert asked is not None
-    trajectory, notes = trajectory_of(asked, entry.trajectory_field, folder, placed.robot, files)
-    with at(f"{entry.field}.joints"):
-        check_not_given_twice(placed.fixed_positions, trajectory.joint_names)
-    path = str(resolved(asked.file, folder))
-    placed = replace(placed, trajectory=trajectory, timing=asked.timing, trajectory_path=path)
-    return placed, notes
+    asked, trajectory = entry.trajectory, None
+    notes: tuple[str, ...] = ()
+    if asked is not None:
+        field = entry.trajectory_field
+        trajectory, notes = trajectory_of(asked, field, folder, placed.robot, files)
+        path = str(resolved(asked.file, folder))
+        placed = replace(placed, trajectory=trajectory, timing=asked.timing, trajectory_path=path)
+    moved = trajectory.joint_names if trajectory else ()
+    resting = resting_positions(entry, placed.robot, moved, folder, files)
+    on_limits = note_on_accelerations(placed.motion_limits, trajectory)
+    return replace(placed, fixed_positions=resting.positions), (*notes, *resting.notes, *on_limits)
 
 
 def _refuse_idle_excuses(given: schema.Robot, field: str) -> None:
     """Refuses fields about excused pairs where they would excuse nothing."""
     if not given.self_clearance:
         for key in ("srdf", "trust_never"):
-            if getattr(given, key):
+            if getattr(given, key) and not (key == "srdf" and states_of(given.joints)):
                 raise BadInput(
                     "it excuses pairs of links, which are not measured",
                     where=f"{field}.{key}",
-                    valid="self_clearance: true, or no such field",
+                    valid="self_clearance: true, or no such field"
+                    + (", or a state of it: joints: {state: …}" if key == "srdf" else ""),
                 )
     elif given.srdf is None and given.trust_never:
         raise BadInput(

@@ -1,28 +1,31 @@
 """Bags of ROS to a trajectory: ROS 1 (`.bag`), folders of rosbag2 (sqlite3, mcap), and their single files.
 
-The one door of rosbags. Topics of JointTrajectory, RobotTrajectory and DisplayTrajectory hold what was planned,
-those of JointState what the robot did. Not for: the points of a message (`joint_points`).
+The one door of rosbags. Topics of trajectories, and of goals that hold one, hold what was planned, those of
+JointState what the robot did. Not for: the points of a message (`joint_points`), nor states put together
+(`joint_states`).
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from textwrap import dedent
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from clearance.errors import BadInput, BadShape, BadSyntax, BadTime, ClearanceError, nearest_name
+from clearance.errors import BadInput, BadShape, BadSyntax, ClearanceError, nearest_name
 from clearance.extras import importing
 from clearance.load.joint_messages import chosen, messages_in
 from clearance.load.joint_points import trajectory_of_message
+from clearance.load.joint_states import JointState, trajectory_of_states
 from clearance.load.message_documents import Fields
+from clearance.load.message_times import NANO
+from clearance.load.ros_definitions import DEFINITIONS
 from clearance.load.trajectory_request import Choice, ReadTrajectory
-from clearance.world.names import checked_name
 from clearance.world.notice import listed
-from clearance.world.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader
@@ -32,16 +35,19 @@ _PLANNED = (
     "trajectory_msgs/msg/JointTrajectory",
     "moveit_msgs/msg/RobotTrajectory",
     "moveit_msgs/msg/DisplayTrajectory",
+    "control_msgs/msg/FollowJointTrajectoryActionGoal",
+    "control_msgs/msg/FollowJointTrajectoryGoal",
+    "moveit_msgs/msg/ExecuteTrajectoryActionGoal",
+    "moveit_msgs/msg/MoveGroupActionResult",
+    "control_msgs/action/FollowJointTrajectory_SendGoal_Event",
+    "moveit_msgs/action/ExecuteTrajectory_SendGoal_Event",
 )
+"""Kinds of messages that hold what was planned. Goals are topics in ROS 1; in ROS 2 they are recorded as events of
+the service `_action/send_goal`, where its introspection is on."""
+
 _STATES = "sensor_msgs/msg/JointState"
 MOST_MESSAGES = 1_000_000
 """Of one topic; some 70 s."""
-
-
-class _State(NamedTuple):
-    nanoseconds: int
-    names: tuple[str, ...]
-    positions: list[float]
 
 
 def is_bag(path: Path) -> bool:
@@ -71,9 +77,10 @@ def read_bag(path: Path, choice: Choice, turns: Mapping[str, bool]) -> ReadTraje
         topic, kind = _topic(reader, choice.topic)
         if kind == _STATES:
             choice.refuse_others({"topic"}, "recorded joint states")
-            return _of_states(_states(reader, topic), turns)
+            return trajectory_of_states(_states(reader, topic), turns)
         choice.refuse_others({"topic", "which"}, "messages in a bag")
-        planned = messages_in([_plain(one) for _, one in _messages(reader, topic)], sys.maxsize)
+        plain = (_plain(one) for _, one in _messages(reader, topic))
+        planned = messages_in([*_goals_once(plain)], sys.maxsize)
         return trajectory_of_message(chosen(planned, choice.which), sys.maxsize)
 
 
@@ -85,15 +92,19 @@ def _as_ours() -> Iterator[None]:
     except ClearanceError:
         raise
     except Exception as error:
-        raise BadSyntax(f"not a bag that can be read: {error or type(error).__name__}") from None
+        reason = str(error).strip() or "it is damaged"
+        raise BadSyntax(f"not a bag that can be read: {reason}") from None
 
 
 @contextmanager
 def _opened(path: Path) -> Iterator[AnyReader]:
     from rosbags.highlevel import AnyReader
-    from rosbags.typesys import Stores, get_typestore
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-    with AnyReader([path], default_typestore=get_typestore(Stores.LATEST)) as reader:
+    known = get_typestore(Stores.LATEST)
+    for kind, fields in DEFINITIONS.items():
+        known.register(get_types_from_msg(dedent(fields), kind))
+    with AnyReader([path], default_typestore=known) as reader:
         yield reader
 
 
@@ -115,7 +126,7 @@ def _topic(reader: AnyReader, wanted: str | None) -> tuple[str, str]:
         others = listed(sorted({one.msgtype for one in reader.connections}), 8)
         raise BadInput(
             f"the bag has no trajectories and no joint states{f', but {others}' if others else ''}",
-            valid=f"topics of {', '.join((*_PLANNED, _STATES))}",
+            valid=f"topics of {', '.join((*_PLANNED[:4], _STATES))}, or the like",
         )
     if len(kinds) > 1:
         shown = listed(
@@ -151,41 +162,23 @@ def _plain(value: Any) -> Any:
     )
 
 
-def _states(reader: AnyReader, topic: str) -> list[_State]:
+def _states(reader: AnyReader, topic: str) -> list[JointState]:
     states = []
     for recorded, message in _messages(reader, topic):
         stamp = message.header.stamp
-        stamped = stamp.sec * 10**9 + stamp.nanosec
-        names = tuple(checked_name(name) for name in message.name)
-        states.append(_State(stamped or recorded, names, message.position.tolist()))
+        stamped = stamp.sec * NANO + stamp.nanosec
+        positions, names = message.position.tolist(), tuple(message.name)
+        states.append(JointState(stamped or recorded, names, positions, len(message.velocity) > 0))
     return states
 
 
-def _of_states(states: list[_State], turns: Mapping[str, bool]) -> ReadTrajectory:
-    """What the robot did, from the first state on; in seconds from it."""
-    first = states[0]
-    kept = [name for name in first.names if name in turns or not turns]
-    if not kept:
-        raise BadInput(
-            f"none of the joints {listed([*first.names], 8)} can be moved",
-            valid=f"the robot moves {listed([*turns], 8)}",
-        )
-    rows = []
-    for i, state in enumerate(states):
-        where = f"message {i + 1}"
-        if set(state.names) != set(first.names) or len(state.names) != len(state.positions):
-            raise BadShape(
-                f"{len(state.positions)} positions of {listed([*state.names], 4)}",
-                where=where,
-                valid=f"those of the first message: {listed([*first.names], 4)}",
-            )
-        if i and state.nanoseconds <= states[i - 1].nanoseconds:
-            raise BadTime("its time is not after that of the one before", where=where)
-        by_name = dict(zip(state.names, state.positions, strict=True))
-        rows.append([by_name[name] for name in kept])
-    times = np.array([(state.nanoseconds - first.nanoseconds) / 10**9 for state in states])
-    notes = ["recorded joint states: joints move linearly between them, from the first at 0 s"]
-    left = [name for name in first.names if name not in kept]
-    if left:
-        notes.append(f"joints that cannot be set are left out: {listed(left, 8)}")
-    return ReadTrajectory(Trajectory(times, tuple(kept), np.array(rows)), tuple(notes))
+def _goals_once(messages: Iterable[Any]) -> Iterator[Any]:
+    """The messages; of the events of one goal, which client and server both tell of, the first."""
+    seen: set[str] = set()
+    for message in messages:
+        if isinstance(message, Fields) and isinstance(message.get("request"), list):
+            goals = {str(one.get("goal_id")) for one in message["request"]}
+            if goals <= seen:
+                continue
+            seen |= goals
+        yield message

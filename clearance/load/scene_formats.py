@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from clearance.load.mjcf_scene import read_mjcf_scene
 from clearance.load.moveit_scene_file import read_moveit_scene
 from clearance.load.obstacle_schema import Scene
 from clearance.load.scene_request import SceneContent, SceneRequest
@@ -18,6 +19,8 @@ READERS: dict[str, Callable[[SceneRequest], SceneContent]] = {
     ".yaml": read_scene_yaml,
     ".sdf": read_sdf,
     ".world": read_sdf,
+    ".mjcf": read_mjcf_scene,
+    ".xml": read_mjcf_scene,
     ".scene": read_moveit_scene,
 }
 """By suffix in small letters; a file of another suffix is read as YAML."""

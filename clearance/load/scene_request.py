@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 from clearance.load.input_files import InputFiles
 from clearance.world.notice import Notice
@@ -28,6 +29,14 @@ class SceneRequest:
         return self.files.shown(self.path)
 
 
+class HeldPart(NamedTuple):
+    """An obstacle that a link holds, and the links and objects that it may touch meanwhile."""
+
+    part: str
+    link: str
+    touch: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True)
 class SceneContent:
     """A scene as a case file would have it.
@@ -36,7 +45,7 @@ class SceneContent:
         scene: what stands under `scene:`, files relative to the folder of the scene's file.
         notes: what was left out or decided, one line each. notices: what bears on the verdict.
         allow: names of bodies that may touch, in any order, of which some may not be there.
-        link_padding: [m] by link.
+        link_padding: [m] by link. held: obstacles on links that hold them.
     """
 
     scene: object
@@ -44,3 +53,4 @@ class SceneContent:
     notices: tuple[Notice, ...] = ()
     allow: tuple[tuple[str, str], ...] = ()
     link_padding: dict[str, float] = field(default_factory=dict)
+    held: tuple[HeldPart, ...] = ()

@@ -14,6 +14,7 @@ from typing import Annotated, Any, ClassVar, Literal, NamedTuple
 from pydantic import AfterValidator, Field, model_validator
 
 from clearance.errors import BadInput, MissingKey, nearest_name
+from clearance.load.joints_schema import Joints
 from clearance.load.limits_schema import Allowed, Limits
 from clearance.load.obstacle_schema import Scene
 from clearance.load.pose_schema import Base, TrajectoryFile, window_of
@@ -37,16 +38,20 @@ class Robot(StrictModel):
 
     name: Annotated[Name, AfterValidator(_without_stroke)] | None = None
     urdf: Name
+    xacro: bool = False
+    xacro_args: dict[str, str | bool | int | float] = {}
     package_dirs: list[Name] = []
     base: Base = Base()
     trajectory: TrajectoryFile | None = None
     exclude_links: list[Name] = []
-    joints: dict[str, float] = {}
+    joints: Joints = {}
     geometry: Literal["collision", "visual", "collision_or_visual"] = "collision"
     collada_up_axis: Literal["ros", "file"] = "ros"
     self_clearance: bool = False
     srdf: Name | None = None
     trust_never: bool = False
+    joint_limits: Name | None = None
+    controllers: Name | None = None
     padding: dict[str, Level] = {}
 
 

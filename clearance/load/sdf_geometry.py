@@ -23,7 +23,6 @@ _UNREAD = {
     "heightmap": "its surface is a picture",
     "polyline": "its outline may be hollow or cross itself",
     "image": "its boxes are a picture",
-    "ellipsoid": "it is no polyhedron, and no other round shape",
     "cone": "it is no polyhedron, and no other round shape",
 }
 """What SDF has besides, and why it is refused."""
@@ -75,6 +74,10 @@ def _sphere(element: Element) -> Geometry:
     return Geometry({"sphere": {"radius": _lengths(element, "radius", 1)[0]}})
 
 
+def _ellipsoid(element: Element) -> Geometry:
+    return Geometry({"ellipsoid": {"radii": list(_lengths(element, "radii", 3))}})
+
+
 def _along_z(element: Element) -> Geometry:
     radius, length = _lengths(element, "radius", 1)[0], _lengths(element, "length", 1)[0]
     return Geometry({str(element.tag): {"radius": radius, "length": length}})
@@ -109,6 +112,7 @@ _READERS: dict[str, Callable[[Element], Geometry]] = {
     "sphere": _sphere,
     "cylinder": _along_z,
     "capsule": _along_z,
+    "ellipsoid": _ellipsoid,
     "plane": _plane,
     "mesh": _mesh,
 }

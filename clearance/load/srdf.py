@@ -1,6 +1,7 @@
 """SRDF, MoveIt's file of which links of a robot may touch, to a `CollisionMatrix`.
 
-Groups, states, end effectors and virtual joints are passed over. Not for: what an excuse is worth.
+Groups, end effectors and virtual joints are passed over. Not for: named states (`srdf_states`), nor what an excuse
+is worth.
 """
 
 from __future__ import annotations
@@ -54,8 +55,7 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
     """
     shown = files.shown(path)
     with at(shown):
-        root = robot_element(files.read(path), "an SRDF file")
-        _refuse_urdf(root)
+        root = srdf_root(path, files)
         rows = list(_rows(root))
         unknown = _unknown_links(rows, robot)
         known = [row for row in rows if unknown.isdisjoint(row.links)]
@@ -71,6 +71,18 @@ def read_srdf(path: Path, robot: Robot, files: InputFiles) -> CollisionMatrix:
         tuple((*_pair(row), row.reason) for row in known if row.tag == "disable_collisions"),
         tuple(_notes(shown, len(rows) - len(known), unknown)),
     )
+
+
+def srdf_root(path: Path, files: InputFiles) -> Element:
+    """The root element of an SRDF file.
+
+    Raises:
+        BadSyntax: no SRDF.
+    """
+    root = robot_element(files.read(path), "an SRDF file")
+    if root.find("link") is not None and root.find("joint/parent") is not None:
+        raise BadSyntax("this is a URDF file", valid="an SRDF file is needed")
+    return root
 
 
 class _Row:
@@ -119,8 +131,3 @@ def _notes(shown: str, n_left_out: int, unknown: frozenset[str]) -> Iterator[str
         yield (
             f"{shown}: {n_left_out} rows name links that the robot does not have and are left out: {listed}"
         )
-
-
-def _refuse_urdf(root: Element) -> None:
-    if root.find("link") is not None and root.find("joint/parent") is not None:
-        raise BadSyntax("this is a URDF file", valid="an SRDF file is needed")

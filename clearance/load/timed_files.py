@@ -1,5 +1,5 @@
 """The files that say how a robot or an obstacle moves, found and read. Not for: their format (`trajectory_file`,
-`pose_table_file`), nor which joints there are (`robots`).
+`pose_formats`), nor which joints there are (`robots`).
 """
 
 from __future__ import annotations
@@ -13,14 +13,15 @@ from clearance.errors import BadInput, at
 from clearance.load.csv_table import Opener
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
-from clearance.load.pose_schema import TimedFile, TrajectoryFile
-from clearance.load.pose_table_file import read_pose_table
+from clearance.load.pose_formats import read_poses
+from clearance.load.pose_schema import PoseFile, TrajectoryFile
+from clearance.load.pose_table_request import PoseRequest, ReadPoses
 from clearance.load.rosbag_file import files_of, is_bag, read_bag
 from clearance.load.trajectory_file import read_trajectory
 from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
 from clearance.world.joint_positions import turns
 from clearance.world.moving_joints import require_moving_joints
-from clearance.world.pose_table import PoseTable, require_samples_to_loop
+from clearance.world.pose_table import require_samples_to_loop
 from clearance.world.reach import require_few_turns
 from clearance.world.robot import Robot
 
@@ -90,8 +91,8 @@ def _of_bag(
     return ReadTrajectory(trajectory, tuple(f"{shown}: {note}" for note in notes))
 
 
-def pose_table_of(given: TimedFile, field: str, folder: Path, files: InputFiles) -> PoseTable:
-    """The table of poses that a case file names for an obstacle.
+def pose_table_of(given: PoseFile, field: str, folder: Path, files: InputFiles) -> ReadPoses:
+    """The table of poses that a case file names for an obstacle, and notes on how it was read.
 
     Args:
         field: where it is named. folder: against which the path is looked up.
@@ -100,15 +101,15 @@ def pose_table_of(given: TimedFile, field: str, folder: Path, files: InputFiles)
         BadInput: with the field and the file.
     """
 
-    def read(opened: Opener, n_bytes: int, shown: str) -> PoseTable:
-        return read_pose_table(opened, n_bytes, shown)
+    def read(opened: Opener, n_bytes: int, shown: str) -> ReadPoses:
+        return read_poses(PoseRequest(opened, n_bytes, given.length), shown)
 
     path = resolved(given.file, folder)
     with at(f"{field}.file"):
-        table = _read(path, files, read, "a table of poses")
+        table, notes = _read(path, files, read, "a table of poses")
     with at(field), at(files.shown(path)):
         given.timing.run_times(table.times)
-        return replace(table, timing=given.timing)
+        return ReadPoses(replace(table, timing=given.timing), notes)
 
 
 def _read(

@@ -19,6 +19,7 @@ from clearance.load.csv_table import (
     as_written,
     columns_of,
     header_of,
+    note_on_separators,
     refuse_standing_time,
     require_time,
 )
@@ -87,10 +88,7 @@ def _values(
 
 
 def _notes(table: TextTable, choice: Choice) -> list[str]:
-    notes = []
-    if table.delimiter != ",":
-        decimals = ", decimals written with commas" if table.decimal == "," else ""
-        notes.append(f"columns are separated by semicolons{decimals}")
+    notes = note_on_separators(table)
     if choice.joints is not None:
         notes.append(f"no header; the columns are {', '.join(table.names or ())}")
     if choice.period is not None:

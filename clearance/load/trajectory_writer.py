@@ -19,10 +19,9 @@ import numpy as np
 from clearance.errors import BadInput, BadTime, ClearanceError
 from clearance.load.column_units import VELOCITY
 from clearance.load.csv_table import TIME
+from clearance.load.message_times import NANO, split_time
 from clearance.load.trajectory_file import parse_trajectory
 from clearance.world.trajectory import Trajectory
-
-NANO = 10**9
 
 
 class WrittenTrajectory(NamedTuple):
@@ -69,7 +68,7 @@ def _csv(trajectory: Trajectory) -> str:
 def _yaml(trajectory: Trajectory) -> str:
     names = ", ".join(json.dumps(name, ensure_ascii=False) for name in trajectory.joint_names)
     lines = [f"joint_names: [{names}]", "points:"]
-    for i, (seconds, nanoseconds) in enumerate(map(_split, trajectory.times.tolist())):
+    for i, (seconds, nanoseconds) in enumerate(map(split_time, trajectory.times.tolist())):
         lines.append(f"- positions: {_yaml_numbers(trajectory.positions[i])}")
         if trajectory.velocities is not None:
             lines.append(f"  velocities: {_yaml_numbers(trajectory.velocities[i])}")
@@ -79,7 +78,7 @@ def _yaml(trajectory: Trajectory) -> str:
 
 def _json(trajectory: Trajectory) -> str:
     points = []
-    for i, (seconds, nanoseconds) in enumerate(map(_split, trajectory.times.tolist())):
+    for i, (seconds, nanoseconds) in enumerate(map(split_time, trajectory.times.tolist())):
         point: dict[str, object] = {"positions": trajectory.positions[i].tolist()}
         if trajectory.velocities is not None:
             point["velocities"] = trajectory.velocities[i].tolist()
@@ -101,11 +100,6 @@ def _yaml_numbers(row: np.ndarray) -> str:
     """As YAML 1.1 and 1.2 both know them: with a point before an exponent."""
     words = [repr(value) for value in row.tolist()]
     return f"[{', '.join(word if '.' in word else word.replace('e', '.0e') for word in words)}]"
-
-
-def _split(time: float) -> tuple[int, int]:
-    """Seconds and nanoseconds, to the nearest."""
-    return divmod(round(Fraction(time) * NANO), NANO)
 
 
 def _n_other_times(trajectory: Trajectory) -> int:

@@ -25,11 +25,13 @@ class Triangles(NamedTuple):
         vertices: (n, 3) [m] in the file's frame.
         corners: (m, 3) vertex indices, counter-clockwise from outside.
         notes: what reading had to mend or decide, one line each.
+        off: [m] how far the triangles may be off the surface that they stand for, either way.
     """
 
     vertices: np.ndarray
     corners: np.ndarray
     notes: tuple[str, ...] = ()
+    off: float = 0.0
 
 
 def checked(triangles: Triangles) -> Triangles:
@@ -50,7 +52,7 @@ def checked(triangles: Triangles) -> Triangles:
         i_bad = int(np.flatnonzero(broken)[0])
         raise NotFinite(f"face {i_bad} has a coordinate that is not a finite number")
     used, new_index = np.unique(corners, return_inverse=True)
-    return Triangles(vertices[used], new_index.reshape(-1, 3), triangles.notes)
+    return triangles._replace(vertices=vertices[used], corners=new_index.reshape(-1, 3))
 
 
 def refuse_missing_corners(corners: np.ndarray, n_vertices: int) -> None:
@@ -85,7 +87,9 @@ def scaled(triangles: Triangles, scale: float | Sequence[float]) -> Triangles:
     if not np.isfinite(vertices).all():
         raise BadDimension(f"scale {factors.tolist()} makes coordinates overflow")
     mirrored = np.count_nonzero(factors < 0) % 2 == 1
-    return Triangles(vertices, triangles.corners[:, :: -1 if mirrored else 1], triangles.notes)
+    corners = triangles.corners[:, :: -1 if mirrored else 1]
+    off = triangles.off * float(np.abs(factors).max())
+    return triangles._replace(vertices=vertices, corners=corners, off=off)
 
 
 def without_copies(triangles: Triangles) -> tuple[Triangles, int]:

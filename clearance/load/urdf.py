@@ -6,14 +6,16 @@ loader (`urdf_shapes`). Not for: where the robot stands, or how it moves.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from clearance.errors import NothingToMeasure, at
+from clearance.errors import at
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.load.axis_check import axis_notices
 from clearance.load.collada_file import UpAxis
+from clearance.load.compound_joints import frames_between
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joints import joints_of
@@ -21,10 +23,12 @@ from clearance.load.mesh_store import MeshStore
 from clearance.load.plausibility import angle_notices
 from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.robot_tree import links_from_root
+from clearance.load.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
 from clearance.load.urdf_elements import odd_origins, parse_document
 from clearance.load.urdf_shapes import ShapeReader
+from clearance.load.xacro_file import checked_args, expanded, refuse_unasked
 from clearance.world.body import Body
-from clearance.world.notice import Notice, Severity, listed
+from clearance.world.names import require_own_names
 from clearance.world.robot import Robot
 
 if TYPE_CHECKING:
@@ -37,18 +41,21 @@ def load_urdf(
     package_dirs: Sequence[str | Path] = (),
     geometry: Geometry = "collision",
     collada_up_axis: UpAxis = "ros",
+    xacro: bool = False,
+    xacro_args: Mapping[str, str | bool | int | float] = MappingProxyType({}),
 ) -> Robot:
     """The robot in a URDF file, for cases that are made in memory.
 
     Args:
         path: or `pybullet_data:…`, as in a case file.
-        package_dirs, geometry, collada_up_axis: as in `RobotRequest`.
+        package_dirs, geometry, collada_up_axis, xacro, xacro_args: as in `RobotRequest`.
 
     Raises:
         BadInput: with the file and the element.
     """
     path = resolved(str(path), Path())
-    request = RobotRequest(path, tuple(map(Path, package_dirs)), geometry, collada_up_axis)
+    folders, args = tuple(map(Path, package_dirs)), checked_args(xacro_args)
+    request = RobotRequest(path, folders, geometry, collada_up_axis, xacro, args)
     return read_urdf(request, MeshStore(InputFiles(path.parent)))
 
 
@@ -59,32 +66,44 @@ def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:
         BadInput: with the file and the element. NothingToMeasure: no link has a shape of the kind that is
         asked for, though there are others.
     """
-    data = meshes.files.read(request.path)
-    refuse_foreign(data, meshes.files.shown(request.path), "a URDF file")
+    data, made = _document(request, meshes.files)
     with at(meshes.files.shown(request.path)):
         root = parse_document(data)
         joints, notes = joints_of(root)
         by_name = {link.get("name"): link for link in root.iterfind("link")}
-        link_names, ordered = links_from_root(tuple(by_name), joints)
-        links = [by_name[name] for name in link_names]
-        _refuse_other_geometry(links, request.geometry)
+        frames = frames_between(joints)
+        require_own_names("link", [*by_name, *frames])
+        link_names, ordered = links_from_root((*by_name, *frames), joints)
+        links = [by_name[name] for name in link_names if name in by_name]
+        kinds = _kinds(links)
+        refuse_other_geometry(kinds, request.geometry)
         reader = ShapeReader(request, meshes)
         bodies = [body for link in links if (body := _body(link, reader)) is not None]
         notices = [
             *angle_notices(odd_origins(root)),
             *reader.notices(),
             *axis_notices(links, bodies, ordered, reader),
-            *_unseen(links, request.geometry),
+            *unseen(kinds, request.geometry),
         ]
-    notes = [f"{request.path.name}: {note}" for note in (*notes, *_bare(links))]
+    notes = [f"{request.path.name}: {note}" for note in (*notes, *notes_on_bare(kinds))]
     return Robot(
         root.get("name") or "robot",
         link_names,
         ordered,
         tuple(bodies),
-        (*reader.notes(), *notes),
+        (*made, *reader.notes(), *notes),
         tuple(notices),
     )
+
+
+def _document(request: RobotRequest, files: InputFiles) -> tuple[bytes, tuple[str, ...]]:
+    """The URDF in a file, or what xacro makes of it; and notes on that."""
+    if request.xacro:
+        return expanded(request, files)
+    data, shown = files.read(request.path), files.shown(request.path)
+    refuse_foreign(data, shown, "a URDF file")
+    refuse_unasked(request, shown)
+    return data, ()
 
 
 def _body(link: Element, reader: ShapeReader) -> Body | None:
@@ -100,51 +119,15 @@ def _body(link: Element, reader: ShapeReader) -> Body | None:
             shape, origin = reader.shape(element)
         shapes.append(shape)
         origins.append(origin)
-    return Body(name, Polyhedron.merged(shapes), ", ".join(origins))
+    whole = shapes[0] if len(shapes) == 1 else Polyhedron.merged(shapes)
+    return Body(name, whole, ", ".join(origins))
 
 
-def _refuse_other_geometry(links: list[Element], geometry: Geometry) -> None:
-    """Raises `NothingToMeasure` if all shapes are of the kind that is not asked for."""
-    if geometry == "collision_or_visual":
-        return
-    other = "visual" if geometry == "collision" else "collision"
-    if any(link.find(geometry) is not None for link in links):
-        return
-    n_other = sum(link.find(other) is not None for link in links)
-    if n_other:
-        have = "1 link has" if n_other == 1 else f"{n_other} links have"
-        raise NothingToMeasure(
-            f"no link has a {geometry} shape, {have} a {other} shape",
-            valid=f"give robot: {{geometry: {other}}}",
+def _kinds(links: list[Element]) -> dict[str, frozenset[str]]:
+    """Which kinds of shapes each link has."""
+    return {
+        link.get("name"): frozenset(
+            kind for kind in ("collision", "visual") if link.find(kind) is not None
         )
-
-
-def _unseen(links: list[Element], geometry: Geometry) -> list[Notice]:
-    """A warning on links that have a shape but are not measured, since it is of the other kind."""
-    if geometry == "collision_or_visual":
-        return []
-    other = "visual" if geometry == "collision" else "collision"
-    unseen = [
-        repr(link.get("name"))
         for link in links
-        if link.find(geometry) is None and link.find(other) is not None
-    ]
-    if not unseen:
-        return []
-    have, are = ("1 link has", "is") if len(unseen) == 1 else (f"{len(unseen)} links have", "are")
-    remedy = "; robot: {geometry: collision_or_visual} measures them" if other == "visual" else ""
-    text = f"{have} a {other} but no {geometry} shape and {are} not measured: {listed(unseen, 6)}{remedy}"
-    return [Notice(Severity.WARNING, "geometry", text)]
-
-
-def _bare(links: list[Element]) -> list[str]:
-    """A note on links without any shape, which are frames."""
-    bare = [
-        link.get("name")
-        for link in links
-        if link.find("collision") is None and link.find("visual") is None
-    ]
-    if not bare:
-        return []
-    count = "1 link" if len(bare) == 1 else f"{len(bare)} links"
-    return [f"{count} without any shape: {listed(bare, 6)}"]
+    }

@@ -18,6 +18,7 @@ from clearance.load.mesh_store import MeshStore, Scale
 from clearance.load.notes import grouped, short
 from clearance.load.plausibility import scale_notices
 from clearance.load.robot_request import RobotRequest
+from clearance.load.shape_kinds import chosen_kind
 from clearance.load.urdf_elements import dimensions_of, numbers, pose_of
 from clearance.world.notice import Notice
 
@@ -38,9 +39,8 @@ class ShapeReader:
 
     def kind(self, link: Element) -> str:
         """Which elements of a link are its shape."""
-        if self.request.geometry != "collision_or_visual":
-            return self.request.geometry
-        return "visual" if link.find("collision") is None else "collision"
+        has = frozenset(() if link.find("collision") is None else ("collision",))
+        return chosen_kind(has, self.request.geometry)
 
     def shape(self, element: Element) -> tuple[Polyhedron, str]:
         """The shape of a collision or visual element in its link's frame, and what it was made from."""

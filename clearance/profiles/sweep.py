@@ -28,6 +28,7 @@ from clearance.profiles.swept_bodies import (
     swept_bodies,
 )
 from clearance.progress import Progress
+from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case
 
 if TYPE_CHECKING:
@@ -115,6 +116,7 @@ def _swept(
     progress: Progress | None,
     parts: dict[str, Profile] | None,
 ) -> Profile:
+    require_no_shortfall([one.body for one in bodies], "a profile")
     views = _views(bodies, plane, section, tolerance)
     raster = _page(views)
     for view in views:

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from clearance.errors import UnknownLink, UnknownObstacle, nearest_name
+from clearance.errors import BadShape, UnknownLink, UnknownObstacle, nearest_name
 from clearance.profiles.chain import Chain, chain_of
 from clearance.profiles.chords import Knots, knots_of, standing
 from clearance.profiles.plane import Plane
@@ -109,7 +109,17 @@ def swept_bodies(
     for name in named:
         i = places[name]
         found += _over_phases(run, BodyIndex(OBSTACLE, i), partial(_has_obstacle, i))
+    _require_surfaces(found)
     return found
+
+
+def _require_surfaces(found: Sequence[SweptBody]) -> None:
+    for one in found:
+        if one.body.is_cloud:
+            raise BadShape(
+                f"{one.label!r} is a cloud of points, which has no outline",
+                valid="bodies with a surface",
+            )
 
 
 def _has_robot(i_robot: int, phase: Phase) -> bool:

@@ -16,6 +16,7 @@ from clearance.errors import BadInput, ClearanceError
 from clearance.geometry import boolean
 from clearance.geometry.boolean import ClosedMesh
 from clearance.geometry.convex_parts import ConvexParts, convex_parts, hull_drawn_in
+from clearance.geometry.point_cloud import require_surface
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.geometry.pose import inverse, validated_pose
@@ -86,12 +87,13 @@ def contact(
         pose_a, pose_b: (4, 4) `world_from_body` [m]; the identity if not given.
 
     Raises:
-        BadPose: not a rigid motion. BadInput: a body without any extent in space.
+        BadPose: not a rigid motion. BadInput: a body without any extent in space. BadShape: a cloud of points.
 
     Exactness: for two convex bodies, exact to rounding. Otherwise `penetration` and `volume` are upper bounds
         and `_at_least` lower ones; the translation has then been confirmed by the distance of the bodies
         themselves, where both have an inside.
     """
+    require_surface(a, "a"), require_surface(b, "b")
     world_from_a = validated_pose(np.eye(4) if pose_a is None else pose_a)
     world_from_b = validated_pose(np.eye(4) if pose_b is None else pose_b)
     near = distance(a, b, pose_a=world_from_a, pose_b=world_from_b)

@@ -7,7 +7,8 @@ import numpy as np
 from clearance.compile.kernel_table import call
 from clearance.errors import BadInput, BadShape, NotFinite, at
 from clearance.geometry.faces import check_convex
-from clearance.geometry.polyhedron import Polyhedron, require_polyhedron
+from clearance.geometry.point_cloud import require_surface
+from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.kernels.mesh.convex import seem_convex
 from clearance.kernels.search.polygon_pair import PolygonPairAnswers, nearest_polygons
@@ -45,7 +46,7 @@ def distance(
     Ties: the least face indices.
     """
     if _checked(method, tolerance) == "paper":
-        require_polyhedron(a, "a"), require_polyhedron(b, "b")
+        require_surface(a, "a"), require_surface(b, "b")
         poses = [np.eye(4) if pose is None else validated_pose(pose) for pose in (pose_a, pose_b)]
         return distance_paper(
             a, b, *poses, tolerance=NO_TOLERANCE if tolerance is None else tolerance

@@ -16,11 +16,13 @@ import numpy as np
 
 from clearance.compile.kernel_table import call
 from clearance.geometry.closing import FEW, SOME, Closing, closing_of, loose_triangles
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import Surface
 from clearance.kernels.search.containment import DOUBTFUL
 from clearance.kernels.search.doubt import generalized_windings, near_holes, wound_by_loose
+from clearance.query.cloud_points import CloudPoints
 
 MOSTLY = 0.5
 """[turns] A part whose outermost corners are all wound round by more, past large holes, may be inside."""
@@ -82,10 +84,14 @@ _loose: weakref.WeakKeyDictionary[Polyhedron, tuple[LooseFaces, ...]] = weakref.
 _pieces: weakref.WeakKeyDictionary[Polyhedron, tuple[Component, ...]] = weakref.WeakKeyDictionary()
 
 
+_Sides = tuple[tuple["Shell | LooseFaces", "Component | CloudPoints"], ...]
+"""What may hold something, and what that may be."""
+
+
 class Doubt:
     """What of one of two bodies may be inside the other; it does not keep the bodies alive."""
 
-    def __init__(self, of_a: tuple, of_b: tuple) -> None:
+    def __init__(self, of_a: _Sides, of_b: _Sides) -> None:
         self._of_a, self._of_b = of_a, of_b
 
     def at(
@@ -102,7 +108,9 @@ class Doubt:
         )
         for sides, outer, inner in ways:
             for shell, part in sides:
-                if isinstance(shell, LooseFaces):
+                if isinstance(part, CloudPoints):
+                    _look_at_points(shell, part, outer, inner, found)
+                elif isinstance(shell, LooseFaces):
                     stride = shell.stride if along_a_way else -1.0
                     wound_by_loose(
                         shell.triangles, shell.bounds, part.outermost, outer, inner, stride, found
@@ -118,10 +126,13 @@ def doubt_of(a: Polyhedron, b: Polyhedron) -> Doubt | None:
     return Doubt(*sides) if any(sides) else None
 
 
-def _sides(
-    outer: Polyhedron, inner: Polyhedron
-) -> tuple[tuple[Shell | LooseFaces, Component], ...]:
+def _sides(outer: Polyhedron, inner: Polyhedron) -> _Sides:
+    if isinstance(outer, PointCloud):
+        return ()
     shells, loose = _kept(_shells, outer, _shells_of), _kept(_loose, outer, _loose_of)
+    if isinstance(inner, PointCloud):
+        points = CloudPoints.of(inner) if shells or loose else None
+        return tuple((shell, points) for shell in (*shells, *loose) if points is not None)
     parts = _kept(_parts, inner, _parts_of) if shells else ()
     pieces = _kept(_pieces, inner, _pieces_of) if loose else ()
     of_shells = (
@@ -154,6 +165,29 @@ def _look(
     points = part.points if shell.few else part.outermost
     call(generalized_windings, shell.surface, points, outer[rows], inner[rows], least, most)
     found[rows] = most > DOUBTFUL if shell.few else least > MOSTLY
+
+
+def _look_at_points(
+    shell: Shell | LooseFaces,
+    cloud: CloudPoints,
+    outer: np.ndarray,
+    inner: np.ndarray,
+    found: np.ndarray,
+) -> None:
+    """Sets `found` (n,) where a point of a cloud is in doubt, at poses (n, 4, 4) of the shell and its own."""
+    least, most, any_wound = np.empty(1), np.empty(1), np.zeros(1, dtype=bool)
+    for k in np.flatnonzero(~found):
+        poses = outer[k : k + 1], inner[k : k + 1]
+        if isinstance(shell, LooseFaces):
+            for point in cloud.within(shell.bounds, outer[k], inner[k], one_of_each=True):
+                one = point[None]
+                wound_by_loose(shell.triangles, shell.bounds, one, *poses, -1.0, any_wound)
+            found[k], any_wound[0] = any_wound[0], False
+            continue
+        points = cloud.within(shell.bounds, outer[k], inner[k])
+        if len(points):
+            call(generalized_windings, shell.surface, points, *poses, least, most)
+            found[k] = most[0] > (DOUBTFUL if shell.few else MOSTLY)
 
 
 def _near_a_hole(shell: Shell, part: Component, outer: np.ndarray, inner: np.ndarray) -> np.ndarray:

@@ -104,8 +104,11 @@ def _paddings(record: Record) -> Iterator[tuple[str, float]]:
     case = record.case
     for placed in case.robots:
         before = "" if len(case.robots) == 1 else f"{placed.robot.name}/"
-        yield from ((before + link, padding) for link, padding in placed.padding.items())
-    yield from ((obstacle.name, obstacle.padding) for obstacle in case.obstacles)
+        for body in placed.robot.bodies:
+            asked = placed.padding.get(body.name, 0.0)
+            yield before + body.name, asked + body.shape.shortfall
+    for obstacle in case.obstacles:
+        yield obstacle.name, obstacle.padding + obstacle.body.shape.shortfall
 
 
 def clock_of(record: Record) -> dict[str, Any]:

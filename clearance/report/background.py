@@ -202,6 +202,8 @@ def loaded(summary: dict[str, Any]) -> Markup:
 
 def _quality(body: dict[str, Any]) -> str:
     """What kind of surface a body has; one that holds faces once for each side has no inside there."""
+    if "points" in body:
+        return f"{body['points']:,} balls of {body['ball_radius'] * 1000:.4g} mm"
     if not body["closed"]:
         return "open"
     if body["two_sided"]:

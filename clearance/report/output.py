@@ -10,6 +10,8 @@ from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
 from clearance.report.findings import findings
 from clearance.report.folder import LAST, fill_folder
+from clearance.report.moments_file import FILE_NAME as MOMENTS
+from clearance.report.moments_file import moments_text
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.summary import summary_of
@@ -29,6 +31,7 @@ OWN = (
     "steps.csv",
     "pairs.parquet",
     "contacts.csv",
+    MOMENTS,
     FILE_NAME,
     findings_file.FILE_NAME,
     "report.html",
@@ -43,8 +46,8 @@ def write(
     kept: MeasuredRows = IN_MEMORY,
     comparison: Comparison | None = None,
 ) -> None:
-    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `replay.npz`, `findings.json`, `report.html` and, last,
-    `summary.json`.
+    """Writes `steps.parquet`, `steps.csv`, `contacts.csv`, `worst_moments.yaml`, `replay.npz`, `findings.json`,
+    `report.html` and, last, `summary.json`.
 
     The same record gives the same bytes. Other files in `folder` are left alone; an older report
     there is replaced as a whole, or, if anything goes wrong, kept as it was.
@@ -60,6 +63,7 @@ def write(
     """
     summary, replay = summary_of(record), replay_of(record, rows=kept)
     pictures = {answer.name: answer.picture() for answer in record.profiles}
+    moments = moments_text(record)
     found = findings_file.finding_list_of(record)
     told = findings(found.findings, comparison)
     page = page_of(summary, replay, pictures, pair_curves(record, kept), told)
@@ -70,6 +74,7 @@ def write(
         if record.every_pair is not None:
             write_parquet(pair_batches(record, kept), place / "pairs.parquet")
         write_csv(lambda: contact_batches(record), place / "contacts.csv")
+        (place / MOMENTS).write_text(moments, encoding="utf-8")
         replay.save(place / FILE_NAME)
         findings_text = findings_file.findings_text(found)
         (place / findings_file.FILE_NAME).write_text(findings_text, encoding="utf-8")

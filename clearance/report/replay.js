@@ -42,9 +42,11 @@ class Replay {
   geometry(shape) {
     const geometry = new this.three.BufferGeometry();
     geometry.setAttribute("position", new this.three.BufferAttribute(decode(shape.vertices, Float32Array), 3));
-    geometry.setIndex(new this.three.BufferAttribute(decode(shape.triangles, Uint32Array), 1));
-    geometry.computeVertexNormals();
+    const triangles = decode(shape.triangles, Uint32Array);
     geometry.computeBoundingBox();
+    if (!triangles.length) return {surface: geometry}; // a cloud of points
+    geometry.setIndex(new this.three.BufferAttribute(triangles, 1));
+    geometry.computeVertexNormals();
     return {surface: geometry, edges: new this.three.EdgesGeometry(geometry, 25)};
   }
 
@@ -52,14 +54,19 @@ class Replay {
     const opacity = SOLID[body.kind], solid = opacity === 1;
     const path = [body.kind + "s", `${i} ${body.name}`];
     const colour = this.colourOf(body);
-    const surface = new this.three.MeshLambertMaterial({
+    let surface = new this.three.MeshLambertMaterial({
       color: colour, flatShading: true, side: this.three.DoubleSide, transparent: !solid, opacity,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     });
     const edges = new this.three.LineBasicMaterial({color: EDGE[this.theme], transparent: true, opacity: solid ? 0.35 : 0.28});
     const shape = this.geometries[body.shape];
-    this.viewer.set_object(path.concat("surface"), new this.three.Mesh(shape.surface, surface));
-    this.viewer.set_object(path.concat("edges"), new this.three.LineSegments(shape.edges, edges));
+    if (shape.edges) {
+      this.viewer.set_object(path.concat("surface"), new this.three.Mesh(shape.surface, surface));
+      this.viewer.set_object(path.concat("edges"), new this.three.LineSegments(shape.edges, edges));
+    } else {
+      surface = new this.three.PointsMaterial({color: colour, size: 2, sizeAttenuation: false});
+      this.viewer.set_object(path.concat("surface"), new this.three.Points(shape.surface, surface));
+    }
     const node = this.viewer.scene_tree.find(path).object;
     const made = {node, surface, colour, poses: decode(body.poses, Float32Array), bounds: shape.surface.boundingBox, kind: body.kind, shown: body.shown};
     this.place(made, 0);
@@ -200,10 +207,17 @@ class Replay {
         direction: new this.three.Vector3(0, 1, 0).applyQuaternion(contact.arrow.quaternion).toArray(),
         corners: contact.region.geometry.getAttribute("position").count,
       })),
+      camera: this.looks(),
       colour: "#" + this.material.color.getHexString(),
       bodies,
       hidden: this.data.bodies.filter((body, i) => !this.bodies[i].node.visible).map((body) => body.name),
     };
+  }
+
+  // Eye and target in the world frame.
+  looks() {
+    const {camera, controls} = this.viewer;
+    return [camera.position, controls.target].map((at) => [at.x, -at.z, at.y]);
   }
 
   worldBox(chosen, frames) {

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from clearance.geometry.point_cloud import PointCloud
 from clearance.report.actors import actors_of, carried_of, clock_of, paddings_of
 from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, not_listed, status_counts
@@ -18,12 +19,14 @@ from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.rules import rules_of, told_moment
 from clearance.report.verdict import Verdict, verdict_of
+from clearance.report.wording import count
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.moment import Moment
 from clearance.simulate.names import LINK_AND_OBSTACLE
 from clearance.simulate.record import CrossCheck, ProfileAnswer, Record
 from clearance.simulate.standing import standing_hint
 from clearance.world.body import Body
+from clearance.world.case import Case
 from clearance.world.motion import Motion
 
 FORMAT = 3
@@ -149,11 +152,14 @@ def _robot(record: Record, motion: Motion) -> dict[str, Any]:
 
 def _body(record: Record, body: Body, label: str) -> dict[str, Any]:
     shape = body.shape
-    return {
+    cloud = {}
+    if isinstance(shape, PointCloud):
+        cloud = {"points": shape.n_points, "ball_radius": shape.ball_radius}
+    return cloud | {
         "name": label,
         "origin": public_origin(record.case, body.origin),
         "triangles": shape.n_triangles,
-        "polygons": shape.n_faces,
+        "polygons": 0 if cloud else shape.n_faces,
         "bounding_box": shape.bounds.tolist(),
         "excess": shape.excess,
         "closed": shape.closed,
@@ -229,8 +235,15 @@ def notes_of(record: Record) -> list[str]:
         *robots,
         *record.notes,
         *record.contact_notes,
+        *_waivers_of_others(record.case),
     ]
     return list(dict.fromkeys(told))
+
+
+def _waivers_of_others(case: Case) -> list[str]:
+    """That some waivers are of other cases, and say nothing here."""
+    others = sum(not waiver.is_of_case(case.name) for waiver in case.waivers)
+    return [f"of other cases, and not looked at: {count(others, 'waiver')}"] if others else []
 
 
 def _finite(value: float) -> float | None:

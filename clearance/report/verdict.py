@@ -40,6 +40,8 @@ SUSPECT = "suspect"
 MOTION, SAMPLES = "motion", "samples"
 """What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
 
+SURROUNDINGS = "surroundings (the scene is empty)"
+
 STALE = "stale waiver"
 """The status where all would be well, but for a waiver that has expired or that nothing needs."""
 
@@ -180,7 +182,9 @@ def _judgement(record: Record) -> Judgement | None:
 
 
 def _not_checked(case: Case) -> Iterator[str]:
-    """The robots whose links are not measured against one another."""
+    """That nothing stands around the robots, and those whose links are not measured against one another."""
+    if not case.obstacles:
+        yield SURROUNDINGS
     left_out = [placed.robot.name for placed in case.robots if not placed.self_clearance]
     if len(left_out) == len(case.robots):
         yield SELF_COLLISION

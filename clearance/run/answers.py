@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
 
+import numpy as np
+
 from clearance.run.question import Question
 from clearance.simulate import inside
 from clearance.simulate.certificate import Certificate
@@ -20,6 +22,7 @@ from clearance.simulate.judged import Judged, judged
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import CrossCheck, PairTest, ProfileAnswer, Record, Samples
+from clearance.simulate.replay_bodies import notes_on_drawing
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
@@ -28,7 +31,7 @@ from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, ste
 from clearance.world.case import Case
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
-from clearance.world.notice import Notice, Severity, worst_first
+from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.pairs import names_of
 from clearance.world.phase import Phase
 from clearance.world.reach import require_within_reach
@@ -122,7 +125,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         _contacts(plan, found),
         _notices(plan, all_judged.certificate, found),
         _profiles(plan),
-        _peer(samples, found, resources) if question.cross_check else None,
+        _peer(question.case, samples, found, resources) if question.cross_check else None,
     )
 
 
@@ -200,7 +203,7 @@ def _notices(
     proven = () if certificate is None else certificate.notices
     empty = [_nothing_measured(phase) for phase in plan.sections.empty]
     untied = [*_not_cross_checked(plan)] if question.cross_check else []
-    untied += _without_depth(found)
+    untied += [*_without_depth(found), *_clouds_without_depth(question.case, found)]
     return worst_first([*question.case.notices, *measured, *proven, *empty, *untied])
 
 
@@ -217,7 +220,29 @@ def _without_depth(found: Sequence[SectionAnswer]) -> Iterator[Notice]:
         yield Notice(Severity.WARNING, "contact", text)
 
 
+def _clouds_without_depth(case: Case, found: Sequence[SectionAnswer]) -> Iterator[Notice]:
+    """Contact with clouds: how deep a ball is says nothing of the thing that was scanned."""
+    names: dict[str, None] = {}
+    for one in found:
+        pairs = one.section.pairs
+        for i in np.unique(one.found.pair[one.found.clearance <= 0.0]).tolist():
+            if i >= 0 and pairs[i].has_cloud(case):
+                clouds = (body for body in pairs[i] if body.body_in(case).is_cloud)
+                names |= {body.name_in(case): None for body in clouds}
+    if names:
+        text = f"contact with {listed([*names], 6)} has no depth, volume or way out here: clouds of points"
+        yield Notice(Severity.WARNING, "contact", text)
+
+
 def _not_cross_checked(plan: MeasurementPlan) -> Iterator[Notice]:
+    case = plan.question.case
+    clouds = {pair for pair in plan.sections.pairs if pair.has_cloud(case)}
+    if clouds:
+        text = (
+            f"{len(clouds)} pairs with clouds of points are not cross-checked: FCL measures faces, and balls "
+            "only by an iteration"
+        )
+        yield Notice(Severity.WARNING, "cross-check", text)
     untied = {pair for one in plan.sections.sections if not one.tied for pair in one.pairs}
     if untied:
         text = f"{len(untied)} pairs whose clocks are not tied are not cross-checked: FCL is asked about one time"
@@ -232,12 +257,30 @@ def _profiles(plan: MeasurementPlan) -> tuple[ProfileAnswer, ...]:
     return answer_profiles(plan.question.case, plan.timeline)
 
 
-def _peer(samples: Samples, found: Sequence[SectionAnswer], resources: Resources) -> CrossCheck:
+def _peer(
+    case: Case, samples: Samples, found: Sequence[SectionAnswer], resources: Resources
+) -> CrossCheck | None:
+    """The comparison with FCL; None where nothing but clouds of points is measured."""
     from clearance.crosscheck import cross_check, cross_check_sections
 
+    if any(pair.has_cloud(case) for one in found for pair in one.section.pairs):
+        faces = [part for one in found if one.section.tied for part in _without_clouds(case, one)]
+        return cross_check_sections(faces, resources.progress) if faces else None
     if len(found) == 1 and found[0].section.padding == 0.0:
         return cross_check(samples, resources.progress)
     return cross_check_sections(found, resources.progress)
+
+
+def _without_clouds(case: Case, answer: SectionAnswer) -> Iterator[SectionAnswer]:
+    """A section measured again without its pairs with clouds, if others are left."""
+    section = answer.section
+    kept = [i for i, pair in enumerate(section.pairs) if not pair.has_cloud(case)]
+    if len(kept) == len(section.pairs):
+        yield answer
+    elif kept:
+        pairs = tuple(section.pairs[i] for i in kept)
+        part = replace(section, pairs=pairs, places=section.places[kept])
+        yield SectionAnswer(part, measure(part.in_motion), None)
 
 
 def _record(plan: MeasurementPlan, answers: Answers) -> Record:
@@ -258,7 +301,11 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         need=question.need,
         every_pair=every_pair(case, pairs, judged),
         certificate=judged.certificate,
-        notes=(*case.notes, *(note for made in motions for note in made.notes)),
+        notes=(
+            *case.notes,
+            *(note for made in motions for note in made.notes),
+            *notes_on_drawing(case),
+        ),
         notices=answers.notices,
         contacts=answers.contacts,
         profiles=answers.profiles,

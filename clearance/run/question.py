@@ -87,6 +87,7 @@ class Question:
                 f"cross-check needs every step, not {self.need!r}", valid="need 'steps' or 'pairs'"
             )
         _require_one_clock(self)
+        _require_surfaces(self)
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
         today = (self.today or datetime.now(UTC).date()) if self.case.waivers else None
         object.__setattr__(self, "today", today)
@@ -102,6 +103,16 @@ class Question:
             self.certify,
             self.certify_gap,
             self.paper_tolerance,
+        )
+
+
+def _require_surfaces(question: Question) -> None:
+    """Nothing, if what is asked can be answered of clouds of points, where there are any."""
+    clouds = [one.name for one in question.case.obstacles if one.body.is_cloud]
+    if clouds and question.method == "paper":
+        raise BadInput(
+            f"method 'paper' measures faces, and obstacle {clouds[0]!r} is a cloud of points",
+            valid="method 'exact'",
         )
 
 

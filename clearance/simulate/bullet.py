@@ -164,6 +164,12 @@ class _World:
     def add(self, obstacles: Sequence[Obstacle]) -> None:
         """Puts the obstacles in as fixed bodies with all their concavities."""
         for i_obstacle, obstacle in enumerate(obstacles):
+            if obstacle.body.is_cloud:
+                raise BadInput(
+                    f"obstacle {obstacle.name!r} is a cloud of points, which no simulated body can bump into",
+                    where="contact_response",
+                    valid="false, or kinematic motion; a cloud is measured all the same",
+                )
             path = write_obj(obstacle.body.shape, self._folder / f"obstacle_{i_obstacle}.obj")
             shape = self._engine.createCollisionShape(
                 self._engine.GEOM_MESH,

@@ -21,6 +21,7 @@ from clearance.simulate.layout import lay_out
 from clearance.simulate.measure import SWEEP_COUNTERS
 from clearance.simulate.names import pair_names
 from clearance.tolerance import REACH
+from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.forest import forest_of
 from clearance.world.kinematics import moving_positions
@@ -91,7 +92,8 @@ class Checker:
         notices: what is suspect about the case, and warnings; `check` would say them with its verdict.
 
     Raises:
-        NothingToMeasure: no pair is left. BadDimension: a body far beyond any place that a robot works at.
+        NothingToMeasure: no pair is left. BadInput: a body from a CAD file. BadDimension: a body far beyond any
+            place that a robot works at.
     """
 
     def __init__(self, case: Case) -> None:
@@ -101,6 +103,8 @@ class Checker:
             )
         self.case, self.notices = case, notices_of(case)
         pairs, _ = measured_pairs(case)
+        bodies = [body.body_in(case) for pair in pairs for body in pair]
+        require_no_shortfall(bodies, "a Checker")
         self._doubts = [(pairs[i], i, doubt) for i, doubt in doubts_of(case, pairs).items()]
         require_within_reach(case, [_at_rest(placed) for placed in case.robots])
         self.pairs = list(zip(*pair_names(case, pairs), strict=True))

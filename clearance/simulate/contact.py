@@ -87,14 +87,18 @@ class _OverlapFinder:
     _told: dict[str, None] = field(default_factory=dict)
 
     def touching(self) -> tuple[np.ndarray, np.ndarray]:
-        """(n,) steps and (n,) pairs in contact, steps first; the nearest pair of a step is one for sure."""
+        """(n,) steps and (n,) pairs in contact, steps first; the nearest pair of a step is one for sure.
+
+        Clouds of points are left out: what of a ball is in a body says nothing of the thing that was scanned.
+        """
         rows, pairs = pairs_in_contact(
             PairsInMotion(self.case, self.motions, self.pairs), self.steps
         )
         sure = np.arange(len(self.steps)) * len(self.pairs) + self.nearest
         both = np.union1d(rows * len(self.pairs) + pairs, sure)
         rows, pairs = np.divmod(both, len(self.pairs))
-        return self.steps[rows], pairs
+        kept = ~np.array([pair.has_cloud(self.case) for pair in self.pairs])[pairs]
+        return self.steps[rows[kept]], pairs[kept]
 
     def chosen(
         self, steps: np.ndarray, pairs: np.ndarray, progress: Progress | None

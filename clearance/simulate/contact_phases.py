@@ -26,7 +26,9 @@ def contacts_of(
     parts = [
         _of_section(answer, work_out)
         for answer in answers
-        if answer.section.tied and (answer.found.clearance <= 0.0).any()
+        if answer.section.tied
+        and (answer.found.clearance <= 0.0).any()
+        and not all(pair.has_cloud(case) for pair in answer.section.pairs)
     ]
     if not parts:  # only pairs whose clocks are not tied touch: no one time has them
         return ()

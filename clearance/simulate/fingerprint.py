@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from clearance.compile.machine import numba_version, processor
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.import_closure import PACKAGE, digest_of, import_closure
 from clearance.world.case import Case
@@ -90,6 +91,9 @@ def _add_mount(digest: hashlib._Hash, mount: Mount | None) -> None:
 
 def _add_shape(digest: hashlib._Hash, shape: Polyhedron) -> None:
     _add(digest, shape.vertices, shape.face_starts, shape.face_vertices)
+    digest.update(repr(shape.shortfall).encode())
+    if shape.ball_radius:
+        digest.update(repr(shape.ball_radius).encode())
 
 
 def _add(digest: hashlib._Hash, *arrays: np.ndarray) -> None:
@@ -100,9 +104,6 @@ def _add(digest: hashlib._Hash, *arrays: np.ndarray) -> None:
 
 def _program() -> str:
     """Sources, versions and machine: on another processor the last bits may differ."""
-    import llvmlite.binding
-    import numba
-
     digest = digest_of(sources())
-    versions = (np.__version__, numba.__version__, platform.python_version(), platform.machine())
-    return f"{digest} {versions} {llvmlite.binding.get_host_cpu_name()}"
+    versions = (np.__version__, numba_version(), platform.python_version(), platform.machine())
+    return f"{digest} {versions} {processor()}"

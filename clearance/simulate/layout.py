@@ -147,12 +147,14 @@ def _laid_out(case: Case, pairs: tuple[Pair, ...]) -> Layout:
 def with_whole_faces(surface: Surface) -> Surface:
     """The surface in which every face owns all its corners and edges, not only those it answers for."""
     starts, corners = surface.face_starts, surface.face_vertices
+    ahead = rings_of(starts).ahead
+    is_edge = ahead != np.arange(len(ahead))  # a point of a cloud has none
     return surface._replace(
         vertex_starts=starts,
         owned_vertices=corners,
-        edge_starts=starts,
+        edge_starts=np.concatenate([[0], np.cumsum(is_edge)])[starts],
         owns=np.full(len(starts) - 1, ANYTHING, dtype=np.uint16),
-        owned_edges=np.stack([corners, corners[rings_of(starts).ahead]], axis=1),
+        owned_edges=np.stack([corners, corners[ahead]], axis=1)[is_edge],
     )
 
 

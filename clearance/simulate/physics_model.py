@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 from itertools import pairwise
 from pathlib import Path
 
-from clearance.errors import BadSyntax, MissingFile
+from clearance.errors import BadInput, BadSyntax, MissingFile
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.world.case import PlacedRobot
 
@@ -24,9 +24,10 @@ def write_physics_urdf(placed: PlacedRobot, folder: Path, with_shapes: bool) -> 
     """The path of a URDF in `folder` with the robot's links and joints, and its shapes if asked.
 
     Raises:
-        MissingFile, BadSyntax: the robot's URDF cannot be read.
+        MissingFile, BadSyntax: the robot's URDF cannot be read. BadInput: a joint of several degrees of freedom.
     """
     robot = _parsed(placed.urdf_path)
+    _refuse_compound_joints(placed)
     bodies = {body.name: body.shape for body in placed.robot.bodies} if with_shapes else {}
     for i_link, link in enumerate(robot.findall("link")):
         for element in [*link.findall("visual"), *link.findall("collision")]:
@@ -40,6 +41,18 @@ def write_physics_urdf(placed: PlacedRobot, folder: Path, with_shapes: bool) -> 
     path = folder / "robot.urdf"
     ET.ElementTree(robot).write(path, encoding="utf-8", xml_declaration=True)
     return path
+
+
+def _refuse_compound_joints(placed: PlacedRobot) -> None:
+    """Planar and floating joints are several of ours and one of the engine's."""
+    for joint in placed.robot.joints:
+        if joint.part_of is not None:
+            kind, name = joint.part_of
+            raise BadInput(
+                f"motion with the {kind} joint {name!r} cannot be simulated",
+                where=placed.urdf_path,
+                valid="a chain of joints of one axis in its place",
+            )
 
 
 def _set_unit_axes(robot: ET.Element, placed: PlacedRobot) -> None:
@@ -76,11 +89,22 @@ def write_obj(shape: Polyhedron, path: Path) -> Path:
 
 def _parsed(urdf_path: str) -> ET.Element:
     try:
-        return ET.parse(urdf_path).getroot()
+        root = ET.parse(urdf_path).getroot()
+        if urdf_path.endswith(".xacro") or any("xacro" in str(part.tag) for part in root.iter()):
+            raise BadSyntax(
+                "is a xacro file, which is not simulated",
+                where=urdf_path,
+                valid="turn it into URDF with the xacro command first",
+            )
     except OSError as error:
         raise MissingFile(f"cannot be read ({error.strerror})", where=urdf_path) from None
     except ET.ParseError as error:
         raise BadSyntax(f"is not XML ({error})", where=urdf_path, valid="a URDF file") from None
+    if root.tag.rpartition("}")[2] != "robot":
+        raise BadSyntax(
+            "its motion cannot be simulated", where=urdf_path, valid="the robot as URDF"
+        )
+    return root
 
 
 def _frame_inertial() -> ET.Element:

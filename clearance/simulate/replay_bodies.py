@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.query.distance import distance
 from clearance.simulate.record import Record
@@ -26,6 +27,10 @@ time."""
 
 SAME_PLACE = 1e-6
 """[m] A clearance that differs by less is that of the poses drawn."""
+
+
+MOST_DRAWN = 100_000
+"""Points of a cloud that are drawn at most: 1.2 MB."""
 
 
 @dataclass(frozen=True)
@@ -246,11 +251,33 @@ def packed(poses: np.ndarray) -> np.ndarray:
     return np.column_stack([poses[:, :3, 3], rotations]).astype(np.float32)
 
 
+def notes_on_drawing(case: Case) -> list[str]:
+    """A line on each cloud of which not all points are drawn."""
+    clouds = [(one.name, one.body.shape) for one in case.obstacles]
+    return [
+        f"{name}: the pictures show one in {_every(shape)} of its {shape.n_points:,} points; all are measured"
+        for name, shape in clouds
+        if isinstance(shape, PointCloud) and _every(shape) > 1
+    ]
+
+
+def _every(cloud: PointCloud) -> int:
+    """Of so many points in order, one is drawn."""
+    return -(-cloud.n_points // MOST_DRAWN)
+
+
 def shape_index(
     shape: Polyhedron, shapes: list[tuple[np.ndarray, np.ndarray]], seen: dict[bytes, int]
 ) -> int:
-    """The place of a shape among those that are drawn, each of which is there once."""
-    vertices, triangles = shape.vertices.astype(np.float32), shape.triangles().astype(np.int32)
+    """The place of a shape among those that are drawn, each of which is there once.
+
+    A cloud has no triangles; of many points some are drawn.
+    """
+    if isinstance(shape, PointCloud):
+        vertices = shape.vertices[:: _every(shape)].astype(np.float32)
+        triangles = np.empty((0, 3), dtype=np.int32)
+    else:
+        vertices, triangles = shape.vertices.astype(np.float32), shape.triangles().astype(np.int32)
     key = vertices.tobytes() + triangles.tobytes()
     if key not in seen:
         seen[key] = len(shapes)

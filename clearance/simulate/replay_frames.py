@@ -13,6 +13,7 @@ import pyarrow as pa
 from numpy.typing import ArrayLike
 
 from clearance.simulate.moment import Moment
+from clearance.simulate.name_codes import codes_of as codes_of_names
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import Record
 from clearance.simulate.replay_bodies import FramePlace
@@ -149,17 +150,5 @@ def _lines(record: Record, steps: pa.Table) -> np.ndarray:
 
 def codes_of(steps: pa.Table) -> np.ndarray:
     """(n,) uint8 the statuses of a steps table as indices into `STATUSES`; 0 where there is none."""
-    names = pa.array([str(status) for status in STATUSES])
-    return np.concatenate(
-        [_codes(part, names) for part in steps["status"].iterchunks()] or [_NO_CODES]
-    )
-
-
-_NO_CODES = np.empty(0, dtype=np.uint8)
-
-
-def _codes(statuses: pa.Array, names: pa.Array) -> np.ndarray:
-    import pyarrow.compute
-
-    found = pyarrow.compute.index_in(statuses, names).fill_null(0)
-    return found.to_numpy(zero_copy_only=False).astype(np.uint8)
+    found = codes_of_names(steps["status"], [str(status) for status in STATUSES])
+    return np.maximum(found, 0).astype(np.uint8)

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import pyarrow as pa
 
 from clearance.simulate.certificate import motion_codes
 from clearance.simulate.moment import Moment
+from clearance.simulate.name_codes import codes_of
 from clearance.simulate.record import Record
 from clearance.simulate.status import STATUSES, Status, sample_codes
 from clearance.simulate.steps import between_of
@@ -90,11 +90,7 @@ def rule_places(record: Record) -> np.ndarray:
     n_steps = record.steps.num_rows
     if len(record.rules) == 1:
         return np.zeros(n_steps, dtype=np.int64)
-    import pyarrow.compute
-
-    names = pa.array([one.name for one in record.rules])
-    found = pyarrow.compute.index_in(record.steps["rule"], names)
-    return found.to_numpy().astype(np.int64)
+    return codes_of(record.steps["rule"], [one.name for one in record.rules])
 
 
 def codes_of_moments(record: Record, moments: list[Moment]) -> np.ndarray:

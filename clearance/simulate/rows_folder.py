@@ -15,8 +15,6 @@ from contextlib import ExitStack, contextmanager
 from io import FileIO
 from pathlib import Path
 
-from filelock import lock_descriptor
-
 from clearance.errors import Unwritable, unwritable
 
 LOCK = "lock"
@@ -159,6 +157,8 @@ def _is_locked(lock: FileIO, place: Path) -> bool:
     Raises:
         Unwritable: another process has it.
     """
+    from filelock import lock_descriptor
+
     try:
         is_ours = lock_descriptor(lock.fileno(), blocking=False)
     except OSError:  # a file system without such locks

@@ -17,6 +17,9 @@ from clearance.simulate.names import pair_names
 from clearance.simulate.sample_moments import SampleMoments
 from clearance.simulate.section_answer import SectionAnswer
 
+MOST_NEAR_STEPS = 250_000
+"""Of a section; where something is near at more, only the nearest pair of each is told, to save memory."""
+
 
 @dataclass(frozen=True, eq=False)
 class NearRows:
@@ -57,6 +60,10 @@ class RulePairs:
         order = np.lexsort((columns[1], columns[0]))
         return NearRows(*(column[order] for column in columns))
 
+    def is_cut(self, within: float) -> bool:
+        """True if `near` knows only the nearest pair of some steps, since there are too many."""
+        return any(len(_near_steps(one, within)) > MOST_NEAR_STEPS for one in self.answers)
+
     def moment(self, step: int, pair: int) -> Moment:
         """The moment of a step at which a pair is measured: of those of several sections the nearest."""
         found = [moment for answer in self.answers for moment in _moments(answer, step, pair)]
@@ -70,9 +77,8 @@ _Columns = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 def _near(answer: SectionAnswer, within: float) -> _Columns:
     """The columns of `NearRows` of one section."""
     section, found = answer.section, answer.found
-    floor = np.where(np.isnan(found.clearance), found.lower_bound, found.clearance)
-    steps = np.flatnonzero(floor - section.padding < within)
-    if not section.tied or found.may_cut_pairs:
+    steps = _near_steps(answer, within)
+    if not section.tied or found.may_cut_pairs or len(steps) > MOST_NEAR_STEPS:
         return _nearest(answer, steps)
     reached = within + section.padding
     if found.every is not None:
@@ -91,6 +97,13 @@ def _near(answer: SectionAnswer, within: float) -> _Columns:
         distances <= 0.0,
         np.zeros(len(rows), dtype=bool),
     )
+
+
+def _near_steps(answer: SectionAnswer, within: float) -> np.ndarray:
+    """The steps at which a pair of a section can be nearer than `within` [m]."""
+    found = answer.found
+    floor = np.where(np.isnan(found.clearance), found.lower_bound, found.clearance)
+    return np.flatnonzero(floor - answer.section.padding < within)
 
 
 def _nearest(answer: SectionAnswer, steps: np.ndarray) -> _Columns:

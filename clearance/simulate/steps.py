@@ -14,6 +14,7 @@ from clearance.simulate.contact_columns import no_contact_columns
 from clearance.simulate.every_pair import EveryPair
 from clearance.simulate.judged import Judged
 from clearance.simulate.measure import Measurement
+from clearance.simulate.name_codes import names_of
 from clearance.simulate.names import SIDES, BodyNames, columns_of, pair_names, sides_of
 from clearance.simulate.parts import blocks
 from clearance.simulate.record import PairMinimum
@@ -50,7 +51,7 @@ def step_table(
             columns |= _proven_columns(found, certificate, block)
             codes, between = _with_motion(judged, block, codes)
             columns["between"] = pa.array(between)
-        columns["status"] = _names([str(status) for status in STATUSES], codes)
+        columns["status"] = names_of(codes, [str(status) for status in STATUSES])
         if certificate is None and bounded:
             columns["lower_bound"] = pa.array(found.lower_bound[block])
         if with_error:
@@ -80,14 +81,13 @@ def _sides(names: BodyNames, columns: dict[str, pa.Array]) -> dict[str, pa.Array
 
 def _rule_columns(names: BodyNames, judged: Judged, steps: slice) -> dict[str, pa.Array]:
     """What judged each step, and where there are several rules the nearest pair of all."""
-    rules = pa.array([rule.name for rule in judged.rules], type=pa.string())
-    columns = {"rule": rules.take(pa.array(judged.rules_at(steps)))}
+    columns = {"rule": names_of(judged.rules_at(steps), [rule.name for rule in judged.rules])}
     if judged.rule is not None:
         near = judged.nearest
         columns |= {
             "nearest_clearance": pa.array(near.clearance[steps], from_pandas=True),
-            "nearest_a": _names(names.a, near.pair[steps]),
-            "nearest_b": _names(names.b, near.pair[steps]),
+            "nearest_a": names_of(near.pair[steps], names.a),
+            "nearest_b": names_of(near.pair[steps], names.b),
         }
     if judged.found.times_b is not None:
         columns["time_b"] = pa.array(judged.found.times_b[steps], from_pandas=True)
@@ -117,8 +117,8 @@ def _measured_columns(
         "step": pa.array(np.arange(block.start, block.stop)),
         "time": pa.array(times[block]),
         "clearance": pa.array(found.clearance[block], from_pandas=True),
-        first: _names(names.a, found.pair[block]),
-        second: _names(names.b, found.pair[block]),
+        first: names_of(found.pair[block], names.a),
+        second: names_of(found.pair[block], names.b),
     } | {name: pa.array(points[:, i], from_pandas=True) for i, name in enumerate(places)}
 
 
@@ -204,7 +204,3 @@ def cut_throughout(case: Case, pairs: Sequence[Pair], found: Measurement) -> lis
     cut = np.flatnonzero(np.isinf(found.measure_pair_minima(None).clearance))
     reason = "the paper's rules cut every polygon pair at every step"
     return [Omission(links[i], obstacles[i], reason) for i in cut]
-
-
-def _names(names: Sequence[str], codes: np.ndarray) -> pa.Array:
-    return pa.array(names, type=pa.string()).take(pa.array(codes, mask=codes < 0))

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.geometry.convex_parts import convex_parts
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.polytope import Polytope
 from clearance.kernels.motion.joint_path import JointPath
@@ -103,7 +104,10 @@ def _held_bodies(phase: Phase, i_robot: int) -> Iterator[_HeldBody]:
     for i, obstacle in enumerate(phase.case.obstacles):
         held = holding_link(phase, i)
         if held is not None and held[0] == i_robot:
-            yield _HeldBody(obstacle.name, obstacle.body.shape, forest.obstacle_links[i])
+            shape = obstacle.body.shape
+            if isinstance(shape, PointCloud):
+                shape = shape.box_about()
+            yield _HeldBody(obstacle.name, shape, forest.obstacle_links[i])
 
 
 def _pieces_of_phase(

@@ -22,6 +22,7 @@ from clearance.geometry.convex_parts import solid_of
 from clearance.query.common_point import common_point
 from clearance.simulate.robot_in_cell import RobotInCell, robots_in_cell
 from clearance.simulate.swept_pieces import SweptPiece, swept_pieces
+from clearance.world.body import require_no_shortfall
 from clearance.world.case import Case
 
 WITHIN = 0.005
@@ -94,6 +95,9 @@ def shared_workspace(
     if not boolean.available():
         raise Unavailable("manifold3d is not installed", valid=install("contact"))
     robots = robots_in_cell(cases)
+    bodies = [body for case in cases for one in case.robots for body in one.robot.bodies]
+    bodies += [obstacle.body for case in cases for obstacle in case.obstacles]
+    require_no_shortfall(bodies, "a shared workspace")
     _require_one_cell(cases)
     _require_different_places(robots)
     carried = [(a, b) for a in robots for b in robots if a.stands_on(b)]

@@ -125,7 +125,11 @@ def fill(stage: Stage, replay: Replay) -> None:
     size = float(np.linalg.norm(box[1] - box[0]))
     for i, body in enumerate(replay.bodies):
         path = f"{FOLDERS[body.kind]}/{i} {body.name.replace('/', ' ')}"
-        stage.mesh(path, *replay.shapes[body.i_shape], *_look(body))
+        vertices, triangles = replay.shapes[body.i_shape]
+        if len(triangles):
+            stage.mesh(path, vertices, triangles, *_look(body))
+        else:
+            stage.points(path, vertices, _look(body)[0])
         _place(stage, path, replay.poses[i], times)
         _show(stage, path, replay.shown[i], times)
     _marks(stage, replay, times, size)

@@ -65,6 +65,10 @@ class _Commands:
         self.packed.append(umsgpack.packb(command))
 
 
+POINT = 0.004
+"""[m] How large a point of a cloud is drawn, whatever the radius of its ball."""
+
+
 class Stage:
     """A scene, and a server that gives it to browsers."""
 
@@ -93,6 +97,13 @@ class Stage:
         )
         self._root[path].set_object(
             meshcat.geometry.TriangularMeshGeometry(vertices, triangles), material
+        )
+
+    def points(self, path: str, points: np.ndarray, colour: int) -> None:
+        """Puts a cloud of points (n, 3) [m] at `path`."""
+        self._root[path].set_object(
+            meshcat.geometry.PointsGeometry(points.T),
+            meshcat.geometry.PointsMaterial(size=POINT, color=colour),
         )
 
     def ball(self, path: str, radius: float, colour: int) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from clearance.errors import BadInput, BadShape, at
+from clearance.geometry.point_cloud import PointCloud
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.pose import validated_pose
 from clearance.world.mount import Mount
@@ -32,6 +34,26 @@ class Body:
         if not isinstance(self.shape, Polyhedron):
             with at(f"body {self.name!r}"):
                 object.__setattr__(self, "shape", Polyhedron.from_trimesh(self.shape).outward())
+
+    @property
+    def is_cloud(self) -> bool:
+        """True if it is points of a scan and has no surface."""
+        return isinstance(self.shape, PointCloud)
+
+
+def require_no_shortfall(bodies: Iterable[Body], purpose: str) -> None:
+    """Nothing, if the surfaces of all bodies hold what they stand for, as where nothing is taken off a clearance.
+
+    Raises:
+        BadInput: with the first body that may stand outside its surface, as one from a CAD file may.
+    """
+    for body in bodies:
+        if body.shape.shortfall:
+            raise BadInput(
+                f"{body.name!r} may stand {body.shape.shortfall * 1e3:.3g} mm outside its facets, which "
+                f"{purpose} does not count",
+                valid="a mesh file in place of the CAD file, or a check of the case, which counts it",
+            )
 
 
 @dataclass(frozen=True, eq=False)

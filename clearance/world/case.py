@@ -12,6 +12,7 @@ import numpy as np
 from clearance.errors import (
     BadDimension,
     BadInput,
+    BadShape,
     BadTime,
     NothingToMeasure,
     NoTrajectory,
@@ -23,6 +24,7 @@ from clearance.world.body import Obstacle
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
 from clearance.world.collision_matrix import CollisionMatrix
+from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.mount import Mount
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.names import checked_name, require_own_names
@@ -135,6 +137,8 @@ class PlacedRobot:
         exclude_links: links that are not measured.
         self_clearance: whether its links are measured against one another, and which pairs are excused.
         padding: [m] by how much the clearance of links is lessened, by link.
+        motion_limits: how fast joints may be, where more than the robot's own file is known.
+        path_tolerances: how far the controllers let joints off the trajectory; no clearance is lessened by it.
         trajectory_path: the file that the trajectory is from; empty where it is from none.
     """
 
@@ -149,6 +153,8 @@ class PlacedRobot:
     mount: Mount | None = None
     timing: Timing = AS_GIVEN
     padding: dict[str, float] = field(default_factory=dict)
+    motion_limits: dict[str, MotionLimit] = field(default_factory=dict)
+    path_tolerances: dict[str, PathTolerance] = field(default_factory=dict)
     trajectory_path: str = ""
 
     def __post_init__(self) -> None:
@@ -283,7 +289,7 @@ class Case:
             row if isinstance(row, Allowance) else Allowance((row[0], row[1])) for row in self.allow
         )
         object.__setattr__(self, "allow", tuple(allow))
-        _require_names(self)
+        _require_bodies(self)
 
     @cached_property
     def cell(self) -> Cell:
@@ -334,12 +340,13 @@ class Case:
 
 
 @once_a_cell(16)
-def _require_names(case: Case) -> None:
-    """Nothing, if robots, links, obstacles and who carries what can be told apart by name."""
+def _require_bodies(case: Case) -> None:
+    """Nothing, if what can be named can be told apart, and links have surfaces."""
     require_own_names("robot", [placed.robot.name for placed in case.robots])
     require_own_names("obstacle", [obstacle.name for obstacle in case.obstacles])
     for placed in case.robots:
         require_own_names("link", list(placed.robot.link_names))
+        _require_surfaces(placed.robot)
     if len(case.robots) > 1:
         _require_names_apart(case.robots, case.obstacles)
     elif case.robots[0].self_clearance or case._stand_on_others:
@@ -359,6 +366,15 @@ def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
     if name is None or names.count(name) != 1:
         raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
     return names.index(name)
+
+
+def _require_surfaces(robot: Robot) -> None:
+    for body in robot.bodies:
+        if body.is_cloud:
+            raise BadShape(
+                f"link {body.name!r} of robot {robot.name!r} is a cloud of points",
+                valid="links have surfaces; only obstacles may be clouds",
+            )
 
 
 def _require_names_apart(robots: Sequence[PlacedRobot], obstacles: Sequence[Obstacle]) -> None:

@@ -1,6 +1,6 @@
 """Joints beyond their limits: a warning or, where the case says so, a violation; far beyond is suspect.
 
-Not for: limits of velocity or effort, which the robot does not carry.
+Not for: how fast joints are (`joint_speeds`).
 """
 
 from __future__ import annotations

@@ -73,10 +73,11 @@ class BodyIndex(NamedTuple):
         return np.ascontiguousarray(link_poses[:, frame])
 
     def padding_in(self, case: Case) -> float:
-        """[m] By how much its clearance is lessened."""
+        """[m] By how much its clearance is lessened: what was asked for, and what its surface may fall short."""
+        shortfall = self.shape_in(case).shortfall
         if self.is_obstacle:
-            return case.obstacles[self.i_body].padding
-        return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0)
+            return case.obstacles[self.i_body].padding + shortfall
+        return case.robots[self.i_robot].padding.get(self.own_name_in(case), 0.0) + shortfall
 
     def body_in(self, case: Case) -> Body:
         """Its name and shape."""
@@ -94,6 +95,10 @@ class Pair(NamedTuple):
 
     a: BodyIndex
     b: BodyIndex
+
+    def has_cloud(self, case: Case) -> bool:
+        """True if either body is a cloud of points."""
+        return self.a.body_in(case).is_cloud or self.b.body_in(case).is_cloud
 
 
 @dataclass(frozen=True, eq=False)

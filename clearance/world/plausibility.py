@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from clearance.world.case import Case, Limits
 from clearance.world.joint_limits import notices_on_joints
+from clearance.world.joint_speeds import notices_on_speed
 from clearance.world.notice import Notice, Severity, listed, worst_first
 from clearance.world.plausible_motion import notices_on_motion
 from clearance.world.plausible_sizes import notices_on_sizes
@@ -39,6 +40,7 @@ def notices_of(case: Case) -> tuple[Notice, ...]:
         before = case.prefix_of(placed)
         if placed.trajectory is not None:
             found += notices_on_motion(placed, before)
+            found += notices_on_speed(placed, case.limits.joints, before)
         if any(moves):  # else nothing is asked of it
             found += notices_on_joints(placed, case.limits.joints, before)
     return worst_first(found)

@@ -38,6 +38,7 @@ class Joint:
         parent_from_joint: (4, 4) pose of the child frame at position 0 [m].
         axis: (3,) unit vector in the joint frame.
         lower, upper: limits [rad] or [m]; infinite where there are none.
+        part_of: kind and name of the joint of several degrees of freedom that it is a part of.
     """
 
     name: str
@@ -49,6 +50,7 @@ class Joint:
     lower: float = -np.inf
     upper: float = np.inf
     mimic: Mimic | None = None
+    part_of: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True, eq=False)

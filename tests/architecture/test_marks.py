@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from importlib import import_module
 
 import pytest
 
-from tests import guards
+import clearance as cl
+from tests import guards, marks
 from tests.examples import PROFILES, examples
-from tests.marks import SHARED_CASES, marks_of
 
-FETCH = SHARED_CASES / "fetch_cage_planned"
+FETCH = marks.SHARED_CASES / "fetch_cage_planned"
 MODULE = "subprocess"
 
 
@@ -41,16 +42,25 @@ def reads_a_shared_case():
     return FETCH / "case.yaml"
 
 
+def asks_for_a_cross_check():
+    return cl.check("case.yaml", cross_check=True)
+
+
+def has_what_a_cross_check_said():
+    return replace(uses_nothing, cross_check=uses_nothing())
+
+
 def uses_nothing():
     return sorted([2, 1])
 
 
-@pytest.mark.parametrize(("function", "marks"), [
+@pytest.mark.parametrize(("function", "expected"), [
     (starts_a_process, {"cold"}), (starts_one_by_another, {"cold"}), (drives_a_browser, {"browser"}),
-    (asks_a_peer, {"peer"}), (reads_a_shared_case, {"shared"}), (uses_nothing, set()),
+    (asks_a_peer, {"peer"}), (asks_for_a_cross_check, {"peer"}), (has_what_a_cross_check_said, set()),
+    (reads_a_shared_case, {"shared"}), (uses_nothing, set()),
 ])  # fmt: skip
-def test_a_mark_follows_from_what_is_used(function, marks):
-    assert marks_of([function]) == marks
+def test_a_mark_follows_from_what_is_used(function, expected):
+    assert marks.marks_of([function]) == expected
 
 
 def test_this_test_has_no_mark_and_so_starts_no_process(request):

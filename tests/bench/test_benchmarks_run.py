@@ -38,21 +38,17 @@ def test_trajectory_agrees_with_every_peer(tmp_path):
     assert "python-fcl" in said
 
 
-def test_error_time_finds_ours_exact_and_balls_wrong(tmp_path):
-    said = ran(
-        "error_time.py",
-        "--polygons",
-        2,
-        "--poses",
-        1,
-        "--steps",
-        0,
-        "--seconds",
-        0.02,
-        "--out",
-        tmp_path,
-    )
-    rows = rows_of(tmp_path / "error_time.csv")
+@pytest.fixture(scope="module")
+def error_time(tmp_path_factory) -> tuple[str, Path]:
+    """What one run of it says, and where it wrote."""
+    folder = tmp_path_factory.mktemp("error_time")
+    least = ("--polygons", 2, "--poses", 1, "--steps", 0, "--seconds", 0.02)
+    return ran("error_time.py", *least, "--out", folder), folder
+
+
+def test_error_time_finds_ours_exact_and_balls_wrong(error_time):
+    said, folder = error_time
+    rows = rows_of(folder / "error_time.csv")
     ours = [row for row in rows if row["method"] == "clearance exact"]
     assert {row["group"] for row in ours} == {"polygons", "bodies"}
     assert len({row["family"] for row in ours if row["group"] == "polygons"}) >= 15
@@ -75,12 +71,11 @@ def test_polytopes_measures_ours_and_the_peers(tmp_path):
     assert "LP + Qhull" in said
 
 
-def test_pictures_are_drawn(tmp_path):
+def test_pictures_are_drawn(error_time):
     pytest.importorskip("matplotlib")
-    least = ("--polygons", 1, "--poses", 0, "--steps", 0, "--seconds", 0.01)
-    ran("error_time.py", *least, "--out", tmp_path)
+    _, folder = error_time
     for name in ("error_time.svg", "polygon_families.svg"):
-        assert (tmp_path / name).read_text(encoding="utf-8").startswith("<?xml")
+        assert (folder / name).read_text(encoding="utf-8").startswith("<?xml")
 
 
 def test_contact_tells_what_the_deepest_moments_cost(tmp_path):

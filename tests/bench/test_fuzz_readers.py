@@ -11,11 +11,17 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 from scripts.bench.fuzz_readers import damaged, outcome
 from scripts.bench.fuzz_seeds import readers
+from tests.examples import some_slow
 
 READERS = readers()
 
+KINDS = [
+    *some_slow([kind for kind in READERS if kind != "STEP"], {"case"}),
+    pytest.param("STEP", marks=[pytest.mark.cold, pytest.mark.slow]),  # read by another process
+]
 
-@pytest.mark.parametrize("kind", READERS)
+
+@pytest.mark.parametrize("kind", KINDS)
 def test_damaged_files_are_read_or_refused(kind, tmp_path):
     reader = READERS[kind]
     assert outcome(reader, reader.valid, tmp_path) == "read"

@@ -82,7 +82,7 @@ def test_first_run_times_the_command(tmp_path):
     rows = rows_of(
         "first_run.py", tmp_path / "rows.csv", "--cases", case, "--fresh", 0, "--warm", 1
     )
-    assert [row["run"] for row in rows] == ["first of the case", "warm"]
+    assert [row["run"] for row in rows] == ["first of the case", "warm", "warm, --out", "refused"]
     assert all(float(row["seconds"]) > 0.0 for row in rows)
 
 

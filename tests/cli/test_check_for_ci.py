@@ -63,7 +63,7 @@ def test_waivers_are_inputs_of_the_summary_and_are_not_overwritten(place, capsys
         (["--baseline", "no"], "there is no file"),
         (["--baseline", "waivers.yaml"], "not JSON"),
         (["--out", "r", "--summary", "r/findings.json"], "a file of the report"),
-        (["--junit", "x.xml", "--summary", "x.xml"], "a file of the report, or of this run"),
+        (["--junit", "x.xml", "--summary", "x.xml"], "is the file of --junit"),
     ],
 )
 def test_bad_options_are_one_line_and_write_nothing(arguments, told, place, capsys):

@@ -1,4 +1,7 @@
-"""What a second process compiles ahead: taken by the first, never waited for in vain."""
+"""What a second process compiles ahead: taken by the first, never waited for in vain.
+
+Two of these take long: what is handed from process to process is five kernels, compiled from nothing.
+"""
 
 import json
 import os
@@ -115,7 +118,7 @@ BEHIND_ONE_THAT_KEEPS_ITS_TURN = """
 import json, os
 from filelock import FileLock
 from clearance.cli import compile_ahead as ahead
-from clearance.compile.kernel_cache import cache_root
+from clearance.kept_files import cache_root
 ahead.LONGEST = 0
 there, (end, kept_open) = os.dup(1), os.pipe()
 os.dup2(end, 0)  # the first process lives
@@ -131,7 +134,7 @@ def told_by(script, folder, ends=0):
     here = folder / "work"
     here.mkdir()
     (here / "numba.py").write_text("open('trapped', 'w').close()\n")
-    (folder / "script.py").write_text(script)
+    (folder / "script.py").write_text(f"import numba  # so that the compiler counts\n{script}")
     settings = {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(folder / "cache")}
     done = subprocess.run(
         [sys.executable, folder / "script.py"],
@@ -191,9 +194,9 @@ WHO_STARTS_PROCESSES = """
 import json, sys
 import clearance as cl
 from clearance.cli import run
-from clearance.compile.kernel_cache import KernelCache
+from clearance.compile.kernel_files import KernelFiles
 
-KernelCache.holds_any = lambda self: False  # the cache looks empty to who asks whether to start a process
+KernelFiles.holds_any = lambda self: False  # the cache looks empty to who asks whether to start a process
 started = []
 sys.addaudithook(lambda event, args: started.append(event) if event in {events} else None)
 box = cl.box((1.0, 1.0, 1.0))

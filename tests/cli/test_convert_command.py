@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import check
@@ -11,6 +11,7 @@ from clearance.errors import BadInput, BadTime
 from clearance.load.trajectory_file import parse_trajectory
 from clearance.load.trajectory_writer import WRITERS, written
 from clearance.world.trajectory import Trajectory
+from tests.examples import examples
 from tests.load.making_case import TWO_JOINTS, changed, load_small
 from tests.load.making_messages import MESSAGE, ROS2, dumped
 
@@ -47,7 +48,7 @@ NUMBERS = st.floats(-1e3, 1e3)
 TIMES = st.lists(st.integers(-(10**12), 10**13), min_size=1, max_size=5, unique=True)
 
 
-@settings(max_examples=200, deadline=None)
+@examples(200)
 @given(st.data(), TIMES, st.sampled_from(sorted(WRITERS)), st.booleans())
 def test_any_trajectory_comes_back_bit_for_bit(data, nanoseconds, suffix, moving):
     times = np.array([whole / 10**9 for whole in sorted(nanoseconds)])

@@ -22,6 +22,7 @@ FILL = ("17", "99")
     "given", [("--need", "pairs", "--certify"), ("--need", "limit", "--jobs", "1")]
 )
 def test_every_file_of_a_report(tmp_path: Path, given: tuple[str, ...]) -> None:
+    """Seconds each: two whole runs, with report and page, in processes of their own."""
     case = ROOT / "scenes" / "iiwa_pipe_rack" / "case.yaml"
     reports = []
     for fill in FILL:

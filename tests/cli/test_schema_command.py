@@ -1,5 +1,7 @@
 """`clearance schema` says of a case file what loading it says, as far as a schema can."""
 
+import contextlib
+import io
 import json
 import re
 from pathlib import Path
@@ -19,11 +21,12 @@ ROOT = Path(__file__).resolve().parents[2]
 jsonschema = pytest.importorskip("jsonschema")
 
 
-@pytest.fixture
-def errors(capsys):
+@pytest.fixture(scope="module")
+def errors():
     """Asks the printed schema whether it objects to YAML text."""
-    assert run(["schema"]) == 0
-    printed = json.loads(capsys.readouterr().out)
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        assert run(["schema"]) == 0
+    printed = json.loads(out.getvalue())
     jsonschema.Draft202012Validator.check_schema(printed)
     validator = jsonschema.Draft202012Validator(printed)
     return lambda text: [

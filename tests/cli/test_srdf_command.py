@@ -48,6 +48,7 @@ def robot(tmp_path):
     return write
 
 
+@pytest.mark.slow
 def test_pairs_that_never_meet_are_proven(robot, capsys):
     assert run(["srdf", "audit", *robot()]) == 0
     told = capsys.readouterr().out.splitlines()
@@ -107,6 +108,7 @@ def test_the_same_robot_gives_the_same_bytes(robot, capsys):
     assert told[0] == told[1]
 
 
+@pytest.mark.slow
 def test_a_robot_of_a_package_is_named_as_in_a_case_file(tmp_path):
     brought = "pybullet_data:franka_panda/panda.urdf"
     out = tmp_path / "panda.srdf"

@@ -14,9 +14,9 @@ from pathlib import Path
 import numba
 import pytest
 
-from clearance.compile import kernel_cache
+from clearance import kept_files
 from clearance.compile.jit import kernel
-from clearance.compile.kernel_cache import KernelCacheWarning, cache_root
+from clearance.kept_files import KernelCacheWarning, cache_root
 
 pytestmark = pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled here")
 
@@ -36,7 +36,7 @@ def half(x):
 def forget() -> None:
     """As in a process that has just begun."""
     cache_root.cache_clear()
-    kernel_cache._warn.cache_clear()
+    kept_files.warn_not_kept.cache_clear()
 
 
 @pytest.fixture
@@ -139,7 +139,7 @@ def test_the_code_of_another_kernel_under_this_name_is_not_believed(home):
 def test_what_is_whole_but_of_another_build_is_compiled_again(home):
     ran()
     path, payload = kept(home), pickle.dumps((1, 2, 3))
-    path.write_bytes(kernel_cache._digest(path.name, payload) + payload)
+    path.write_bytes(kept_files.digest_of_kept(path.name, payload) + payload)
     assert [ran(), ran()] == [MADE, TAKEN]
 
 
@@ -223,9 +223,9 @@ def test_a_full_disk_is_no_obstacle(home, monkeypatch, where, fault):
         __enter__ = __exit__ = full
 
     place = {
-        "mkdir": (kernel_cache.Path, "mkdir", full), "mkstemp": (kernel_cache.tempfile, "mkstemp", full),
-        "write": (kernel_cache.os, "fdopen", lambda handle, mode: os.close(handle) or Full()),
-        "replace": (kernel_cache.os, "replace", full),
+        "mkdir": (kept_files.Path, "mkdir", full), "mkstemp": (kept_files.tempfile, "mkstemp", full),
+        "write": (kept_files.os, "fdopen", lambda handle, mode: os.close(handle) or Full()),
+        "replace": (kept_files.os, "replace", full),
     }  # fmt: skip
     with monkeypatch.context() as patched:
         patched.setattr(*place[where])

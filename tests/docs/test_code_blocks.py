@@ -18,9 +18,10 @@ from ruamel.yaml import YAML
 from clearance.cli.commands import clearance
 from clearance.load.manifest_schema import Manifest
 from clearance.load.schema import Case
+from clearance.load.waiver_file import load_waivers
 from tests.docs.code_blocks import PAGES, ROOT, CodeBlock, blocks_of
 
-LANGUAGES = {"python", "bash", "console", "yaml", "csv", "text"}
+LANGUAGES = {"python", "bash", "console", "yaml", "csv", "dockerfile", "text"}
 EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"]
 
 
@@ -54,7 +55,10 @@ def test_every_block_says_what_it_is(page):
 @pytest.mark.peer
 @pytest.mark.parametrize("page", with_blocks("python", "bash"))
 def test_what_a_page_runs_runs(page, tmp_path, monkeypatch):
-    """Blocks of a page follow each other: files are written, Python shares its names, commands end well."""
+    """Blocks of a page follow each other: files are written, Python shares its names, commands end well.
+
+    As long as the page takes its reader: what is shown is run whole, reports and all.
+    """
     for folder in ("scenes", "robots"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     monkeypatch.chdir(tmp_path)
@@ -103,7 +107,7 @@ def require_valid(words: list[str]) -> None:
         for extra in re.findall(r"\[(\w+)\]", " ".join(arguments)):
             assert extra in EXTRAS, f"no extra {extra}"
     else:
-        assert program in {"python", "ruff", "lint-imports"}, f"unknown program {program}"
+        assert program in {"python", "pytest", "ruff", "lint-imports"}, f"unknown program {program}"
 
 
 def require_parses(command: click.Command, name: str, arguments: list[str], parent=None) -> None:
@@ -121,14 +125,19 @@ def require_paths(paths) -> None:
 
 
 @pytest.mark.parametrize("block", blocks("yaml"))
-def test_case_files_keep_to_the_schema(block: CodeBlock):
+def test_case_files_keep_to_the_schema(block: CodeBlock, tmp_path):
     content = YAML(typ="safe").load(block.text)
-    if {"robot", "robots"} & content.keys():
+    if block.title == "waivers.yaml":
+        (tmp_path / block.title).write_text(block.text)
+        assert load_waivers(tmp_path / block.title)
+    elif isinstance(content, list):  # steps of a job
+        assert all(set(step) <= {"uses", "with", "run"} for step in content)
+    elif {"robot", "robots"} & content.keys():
         Case.model_validate(content)
     elif {"cases", "cell"} & content.keys():
         Manifest.model_validate(content)
     else:
-        assert set(content) <= {*Case.model_fields, "jobs"}
+        assert set(content) <= {*Case.model_fields, "jobs", "cases", "repos"}
 
 
 def test_a_block_that_is_wrong_is_found():

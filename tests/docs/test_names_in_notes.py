@@ -14,7 +14,7 @@ NOTES = sorted((ROOT / "clearance").rglob("*.md"))
 SHOWN = re.compile(r"`([^`\n]+)`")
 FENCED = re.compile(r"^```.*?^```$", re.DOTALL | re.MULTILINE)
 
-MADE = {"html", "json", "parquet", "csv", "md", "xml", "glb", "stl", "svg", "dxf", "urdf"}
+MADE = {"html", "json", "parquet", "csv", "md", "xml", "glb", "stl", "svg", "dxf", "urdf", "yaml"}
 """Endings of what a run writes or a user has: no file of ours needs to be called so."""
 
 FOREIGN = {
@@ -56,6 +56,7 @@ def is_path_with_name(shown: str) -> bool:
     return is_path(place) and is_name(f"{Path(place).name}.{name}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "page",
     [page for page in (*NOTES, *PAGES) if page.name not in PAST],
@@ -65,6 +66,7 @@ def test_the_names_of_a_page_are_there(page):
     assert absent_names(page) == []
 
 
+@pytest.mark.slow
 def test_a_name_that_is_gone_is_found():
     assert is_there("descent.descend") and is_there("kernels/search/descent.py")
     assert is_there("Query.distances") and is_there("world.kinematic_chain")

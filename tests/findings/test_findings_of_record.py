@@ -14,6 +14,7 @@ from clearance.findings.finding import FindingName
 from clearance.findings.findings_file import finding_list_of
 from clearance.findings.of_record import findings_of, why_incomplete
 from clearance.report import verdict_of
+from clearance.simulate import rule_pairs
 from clearance.world.case import Case, Limits
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import Rule
@@ -144,6 +145,16 @@ def test_joints_beyond_their_limits_are_a_finding_a_robot():
     assert [f.body_a for f in found.values()] != [] and set(left) < set(found)
     (right,) = left.values()
     assert right.body_a == "right" and right.broken and "0.2 rad" in right.text
+
+
+def test_where_too_many_steps_are_near_the_nearest_pairs_are_told_and_that_is_said(monkeypatch):
+    one = cl.check(case("iiwa_pipe_rack"), limits=RACK)
+    whole = findings_of(run("iiwa_pipe_rack", RACK).record)
+    monkeypatch.setattr(rule_pairs, "MOST_NEAR_STEPS", 10)
+    found = findings_of(one.record)
+    assert found[0].id == whole[0].id and found[0].clearance == whole[0].clearance
+    assert {f.id for f in found} < {f.id for f in whole}
+    assert "only the nearest pair" in finding_list_of(one.record).incomplete
 
 
 def test_why_findings_may_be_missing_is_said():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from datetime import date
 
 import pytest
@@ -153,6 +154,7 @@ def test_a_case_names_its_files_of_waivers(tmp_path):
     run = answer(Question(case, today=TODAY))
     assert run.passed and run.verdict.n_waivers == 1
     assert judgement_of(run.record).n_of_others == 1
+    assert "of other cases, and not looked at: 1 waiver" in run.summary["notes"]
 
 
 @pytest.mark.parametrize(
@@ -187,3 +189,32 @@ def test_a_waiver_in_memory_is_checked_too():
     for name, (value, told) in faults.items():
         with pytest.raises(BadInput, match=told):
             waiver(**{name: value})
+
+
+def test_what_is_waived_counts_as_if_it_were_not_there(tmp_path):
+    """Waived to any distance, pairs that touch nowhere leave the verdict of all others, however many."""
+    gates = {
+        f"gate_{i}": (-0.8 + 0.2 * i, gap)
+        for i, gap in enumerate((0.003, 0.004, 0.015, 0.002, 0.1))
+    }
+    broken = [name for name, (_, gap) in gates.items() if gap < FAIL]
+    for n_waived in range(1, len(broken) + 1):
+        for names in itertools.combinations(broken, n_waived):
+            run = checked(tmp_path, gates, *(waiver(name, at_least=0.0) for name in names))
+            left = {name: place for name, place in gates.items() if name not in names}
+            alone = checked(tmp_path, left)
+            assert run.verdict.measured == alone.verdict.measured
+            assert run.verdict.n_waivers == n_waived and run.passed is alone.passed
+            assert {f.id for f in run.findings if not f.waived} == {f.id for f in alone.findings}
+
+
+def test_a_pair_that_only_dips_between_the_steps_while_a_waived_one_is_nearer_is_found(tmp_path):
+    """Both gates are passed between two samples, where the certificate of all pairs names the nearer one alone."""
+    gates = {A: (0.0, 0.003), B: (0.02, 0.0045)}
+    limits = "{fail: 0.005, warn: 0.005}"
+    case = load_gates(tmp_path, gates, limits=limits, n_steps=4)
+    plain = answer(Question(case))
+    assert [f.body_b for f in plain.findings if f.broken] == [A] and plain.findings[0].between
+    run = answer(Question(dataclasses.replace(case, waivers=(waiver(),)), today=TODAY))
+    assert not run.passed and run.verdict.n_waivers == 1
+    assert [f.body_b for f in run.findings if f.fails] == [B]

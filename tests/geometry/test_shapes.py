@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance.errors import BadDimension
-from clearance.geometry.shapes import box, capsule, cylinder, pipe, sphere
+from clearance.geometry.shapes import box, capsule, cylinder, ellipsoid, pipe, sphere
 from clearance.geometry.shapes.dimension import sections_for
 from tests.examples import examples
 from tests.geometry.exact_faces import (
@@ -61,6 +61,22 @@ def test_a_sphere_lies_inside_its_faces(radius, share):
         assert is_flat_and_convex(face)
         assert lies_before(face, origin, exact(radius))
         assert all(dot(p, p) <= limit for p in face)
+
+
+@examples(15)
+@given(radii, radii, radii, tolerances)
+def test_an_ellipsoid_lies_inside_its_faces(a, b, c, share):
+    """The farthest of it along a face's normal is sqrt(sum (radius * normal)^2) from its centre."""
+    shape = ellipsoid((a, b, c), share * max(a, b, c))
+    assert is_sound(shape) and 0.0 < shape.excess <= share * max(a, b, c) * (1 + 1e-12)
+    for i in range(shape.n_faces):
+        x, y, z = area_vector(face := corners(shape, i))
+        farthest = (exact(a) * x) ** 2 + (exact(b) * y) ** 2 + (exact(c) * z) ** 2
+        height = dot((x, y, z), face[0])
+        assert height > 0 and height * height >= farthest
+    stretch = np.array([a, b, c])
+    beyond = np.linalg.norm(shape.vertices / stretch, axis=1).max() - 1.0
+    assert beyond * stretch.max() <= shape.excess * (1 + 1e-9)
 
 
 @examples(20)

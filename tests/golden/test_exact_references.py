@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import clearance as cl
+from tests.examples import some_slow
 from tests.golden.make_references import without_rules
 
 HERE = Path(__file__).parent
@@ -22,7 +23,14 @@ MOST_ROUNDING = 1e-15
 """[m]"""
 
 
-@pytest.fixture(scope="module", params=REFERENCES, ids=lambda path: path.stem)
+LONG = {"dual_arm_handover", "hot_cell", "iiwa_pipe_rack", "panda_table", "r2d2_gate"}
+
+
+@pytest.fixture(
+    scope="module",
+    params=some_slow(REFERENCES, {path for path in REFERENCES if path.stem in LONG}),
+    ids=lambda path: path.stem,
+)
 def run_and_reference(request):
     reference = json.loads(request.param.read_text(encoding="utf-8"))
     case = without_rules(cl.load_case(ROOT / reference["case"]))

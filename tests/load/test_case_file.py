@@ -101,7 +101,7 @@ def test_faults_in_a_scene_file_name_that_file(tmp_path):
     [
         ("box: {size: [1, 2, 3]}", [-0.5, -1, -1.5], [0.5, 1, 1.5]),
         ("cylinder: {radius: 0.5, length: 3}", [-0.5, -0.5, -1.5], [0.5, 0.5, 1.5]),
-        ("sphere: {radius: 0.5}", [-0.5] * 3, [0.5] * 3),
+        pytest.param("sphere: {radius: 0.5}", [-0.5] * 3, [0.5] * 3, marks=pytest.mark.slow),
         (
             "pipe: {inner_radius: 0.4, outer_radius: 0.5, length: 3}",
             [-0.5, -0.5, -1.5],

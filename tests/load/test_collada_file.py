@@ -362,6 +362,7 @@ def tenfold(n_levels: int) -> bytes:
     ).encode()
 
 
+@pytest.mark.slow
 def test_nodes_that_place_each_other_tenfold_are_counted():
     assert mesh_from_bytes(tenfold(2), "m.dae").n_triangles == 400
     for n_levels in (6, 40):

@@ -4,7 +4,7 @@ import io
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import check
@@ -20,6 +20,7 @@ from clearance.errors import (
 )
 from clearance.load.trajectory_file import read_trajectory
 from clearance.load.trajectory_request import Choice, TrajectoryRequest
+from tests.examples import examples
 from tests.load.making import write_case
 from tests.load.making_case import TWO_JOINTS, changed, load_small
 
@@ -149,7 +150,7 @@ def test_a_table_cut_off_anywhere_is_refused_in_one_line_or_is_shorter(way):
             assert trajectory.n_steps <= 2
 
 
-@settings(max_examples=300, deadline=None)
+@examples(300)
 @given(st.data())
 def test_any_table_is_read_or_refused(data):
     text, choice = WAYS[data.draw(st.sampled_from(sorted(WAYS)))]

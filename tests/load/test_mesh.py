@@ -221,7 +221,7 @@ NAN_STL = binary_stl(np.concatenate([CUBE_CORNERS, [[[0, 0, 0], [1, np.nan, 0], 
         ("m.ply", b"", BadSyntax, "PLY"),
         ("m.off", b"OFX\n", BadSyntax, "OFF"),
         ("m.glb", b"glTF\0\0", BadSyntax, "GLB"),
-        ("m.step", b"ISO-10303-21;", BadSyntax, "unknown mesh format '.step'; .stl, .obj, .dae"),
+        ("m.3ds", b"", BadSyntax, "unknown mesh format '.3ds'; .stl, .obj, .dae"),
         ("mesh", b"", BadSyntax, "unknown mesh format ''"),
     ],
 )

@@ -14,7 +14,18 @@ from tests.load.making_case import TWO_JOINTS, changed
 
 pytest.importorskip("rosbags", reason="bags are made by rosbags")
 
-from tests.load.making_bags import CONTAINERS, displayed, planned, state, write_bag
+from tests.examples import some_slow
+from tests.load.making_bags import (
+    CONTAINERS,
+    EVENT,
+    displayed,
+    goal,
+    goal_event,
+    planned,
+    state,
+    without_definitions,
+    write_bag,
+)
 
 MOVE = planned([0.1, 0.0], [0.3, 0.05])
 STATES = [state(i, [0.1 * i, 0.0]) for i in range(3)]
@@ -73,17 +84,78 @@ def test_a_message_of_moveit_brings_its_definition(tmp_path, container):
         read(path)
 
 
+def test_a_goal_of_an_action_is_a_topic_in_ros_1(tmp_path):
+    path = write_bag(tmp_path, "bag", {"/arm/follow_joint_trajectory/goal": [goal(MOVE)]})
+    assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+
+
+@pytest.mark.parametrize("container", CONTAINERS[1:])
+def test_a_goal_of_an_action_is_an_event_in_ros_2(tmp_path, container):
+    """Client and server tell of one goal, and of its response, which holds none."""
+    topic = "/arm/follow_joint_trajectory/_action/send_goal/_service_event"
+    other = planned([0.2, 0.0], [0.4, 0.0], [0.5, 0.0])
+    events = [goal_event(1, MOVE), goal_event(1, MOVE), goal_event(1)]
+    path = write_bag(tmp_path / "one", container, {topic: events})
+    assert read(path).trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+    path = write_bag(tmp_path / "two", container, {topic: [*events, goal_event(2, other)]})
+    with pytest.raises(BadInput, match="holds 2 trajectories"):
+        read(path)
+    assert read(path, which=2).trajectory.n_steps == 3
+    with pytest.raises(BadInput, match=f"{topic.split('_')[0]}"):
+        read(path, topic="/arm")
+    assert EVENT.endswith("_SendGoal_Event")
+
+
+def test_a_bag_without_definitions_is_read_by_ours(tmp_path):
+    bag = without_definitions(write_bag(tmp_path / "a", "rosbag2 sqlite3", {"/plan": [MOVE]}))
+    assert read(bag).trajectory.n_steps == 2
+    bag = write_bag(tmp_path / "b", "rosbag2 sqlite3", {"/display": [displayed(MOVE)]})
+    trajectory, _ = read(without_definitions(bag))
+    assert trajectory.positions.tolist() == [[0.1, 0.0], [0.3, 0.05]]
+
+
+def test_recorded_velocities_are_said_not_to_be_followed(tmp_path):
+    moving = [state(i, [0.1 * i, 0.0], velocities=[0.1, 0.0]) for i in range(3)]
+    trajectory, notes = read(write_bag(tmp_path, "mcap", {"/joint_states": moving}))
+    assert trajectory.velocities is None
+    assert any("recorded velocities are not followed" in note for note in notes)
+
+
+@pytest.mark.parametrize("container", CONTAINERS)
+def test_drivers_that_tell_of_different_joints_are_put_together(tmp_path, container):
+    """Each joint has its own samples exactly, and lies straight between them at the other's times."""
+    arm = [state(2 * i, [float(i), 1.0 - i]) for i in range(16)]
+    grip = [state(2 * i + 1, [0.01 * i], ["finger"]) for i in range(15)]
+    mixed = [one for pair in zip(arm, grip, strict=False) for one in pair] + [arm[-1]]
+    trajectory, notes = read(write_bag(tmp_path, container, {"/joint_states": mixed}))
+    assert trajectory.joint_names == ("shoulder", "lift", "finger")
+    assert trajectory.times.tolist() == list(range(29))
+    shoulder, lift, finger = trajectory.positions.T
+    assert shoulder.tolist() == [0.5 * i for i in range(1, 30)]
+    assert (shoulder + lift == 1.0).all() and finger[::2].tolist() == [0.01 * i for i in range(15)]
+    assert finger[1] == pytest.approx(0.005, abs=1e-17)
+    assert any("2 messages at the ends are left out" in note for note in notes)
+
+
 def test_states_that_do_not_follow_each_other_are_refused(tmp_path):
     bag = write_bag(tmp_path / "a", "mcap", {"/joint_states": [STATES[1], STATES[0]]})
     with pytest.raises(BadTime, match="message 2: its time is not after"):
         read(bag)
     other = state(3, [0.0], ["gripper"])
     bag = write_bag(tmp_path / "b", "mcap", {"/joint_states": [*STATES, other]})
-    with pytest.raises(BadShape, match="message 4: 1 positions of gripper; those of the first"):
+    with pytest.raises(
+        BadInput, match="joint 'gripper' is known from 3 s on, 'shoulder' until 2 s"
+    ):
         read(bag)
+    for names in (["shoulder", "lift", "x"], ["shoulder", "shoulder"]):
+        bag = write_bag(
+            tmp_path / names[-1], "mcap", {"/joint_states": [state(0, [0.0, 1.0], names)]}
+        )
+        with pytest.raises(BadShape, match="message 1: 2 positions of shoulder, "):
+            read(bag)
 
 
-@pytest.mark.parametrize("container", CONTAINERS)
+@pytest.mark.parametrize("container", some_slow(CONTAINERS, {"rosbag2 sqlite3", "rosbag2 mcap"}))
 def test_a_bag_cut_off_is_refused_in_one_line_or_is_read(tmp_path, container):
     path = write_bag(tmp_path, container, {"/joint_states": STATES})
     file = max(path.iterdir(), key=lambda one: one.stat().st_size) if path.is_dir() else path

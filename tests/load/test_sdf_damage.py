@@ -1,11 +1,12 @@
 """Damaged SDF files: cut off at every byte, and with parts exchanged, only our own errors come out."""
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from clearance import cli
 from clearance.errors import BadInput
+from tests.examples import examples
 from tests.load.making import write_case
 from tests.load.making_sdf import BOX, at, collision, content_of, link, model, pose, sdf, world
 from tests.load.test_sdf_file import NAMED
@@ -56,7 +57,7 @@ def _element(children):
 TREES = st.recursive(st.sampled_from(WORDS), _element, max_leaves=25)
 
 
-@settings(deadline=None, max_examples=150)
+@examples(150)
 @given(st.lists(TREES, max_size=4))
 def test_only_our_own_errors_come_out(tmp_path_factory, parts):
     folder = tmp_path_factory.getbasetemp()
@@ -66,7 +67,7 @@ def test_only_our_own_errors_come_out(tmp_path_factory, parts):
         assert str(error).startswith("cell.sdf") and "\n" not in str(error)
 
 
-@settings(deadline=None, max_examples=150)
+@examples(150)
 @given(st.data())
 def test_exchanged_bytes_do_too(tmp_path_factory, data):
     damaged = bytearray(SMALL)

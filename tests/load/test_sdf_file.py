@@ -34,6 +34,7 @@ SHAPES = [
         "<capsule><radius>0.3</radius><length>2</length></capsule>",
         cl.capsule(radius=0.3, length=2.0),
     ),
+    ("<ellipsoid><radii>0.3 0.2 0.1</radii></ellipsoid>", cl.ellipsoid((0.3, 0.2, 0.1))),
 ]
 
 
@@ -278,6 +279,7 @@ def test_what_is_not_there_is_named(tmp_path, uri):
         content_of(tmp_path, sdf(world(include(uri=uri))))
 
 
+@pytest.mark.slow
 def test_files_that_include_each_other_many_times_end(tmp_path):
     for i in range(12):
         parts = [include(f"<name>n{j}</name>", uri=f"model://m{i + 1}") for j in range(10)]

@@ -105,7 +105,7 @@ def test_what_cannot_be_used_is_refused_by_its_place(read, document, error, word
         (ARM, "this is a URDF file; an SRDF file is needed"),
         (
             '<robot xmlns:xacro="http://ros.org/xacro"><xacro:include/></robot>',
-            "turn it into an SRDF file",
+            "makes an SRDF file of it",
         ),
         ('<!DOCTYPE robot [<!ENTITY x "y">]><robot>&x;</robot>', "stands for something"),
     ],

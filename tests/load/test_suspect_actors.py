@@ -55,6 +55,7 @@ def test_a_place_on_a_link_in_millimetres(tmp_path):
     assert text.startswith("CHECK UNITS: obstacle 'fixture' stands 500 m")
 
 
+@pytest.mark.slow
 def test_a_table_in_milliseconds_unless_its_rate_says_so(tmp_path):
     slow = "path.csv", "{file: path.csv, after: loop}"
     (text,) = told(tmp_path, *slow, door=table(0.3, 1000.0))

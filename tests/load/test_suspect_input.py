@@ -179,7 +179,7 @@ def test_a_link_whose_mesh_is_scaled_into_nothing_is_suspect(tmp_path):
 
 def test_a_link_whose_mesh_is_scaled_out_of_the_world_is_suspect(tmp_path):
     told = found(tmp_path, urdf=ARM.replace('"upper.stl"', '"upper.stl" scale="1000 1000 1000"'))
-    assert any("the mesh is scaled by 1000 (upper.stl)" in text for *_, text in told)
+    assert any("the file is scaled by 1000 (upper.stl)" in text for *_, text in told)
     assert {kind for _, kind, _ in told} == {"units"}
 
 

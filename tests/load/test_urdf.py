@@ -61,8 +61,13 @@ def test_several_elements_of_a_link_are_one_body_in_the_link_frame(tmp_path):
     [
         ('<box size="1,2,3"/>', [1, 2, 3], 6),
         ('<cylinder radius="0.5" length="2"/>', [1, 1, 2], np.pi / 2),
-        ('<sphere radius="0.5"/>', [1, 1, 1], np.pi / 6),
-        ('<capsule radius="0.5" length="2"/>', [1, 1, 3], np.pi / 2 + np.pi / 6),
+        pytest.param('<sphere radius="0.5"/>', [1, 1, 1], np.pi / 6, marks=pytest.mark.slow),
+        pytest.param(
+            '<capsule radius="0.5" length="2"/>',
+            [1, 1, 3],
+            np.pi / 2 + np.pi / 6,
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_primitive_shapes_hold_the_true_solid_and_little_more(tmp_path, shape, size, volume):
@@ -283,6 +288,7 @@ def test_a_robot_that_a_package_brings(tmp_path):
     assert importlib.util.find_spec("pybullet_data").origin not in str(files.sources)
 
 
+@pytest.mark.slow
 def test_a_chain_of_thousands_of_links_and_followers_is_read(tmp_path):
     """Neither links in a row nor joints that follow each other in a row are gone through by recursion."""
     n = 3000

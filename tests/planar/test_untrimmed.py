@@ -8,6 +8,7 @@ import pytest
 
 from clearance.planar.curve import Curve
 from clearance.planar.hausdorff import hausdorff
+from tests.examples import some_slow
 
 
 def walk(random, n):
@@ -95,7 +96,7 @@ HARD = {
 }
 
 
-@pytest.mark.parametrize("name", HARD)
+@pytest.mark.parametrize("name", some_slow(HARD, {"the same curve"}))
 def test_systems_without_end_stop_with_a_true_bound(name):
     """Infinitely many roots, or too many to tell apart: the budget ends it, and the bound says what is left."""
     a, b = HARD[name]

@@ -63,6 +63,7 @@ def test_within_does_not_refine_beyond_the_limit():
     assert within(a, b, 1e-3) and within(a, b, 1e-9)
 
 
+@pytest.mark.slow
 def test_compare_calls_what_is_undecided_by_its_name(monkeypatch, tmp_path):
     a, b = NEAR[0]
     for budget, limit, verdict in [

@@ -75,6 +75,7 @@ def test_a_bar_that_overshoots_sweeps_the_sector_to_its_turning_point():
     assert turned.max() >= 0.5 >= turned.max() - thick
 
 
+@pytest.mark.slow
 @examples(10)
 @given(st.integers(0, 2**32 - 1))
 def test_a_section_holds_every_point_cut(seed):

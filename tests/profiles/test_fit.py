@@ -64,6 +64,7 @@ def test_an_outline_made_from_a_sketch_gives_its_dimensions_back(name):
     assert cl.hausdorff(found.sketch.curves(), found.curve).distance <= 1e-9
 
 
+@pytest.mark.slow
 def test_the_least_rectangle_about_a_turned_ellipse_like_outline_touches_four_sides():
     outline = cl.Curve.polyline(
         [
@@ -124,6 +125,7 @@ def test_a_zone_about_a_sweep_contains_it_by_the_oracle():
     assert cl.minimum_distance(found.sketch.curves(), profile.curve).distance >= 0.01 - 1e-9
 
 
+@pytest.mark.slow
 def test_the_same_answer_each_time():
     outline = cl.Curve.contours([cl.Curve.circle([0.3, 0.1], 0.4)])
     one, two = (cl.fit(rectangle(1, 1), outline, "outside") for _ in range(2))

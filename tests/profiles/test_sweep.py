@@ -89,6 +89,7 @@ def test_a_straight_two_link_arm_reaches_a_disc():
     assert {found.maker(i)[0] for i in range(found.n_pieces)} == {"l2"}
 
 
+@pytest.mark.slow
 def test_what_moves_on_a_whole_circle_about_a_hole_keeps_the_hole():
     found = cl.swept_profile(turning(slab([0.3, -0.1, 0], [0.5, 0.1, 0.1]), [0, 3.2, 6.4]))
     outer, hole = found.contours

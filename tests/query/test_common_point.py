@@ -13,6 +13,7 @@ from clearance.geometry.polytope import Polytope
 from clearance.kernels.polytope.gjk import LIMIT, VertexGraph, gjk, support
 from clearance.query.common_point import common_point
 from clearance.query.common_point_paper import common_point_paper
+from tests.examples import some_slow
 
 CUBE = np.array(list(itertools.product([0.0, 1.0], repeat=3)))
 
@@ -39,7 +40,7 @@ def test_hill_climbing_finds_what_looking_at_all_finds(n):
             assert body.vertices[found] @ direction == pytest.approx(best, abs=1e-15)
 
 
-@pytest.mark.parametrize("m", [2, 3, 8, 64])
+@pytest.mark.parametrize("m", some_slow([2, 3, 8, 64], {64}))
 def test_the_deepest_point_is_strictly_inside_all(m):
     for seed in range(6):
         rng = np.random.default_rng([m, seed])

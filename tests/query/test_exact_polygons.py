@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from clearance import polygon_distance, polygon_distances
 from tests import oracle
-from tests.examples import examples
+from tests.examples import examples, share_of
 from tests.strategies import FAMILIES, polygon_pairs
 
 
@@ -26,10 +26,10 @@ def exact_sq(p, q):
 
 
 def draws(name):
-    """At least 300 pairs of a family; of polygons with many corners those the oracle is quick on."""
+    """300 pairs of a family or the profile's share; of polygons with many corners those the oracle is quick on."""
     if name != "many_sided":
-        return zip(*FAMILIES[name](np.random.default_rng(101), 300), strict=True)
-    batches = (FAMILIES[name](np.random.default_rng(seed), 12) for seed in range(100))
+        return zip(*FAMILIES[name](np.random.default_rng(101), share_of(300)), strict=True)
+    batches = (FAMILIES[name](np.random.default_rng(seed), 12) for seed in range(share_of(100)))
     small = ((p, q) for p, q in batches if p.shape[1] + q.shape[1] < 50)
     return [pair for p, q in small for pair in zip(p, q, strict=True)]
 

@@ -13,6 +13,7 @@ import pytest
 import clearance as cl
 from clearance.geometry.tree import surface_of
 from tests import oracle
+from tests.examples import first_fast
 from tests.strategies import rotations
 
 ROOF = [(0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4), (1, 0, 5), (2, 1, 5), (3, 2, 5), (0, 3, 5)]
@@ -192,7 +193,7 @@ def test_no_distance_is_off_by_more_than_its_bound(name):
     assert n_apart > 100
 
 
-@pytest.mark.parametrize("gap", [2.0**-40, 2.0**-30, 2.0**-20])
+@pytest.mark.parametrize("gap", first_fast([2.0**-40, 2.0**-30, 2.0**-20], 1))
 def test_what_begins_where_it_last_ended_finds_the_same(gap):
     """A `Query` moved along an edge: the nearest faces of the last pose are those that are hidden in the next."""
     random = np.random.default_rng(102)

@@ -115,6 +115,7 @@ def test_it_agrees_with_scipy_and_satisfies_every_half_space(m, n):
     assert found.volume == pytest.approx(peer.volume, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["PATCHED_FROM", "HALVED_FROM"])
 def test_patches_and_halves_change_nothing(name, monkeypatch):
     families = [

@@ -28,7 +28,10 @@ def plain(answers):
 
 
 def test_with_every_index_checked(tmp_path):
-    """Its own cache folder, so that nothing compiled without checks is used; level 0 to compile quickly."""
+    """Its own cache folder, so that nothing compiled without checks is used; level 0 to compile quickly.
+
+    A quarter of a minute: the compiler types the kernel, and all predicates below it, once more.
+    """
     found = run_lane(
         "meetings", NUMBA_BOUNDSCHECK="1", NUMBA_OPT="0", NUMBA_CACHE_DIR=str(tmp_path)
     )

@@ -1,4 +1,7 @@
-"""Normal cones: nodes that are turned away hold no nearest points, by exact rationals on hostile surfaces."""
+"""Normal cones: nodes that are turned away hold no nearest points, by exact rationals on hostile surfaces.
+
+Half a minute in the full run: which faces are nearest is asked of rational arithmetic for every pair of faces.
+"""
 
 import itertools
 
@@ -163,6 +166,7 @@ def anywhere(random, reach):
     return at(*(reach * random.normal(size=3)), turned)
 
 
+@pytest.mark.slow
 @examples(60)
 @example(0, "dented", "fan", 2.0, 0.0)
 @example(1, "crossing", "twice", 1.0, 4e-7)
@@ -204,6 +208,7 @@ def all_turned_away_while(a, b, pose_a, pose_b, turn, way, of_a, of_b):
             of_b[i, j] = away >> j % WIDTH & 1
 
 
+@pytest.mark.slow
 @examples(30)
 @given(
     st.integers(0, 2**32 - 1), st.sampled_from(sorted(KINDS)), st.sampled_from(sorted(KINDS)),

@@ -6,6 +6,7 @@ import weakref
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import pytest
 
 import clearance as cl
 from clearance.query.one_pair import HELD, kept_pair
@@ -49,6 +50,7 @@ def test_threads_do_not_disturb_each_other():
         assert list(pool.map(ask, range(4))) == [alone] * 4
 
 
+@pytest.mark.slow
 def test_more_pairs_than_are_held_are_answered():
     boxes = [cl.box((1.0, 1.0, 1.0 + 0.001 * i)) for i in range(HELD + 3)]
     for _ in range(2):

@@ -12,7 +12,7 @@ from clearance.geometry.tree import surface_of
 from clearance.kernels.mesh.surface import ANYTHING, LISTED
 from clearance.kernels.search.pair_query import AFRESH, ROOM, hold_pair, nearest_at_poses
 from clearance.kernels.search.scratch import new_scratch
-from tests.examples import examples
+from tests.examples import examples, first_fast
 from tests.made_cases import torus, without_cones
 from tests.strategies import rotations
 
@@ -107,7 +107,7 @@ def test_bits_say_what_the_lists_say(name):
         assert starting == {frozenset(ends) for ends in edges.tolist()}
 
 
-@pytest.mark.parametrize("name", BODIES)
+@pytest.mark.parametrize("name", first_fast(BODIES, 3))
 @pytest.mark.parametrize("cut", [False, True], ids=["polygons", "triangles"])
 @examples(12)
 @given(seed=st.integers(0, 2**32 - 1), other=st.sampled_from(sorted(BODIES)))

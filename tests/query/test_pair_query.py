@@ -1,6 +1,6 @@
 """A query that remembers against single questions, bit for bit, whatever the poses do."""
 
-import threading
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 
 import numba
@@ -266,11 +266,8 @@ def test_threads_that_share_a_query_get_their_own_answers():
             if near.distance != single.distance or not np.array_equal(near.point_b, single.point_b):
                 wrong.append((near, single))
 
-    threads = [threading.Thread(target=ask, args=(seed,)) for seed in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with ThreadPoolExecutor(4) as threads:
+        list(threads.map(ask, range(4)))
     assert not wrong
 
 

@@ -13,6 +13,7 @@ from clearance.kernels.arithmetic.vec3 import Vec3
 from clearance.kernels.paper.segments import lumelsky
 from clearance.query.paper import polygon_distance_paper
 from tests import oracle
+from tests.examples import some_slow
 from tests.reached import reached
 from tests.strategies import FAMILIES
 
@@ -99,7 +100,7 @@ def test_an_edge_over_a_face_stops_in_case_2():
     assert found.point_b[2] == 1.0
 
 
-@pytest.mark.parametrize("name", sorted(FAMILIES))
+@pytest.mark.parametrize("name", some_slow(sorted(FAMILIES), {"many_sided"}))
 def test_never_nearer_than_the_truth_and_between_points_of_the_polygons(name):
     n_measured = 0
     for p, q in zip(*FAMILIES[name](np.random.default_rng(21), 60), strict=True):

@@ -85,6 +85,7 @@ def test_a_long_list_of_events_is_cut_and_says_so():
     assert "&lt;" not in html, "markup shown as text"
 
 
+@pytest.mark.slow
 def test_a_long_run_is_thinned_and_says_so():
     run = record(n_steps=900)
     replay = replay_of(run, max_frames=200)

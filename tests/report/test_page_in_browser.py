@@ -8,7 +8,10 @@ import pytest
 
 import clearance as cl
 from clearance.report import write
+from clearance.report.still.camera import overview
+from clearance.report.still.scene import still_of
 from clearance.report.wording import mm
+from clearance.simulate.replay import replay_of
 from clearance.world.body import Body, Obstacle
 from clearance.world.case import Case, Limits, PlacedRobot, SignOff
 from clearance.world.robot import Joint, JointKind, Robot
@@ -51,6 +54,14 @@ def test_it_opens_at_the_worst_step_without_an_error_and_fetches_nothing(page):
     assert page.errors == []
     foreign = [url[:80] for url in page.requests if not url.startswith(("file:", "data:", "blob:"))]
     assert foreign == []
+
+
+def test_it_opens_with_the_camera_of_the_picture(page):
+    camera = overview(still_of(replay_of(RUN)))
+    eye, target = np.array(page.run("window.clearance.state().camera"))
+    assert np.abs(eye - camera.eye).max() < 1e-4
+    forward = (target - eye) / np.linalg.norm(target - eye)
+    assert np.abs(forward - camera.axes[2]).max() < 1e-5
 
 
 def test_the_replay_is_drawn_and_changes_with_the_step(page):

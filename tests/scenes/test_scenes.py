@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import functools
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -19,6 +20,7 @@ SCENES = sorted(path.parent for path in (ROOT / "scenes").glob("*/case.yaml"))
 MESHES = sorted(ROOT.glob("robots/*/meshes/*.stl")) + sorted(ROOT.glob("scenes/*/meshes/*.stl"))
 
 
+@functools.cache
 def case_of(scene: Path) -> dict:
     return YAML(typ="safe").load((scene / "case.yaml").read_text(encoding="utf-8"))
 

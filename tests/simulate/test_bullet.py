@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from clearance.errors import BadInput, MissingFile
+from clearance.geometry.point_cloud import PointCloud
 from clearance.load.case_file import load_case
 from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
@@ -209,3 +210,11 @@ def test_a_robot_that_the_engine_cannot_read_is_refused_in_one_line(tmp_path):
     Path(placed.urdf_path).unlink()
     with pytest.raises(MissingFile):
         simulated_motion(placed)
+
+
+def test_a_cloud_of_points_is_nothing_to_bump_into(tmp_path):
+    scan = Obstacle(Body("scan", PointCloud([[0.5, 0.0, 0.0]], 0.01)))
+    placed = cart(tmp_path)
+    simulated_motion(placed, [scan])  # measured, not pushed against
+    with pytest.raises(BadInput, match="contact_response: obstacle 'scan' is a cloud of points"):
+        simulated_motion(placed, [scan], contact_response=True)

@@ -142,7 +142,7 @@ def thinned_scene(name):
     params=[
         gripper_case,
         lambda: thinned_scene("box_pipe"),
-        lambda: thinned_scene("iiwa_pipe_rack"),
+        pytest.param(lambda: thinned_scene("iiwa_pipe_rack"), marks=pytest.mark.slow),
     ],
     ids=["gripper", "box_pipe", "iiwa_pipe_rack"],
 )

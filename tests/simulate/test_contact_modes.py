@@ -107,6 +107,7 @@ def test_the_other_rows_are_worked_out_when_they_are_looked_at(asked, shape):
     assert row.numbers.penetration_at_least <= every.numbers.penetration * (1.0 + 1e-12)
 
 
+@pytest.mark.slow
 def test_the_answers_do_not_depend_on_what_is_worked_out():
     case = cl.load_case(ROOT / "scenes" / "panda_shelf" / "case.yaml")
     runs = [cl.check(case, contact=how) for how in ("none", "events", "every")]

@@ -50,6 +50,7 @@ def confirm(run, row):
     assert after(0.999 * row.found.penetration_at_least - 1e-12).contact
 
 
+@pytest.mark.slow
 def test_the_scene_in_contact_has_depth_and_volume_at_its_22_steps(shelf):
     rows = shelf.steps.to_pylist()
     hit = [row for row in rows if row["clearance"] == 0.0]

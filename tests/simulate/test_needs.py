@@ -11,12 +11,13 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.simulate import measure, parts
+from tests.examples import first_fast
 from tests.made_cases import arm, at, spindle, torus
 
 SCENES = Path(__file__).parents[2] / "scenes"
 
 
-@pytest.fixture(scope="module", params=["box_pipe", "panda_shelf", "hot_cell"])
+@pytest.fixture(scope="module", params=first_fast(["box_pipe", "panda_shelf", "hot_cell"], 1))
 def runs(request: pytest.FixtureRequest) -> dict[str, cl.Run]:
     case = cl.load_case(SCENES / request.param / "case.yaml")
     return {
@@ -100,7 +101,7 @@ def test_threads_change_nothing(need: str) -> None:
         assert list(one.record.pair_minima) == list(other.record.pair_minima)
 
 
-@pytest.mark.parametrize("longest", [2, 7, 50, 1000])
+@pytest.mark.parametrize("longest", first_fast([7, 2, 50, 1000], 1))
 def test_how_steps_are_parted_changes_no_clearance(
     longest: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -111,6 +111,7 @@ def test_the_bound_is_not_idle():
         assert bound[1] == pytest.approx(0.01 * arm, rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("need", ["minimum", "limit"])
 @pytest.mark.parametrize("name", ["box_box", "box_pipe", "panda_shelf"])
 def test_a_finer_motion_takes_few_more_looks(name, need):

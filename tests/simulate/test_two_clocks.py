@@ -78,6 +78,7 @@ def test_no_pair_of_times_is_nearer(seed, slack):
     assert lower.min() >= run.record.worst.clearance - 1.001e-4
 
 
+@pytest.mark.slow
 def test_a_step_has_the_least_over_the_other_clock_and_says_when():
     case = loose(4, np.inf)
     run = cl.check(case, certify=False)
@@ -101,6 +102,7 @@ def test_a_step_has_the_least_over_the_other_clock_and_says_when():
         assert near.distance == pytest.approx(row["clearance"], abs=1e-9)
 
 
+@pytest.mark.slow
 def test_more_slack_is_no_farther():
     runs = [cl.check(loose(4, slack), certify=False) for slack in (0.0, 0.3, 2.0, np.inf)]
     least = [run.record.worst.clearance for run in runs]
@@ -123,6 +125,7 @@ def test_the_cross_check_says_what_it_leaves_out():
     assert any("not cross-checked" in notice.text for notice in run.record.notices)
 
 
+@pytest.mark.slow
 def test_every_pair_has_its_least():
     case = loose(3, np.inf)
     run = cl.check(case, certify=False)

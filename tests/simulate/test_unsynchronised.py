@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import clearance as cl
@@ -23,6 +23,7 @@ from clearance.world.pairs import BodyIndex, Pair, measured_pairs
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
 from tests import oracle
+from tests.examples import examples, first_fast, some_slow
 from tests.made_cases import at, faces_of
 from tests.oracle.kinematics import link_poses as exact_link_poses
 from tests.oracle.kinematics import placed as exactly_placed
@@ -103,7 +104,7 @@ def times_of(case: cl.Case, moments: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("cubic", [False, True])
 @pytest.mark.parametrize("slack", [FOREVER, 0.25, 0.0])
-@pytest.mark.parametrize("seed", [1, 3, 4, 5])
+@pytest.mark.parametrize("seed", first_fast([1, 3, 4, 5], 1))
 def test_against_a_dense_grid_of_both_times(seed, slack, cubic):
     case = two_robots(seed, cubic=cubic)
     n_steps, finer = 9, 4
@@ -236,7 +237,8 @@ def test_without_slack_it_is_what_one_clock_has(seed, cubic):
     assert (tied.lower_bound[:-1] <= bounds.upper_bound + 1e-12).all()
 
 
-@settings(max_examples=15, deadline=None)
+@pytest.mark.slow
+@examples(15)
 @given(st.integers(0, 30), st.lists(st.floats(0.0, 1.0), min_size=2, max_size=3))
 def test_more_slack_never_leaves_more_distance(seed, slacks):
     case = two_robots(seed, n_steps=5)
@@ -261,7 +263,7 @@ def test_which_clock_is_first_changes_nothing_of_the_least(seed, slack):
     assert max(high) - min(low) <= 2 * GAP
 
 
-@pytest.mark.parametrize("slack", [FOREVER, 0.1])
+@pytest.mark.parametrize("slack", some_slow([FOREVER, 0.1], {FOREVER}))
 def test_threads_change_no_byte(slack):
     case = two_robots(1, n_steps=300)
     one, other = asked(case, slack), asked(case, slack, jobs=3)
@@ -271,6 +273,7 @@ def test_threads_change_no_byte(slack):
     assert one.intervals_tally == other.intervals_tally
 
 
+@pytest.mark.slow
 def test_against_rational_arithmetic():
     """Steps to the last bits, and no time of either clock on a grid comes nearer than the proof."""
     case = two_robots(5, n_steps=3)

@@ -51,6 +51,7 @@ def escape(pieces, name, corners, pose, step):
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @examples(4)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1e-3, 0.05, 1.0]))
 def test_pieces_hold_links_on_links_and_parts_in_hand_between_the_steps(seed, within):
@@ -72,6 +73,7 @@ def test_pieces_hold_links_on_links_and_parts_in_hand_between_the_steps(seed, wi
                     assert escape(pieces, name, shapes[name].vertices, pose, step) <= 0.0
 
 
+@pytest.mark.slow
 @examples(6)
 @given(st.integers(0, 2**32 - 1))
 def test_what_is_in_hand_belongs_to_the_robot_that_holds_it(seed):
@@ -130,11 +132,16 @@ def test_a_base_that_moves_takes_its_robot_to_what_it_alone_would_not_reach():
     assert picture_of(found).startswith("<svg")
 
 
+CORNERS = np.array([[x, y, z] for x in (-0.05, 0.05) for y in (-0.05, 0.05) for z in (-0.05, 0.05)])
+
+
 @WITH_MANIFOLD
-def test_a_part_in_hand_reaches_where_the_hand_does_not():
+@pytest.mark.parametrize("shape", [cl.box((0.2, 0.2, 0.2)), cl.PointCloud(CORNERS, 0.05)])
+def test_a_part_in_hand_reaches_where_the_hand_does_not(shape):
+    """A scan counts as the box about its balls."""
     one = slider("one", (1, 0, 0), 0.0, 1.0)
     two = slider("two", (0, 0, 1), -1.0, 1.0, base=(1.0, 0.5, 0.0))
-    part = Obstacle(Body("part", cl.box((0.2, 0.2, 0.2))), moved(0.0, 0.5, 0.0))
+    part = Obstacle(Body("part", shape), moved(0.0, 0.5, 0.0))
     cell = together(one, two, obstacles=[part])
     assert shared_workspace([cell]).region.is_empty
     found = shared_workspace([replace(cell, carries=(Carry("part", "one/cube", Window(0.0)),))])

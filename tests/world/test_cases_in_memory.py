@@ -169,6 +169,7 @@ def test_a_trajectory_is_held_against_its_robot():
         cl.Trajectory(np.zeros(1), ("a", "a"), np.zeros((1, 2)))
 
 
+@pytest.mark.slow
 def test_two_robots_are_measured_against_each_other_and_each_against_itself_where_that_is_asked():
     left, right = still("left"), still("right")
     run = cl.check(cl.Case("two", (left, right), posts("post")))

@@ -16,6 +16,7 @@ from clearance.world.mount import Mount
 from clearance.world.timeline import timeline_of
 from clearance.world.timing import Timing, Window
 from tests.cells import END, cell, pose_at
+from tests.examples import first_fast
 
 NAMES = (
     *(f"{robot}/{link}" for robot in ("left", "right", "track") for link in ("base", "boom", "tool")),
@@ -38,7 +39,7 @@ def poses_in(phase, link_poses):
     ]
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", first_fast(range(40), 4))
 def test_bodies_are_where_their_tables_and_hands_say(seed):
     case = cell(seed)
     line = timeline(case)
@@ -70,6 +71,7 @@ def test_steps_are_all_samples_and_the_ends_of_windows(seed):
         assert np.isin(inside, times).all()
 
 
+@pytest.mark.slow
 def test_a_part_that_changes_hands_does_not_jump():
     for seed in range(20):
         line = timeline(cell(seed))

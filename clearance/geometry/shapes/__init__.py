@@ -6,6 +6,7 @@ schema and the checks of units follow the table. Not for: shapes from files (roo
 """
 
 from clearance.geometry.shapes.box import box
+from clearance.geometry.shapes.ellipsoid import ellipsoid
 from clearance.geometry.shapes.pipe import pipe
 from clearance.geometry.shapes.round import capsule, cylinder, sphere
 from clearance.geometry.shapes.shape import Measure, Shape
@@ -44,7 +45,22 @@ SHAPES = {
     "sphere": Shape(
         sphere, "A ball about its centre.", {"radius": _LENGTH}, in_urdf=True, radius="radius"
     ),
+    "ellipsoid": Shape(
+        ellipsoid,
+        "An ellipsoid about its centre, by its three semi-axes.",
+        {"radii": Measure.SIZES},
+    ),
 }
 """Every shape that files can name, by its name."""
 
-__all__ = ["SHAPES", "Measure", "Shape", "box", "capsule", "cylinder", "pipe", "sphere"]
+__all__ = [
+    "SHAPES",
+    "Measure",
+    "Shape",
+    "box",
+    "capsule",
+    "cylinder",
+    "ellipsoid",
+    "pipe",
+    "sphere",
+]

@@ -8,10 +8,7 @@ Source: Shewchuk, Adaptive Precision Floating-Point Arithmetic, 1997, theorems 7
 
 from __future__ import annotations
 
-import numba
-from numba.extending import intrinsic
-
-from clearance.compile.jit import inline
+from clearance.compile.jit import DISABLED, inline, intrinsic
 
 N_TERMS = 128
 """Room for the longest expansion here: 24 products of three coordinates, four terms each, and one spare."""
@@ -43,7 +40,9 @@ def rest_by_splitting(a, b, p):
 @intrinsic
 def _rest_fused(typing_context, a, b, p):
     """The same by one fused multiply-subtract: half the time on processors that have it, equal bits."""
-    number = numba.types.float64
+    from numba import types
+
+    number = types.float64
 
     def emit(context, builder, signature, values):
         x, y, product = values
@@ -52,7 +51,7 @@ def _rest_fused(typing_context, a, b, p):
     return number(number, number, number), emit
 
 
-_rest = rest_by_splitting if numba.config.DISABLE_JIT else _rest_fused
+_rest = rest_by_splitting if DISABLED else _rest_fused
 
 
 @inline

@@ -5,12 +5,7 @@ Not for: arrays of points (numpy) and poses as users give them (room `geometry.p
 
 from typing import NamedTuple
 
-import numba
-from numba import types
-from numba.extending import intrinsic
-
-from clearance.compile.jit import inline
-from clearance.compile.numba_private import elements_at
+from clearance.compile.jit import CHECKS_BOUNDS, DISABLED, inline, intrinsic
 
 
 class Vec3(NamedTuple):
@@ -82,6 +77,10 @@ def _row_checked(array, i):
 
 @intrinsic
 def _row(typing_context, array, i):
+    from numba import types
+
+    from clearance.compile.numba_private import elements_at
+
     place = types.NamedUniTuple(array.dtype, 3, Vec3)
     if array.layout != "C":
         raise TypeError(f"{array} does not lie in one piece")
@@ -95,7 +94,7 @@ def _row(typing_context, array, i):
     return place(array, types.intp), emit
 
 
-row = _row_checked if numba.config.DISABLE_JIT or numba.config.BOUNDSCHECK else _row
+row = _row_checked if DISABLED or CHECKS_BOUNDS else _row
 """`row(array, i)`: row `i`, from 0, of an (n, 3) array."""
 
 

@@ -52,6 +52,8 @@ class Surface(NamedTuple):
             but for a few faults.
         cap_starts, caps: (bodies + 1,), (3 k, 3) [m] the corners of the triangles that close those that are so but
             for a few faults, in the body frame. They count once in a winding number, and nowhere else.
+        radii: (bodies,) [m] of the ball about each point of a cloud, 0 for other bodies. A cloud's faces have one
+            corner each, no edges and no normal; its root's box holds the balls, other boxes their centres.
     """
 
     vertices: np.ndarray
@@ -78,6 +80,7 @@ class Surface(NamedTuple):
     turns: np.ndarray
     cap_starts: np.ndarray
     caps: np.ndarray
+    radii: np.ndarray
 
 
 def surface_like():
@@ -89,7 +92,7 @@ def surface_like():
         points, points, indices, indices, points, numbers, numbers, np.empty(0, dtype=np.bool_), points,
         indices, indices, indices, pairs, np.empty(0, dtype=np.uint16),
         np.empty((0, 4)), singles, singles, np.empty((0, 2), dtype=np.int32),
-        indices, indices, indices, np.empty(0, dtype=np.int32), indices, points,
+        indices, indices, indices, np.empty(0, dtype=np.int32), indices, points, numbers,
     )  # fmt: skip
 
 

@@ -30,6 +30,8 @@ from clearance.kernels.motion.joint_motion_bound import (
     motion_bound_of_box_along,
     motion_bound_of_face_along,
 )
+from clearance.kernels.search.balls import radii_of
+from clearance.kernels.search.front import KEPT_DOWN
 from clearance.kernels.search.node_pairs import (
     Views,
     opened,
@@ -91,10 +93,12 @@ class MovingPair(NamedTuple):
 
     Attributes:
         motion: of both about the middle. slack: [m] what rounding can raise a bound by.
+        balls: [m] the radii of the balls of both bodies; what is seen and bounded here is of their centres.
     """
 
     motion: PairMotion
     slack: float
+    balls: float
 
 
 @inline
@@ -153,15 +157,15 @@ def allowed_gap(least, gap, fail):
 
 
 @inline(one_caller=True)
-def _begin(a, b, faces, least, aim, margin):
+def _begin(a, b, faces, least, aim, moving):
     """What is seen first: the faces that were nearest before, if any were."""
-    m = faces.frames.m
+    m, margin = faces.frames.m, margin_of(moving.slack)
     best = nothing_yet(math.inf)
     if faces.a >= 0:
         best = nearest_of_faces(a, faces.a, b, faces.b, m, margin, best).best
         least = min(least, math.sqrt(best.gap_sq) + margin)
     views = views_along(direction_between(best.p, best.q, m), m)
-    allowed = allowed_gap(least, aim.gap, aim.fail)
+    allowed = allowed_gap(least - moving.balls, aim.gap, aim.fail)
     return IntervalSearch(faces.a, faces.b, math.sqrt(best.gap_sq), views, least, allowed)
 
 
@@ -205,7 +209,7 @@ def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, tabl
             least, allowed, seen = search.least, search.allowed, math.sqrt(near.gap_sq)
             if seen + margin < least:
                 least = seen + margin
-                allowed = allowed_gap(least, aim.gap, aim.fail)
+                allowed = allowed_gap(least - moving.balls, aim.gap, aim.fail)
             if seen < search.nearest:
                 search = IntervalSearch(face_a, face_b, seen, views_along(own, m), least, allowed)
             else:
@@ -213,6 +217,18 @@ def _look_at_faces(a, b, faces, bound, moving, search, aim, scratch, tally, tabl
                     search.face_a, search.face_b, search.nearest, views, least, allowed
                 )
     return bound, search, touches
+
+
+@inline
+def _balls_touch(search, balls):
+    """True if centres of balls were seen so near that nothing is left to prove."""
+    return balls > 0.0 and search.least <= balls
+
+
+@inline
+def _seen_of_balls(search, asked, balls):
+    """[m] the least distance that was asked about, or that of balls whose centres were seen nearer."""
+    return search.least - balls if search.least < asked + balls else asked
 
 
 @inline
@@ -229,17 +245,20 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
     a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
     roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
     slack = CHAIN_SLACK * rounding_slack(a, roots.a, b, roots.b, bodies.frames)
-    moving = MovingPair(motion, slack)
+    balls = radii_of(a, bodies.a, b, bodies.b).both
+    moving = MovingPair(motion, slack, balls)
     moved = _moved(box_of(a, roots.a), box_of(b, roots.b), motion)
     turn = max(motion.a.turn, motion.b.turn)  # by which the normals of either turn at most
     cos_turn, sin_turn = math.cos(turn), math.sin(turn)
     near = parts(bodies, witness_faces[0], witness_faces[1])
-    search = _begin(a, b, near, least, aim, margin_of(slack))
+    search = _begin(a, b, near, least + balls, aim, moving)
     lower_bound = math.inf
     scratch.nodes[0, 0], scratch.nodes[0, 1] = roots.a, roots.b
     scratch.bounds[0] = -math.inf
     n_waiting = 1
     while n_waiting > 0:
+        if _balls_touch(search, balls):
+            return PairProof(0.0, 0.0, True, search.face_a, search.face_b)
         n_waiting -= 1
         target = search.least - search.allowed
         node_a, node_b = scratch.nodes[n_waiting, 0], scratch.nodes[n_waiting, 1]
@@ -252,11 +271,12 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
             bound, search, touches = _look_at_faces(
                 a, b, faces, bound, moving, search, aim, scratch, tally, table
             )
-            if touches:
+            if touches or _balls_touch(search, balls):
                 return PairProof(0.0, 0.0, True, faces.a, faces.b)
             lower_bound = min(lower_bound, bound)
             if bound < search.least - search.allowed and moved >= STILL * search.allowed:
-                return PairProof(0.0, search.least, False, search.face_a, search.face_b)
+                seen = _seen_of_balls(search, least, balls)
+                return PairProof(0.0, seen, False, search.face_a, search.face_b)
             continue
         nodes, count = opened(a, node_a, b, node_b)
         bounds = _lower_bounds_of_group(a, b, nodes, search.views.a, moving, target)
@@ -275,4 +295,7 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
                 continue
             node_a, node_b = pair_in_group(nodes, k)
             n_waiting = wait(scratch, n_waiting, node_a, node_b, bound, first)
-    return PairProof(lower_bound, search.least, True, search.face_a, search.face_b)
+    if balls > 0.0:
+        lower_bound = max(0.0, (lower_bound - balls) * KEPT_DOWN)
+    seen = _seen_of_balls(search, least, balls)
+    return PairProof(lower_bound, seen, True, search.face_a, search.face_b)

@@ -6,12 +6,11 @@ address, as in `pair_query`. Not for: many steps that are known beforehand (`swe
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
-from clearance.compile.jit import kernel
+from clearance.compile.heap import HeapHandle
+from clearance.compile.jit import DISABLED, kernel, lie_on_heap
 from clearance.compile.kernel_table import lend
-from clearance.compile.numba_private import HeapHandle, HeapType, lay_on_heap
 from clearance.kernels.motion.pair_order import fill_order, sort_all
 from clearance.kernels.motion.placed import bring, put_all
 from clearance.kernels.motion.schedule import all_due
@@ -53,15 +52,12 @@ class HeldScene(NamedTuple):
     at: np.ndarray
 
 
-if not numba.config.DISABLE_JIT:
-
-    class HeldSceneType(HeapType):
-        """The compiler's type of a `HeldScene` that lies on the heap."""
+if not DISABLED:
 
     class HeldScene(HeapHandle):
         """The handle that Python has of a scene on the heap; fields as above."""
 
-    lay_on_heap(HeldSceneType, HeldScene, _FIELDS)
+    lie_on_heap(HeldScene, _FIELDS)
 
 
 @kernel

@@ -19,6 +19,7 @@ from clearance.kernels.motion.clock_rectangles import Band
 from clearance.kernels.motion.clock_tree import ClockTree
 from clearance.kernels.motion.joint_path import JointPath
 from clearance.kernels.motion.world import World
+from clearance.kernels.search.balls import radii_of
 from clearance.kernels.search.separating_planes import separating_planes_of
 
 FEW = 4
@@ -80,7 +81,7 @@ def apart_by_planes(surface, bodies, faces, limit, scratch, table):
     roots = parts(bodies, surface.roots[bodies.a], surface.roots[bodies.b])
     m = bodies.frames.m
     slack = CHAIN_SLACK * rounding_slack(surface, roots.a, surface, roots.b, bodies.frames)
-    rest = 3.0 * margin_of(slack)
+    rest = 3.0 * margin_of(slack) + radii_of(surface, bodies.a, surface, bodies.b).both
     if faces[0] >= 0:
         p = row(surface.vertices, surface.face_vertices[surface.face_starts[faces[0]]])
         q = move(m, row(surface.vertices, surface.face_vertices[surface.face_starts[faces[1]]]))

@@ -11,13 +11,9 @@ from __future__ import annotations
 
 import ctypes
 
-import numba
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 
-from clearance.compile.jit import inline
-from clearance.compile.numba_private import array_from, elements_at
+from clearance.compile.jit import DISABLED, inline, intrinsic
 from clearance.kernels.polytope.body import PackedBody
 
 NUMBERS, INDICES, FIRST_PLANE = 0, 2, 4
@@ -25,6 +21,10 @@ NUMBERS, INDICES, FIRST_PLANE = 0, 2, 4
 
 @intrinsic
 def _array_at(typing_context, rows, at, number):
+    from numba import types
+
+    from clearance.compile.numba_private import array_from, elements_at
+
     result = types.Array(number.dtype, 1, "C")
 
     def emit(context, builder, signature, values):
@@ -42,7 +42,7 @@ def _array_from(rows, at, number):
     return np.ctypeslib.as_array(ctypes.cast(address, kind), (length,))
 
 
-array_at = _array_from if numba.config.DISABLE_JIT else _array_at
+array_at = _array_from if DISABLED else _array_at
 """`array_at(rows, at, number)`: the array whose address and length stand from entry `at` of `rows` on, (m, 4) or
 (m, 5) int64 row by row; `number` is the type of its numbers."""
 

@@ -1,4 +1,4 @@
-"""The distance of two bodies: descent of their trees, then containment."""
+"""The distance of two bodies: descent of their trees, then containment, then what the balls of clouds take off."""
 
 from typing import NamedTuple
 
@@ -32,6 +32,7 @@ from clearance.kernels.features.posed_pair import parts, posed_pair_like
 from clearance.kernels.features.refine import error_of
 from clearance.kernels.features.rounding_guard import PASSED_OVER
 from clearance.kernels.mesh.surface import box_of
+from clearance.kernels.search.balls import less_balls, radii_of
 from clearance.kernels.search.containment import contained
 from clearance.kernels.search.descent import Tally, descend
 from clearance.kernels.search.face_search import SearchLimits
@@ -109,6 +110,16 @@ def _contact(bodies, found, tally, table):
     return PairDistance(Hit(0.0, face_a, face_b, p, q), 0.0, 0.0, face_a, face_b, tally)
 
 
+@inline
+def _of_centres(question, radii):
+    """The question as one about the points of clouds instead of the balls about them."""
+    wider = radii.both
+    return PairQuestion(
+        question.limit + wider, question.wanted + wider, question.face_a, question.face_b,
+        question.apart, question.effort, question.touches,
+    )  # fmt: skip
+
+
 NOWHERE = Vec3(0.0, 0.0, 0.0)
 
 NOTHING_MEASURED = PairDistance(
@@ -157,17 +168,17 @@ def _seek_planes(roots, best, limit, slack, front, scratch, table):
 
 
 @inline(one_caller=True)
-def _of_planes(planes, question, slack, tally):
+def _of_planes(planes, question, slack, radii, tally):
     """What planes say that are farther apart than the limit."""
     nothing = nothing_yet(question.wanted * question.wanted)
-    lower_bound = max(0.0, planes.lower_bound - slack - 2.0 * margin_of(slack))
+    lower_bound = max(0.0, planes.lower_bound - slack - 2.0 * margin_of(slack) - radii.both)
     return PairDistance(nothing, lower_bound, 0.0, planes.face_a, planes.face_b, tally)
 
 
 @inline(one_caller=True)
-def _of_descent(found, question, frames, slack, tally):
+def _of_descent(found, question, frames, slack, radii, tally):
     """What a descent has come to that has found no contact."""
-    lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin_of(slack))
+    lower_bound = max(0.0, found.lower_bound - slack - 2.0 * margin_of(slack) - radii.both)
     face_a, face_b = found.hit.face_a, found.hit.face_b
     if face_a == 2**62:
         face_a, face_b = question.face_a, question.face_b
@@ -178,6 +189,8 @@ def _of_descent(found, question, frames, slack, tally):
     distance = refined.length.hi
     error = error_of(refined, distance) + PASSED_OVER * distance
     p, q = _in_world(frames, refined.p), _in_world(frames, refined.q)
+    if radii.both > 0.0:
+        distance, error, p, q = less_balls(refined.length, error, p, q, radii)
     hit = Hit(distance * distance, refined.face_a, refined.face_b, p, q)
     lower_bound = min(lower_bound, max(0.0, distance - error))
     return PairDistance(hit, lower_bound, error, refined.face_a, refined.face_b, tally)
@@ -190,15 +203,17 @@ def search(bodies, question, front, scratch, table):
     Args:
         bodies: their numbers in their surfaces.
         question: what is wanted and known, a `PairQuestion`.
-        front: a `PairFront`.
+        front: a `PairFront`; of clouds it holds how far their points are, as all does before the answer.
     """
     a, b = borrow(bodies.surface_a), borrow(bodies.surface_b)
+    radii = radii_of(a, bodies.a, b, bodies.b)
+    question = _of_centres(question, radii)
     frames, fronts, pair = bodies.frames, front.fronts, front.pair
     roots = parts(bodies, a.roots[bodies.a], b.roots[bodies.b])
     slack = rounding_slack(a, roots.a, b, roots.b, frames)
     margin = margin_of(slack)
     n_nodes, n_faces, n_exact = 0, 0, 0
-    if question.touches:
+    if question.touches and radii.both == 0.0:  # balls touch without their centres
         over = overlap_of(table, roots, slack, scratch)
         n_nodes, n_faces = over.n_nodes, over.n_faces
         if over.meeting.found:
@@ -209,7 +224,7 @@ def search(bodies, question, front, scratch, table):
     planes = _seek_planes(roots, first.best, limit, slack, front, scratch, table)
     n_nodes += planes.n_nodes
     if planes.lower_bound > limit:
-        return _of_planes(planes, question, slack, Tally(n_nodes, 0, 0))
+        return _of_planes(planes, question, slack, radii, Tally(n_nodes, 0, 0))
     limits = SearchLimits(limit, question.wanted, slack, question.effort)
     best = first.best
     for _ in range(2):
@@ -239,7 +254,7 @@ def search(bodies, question, front, scratch, table):
             forget(fronts, pair)  # a contact must not depend on where the search begins
             x = move(frames.a, x)
             return PairDistance(Hit(0.0, NO_FACE, NO_FACE, x, x), 0.0, 0.0, NO_FACE, NO_FACE, tally)
-    return _of_descent(found, question, frames, slack, tally)
+    return _of_descent(found, question, frames, slack, radii, tally)
 
 
 @inline(one_caller=True)

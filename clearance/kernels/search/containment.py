@@ -31,8 +31,8 @@ from clearance.kernels.arithmetic.predicates import (
     side_along,
     turn_along,
 )
-from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, move, move_back, row, sub
-from clearance.kernels.features.bounds import LEAN
+from clearance.kernels.arithmetic.vec3 import Vec3, cross, dot, inverse, move, move_back, row, sub
+from clearance.kernels.features.bounds import LEAN, lower_bound_boxes, rounding_slack
 from clearance.kernels.mesh.surface import box_of, is_leaf, surface_like
 
 AXIS = 2
@@ -236,25 +236,79 @@ def winding_number(surface, body, is_b, probe, frames, exact, nodes):
     return number
 
 
+@inline
+def _is_inside(one, at, two, body_two, is_a, frames, scratch, table):
+    """(True if vertex `at` of a body is inside the other, the vertex, the same in the other's frame)."""
+    v = row(one.vertices, at)
+    x = move_back(frames.m, v) if is_a else move(frames.m, v)
+    away = size(frames.m.t) + size(v)
+    inside = False
+    if in_box(two, two.roots[body_two], x, away):
+        probe = Probe(row(one.exact, at), x, away)
+        arguments = (two, body_two, is_a, probe, frames, scratch.exact, scratch.nodes)
+        number = at_address(table, WINDING_NUMBER, 0, arguments)
+        inside = number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL
+    return inside, v, x
+
+
+@inline
+def _is_probe(surface, body, at):
+    """True if vertex `at` is a probe of a cloud."""
+    low, high = surface.probe_starts[body], surface.probe_starts[body + 1]
+    while low < high:
+        middle = (low + high) // 2
+        if surface.probes[middle] < at:
+            low = middle + 1
+        else:
+            high = middle
+    return low < surface.probe_starts[body + 1] and surface.probes[low] == at
+
+
+@inline
+def _of_cloud(one, body_one, two, body_two, is_a, frames, scratch, table):
+    """The same of all probes of a cloud, those in nodes that reach into the other body's box."""
+    m = inverse(frames.m) if is_a else frames.m  # from the cloud to the other body
+    slack = rounding_slack(one, one.roots[body_one], two, two.roots[body_two], frames)
+    waiting, n_waiting = scratch.left, 1
+    waiting[0, 0] = one.roots[body_one]
+    box = box_of(two, two.roots[body_two])
+    while n_waiting > 0:
+        n_waiting -= 1
+        node = np.int64(waiting[n_waiting, 0])
+        if lower_bound_boxes(box, box_of(one, node), m, slack) > 0.0:
+            continue
+        first = np.int64(one.children[node, 0])
+        if not is_leaf(one, node):
+            for k in range(one.children[node, 1]):
+                waiting[n_waiting, 0] = WIDTH * first + k
+                n_waiting += 1
+            continue
+        at = one.face_vertices[one.face_starts[first]]
+        if _is_probe(one, body_one, at):
+            inside, v, x = _is_inside(one, at, two, body_two, is_a, frames, scratch, table)
+            if inside:
+                return True, v, x
+    return False, frames.m.t, frames.m.t
+
+
 @inline(one_caller=True)
 def contained(a, body_a, b, body_b, frames, scratch, table):
     """(found, point): a point (frame of a) of one body inside the other; their surfaces must not meet.
 
     Exactness: right for the float vertices under the float poses of `frames`.
     """
-    far = size(frames.m.t)
     one, body_one, two, body_two = a, body_a, b, body_b
     for side in range(2):
         is_a = side == 0
-        for i in range(one.probe_starts[body_one], one.probe_starts[body_one + 1]):
-            v = row(one.vertices, one.probes[i])
-            x = move_back(frames.m, v) if is_a else move(frames.m, v)
-            away = far + size(v)
-            if in_box(two, two.roots[body_two], x, away):
-                probe = Probe(row(one.exact, one.probes[i]), x, away)
-                arguments = (two, body_two, is_a, probe, frames, scratch.exact, scratch.nodes)
-                number = at_address(table, WINDING_NUMBER, 0, arguments)
-                if number != 0 and _turns_of_caps(two, body_two, x) <= DOUBTFUL:
+        if one.radii[body_one] > 0.0:
+            inside, v, x = _of_cloud(one, body_one, two, body_two, is_a, frames, scratch, table)
+            if inside:
+                return True, v if is_a else x
+        else:
+            for i in range(one.probe_starts[body_one], one.probe_starts[body_one + 1]):
+                at = one.probes[i]
+                inside, v, x = _is_inside(one, at, two, body_two, is_a, frames, scratch, table)
+                if inside:
                     return True, v if is_a else x
         one, body_one, two, body_two = b, body_b, a, body_a
     return False, frames.m.t

@@ -7,12 +7,11 @@ on a busy machine. Not for: many pairs at once (`sweep`).
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 
-from clearance.compile.jit import inline, kernel
+from clearance.compile.heap import HeapHandle
+from clearance.compile.jit import DISABLED, inline, kernel, lie_on_heap
 from clearance.compile.kernel_table import lend
-from clearance.compile.numba_private import HeapHandle, HeapType, lay_on_heap
 from clearance.kernels.arithmetic.double_double import frames_of
 from clearance.kernels.arithmetic.vec3 import rigid
 from clearance.kernels.features.bounds import displacement, rounding_slack
@@ -70,15 +69,12 @@ class HeldPair(NamedTuple):
     carried: np.ndarray
 
 
-if not numba.config.DISABLE_JIT:
-
-    class HeldPairType(HeapType):
-        """The compiler's type of a `HeldPair` that lies on the heap."""
+if not DISABLED:
 
     class HeldPair(HeapHandle):
         """The handle that Python has of a pair on the heap; fields as above."""
 
-    lay_on_heap(HeldPairType, HeldPair, _FIELDS)
+    lie_on_heap(HeldPair, _FIELDS)
 
 
 @inline

@@ -74,7 +74,7 @@ def _empty_surface(n):
         np.empty(1, dtype=np.bool_), np.empty((n, 3)), ends, around, np.array([0, n_edges]), edges,
         np.full(1, ANYTHING, dtype=np.uint16),
         nodes, singles, singles, np.empty((0, 2), dtype=np.int32),
-        none, none, none, np.empty(0, dtype=np.int32), none, nodes,
+        none, none, none, np.empty(0, dtype=np.int32), none, nodes, np.empty(0),
     )  # fmt: skip
 
 

@@ -1,0 +1,232 @@
+"""`clearance new`: from a robot, a motion and a scene, in whatever formats they are, to a case."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from clearance.cli import ExitCode
+from clearance.cli.notices import say_notices
+from clearance.cli.options import XACRO_OPTIONS, OutputPath
+from clearance.errors import shown
+from clearance.extras import LIBRARIES, is_installed
+
+if TYPE_CHECKING:
+    from clearance.load.new_case import NewCase
+
+_MOST_NOTES = 8
+
+_UNITS = {"rad": "angle", "deg": "angle", "m": "length", "mm": "length"}
+
+
+class _Names(click.ParamType):
+    """Names with commas between them."""
+
+    name = "names"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> list[str]:
+        """The names."""
+        names = [name.strip() for name in value.split(",")]
+        if not all(names):
+            self.fail(f"{value!r} has an empty name; names with commas between them", param, ctx)
+        return names
+
+
+def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
+    for option in XACRO_OPTIONS:
+        command = option(command)
+    return command
+
+
+@click.command()
+@click.argument("out_dir", metavar="OUT_DIR", type=OutputPath())
+@click.option(
+    "--robot", required=True, metavar="FILE", help="URDF, or a file that xacro makes it of."
+)
+@click.option("--trajectory", metavar="FILE", help="CSV, JointTrajectory in YAML or JSON, a bag.")
+@click.option("--topic", help="Which topic of a bag.")
+@click.option("--which", type=click.IntRange(min=1), help="Which of several, from 1.")
+@click.option(
+    "--units",
+    multiple=True,
+    type=click.Choice([*_UNITS]),
+    help="Of a CSV whose header names none; may be given again.",
+)
+@click.option(
+    "--period",
+    type=click.FloatRange(min=0, min_open=True),
+    help="[s] From row to row of a CSV without times.",
+)
+@click.option(
+    "--joints", type=_Names(), metavar="A,B,…", help="The columns of a CSV without a header."
+)
+@click.option(
+    "--states",
+    type=_Names(),
+    metavar="A,B,…",
+    help="Without a trajectory: states of the SRDF, between which the joints go straight.",
+)
+@click.option("--scene", metavar="FILE", help="YAML, SDF, or a scene of MoveIt.")
+@click.option("--srdf", metavar="FILE", help="Asks for self-clearance, and excuses pairs of it.")
+@click.option(
+    "--rest",
+    multiple=True,
+    metavar="STATE",
+    help="Of the SRDF, for joints that nothing moves; may be given again.",
+)
+@click.option("--joint-limits", metavar="FILE", help="joint_limits.yaml of MoveIt.")
+@click.option("--controllers", metavar="FILE", help="ros2_controllers.yaml.")
+@click.option(
+    "--package-dir",
+    "package_dirs",
+    metavar="DIR",
+    multiple=True,
+    help="Where package:// is looked for; may be given again.",
+)
+@click.option(
+    "--geometry",
+    type=click.Choice(["collision", "visual", "collision_or_visual"]),
+    help="Which shapes of the links.  [default: collision; visual where there are no others]",
+)
+@_with_xacro
+@click.option("--check", "at_once", is_flag=True, help="Check it too, as the last line says.")
+@click.option("--force", is_flag=True, help="Overwrite the files of a case in OUT_DIR.")
+def new(
+    out_dir: Path,
+    robot: str,
+    trajectory: str | None,
+    topic: str | None,
+    which: int | None,
+    units: tuple[str, ...],
+    period: float | None,
+    joints: list[str] | None,
+    states: list[str] | None,
+    scene: str | None,
+    srdf: str | None,
+    rest: tuple[str, ...],
+    joint_limits: str | None,
+    controllers: str | None,
+    package_dirs: tuple[str, ...],
+    geometry: str | None,
+    xacro: bool,
+    xacro_args: dict[str, str],
+    at_once: bool,
+    force: bool,
+) -> int:
+    """A case in OUT_DIR from what there is: case.yaml to edit, trajectory.csv, scene.yaml.
+
+    Robot and meshes stay where they are. What was taken and what was assumed is printed, a line
+    each, then the command that checks the case. Exit code: 0, or 2 for bad input; with --check
+    that of the check.
+    """
+    from clearance.load.new_case import new_case
+    from clearance.load.new_robot import Given
+
+    keys = {
+        "urdf": robot,
+        "xacro": xacro,
+        "xacro_args": xacro_args,
+        "package_dirs": list(package_dirs),
+        "geometry": geometry,
+        "srdf": srdf,
+        "joint_limits": joint_limits,
+        "controllers": controllers,
+    }
+    motion = {
+        "file": trajectory,
+        "topic": topic,
+        "which": which,
+        "units": {_UNITS[unit]: unit for unit in units},
+        "period": period,
+        "joints": joints,
+    }
+    asked = _given(motion)
+    if asked and (states or trajectory is None):
+        raise click.UsageError(_only_one(states, [*asked]))
+    given = Given(_given(keys), asked or None, states or (), rest, scene)
+    made = new_case(given, out_dir)
+    _write(made, out_dir, force)
+    _print(made, out_dir, at_once)
+    command = _command(out_dir)
+    click.echo(f"{'run':10}clearance check {shlex.join(command)}")
+    return _checked(command) if at_once else ExitCode.CLEAR
+
+
+def _given(keys: dict[str, Any]) -> dict[str, Any]:
+    """What is given of them."""
+    return {key: value for key, value in keys.items() if value not in (None, False, [], {})}
+
+
+def _only_one(states: list[str] | None, keys: list[str]) -> str:
+    if "file" in keys:
+        return f"both --trajectory and --states {','.join(states or ())}; one of them"
+    return f"--{keys[0]} says how a trajectory is read; --trajectory FILE is missing"
+
+
+def _write(made: NewCase, out_dir: Path, force: bool) -> None:
+    """Writes all files or none."""
+    from clearance.cli.places import refuse_inputs
+    from clearance.errors import Unwritable
+    from clearance.load.new_case import CASE, TRAJECTORY
+    from clearance.load.new_scene import SCENE
+    from clearance.report.folder import fill_folder
+
+    if out_dir.exists() and not out_dir.is_dir():
+        raise Unwritable("is a file", where=str(out_dir), valid="a folder is needed")
+    there = [name for name in (CASE, TRAJECTORY, SCENE, *made.files) if (out_dir / name).exists()]
+    if there and not force:
+        raise Unwritable(
+            "is there already", where=str(out_dir / there[0]), valid="--force overwrites it"
+        )
+    refuse_inputs([out_dir / name for name in there], [one.read_from for one in made.sources])
+
+    def fill(folder: Path) -> None:
+        for name, content in made.files.items():
+            (folder / name).write_bytes(content)
+
+    fill_folder(out_dir, fill, {CASE, TRAJECTORY, SCENE, *made.files})
+
+
+def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:
+    """What was taken, what was assumed, what is to be known, and what was written.
+
+    Args:
+        at_once: a check follows, which tells what it reads itself.
+    """
+    if not at_once:
+        say_notices(made.case)
+    notes = [*made.lost, *(() if at_once else made.notes)]
+    if len(notes) > _MOST_NOTES:
+        left = len(notes) - _MOST_NOTES
+        notes = [*notes[:_MOST_NOTES], f"and {left} more, in the files or told by the check"]
+    for label, lines in (
+        ("took", made.taken),
+        ("assumed", made.assumed),
+        ("note", notes),
+        ("written", [", ".join(str(out_dir / name) for name in made.files)]),
+    ):
+        for line in lines:
+            click.echo(f"{label:10}{shown(line)}")
+
+
+def _command(out_dir: Path) -> list[str]:
+    """What follows `clearance check`; a report only where what makes it is installed."""
+    makes_pages = all(is_installed(library) for library in LIBRARIES["report"])
+    return [
+        str(out_dir / "case.yaml"),
+        *(["--out", str(out_dir / "report")] if makes_pages else []),
+    ]
+
+
+def _checked(command: list[str]) -> int:
+    """The exit code of a check."""
+    from clearance.cli.check import check
+
+    with check.make_context("check", [*command]) as context:
+        return check.invoke(context)

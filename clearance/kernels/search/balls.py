@@ -1,0 +1,51 @@
+"""Clouds: bodies of points that each stand for a ball. The search is for the points, the answer less the radii.
+
+Bodies that are no clouds have the radius 0, so that one search serves all. Not for: the search (`descent`).
+"""
+
+import math
+from typing import NamedTuple
+
+from clearance.compile.jit import inline
+from clearance.kernels.arithmetic.double_double import minus, wide
+from clearance.kernels.arithmetic.vec3 import along, dot, sub
+
+
+class Radii(NamedTuple):
+    """[m] of the balls of two bodies, and their sum, never less than it."""
+
+    a: float
+    b: float
+    both: float
+
+
+UP = 1.0 + 2.0**-52
+"""Makes a sum of two radii no less than the true one."""
+
+
+@inline
+def radii_of(a, body_a, b, body_b):
+    """The radii of the balls of two bodies, 0 where they are no clouds."""
+    of_a, of_b = a.radii[body_a], b.radii[body_b]
+    both = of_a + of_b
+    if of_a > 0.0 and of_b > 0.0:
+        both *= UP
+    return Radii(of_a, of_b, both)
+
+
+@inline
+def less_balls(length, error, p, q, radii):
+    """(distance, error, p, q) [m] of balls whose centres are a `Wide` length apart, to within an error.
+
+    The difference is taken in 106 bits and rounded once. Balls that touch have distance 0 and one point, on the
+    body that is no cloud where there is one.
+    """
+    left = minus(minus(length, wide(radii.a)), wide(radii.b))
+    d = sub(q, p)
+    far = math.sqrt(dot(d, d))
+    if left.hi <= 0.0:
+        share = min(radii.a, far) / far if far > 0.0 else 0.0
+        p = along(p, share, d)
+        return 0.0, max(0.0, error + left.hi), p, p
+    of_a, of_b = radii.a / far, radii.b / far
+    return left.hi, error + abs(left.lo), along(p, of_a, d), along(q, -of_b, d)

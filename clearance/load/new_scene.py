@@ -1,0 +1,150 @@
+"""The scene of a new case: our YAML of what a scene file holds, or that file where our YAML would say less.
+
+Not for: reading it (`scene_formats`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from clearance.errors import shown
+from clearance.load.held_parts import with_held_parts
+from clearance.load.input_files import PYBULLET_DATA, resolved
+from clearance.load.mesh_store import MeshStore
+from clearance.load.notes import counted
+from clearance.load.obstacle_schema import Scene
+from clearance.load.scene_file import make_obstacles
+from clearance.load.scene_formats import read_scene
+from clearance.load.scene_request import SceneContent, SceneRequest
+from clearance.load.scene_rows import with_scene_rows
+from clearance.load.schema_errors import validated
+from clearance.load.written_paths import path_from
+from clearance.load.yaml_text import flow
+from clearance.world.carry import Carry
+from clearance.world.case import Case, PlacedRobot
+
+SCENE = "scene.yaml"
+
+
+@dataclass(frozen=True)
+class NewScene:
+    """What a new case says of its scene.
+
+    Attributes:
+        name: the scene's file; None where nothing stands around the robot. remark: beside it.
+        contents: of the files to write, by name.
+        carry, allow, padding: what its file says of links. taken, notes: a line each.
+    """
+
+    name: str | None
+    remark: str
+    contents: Mapping[str, bytes] = field(default_factory=dict)
+    carry: Sequence[Mapping[str, Any]] = ()
+    allow: Sequence[tuple[str, str]] = ()
+    padding: Mapping[str, float] = field(default_factory=dict)
+    taken: Sequence[str] = ()
+    notes: Sequence[str] = ()
+
+
+def new_scene(
+    given: str | None,
+    package_dirs: Sequence[str],
+    placed: PlacedRobot,
+    meshes: MeshStore,
+    folder: Path,
+) -> NewScene:
+    """The scene in a file, as a case in `folder` is to name it.
+
+    A file whose reader warns of something, or which says what a link holds, is named as it is.
+
+    Raises:
+        BadInput: as its reader says.
+    """
+    if given is None:
+        return NewScene(None, "assumed: nothing stands around the robot")
+    path = resolved(given, Path())
+    asked = SceneRequest(path, meshes.files, tuple(Path(one) for one in package_dirs))
+    content = read_scene(asked)
+    rows = content.scene["obstacles"]  # type: ignore[index]  # as the reader checked
+    taken = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
+    if content.notices or content.held:
+        why = "it says what the robot holds" if content.held else "it brings a warning"
+        told = (f"{taken}; it stays the file that it is, since {why}",)
+        return NewScene(path_from(folder, given), f"as it is, since {why}", taken=told)
+    case, notes = _with_rows(content, asked, placed, meshes)
+    contents = dict(_contents(rows, content, asked, folder))
+    return NewScene(
+        SCENE,
+        f"from {asked.shown}",
+        contents,
+        [_carried(carry) for carry in case.carries],
+        [row.between for row in case.allow],
+        case.robots[0].padding,
+        (taken,),
+        (*content.notes, *notes),
+    )
+
+
+def _with_rows(
+    content: SceneContent, asked: SceneRequest, placed: PlacedRobot, meshes: MeshStore
+) -> tuple[Case, list[str]]:
+    """The case with what the scene's file says of links, and notes on that."""
+    scene = validated(Scene, content.scene, asked.shown)
+    obstacles, _ = make_obstacles(scene.obstacles, asked.path.parent, meshes)
+    case, row_notes = with_scene_rows(Case("new", (placed,), obstacles), content)
+    case, held_notes = with_held_parts(case, content)
+    return case, [*row_notes, *held_notes]
+
+
+def _carried(carry: Carry) -> dict[str, Any]:
+    """A part that is carried all the time, as a case file has it."""
+    touch = {"touch": list(carry.touch)} if carry.touch else {}
+    return {"part": carry.part, "by": carry.by, "from": carry.window.start, **touch}
+
+
+def _contents(
+    rows: Sequence[Mapping[str, Any]], content: SceneContent, asked: SceneRequest, folder: Path
+) -> Iterator[tuple[str, bytes]]:
+    """The scene's file, and the meshes that are written out in it."""
+    paths = _Paths(asked, folder)
+    lines = [
+        f"# Made by `clearance new` from {shown(asked.shown)}; yours to edit. Metres and radians."
+    ]
+    lines += [f"# {shown(note)}" for note in content.notes]
+    lines.append("obstacles:" if rows else "obstacles: []")
+    lines += [f"- {flow(_moved(row, paths))}" for row in rows]
+    yield SCENE, "\n".join([*lines, ""]).encode()
+    yield from paths.held.items()
+
+
+class _Paths:
+    """Turns paths as seen from the scene's file into those from a folder; meshes not on disk get a file there."""
+
+    def __init__(self, asked: SceneRequest, folder: Path) -> None:
+        self._asked, self._folder = asked, folder
+        self.held: dict[str, bytes] = {}
+
+    def written(self, given: str) -> str:
+        """How a path is written in the folder."""
+        if given.startswith(PYBULLET_DATA):
+            return given
+        path, files = self._asked.path.parent / given, self._asked.files
+        if not files.is_held(path):
+            return path_from(self._folder, path)
+        self.held[path.name] = files.read(path)
+        return path.name
+
+
+def _moved(row: Mapping[str, Any], paths: _Paths) -> dict[str, Any]:
+    """An obstacle with paths as they are to be written."""
+    moved = dict(row)
+    for key in {"mesh", "points", "moves"} & set(row):
+        given = row[key]
+        if isinstance(given, str):
+            moved[key] = paths.written(given)
+        else:
+            moved[key] = {**given, "file": paths.written(given["file"])}
+    return moved

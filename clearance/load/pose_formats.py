@@ -1,0 +1,35 @@
+"""A file of poses to a table, by the reader of its suffix: a further format is a file and a row here.
+
+Not for: when the table is followed (`timed_files`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import PurePath
+
+from clearance.errors import at
+from clearance.load.pose_messages import read_json_poses, read_yaml_poses
+from clearance.load.pose_table_file import read_csv_poses
+from clearance.load.pose_table_request import PoseRequest, ReadPoses
+
+READERS: dict[str, Callable[[PoseRequest], ReadPoses]] = {
+    ".csv": read_csv_poses,
+    ".json": read_json_poses,
+    ".yaml": read_yaml_poses,
+    ".yml": read_yaml_poses,
+}
+"""By suffix in small letters; a file of another suffix is read as CSV."""
+
+
+def read_poses(request: PoseRequest, shown: str) -> ReadPoses:
+    """The samples in a file.
+
+    Args:
+        shown: the file's name, in errors.
+
+    Raises:
+        BadInput: as the reader says, with the place in the file.
+    """
+    with at(shown):
+        return READERS.get(PurePath(shown).suffix.lower(), read_csv_poses)(request)

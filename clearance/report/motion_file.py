@@ -1,0 +1,63 @@
+"""The motion of the robots that was measured, as a file: a JointTrajectory message in YAML or JSON, one document a
+robot, or a CSV table. Not for: how it is written (`load.trajectory_writer`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import PurePath
+
+from clearance.errors import BadInput, at
+from clearance.load.trajectory_writer import WRITERS, WrittenTrajectory, written
+from clearance.world.case import PlacedRobot
+from clearance.world.motion import Motion
+from clearance.world.trajectory import Trajectory
+
+
+def require_motion_file(robots: Sequence[PlacedRobot], shown: str) -> None:
+    """Nothing, if the robots' motion goes into a file of this name.
+
+    Raises:
+        BadInput: no such format, no robot that moves, or several in a table.
+    """
+    suffix = PurePath(shown).suffix.lower()
+    moving = [placed for placed in robots if placed.robot.moving_joints]
+    if suffix not in WRITERS:
+        raise BadInput(f"{shown!r} has no suffix to write", valid=f"one of {', '.join(WRITERS)}")
+    if not moving:
+        raise BadInput("no robot has a joint that moves", where=shown, valid="a robot with joints")
+    if len(moving) > 1 and suffix == ".csv":
+        raise BadInput(
+            f"a table holds one robot, the case has {len(moving)}",
+            where=shown,
+            valid="a .yaml file, which holds all",
+        )
+
+
+def motion_content(motions: Sequence[Motion], shown: str) -> WrittenTrajectory:
+    """The motions as a file of this name, in the order of the case; a robot without joints that move is left out.
+
+    Every number comes back bit for bit; what would not is refused, times that are rounded are a note.
+
+    Raises:
+        BadInput: as `require_motion_file`, or a name that does not come back. BadTime: steps less than a
+            nanosecond apart, in a message.
+    """
+    require_motion_file([motion.placed for motion in motions], shown)
+    is_yaml = PurePath(shown).suffix.lower() in (".yaml", ".yml")
+    parts: list[bytes] = []
+    notes: list[str] = []
+    for motion in motions:
+        if not motion.joint_names:
+            continue
+        trajectory = Trajectory(
+            motion.times, motion.joint_names, motion.positions, motion.velocities
+        )
+        with at(motion.placed.robot.name):
+            content, changes = written(trajectory, shown)
+        if len(motions) > 1 and is_yaml:
+            content = f"# {motion.placed.robot.name}\n".encode() + content
+        parts.append(content)
+        notes += changes
+    between = b"---\n" if is_yaml else b""
+    return WrittenTrajectory(between.join(parts), tuple(dict.fromkeys(notes)))

@@ -1,0 +1,218 @@
+"""The worst moments of a run in MoveIt's words, as plain data: bodies as links, world objects and attached
+objects, nearest points, and the states of the robots then.
+
+There is an entry for each pair and rule that comes near or below a limit, the worst first, and the overall worst
+in any case. Pairs are at the samples; the worst moment of a rule is of the motion. Where the run asks for
+less than every step, pairs are not known, and `need` says so. Not for: how it is written (`moments_file`), nor ROS
+messages, of which none holds all of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from clearance.load.message_times import split_time
+from clearance.report.actors import paddings_of
+from clearance.report.pair_judge import PairJudge
+from clearance.report.verdict import verdict_of
+from clearance.simulate.moment import Moment
+from clearance.simulate.record import PairMinimum, Record
+from clearance.simulate.status import STATUSES, Status
+from clearance.world.case import Case
+
+FORMAT = "clearance-moments-1"
+
+MOST = 200
+"""Entries; those that stand best are left out and counted."""
+
+ROBOT_LINK, WORLD_OBJECT, ROBOT_ATTACHED = "ROBOT_LINK", "WORLD_OBJECT", "ROBOT_ATTACHED"
+"""Kinds of bodies, as `moveit_msgs/ContactInformation` names them."""
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A pair at a moment."""
+
+    rule: str
+    status: str
+    clearance: float
+    bodies: tuple[str, str]
+    points: tuple[tuple[float, float, float], tuple[float, float, float]]
+    time: float
+    time_b: float | None
+    step: int
+    between: bool
+    positions: tuple[np.ndarray, ...]
+
+    @property
+    def is_of(self) -> tuple[str, str, str]:
+        """What there is one entry of."""
+        return self.rule, *self.bodies
+
+
+def moments_of(record: Record) -> dict[str, Any]:
+    """The file's content."""
+    entries, names = _entries(record), _Names(record.case)
+    return {
+        "format": FORMAT,
+        "name": record.case.name,
+        "verdict": verdict_of(record).status,
+        "need": record.need,
+        "header": {"frame_id": "world"},
+        "n_left_out": max(0, len(entries) - MOST),
+        "moments": [_told(record, names, entry) for entry in entries[:MOST]],
+    }
+
+
+def _entries(record: Record) -> list[_Entry]:
+    """The overall worst, then all that is not clear, the worst first."""
+    worst = _of_moment(record, record.worst)
+    found = {worst.is_of: worst}
+    for rule in record.rules:
+        if rule.worst is not None:
+            one = _of_moment(record, rule.worst)
+            found.setdefault(one.is_of, one)
+    judge = PairJudge.of(record)
+    for minimum in record.pair_minima:
+        one = _of_pair(record, minimum, judge.status_of(minimum))
+        found.setdefault(one.is_of, one)
+    limits = {rule.name: rule.limits.fail for rule in record.rules}
+    rest = [one for one in found.values() if one is not worst and one.status != Status.CLEAR]
+    return [
+        worst,
+        *sorted(rest, key=lambda one: (_rank(one), one.clearance - limits[one.rule], one.is_of)),
+    ]
+
+
+def _rank(entry: _Entry) -> int:
+    return -STATUSES.index(Status(entry.status))
+
+
+def _of_moment(record: Record, moment: Moment) -> _Entry:
+    return _Entry(
+        moment.rule,
+        record.status_of(moment),
+        moment.clearance,
+        (moment.link, moment.obstacle),
+        (moment.point_link, moment.point_obstacle),
+        moment.time,
+        moment.time_b,
+        moment.step,
+        moment.between,
+        moment.positions,
+    )
+
+
+def _of_pair(record: Record, minimum: PairMinimum, status: str) -> _Entry:
+    return _Entry(
+        minimum.rule,
+        status,
+        minimum.clearance,
+        (minimum.link, minimum.obstacle),
+        (minimum.point_link, minimum.point_obstacle),
+        minimum.time,
+        None,
+        minimum.step,
+        False,
+        tuple(motion.positions[minimum.step] for motion in record.motions),
+    )
+
+
+def _told(record: Record, names: _Names, entry: _Entry) -> dict[str, Any]:
+    paddings = paddings_of(record)
+    padding = sum(paddings.get(name, 0.0) for name in entry.bodies)
+    told: dict[str, Any] = {
+        "rule": entry.rule,
+        "status": entry.status,
+        "clearance": entry.clearance,
+        **(
+            {"padding": padding, "distance": max(0.0, entry.clearance + padding)} if padding else {}
+        ),
+        "time_from_start": time_of(entry.time),
+        "step": entry.step,
+        "between": entry.between,
+        "bodies": [names.told(name, entry.time) for name in entry.bodies],
+        "nearest_points": [_vector(point) for point in entry.points],
+        **_overlap(record, entry),
+        "robot_states": [*_states(record, names, entry)],
+    }
+    if entry.time_b is not None:
+        told["time_from_start_of_second"] = time_of(entry.time_b)
+    return told
+
+
+def time_of(seconds: float) -> dict[str, int]:
+    """A time as a duration of ROS 2."""
+    return dict(zip(("sec", "nanosec"), split_time(seconds), strict=True))
+
+
+def _vector(values: Any) -> dict[str, float]:
+    return {key: float(value) for key, value in zip("xyz", values, strict=True)}
+
+
+class _Names:
+    """What MoveIt calls the bodies of a case."""
+
+    def __init__(self, case: Case) -> None:
+        self._links: dict[str, dict[str, str]] = {}
+        self._carries = case.carries
+        self._on = {one.name: one.mount.on for one in case.obstacles if one.mount is not None}
+        for placed in case.robots:
+            own = {"robot": placed.robot.name} if len(case.robots) > 1 else {}
+            for link in placed.robot.link_names:
+                told = {"link_name": link, **own}
+                for name in (case.prefix_of(placed) + link, f"{placed.robot.name}/{link}"):
+                    self._links[name] = told
+
+    def told(self, name: str, time: float) -> dict[str, str]:
+        """A body: a link of a robot, an object that a link holds or bears then, or one of the world."""
+        if name in self._links:
+            return {"type": ROBOT_LINK, **self._links[name]}
+        by = self._bearer(name, time)
+        if by in self._links:
+            return {"type": ROBOT_ATTACHED, "id": name, **self._links[by]}
+        return {"type": WORLD_OBJECT, "id": name}
+
+    def attached(self, time: float) -> Iterator[dict[str, str]]:
+        """The bodies that links hold or bear then."""
+        for name in dict.fromkeys([*self._on, *(carry.part for carry in self._carries)]):
+            told = self.told(name, time)
+            if told["type"] == ROBOT_ATTACHED:
+                yield told
+
+    def _bearer(self, name: str, time: float) -> str:
+        """What carries an obstacle then, or what it is on; nothing if it depends on no other body."""
+        for carry in self._carries:
+            if carry.part == name and carry.window.start <= time < carry.window.end:
+                return carry.by
+        return self._on.get(name, "")
+
+
+def _overlap(record: Record, entry: _Entry) -> dict[str, Any]:
+    """How deep two bodies overlap, where that has been worked out: the first goes that far that way."""
+    for row in record.worked_out:
+        if (row.step, row.link, row.obstacle) == (entry.step, *entry.bodies) and not entry.between:
+            return {"depth": row.numbers.penetration, "way_out": _vector(row.numbers.direction)}
+    return {}
+
+
+def _states(record: Record, names: _Names, entry: _Entry) -> Iterator[dict[str, Any]]:
+    """The state of each robot, as `moveit_msgs/RobotState` has it; of the joints that do not follow others."""
+    attached = [*names.attached(entry.time)]
+    for motion, positions in zip(record.motions, entry.positions, strict=True):
+        robot = motion.placed.robot.name
+        held = [
+            {"link_name": one["link_name"], "object": {"id": one["id"]}}
+            for one in attached
+            if one.get("robot", robot) == robot
+        ]
+        yield {
+            "robot": robot,
+            "joint_state": {"name": [*motion.joint_names], "position": positions.tolist()},
+            "attached_collision_objects": held,
+            "is_diff": False,
+        }

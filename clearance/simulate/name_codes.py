@@ -1,0 +1,35 @@
+"""Columns of names as codes, and back.
+
+Few rows are gone through one by one: pyarrow's own functions for it take longer to be imported. Not for: which
+names there are (`names`, `status`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import pyarrow as pa
+
+FEW = 100_000
+"""Rows that take less time one by one than the import of `pyarrow.compute` does."""
+
+
+def names_of(codes: np.ndarray, names: Sequence[str]) -> pa.Array:
+    """(n,) the name of each code, null where that is negative."""
+    if len(codes) < FEW:
+        known = [*names, None]  # of which -1 is the last
+        return pa.array([known[max(code, -1)] for code in codes.tolist()], type=pa.string())
+    return pa.array(names, type=pa.string()).take(pa.array(codes, mask=codes < 0))
+
+
+def codes_of(column: pa.Array | pa.ChunkedArray, names: Sequence[str]) -> np.ndarray:
+    """(n,) int64 which of the names each is; -1 where it is none of them or null."""
+    if len(column) < FEW:
+        place = {name: code for code, name in enumerate(names)}
+        found = [-1 if name is None else place.get(name, -1) for name in column.to_pylist()]
+        return np.array(found, dtype=np.int64)
+    import pyarrow.compute
+
+    places = pyarrow.compute.index_in(column, pa.array(names, type=pa.string())).fill_null(-1)
+    return places.to_numpy().astype(np.int64)

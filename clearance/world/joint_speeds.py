@@ -1,0 +1,83 @@
+"""Joints that are faster, or accelerate more, than they may: a warning or, where the case says so, a violation.
+
+Not for: joints beyond their positions (`joint_limits`), units (`plausible_motion`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from clearance.world.case import PlacedRobot
+from clearance.world.cubic import cubics_of
+from clearance.world.joint_positions import JointCourse, joint_courses, turns
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.trajectory import Trajectory
+
+ROUNDING = 1e-6
+"""Of a limit: trajectories that are as fast as they may be are written in six digits or more."""
+
+
+def notices_on_speed(placed: PlacedRobot, rule: str, before: str = "") -> list[Notice]:
+    """What is faster, or accelerates more, than it may; one notice.
+
+    Args:
+        rule: "warn" or "fail", as `Limits.joints`. before: what stands before the names of joints.
+    """
+    asked = placed.trajectory
+    if asked is None or asked.n_steps < 2 or not placed.motion_limits:
+        return []
+    told = [
+        text
+        for course in joint_courses(placed)
+        if course.i_column is not None and course.joint.name in placed.motion_limits
+        for text in _excesses(placed, course, asked, before)
+    ]
+    if not told:
+        return []
+    if rule == "fail":
+        return [Notice(Severity.VIOLATED, "joint limits", listed(told, 4))]
+    return [Notice(Severity.WARNING, "limits", listed(told, 4))]
+
+
+def _excesses(
+    placed: PlacedRobot, course: JointCourse, asked: Trajectory, before: str
+) -> Iterator[str]:
+    limit, rate = placed.motion_limits[course.joint.name], placed.timing.rate
+    speed, acceleration = _greatest(course, asked)
+    unit = "rad" if turns(course.joint) else "m"
+    for what, given, most, unit_of in (
+        ("moves at", speed * rate, limit.velocity, f"{unit}/s"),
+        ("accelerates by", acceleration * rate**2, limit.acceleration, f"{unit}/s²"),
+    ):
+        n_beyond = int((given > most * (1.0 + ROUNDING)).sum())
+        if n_beyond:
+            yield (
+                f"joint {before + course.joint.name!r} {what} up to {given.max():.3g} {unit_of}, its limit is "
+                f"{most:g}, in {n_beyond} of {len(given)} intervals"
+            )
+
+
+def _greatest(course: JointCourse, asked: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """(n - 1,) the greatest speed and acceleration in each interval; the latter 0 on lines, which have corners.
+
+    Exactness: the speed on a cubic is a parabola, greatest at an end or where it turns; its slope is linear.
+    """
+    column = slice(course.i_column, (course.i_column or 0) + 1)
+    length = np.diff(asked.times)
+    scale = abs(course.factor)
+    if asked.velocities is None:
+        speed = np.abs(np.diff(asked.positions[:, course.i_column])) / length
+        return scale * speed, np.zeros_like(speed)
+    cubics = cubics_of(asked.times, asked.positions[:, column], asked.velocities[:, column])
+    _, step, e0, e1 = (part[:, 0] for part in cubics)
+    a, b, c = 3.0 * (e0 + e1), -2.0 * e0 - e1, step + e0  # of a s^2 + 2 b s + c, the derivative
+    turns_at = np.divide(-b, a, out=np.zeros_like(a), where=np.abs(a) > np.abs(b))
+    inside = np.maximum(turns_at, 0.0)
+    speeds = [c, a + 2.0 * b + c, (a * inside + 2.0 * b) * inside + c]
+    slopes = [2.0 * b, 2.0 * (a + b)]
+    return (
+        scale * np.abs(speeds).max(axis=0) / length,
+        scale * np.abs(slopes).max(axis=0) / length**2,
+    )

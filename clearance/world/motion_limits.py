@@ -1,0 +1,48 @@
+"""How fast a joint may move and accelerate, and how far a controller lets it off its path.
+
+Not for: what is faster than it may be (`joint_speeds`), limits of position (`robot`).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from clearance.errors import BadDimension
+
+
+@dataclass(frozen=True)
+class MotionLimit:
+    """The greatest speed [rad/s or m/s] and acceleration [rad/s² or m/s²] of a joint, either way.
+
+    Raises:
+        BadDimension: a limit that is not above 0.
+    """
+
+    velocity: float = math.inf
+    acceleration: float = math.inf
+
+    def __post_init__(self) -> None:
+        for name in ("velocity", "acceleration"):
+            if not getattr(self, name) > 0.0:
+                raise BadDimension(f"{name} {getattr(self, name):g} is given", valid="above 0")
+
+
+@dataclass(frozen=True)
+class PathTolerance:
+    """How far a joint may be off its path, and off its goal, before its controller stops [rad or m].
+
+    Attributes:
+        trajectory, goal: infinite where the controller does not look.
+
+    Raises:
+        BadDimension: one that is not above 0.
+    """
+
+    trajectory: float = math.inf
+    goal: float = math.inf
+
+    def __post_init__(self) -> None:
+        for name in ("trajectory", "goal"):
+            if not getattr(self, name) > 0.0:
+                raise BadDimension(f"{name} {getattr(self, name):g} is given", valid="above 0")

@@ -1,0 +1,144 @@
+"""`clearance check --png --glb --trajectory`: what is written, what is refused before anything is measured,
+and the trajectory back again with the same results.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from clearance import check
+from clearance.cli import run
+from clearance.load.case_file import load_case
+from tests.cli.test_check_command import CASE, PATH, URDF, files
+
+VELOCITIES = "time,rail,rail/velocity\n0,0,0.1\n0.3333,0.30000000000000004,1e-7\n2,0.7,0\n"
+TWO = """robots:
+- {name: left, urdf: cart.urdf, trajectory: path.csv}
+- {name: right, urdf: cart.urdf, base: {xyz: [0, 2, 0]}, trajectory: {file: path.csv, start: 0.5}}
+scene:
+  obstacles:
+  - {name: wall, box: {size: [0.2, 1, 1]}, pose: {xyz: [1, 0, 0]}}
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("CLEARANCE_COMPILES_AHEAD", "1")
+    (tmp_path / "cart.urdf").write_text(URDF)
+    (tmp_path / "case.yaml").write_text(CASE)
+    (tmp_path / "path.csv").write_text(PATH)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_all_are_written_and_named_and_nothing_else(folder, capsys):
+    wanted = ["--png", "a/worst.png", "--glb", "worst.glb", "--trajectory", "back.json"]
+    assert run(["check", "case.yaml", *wanted]) == 0
+    told = capsys.readouterr().out.splitlines()[-3:]
+    assert told == [
+        "  written     a/worst.png",
+        "  written     worst.glb",
+        "  written     back.json",
+    ]
+    given = {"cart.urdf", "case.yaml", "path.csv"}
+    assert set(files(folder)) == given | {"a/worst.png", "worst.glb", "back.json"}
+    assert run(["check", "case.yaml", "--quiet", "--glb", "again.glb"]) == 0
+    assert capsys.readouterr().out == ""
+    assert Path("again.glb").read_bytes() == Path("worst.glb").read_bytes()
+
+
+@pytest.mark.parametrize("path", [PATH, VELOCITIES], ids=["linear", "cubic"])
+@pytest.mark.parametrize("name", ["back.yaml", "back.json", "back.csv"])
+def test_the_trajectory_back_gives_the_same_results(folder, path, name):
+    Path("path.csv").write_text(path)
+    assert run(["check", "case.yaml", "--out", "first", "--trajectory", name]) == 0
+    Path("second.yaml").write_text(CASE.replace("path.csv", name))
+    assert run(["check", "second.yaml", "--out", "second"]) == 0
+    first, second = files(folder / "first"), files(folder / "second")
+    for same in ("steps.parquet", "steps.csv", "contacts.csv", "worst_moments.yaml", "replay.npz"):
+        assert first[same] == second[same]
+
+
+def test_several_robots_are_documents_in_the_order_of_the_case(folder, capsys):
+    Path("two.yaml").write_text(TWO)
+    assert run(["check", "two.yaml", "--trajectory", "back.yaml"]) == 0
+    assert Path("back.yaml").read_text().startswith("# left\njoint_names")
+    text = TWO.replace("trajectory: path.csv", "trajectory: {file: back.yaml, which: 1}")
+    Path("again.yaml").write_text(
+        text.replace("{file: path.csv, start: 0.5}", "{file: back.yaml, which: 2}")
+    )
+    first, second = (check(load_case(name)).record for name in ("two.yaml", "again.yaml"))
+    assert first.steps.equals(second.steps)
+    capsys.readouterr()
+    assert run(["check", "two.yaml", "--trajectory", "back.csv"]) == 2
+    assert "a table holds one robot, the case has 2" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "given, said",
+    [
+        (["--png", "cart.urdf"], "is no .png file; --png needs one"),
+        (["--glb", "worst.png"], "is no .glb file; --glb needs one"),
+        (["--trajectory", "worst.txt"], "'worst.txt' has no suffix to write; one of .csv"),
+        (["--trajectory", "path.csv"], "would overwrite"),
+        (["--png", ""], "an empty path"),
+        (["--glb", "cart.urdf/worst.glb"], "cannot be written"),
+        (["--png", "folder.png"], "is a folder; --png needs a file"),
+        (
+            ["--out", "out", "--trajectory", "out/steps.csv"],
+            "is a file of the report; --trajectory",
+        ),
+        (["--junit", "worst.glb", "--glb", "./worst.glb"], "is the file of --junit; --glb"),
+    ],
+)
+def test_what_cannot_be_written_is_refused_before_anything_is_measured(
+    folder, capsys, monkeypatch, given, said
+):
+    def measured(*_):
+        raise AssertionError("measured")
+
+    monkeypatch.setattr("clearance.run.answer", measured)
+    Path("folder.png").mkdir()
+    before = files(folder)
+    assert run(["check", "case.yaml", *given]) == 2
+    told = capsys.readouterr()
+    assert told.out == "" and told.err.count("\n") == 1 and said in told.err
+    assert files(folder) == before
+
+
+def test_a_link_to_an_input_is_not_written_over(folder, capsys):
+    Path("link.csv").symlink_to("path.csv")
+    assert run(["check", "case.yaml", "--trajectory", "link.csv"]) == 2
+    assert "which this run reads" in capsys.readouterr().err
+    assert Path("path.csv").read_text() == PATH
+
+
+def test_times_that_a_message_cannot_hold_are_refused_or_noted(folder, capsys, monkeypatch):
+    Path("path.csv").write_text("time,rail\n0,0\n1e-10,0.1\n1,0.2\n")
+    assert run(["check", "case.yaml", "--trajectory", "back.yaml"]) == 2
+    assert "less than a nanosecond" in capsys.readouterr().err and not Path("back.yaml").exists()
+    Path("path.csv").write_text("time,rail\n0,0\n0.3333333333333,0.1\n1,0.2\n")
+    assert run(["check", "case.yaml", "--trajectory", "back.yaml"]) == 0
+    assert "note        back.yaml: 1 of 3 times are rounded" in capsys.readouterr().out
+
+
+def test_a_simulated_motion_is_written_as_it_was(folder):
+    pytest.importorskip("pybullet")
+    assert (
+        run(["check", "case.yaml", "--motion", "simulated", "--trajectory", "back.yaml", "--quiet"])
+        == 0
+    )
+    from clearance.load.trajectory_file import parse_trajectory
+
+    simulated = check(load_case("case.yaml"), motion="simulated").record.motions[0]
+    back = parse_trajectory(Path("back.yaml").read_bytes(), "back.yaml")
+    assert (back.positions == simulated.positions).all()
+
+
+def test_a_missing_library_is_named_before_anything_is_measured(folder, capsys, monkeypatch):
+    monkeypatch.setattr("clearance.extras.is_installed", lambda library: library != "matplotlib")
+    assert run(["check", "case.yaml", "--png", "worst.png"]) == 2
+    assert "--png needs matplotlib" in capsys.readouterr().err
+    assert run(["check", "case.yaml", "--glb", "worst.glb"]) == 0

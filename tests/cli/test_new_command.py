@@ -1,0 +1,323 @@
+"""`clearance new`: the case has the results of the files it is made from; nothing is overwritten or left half."""
+
+import json
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ruamel.yaml import YAML
+
+from clearance import load_case
+from clearance.cli import run
+from clearance.load.written_paths import path_from
+from clearance.load.yaml_file import parse_yaml
+from clearance.load.yaml_text import flow
+from tests.load.making import CUBE, PATH, cube_stl
+from tests.load.making_case import TWO_JOINTS
+from tests.load.making_messages import ROS2
+from tests.load.making_moveit import FIRST, MESSAGE
+from tests.load.making_sdf import collision, link, model, sdf, world
+
+ARM = TWO_JOINTS.replace(
+    '<link name="tip"/>',
+    '<link name="tip"><collision><origin xyz="0 0 1.5"/><geometry><sphere radius="0.1"/></geometry>'
+    "</collision></link>",
+)
+_HEAD, _, _TAIL = MESSAGE.partition("  attached_collision_objects:")
+PLANNING = _HEAD + _TAIL[_TAIL.index("allowed_collision_matrix:") :]
+SRDF = """<robot name="arm"><disable_collisions link1="base" link2="upper" reason="Adjacent"/>
+<disable_collisions link1="upper" link2="tip" reason="Adjacent"/>
+<group_state name="home" group="arm"><joint name="shoulder" value="0"/><joint name="lift" value="0.02"/>
+</group_state>
+<group_state name="out" group="arm"><joint name="shoulder" value="0.5"/></group_state></robot>
+"""
+SCENE = """obstacles:
+- {name: "post, 2", box: {size: [0.1, 0.1, 1]}, pose: {xyz: [2, 0, 1e-3]}}
+- {name: cube, mesh: {file: cube.stl, scale: 0.1}, pose: {xyz: [0.9, 0.9, 0]}, padding: 0.01}
+- {name: door, box: {size: [0.5, 0.1, 1]}, moves: {file: door.csv, start: 0.25}}
+"""
+DOOR = "time,x,y,z,qx,qy,qz,qw\n0,-2,0,0,0,0,0,1\n1,-2,1,0,0,0,0,1\n"
+DEGREES = "t;shoulder [deg];lift [mm]\n".replace("t;", "time [ms];") + "0;0,5;0\n500;11,25;12,5\n"
+
+
+@pytest.fixture(autouse=True)
+def cell(tmp_path, monkeypatch):
+    """The files of a stranger, in `cell`, beside which the cases are made."""
+    files = {
+        "arm.urdf": ARM, "one.urdf": TWO_JOINTS, "arm.srdf": SRDF,
+        "path.csv": PATH, "degrees.csv": DEGREES, "path.yaml": ROS2,
+        "scene.yaml": SCENE, "door.csv": DOOR, "world.sdf": sdf(world(model(link(collision())))),
+        "planning.yaml": PLANNING, "held.yaml": MESSAGE, "cell.scene": FIRST,
+    }  # fmt: skip
+    (tmp_path / "cell").mkdir()
+    for name, text in files.items():
+        (tmp_path / "cell" / name).write_text(text)
+    (tmp_path / "cell" / "upper.stl").write_bytes(cube_stl())
+    (tmp_path / "cell" / "cube.stl").write_bytes(cube_stl())
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def new(*words, robot="cell/arm.urdf"):
+    return run(["new", "out", "--robot", robot, *map(str, words)])
+
+
+def summary(capsys, path):
+    capsys.readouterr()
+    code = run(["check", str(path), "--json"])
+    told = json.loads(capsys.readouterr().out)
+    return code, {key: told[key] for key in told if key not in ("inputs", "notes")}
+
+
+def direct(scene, trajectory):
+    """The new case with the files that it was made from in place of ours."""
+    case = YAML(typ="safe").load(Path("out/case.yaml").read_text())
+    case["robot"].pop("padding", None)
+    case.pop("allow", None)
+    case |= {"trajectory": trajectory} | ({} if scene is None else {"scene": scene})
+    Path("out/direct.yaml").write_text(json.dumps(case))
+    return "out/direct.yaml"
+
+
+@pytest.mark.parametrize(
+    ("scene", "trajectory"),
+    [
+        (None, "path.csv"),
+        ("scene.yaml", "degrees.csv"),
+        ("world.sdf", "path.yaml"),
+        ("planning.yaml", "path.csv"),
+        ("held.yaml", "path.csv"),
+        ("cell.scene", "path.csv"),
+    ],
+)
+def test_it_has_the_results_of_the_files_it_is_made_from(capsys, scene, trajectory):
+    words = ["--trajectory", f"cell/{trajectory}", *(["--scene", f"cell/{scene}"] if scene else [])]
+    assert new(*words, "--srdf", "cell/arm.srdf") == 0
+    ours = summary(capsys, "out/case.yaml")
+    path = direct(scene and f"../cell/{scene}", f"../cell/{trajectory}")
+    theirs = summary(capsys, path)
+    origins = [[one.pop("origin", None) for one in told["obstacles"]] for _, told in (ours, theirs)]
+    assert ours == theirs and len(origins[0]) == len(origins[1])
+    text = Path("out/case.yaml").read_text()
+    assert ("padding" in text and "allow:" in text) == (scene == "planning.yaml")
+
+
+def test_it_says_what_it_took_and_what_it_assumed(capsys):
+    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml") == 0
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == (
+        "took      robot 'arm' from cell/arm.urdf: 3 links, 3 of them with a shape, 2 joints to move"
+    )
+    assert "took      trajectory from cell/path.csv: 3 samples of 1 joint, 0 to 1 s" in told
+    assert "took      scene from cell/scene.yaml: 3 obstacles" in told
+    assert "assumed   link 'base' stands at the origin of the world" in told
+    assert "assumed   joints that nothing moves rest at 0: lift" in told
+    assert told[-1] == "run       clearance check out/case.yaml --out out/report"
+    text = Path("out/case.yaml").read_text()
+    assert "    lift: 0.0  # assumed: nothing moves it" in text and "urdf: ../cell/arm.urdf" in text
+    assert "file: ../cell/cube.stl" in Path("out/scene.yaml").read_text()
+
+
+def test_how_a_file_was_read_stays_in_the_case(capsys):
+    words = ["--trajectory", "cell/degrees.csv", "--scene", "cell/planning.yaml", "--check"]
+    assert new(*words) == 0
+    told = capsys.readouterr().out.partition("\nrun ")[0]
+    read = "cell/degrees.csv: columns are separated by semicolons, decimals written with commas"
+    frame = "cell/planning.yaml: "
+    assert f"note      {read}" in told and f"note      {frame}" in told
+    assert f"# {read}" in Path("out/case.yaml").read_text()
+    assert f"# {frame}" in Path("out/scene.yaml").read_text()
+
+
+def test_the_same_files_make_the_same_bytes(capsys):
+    words = ["--trajectory", "cell/path.csv", "--scene", "cell/planning.yaml"]
+    assert new(*words) == 0
+    made = {path.name: path.read_bytes() for path in Path("out").iterdir()}
+    assert new(*words, "--force") == 0
+    assert made == {path.name: path.read_bytes() for path in Path("out").iterdir()}
+
+
+def test_meshes_that_are_written_out_in_a_scene_become_files():
+    assert new("--trajectory", "cell/path.csv", "--scene", "cell/cell.scene") == 0
+    mesh = Path("out/cell.scene.mesh0.off")
+    assert mesh.read_text().startswith("OFF") and mesh.name in Path("out/scene.yaml").read_text()
+    (cube,) = [one for one in load_case("out/case.yaml").obstacles if mesh.name in one.body.origin]
+    assert cube.body.shape.vertices.max() == CUBE.max()
+
+
+def test_a_scene_whose_reader_warns_stays_the_file_that_it_is(capsys):
+    seen = sdf(world(model(link(collision()), link("<visual name='v'/>", name="seen"))))
+    Path("cell/world.sdf").write_text(seen)
+    assert new("--trajectory", "cell/path.csv", "--scene", "cell/world.sdf", "--check") == 1
+    told = capsys.readouterr().out
+    assert "stays the file that it is" in told and "warning" in told.partition("run  ")[2]
+    assert not Path("out/scene.yaml").exists()
+    assert "scene: ../cell/world.sdf" in Path("out/case.yaml").read_text()
+
+
+def test_states_of_the_srdf_make_a_motion_and_rest(capsys):
+    assert new("--srdf", "cell/arm.srdf", "--states", "home,out,home") == 0
+    told = capsys.readouterr().out
+    assert "assumed   from state to state all joints move straight, 2 s each" in told
+    assert Path("out/trajectory.csv").read_text() == (
+        "time,shoulder,lift\n0.0,0.0,0.02\n2.0,0.5,0.02\n4.0,0.0,0.02\n"
+    )
+    words = ["--trajectory", "cell/path.csv", "--srdf", "cell/arm.srdf", "--force"]
+    assert new(*words, "--rest", "home") == 0
+    assert load_case("out/case.yaml").robots[0].fixed_positions == {"lift": 0.02}
+    assert new(*words) == 0
+    text = Path("out/case.yaml").read_text()
+    assert "# state: home  # where a state of the SRDF says; it has [home, out]" in text
+
+
+def test_limit_files_are_named_where_they_lie(capsys):
+    Path("cell/l.yaml").write_text(
+        "joint_limits: {shoulder: {has_velocity_limits: true, max_velocity: 0.1}}"
+    )
+    words = [
+        "--trajectory",
+        "cell/path.csv",
+        "--scene",
+        "cell/scene.yaml",
+        "--joint-limits",
+        "cell/l.yaml",
+    ]
+    assert new(*words, "--check") == 0
+    told = capsys.readouterr().out
+    assert "joint 'shoulder' moves at up to 0.5 rad/s, its limit is 0.1" in told
+    assert "joint_limits: ../cell/l.yaml" in Path("out/case.yaml").read_text()
+
+
+def test_visual_shapes_are_taken_where_there_are_no_others(capsys):
+    Path("cell/arm.urdf").write_text(ARM.replace("collision>", "visual>"))
+    words = ["--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml"]
+    assert new(*words) == 0
+    told = capsys.readouterr().out
+    assert "assumed   no link has a collision shape: the visual shapes are measured" in told
+    assert "geometry: visual" in Path("out/case.yaml").read_text()
+    assert new(*words, "--geometry", "collision", "--force") == 2
+    assert "no link has a collision shape" in capsys.readouterr().err
+
+
+def test_joints_that_cannot_be_at_zero_rest_at_their_limit(capsys):
+    Path("cell/arm.urdf").write_text(
+        ARM.replace('lower="0" upper="0.1"', 'lower="0.05" upper="0.1"')
+    )
+    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml") == 0
+    assert "rest at the limit next to it: lift 0.05" in capsys.readouterr().out
+    assert load_case("out/case.yaml").robots[0].fixed_positions == {"lift": 0.05}
+
+
+def test_check_leaves_with_the_exit_code_of_the_check_and_a_report():
+    Path("cell/scene.yaml").write_text("obstacles: [{name: b, box: {size: [1, 1, 1]}}]\n")
+    assert new("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml", "--check") == 1
+    assert Path("out/report/report.html").is_file()
+
+
+def test_an_empty_scene_is_in_the_headline(capsys):
+    assert new("--srdf", "cell/arm.srdf", "--states", "home,out", "--check") in (0, 1)
+    told = capsys.readouterr().out
+    assert "surroundings (the scene is empty) not checked" in told
+
+
+USUAL = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml")
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (USUAL[2:], "nothing moves: no trajectory is given; --trajectory FILE (a CSV of two rows will do"),
+        ((*USUAL[:2], "--robot", "cell/one.urdf"), "nothing stands around the robot; --scene FILE"),
+        ((*USUAL, "--robot", "cell/arm.urd"), "there is no file 'cell/arm.urd'"),
+        ((*USUAL, "--rest", "home"), "state 'home' is in no file"),
+        ((*USUAL, "--srdf", "cell/arm.srdf", "--rest", "hom"), "unknown state 'hom'; did you mean 'home'"),
+        (("--srdf", "cell/arm.srdf", "--states", "home"), "1 state is given; two or more"),
+        (("--srdf", "cell/arm.srdf", "--states", "home,"), "'home,' has an empty name"),
+        (("--states", "home,out"), "states: state 'home' is in no file; --srdf FILE"),
+        ((*USUAL, "--states", "home,out"), "both --trajectory and --states home,out; one of them"),
+        ((*USUAL[2:], "--topic", "/a"), "--topic says how a trajectory is read; --trajectory FILE is missing"),
+        ((*USUAL, "--topic", "/a"), "'topic' says nothing about a CSV table"),
+        ((*USUAL, "--package-dir", "no"), "robot.package_dirs: [0]: there is no folder 'no'"),
+        ((*USUAL[:2], "--scene", "cell/no.sdf"), "scene: cell/no.sdf: there is no file 'cell/no.sdf'"),
+        (("--trajectory", "cell/door.csv"), "unknown joint 'x'"),
+        ((*USUAL, "--robot", "cell/arm.srdf"), "this is a MoveIt SRDF, not a URDF file; name it in a case file"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_one_line_and_leaves_nothing(capsys, words, says):
+    before = sorted(Path().rglob("*"))
+    assert new(*words) == 2
+    told = capsys.readouterr().err.strip()
+    assert says in told and told.count("\n") == 0
+    assert sorted(Path().rglob("*")) == before
+
+
+def test_nothing_is_overwritten_unasked(capsys):
+    Path("out").mkdir()
+    Path("out/scene.yaml").write_text("mine")
+    Path("out/notes.txt").write_text("mine too")
+    assert new(*USUAL) == 2
+    assert "out/scene.yaml: is there already; --force overwrites it" in capsys.readouterr().err
+    assert Path("out/scene.yaml").read_text() == "mine" and not Path("out/case.yaml").exists()
+    assert new(*USUAL, "--force") == 0
+    assert Path("out/notes.txt").read_text() == "mine too"
+    assert Path("out/scene.yaml").read_text() != "mine"
+
+
+def test_what_is_read_is_never_written(capsys):
+    assert run(["new", "cell", "--robot", "cell/arm.urdf", *USUAL, "--force"]) == 2
+    assert "would overwrite 'cell/scene.yaml', which this run reads" in _flat(
+        capsys.readouterr().err
+    )
+    assert Path("cell/scene.yaml").read_text() == SCENE
+
+
+def _flat(text):
+    return text.replace(f"{Path.cwd()}/", "")
+
+
+def test_an_interrupted_run_leaves_nothing(monkeypatch):
+    before = sorted(Path().rglob("*"))
+    write = Path.write_bytes
+
+    def interrupted(path, content):
+        if path.name == "trajectory.csv":
+            raise KeyboardInterrupt
+        return write(path, content)
+
+    monkeypatch.setattr(Path, "write_bytes", interrupted)
+    assert new(*USUAL) == 130
+    assert sorted(Path().rglob("*")) == before
+
+
+def test_a_case_in_the_folder_of_its_files(monkeypatch):
+    monkeypatch.chdir("cell")
+    words = ["--robot", "arm.urdf", "--trajectory", "path.csv", "--scene", "world.sdf", "--force"]
+    assert run(["new", ".", *words]) == 0
+    assert Path("scene.yaml").read_text().startswith("# Made by")
+    assert "urdf: arm.urdf" in Path("case.yaml").read_text()
+    assert "name: cell" in Path("case.yaml").read_text()
+
+
+def test_paths_are_relative_where_that_is_short_and_means_one_place(tmp_path):
+    assert path_from(tmp_path / "out", "cell/arm.urdf") == "../cell/arm.urdf"
+    assert path_from(tmp_path / "a/b/c/d/e/f", "cell/arm.urdf") == str(tmp_path / "cell/arm.urdf")
+    assert path_from(tmp_path / "out", "pybullet_data:a.urdf") == "pybullet_data:a.urdf"
+    assert path_from(tmp_path / "out", "/nowhere.urdf") == "/nowhere.urdf"
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    os.symlink(tmp_path / "far" / "away", tmp_path / "link")
+    assert path_from(tmp_path / "link", "cell/arm.urdf") == str(tmp_path / "cell/arm.urdf")
+
+
+PLAIN = st.recursive(
+    st.integers(-(10**17), 10**17) | st.floats(allow_nan=False, allow_infinity=False) | st.booleans()
+    | st.text(st.characters(exclude_categories=["Cs", "Cc", "Cn", "Zl", "Zp"]), max_size=12),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text("ab -:#,'\"0", max_size=5), inner),
+)  # fmt: skip
+
+
+@settings(max_examples=60, deadline=None)
+@given(PLAIN)
+def test_what_is_written_is_read_back(value):
+    assert repr(parse_yaml(f"a: {flow(value)}  # said\n".encode(), "a.yaml")) == repr({"a": value})

@@ -1,0 +1,193 @@
+"""Clouds of points against rational arithmetic, and what their clearance must not depend on."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from clearance import PointCloud, Polyhedron, Query, box, distance, sphere
+from tests import oracle
+from tests.examples import examples
+from tests.made_cases import torus
+from tests.strategies import QUARTER_TURNS, boxes, poses, rotations
+
+QUARTERS = st.integers(-12, 12).map(lambda n: n / 4.0)
+RADII = st.sampled_from([2.0**-30, 1e-3, 0.1, 0.7])
+
+
+@st.composite
+def points(draw):
+    """(n, 3) a few points: of a grid, anywhere, on one line, in one plane, or all the same."""
+    grid = np.array(draw(st.lists(st.tuples(QUARTERS, QUARTERS, QUARTERS), min_size=1, max_size=8)))
+    kind = draw(st.sampled_from(["grid", "anywhere", "line", "plane", "same", "far"]))
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    if kind == "anywhere":
+        return random.uniform(-3.0, 3.0, grid.shape)
+    if kind == "line":
+        return grid[:1] + grid[:, :1] * [1.0, 0.5, -0.25]
+    if kind == "plane":
+        return grid * [1.0, 1.0, 0.0]
+    if kind == "same":
+        return np.repeat(grid[:1], len(grid), axis=0)
+    return grid + (1000.0 if kind == "far" else 0.0)
+
+
+def truth(cloud, verts, faces, pose_a, pose_b):
+    """The squared distance of a cloud's points to a solid, 0 where one is inside; by rational arithmetic."""
+    alone = [(i,) for i in range(len(cloud.vertices))]
+    if any(oracle.contains(x, verts, faces, pose_b) for x in posed(cloud.vertices, pose_a)):
+        return Fraction(0)
+    return oracle.polyhedron_distance_sq(cloud.vertices, alone, verts, faces, pose_a, pose_b)
+
+
+def posed(vertices, pose):
+    exact = [[Fraction(float(x)) for x in row] for row in pose[:3]]
+    return [
+        tuple(
+            row[3] + sum(r * Fraction(float(x)) for r, x in zip(row[:3], v, strict=True))
+            for row in exact
+        )
+        for v in vertices
+    ]
+
+
+@given(points(), RADII, boxes(), poses(), poses())
+@examples(100)
+def test_like_the_oracle(given_points, radius, solid, pose_a, pose_b):
+    cloud = PointCloud(given_points, radius)
+    near = distance(cloud, Polyhedron(*solid), pose_a=pose_a, pose_b=pose_b)
+    to_centre = oracle.root(truth(cloud, *solid, pose_a, pose_b))
+    true = max(Fraction(0), to_centre - Fraction(radius))
+    assert abs(Fraction(near.distance) - true) <= Fraction(near.error_bound)
+    assert near.error_bound <= 1e-14 * (1.0 + near.distance + np.abs(given_points).max())
+    assert near.contact == (near.distance == 0.0)
+    reach = 64 * np.spacing(np.abs(given_points).max() + np.abs([pose_a, pose_b]).max() + 4.0)
+    assert abs(np.linalg.norm(near.point_a - near.point_b) - near.distance) <= reach
+    if not near.contact:
+        centres = cloud.transformed(pose_a).vertices
+        assert abs(np.linalg.norm(centres - near.point_a, axis=1).min() - radius) <= reach
+
+
+@given(points(), points(), RADII, RADII, poses())
+@examples(40)
+def test_two_clouds_like_their_nearest_points(one, other, r, s, pose):
+    near = distance(PointCloud(one, r), PointCloud(other, s), pose_b=pose)
+    moved = other @ pose[:3, :3].T + pose[:3, 3]
+    gaps = np.linalg.norm(one[:, None] - moved, axis=2) - r - s
+    reach = 1e-15 * (10.0 + np.abs(one).max() + np.abs(moved).max())
+    assert abs(near.distance - max(0.0, gaps.min())) <= reach + near.error_bound
+
+
+@given(points(), boxes(), poses(), st.sampled_from(QUARTER_TURNS))
+@examples(40)
+def test_what_the_clearance_does_not_depend_on(given_points, solid, pose, turn):
+    """Order and repetition change nothing at all, a quarter turn of both the last bit."""
+    solid = Polyhedron(*solid)
+    near = distance(PointCloud(given_points, 0.01), solid, pose_b=pose)
+    again = np.concatenate([given_points[::-1], given_points])
+    other = distance(PointCloud(again, 0.01), solid, pose_b=pose)
+    assert (other.distance, other.point_a.tolist()) == (near.distance, near.point_a.tolist())
+    motion = np.eye(4)
+    motion[:3, :3] = turn
+    moved = distance(PointCloud(given_points, 0.01), solid, pose_a=motion, pose_b=motion @ pose)
+    assert abs(moved.distance - near.distance) <= near.error_bound + moved.error_bound
+    swapped = distance(solid, PointCloud(given_points, 0.01), pose_a=pose)
+    assert abs(swapped.distance - near.distance) <= near.error_bound + swapped.error_bound
+
+
+@given(points(), boxes(), poses(), st.sampled_from([2.0**-20, 0.01, 0.3]))
+@examples(40)
+def test_a_greater_radius_takes_as_much_off(given_points, solid, pose, more):
+    solid = Polyhedron(*solid)
+    small, large = (
+        distance(PointCloud(given_points, r), solid, pose_b=pose) for r in (0.001, 0.001 + more)
+    )
+    if large.contact:
+        assert small.distance <= more + 1e-12
+    else:
+        bounds = small.error_bound + large.error_bound + 1e-16
+        assert abs(small.distance - large.distance - more) <= bounds
+
+
+@pytest.mark.parametrize("gap", [-(2.0**-40), 0.0, 2.0**-51, 2.0**-20])
+def test_touching_is_decided_by_one_bit(gap):
+    near = distance(PointCloud([[0.75 + gap, 0.1, 0.2]], 0.25), box([1.0, 1.0, 1.0]))
+    assert near.contact == (gap <= 0.0)
+    assert near.distance == max(0.0, gap)
+
+
+def test_a_contact_has_one_point_in_the_ball_and_on_the_body():
+    near = distance(PointCloud([[0.6, 0.1, 0.2]], 0.25), box([1.0, 1.0, 1.0]))
+    assert near.contact
+    assert near.point_a.tolist() == near.point_b.tolist() == [0.5, 0.1, 0.2]
+
+
+@pytest.mark.parametrize("n", [1, 2, 400])
+def test_a_solid_round_points_is_in_contact(n):
+    """However far its surface is, and however many others are outside."""
+    random = np.random.default_rng(3)
+    outside = random.uniform(5.0, 6.0, (n, 3))
+    inside = random.uniform(-0.4, 0.4, (n, 3))
+    solid = box([2.0, 2.0, 2.0])
+    for cloud in (PointCloud(np.concatenate([outside, inside]), 0.001), PointCloud(inside, 0.001)):
+        for one, other in ((solid, cloud), (cloud, solid)):
+            near = distance(one, other)
+            assert near.contact and near.distance == 0.0
+            assert near.inside == "yes"
+            assert np.abs(near.point_a).max() <= 0.4
+    assert not distance(solid, PointCloud(outside, 0.001)).contact
+
+
+def test_a_hollow_round_points_is_not():
+    shell = Polyhedron.merged([box([3.0, 3.0, 3.0]), box([2.0, 2.0, 2.0]).flipped()])
+    near = distance(shell, PointCloud(np.random.default_rng(1).uniform(-0.5, 0.5, (300, 3)), 0.1))
+    assert not near.contact and near.distance > 0.3
+    assert distance(shell, PointCloud([[0.0, 0.0, 0.0], [1.2, 0.0, 0.0]], 0.1)).contact
+
+
+def without(solid, left_out):
+    """The solid without the faces whose centres are so."""
+    corners = np.split(solid.face_vertices, solid.face_starts[1:-1])
+    return Polyhedron(
+        solid.vertices, [c for c, out in zip(corners, left_out, strict=True) if not out]
+    )
+
+
+def test_points_inside_a_surface_with_holes_are_contact_or_in_doubt():
+    """A link that lacks a face, as real ones do, is not the same as nothing there."""
+    ball = sphere(radius=1.0, tolerance=0.02)
+    cloud = PointCloud([[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]], 0.01)
+    cracked = without(ball, np.arange(ball.n_faces) == 40)
+    assert distance(cracked, cloud).contact
+    lid_off = without(ball, ball.centres[:, 2] > 0.9)
+    assert distance(lid_off, cloud).inside == "undecided"
+    assert distance(lid_off, PointCloud([[4.0, 0.0, 0.0]], 0.01)).inside == "no"
+    assert distance(cloud, lid_off).inside == "undecided"
+
+
+def test_points_within_loose_faces_are_in_doubt():
+    """Faces that share no edge have no inside, but go round the point on all sides."""
+    ball = sphere(radius=1.0, tolerance=0.02)
+    each = [ball.centres[i] + 0.999 * (ball.face(i) - ball.centres[i]) for i in range(ball.n_faces)]
+    loose = Polyhedron.merged([Polyhedron(one, [range(len(one))]) for one in each])
+    assert distance(loose, PointCloud([[0.1, 0.0, 0.0]], 0.01)).inside == "undecided"
+    assert distance(loose, PointCloud([[1.1, 0.0, 0.0]], 0.01)).inside == "no"
+
+
+def test_many_poses_are_as_one_by_one():
+    """What a query carries on from pose to pose changes nothing."""
+    random = np.random.default_rng(9)
+    cloud, ring = PointCloud(random.uniform(-1.0, 1.0, (500, 3)), 0.02), torus(0.5, 0.1, 24, 12)
+    way = np.tile(np.eye(4), (60, 1, 1))
+    way[:, :3, :3] = rotations(random, 1)[0]
+    way[:, 0, 3] = np.linspace(-2.0, 2.5, 60)
+    query = Query(cloud, ring)
+    found = query.distances(worlds_from_b=way)
+    single = [distance(cloud, ring, pose_b=pose) for pose in way]
+    assert found.distances.tolist() == [near.distance for near in single]
+    assert found.points.tolist() == [
+        [near.point_a.tolist(), near.point_b.tolist()] for near in single
+    ]
+    assert 0 < np.count_nonzero(found.distances == 0.0) < 60

@@ -1,0 +1,66 @@
+"""A scan on the page and in the live viewer: points are drawn in the colour of what stands, and told as balls."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import clearance as cl
+from clearance.report.summary import summary_of
+from clearance.view import play
+from tests.made_cases import flying
+from tests.report.browser import chromium, executable
+
+STANDING = (0xB9, 0xB4, 0xA8)
+"""The colour of obstacles."""
+
+
+def scanned() -> cl.Case:
+    """A small box that goes past a wall of points, and a block beside it that is nearest."""
+    u, v = np.meshgrid(np.linspace(-1.0, 1.0, 60), np.linspace(-1.0, 1.0, 60))
+    wall = np.stack([u, np.full_like(u, 0.8), v], axis=-1).reshape(-1, 3)
+    way = np.linspace([-0.5, 0, 0, 0, 0, 0], [0.5, 0, 0, 0, 0, 0], 5)
+    case = flying("scanned", cl.box([0.1, 0.1, 0.1]), [(cl.box([0.1, 0.1, 0.1]), below())], way)
+    scan = cl.Obstacle(cl.Body("scan", cl.PointCloud(wall, 0.02)))
+    return replace(case, obstacles=(*case.obstacles, scan))
+
+
+def below() -> np.ndarray:
+    pose = np.eye(4)
+    pose[2, 3] = -0.3
+    return pose
+
+
+def test_the_summary_tells_of_balls():
+    summary = summary_of(cl.check(scanned()).record)
+    (scan,) = [body for body in summary["obstacles"] if body["name"] == "scan"]
+    assert (scan["points"], scan["ball_radius"]) == (3600, 0.02)
+    assert (scan["triangles"], scan["polygons"], scan["closed"], scan["volume"]) == (
+        0,
+        0,
+        False,
+        None,
+    )
+    assert "points" not in summary["obstacles"][0]
+
+
+@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+def test_the_page_draws_points(tmp_path):
+    cl.check(scanned()).save(tmp_path / "out")
+    text = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "3,600 balls of 20 mm" in text
+    with chromium() as page:
+        page.open((tmp_path / "out" / "report.html").as_uri(), "window.clearance")
+        page.settle()
+        pixels = page.pixels("#pane").astype(int)[..., :3]
+        assert page.errors == []
+    drawn = (np.abs(pixels - STANDING).max(axis=-1) <= 2).sum()
+    assert drawn > 1000
+
+
+@pytest.mark.skipif(executable() is None, reason="no Chromium is installed")
+def test_the_live_viewer_draws_points():
+    points = "(() => { let n = 0; viewer.scene.traverse(o => { n += o.type === 'Points'; }); return n; })()"
+    with play(cl.check(scanned()).record) as playback, chromium() as page:
+        page.open(playback.url, f"window.viewer && {points}")
+        assert page.run(points) == 1

@@ -1,0 +1,110 @@
+"""`worst_moments.yaml`: plain YAML, what MoveIt calls things, all that is near, and no more than a file holds."""
+
+import pytest
+from ruamel.yaml import YAML
+
+import clearance as cl
+from clearance.report import moveit_moments, write
+from clearance.report.moments_file import moments_text
+from tests.made_cases import at
+from tests.report.cells import LEFT, box, cell, sliding
+from tests.report.records import record, with_contacts
+
+WIDE = (cl.Rule(("*", "*"), name="wide", fail=0.0, warn=9.0),)
+LIMITS = cl.Limits(fail=0.01, warn=0.3)
+
+
+def read(text: str):
+    return YAML(typ="safe", pure=True).load(text)
+
+
+def test_the_worst_comes_first_and_all_pairs_below_a_limit_follow():
+    run = record(limits=LIMITS)
+    told = read(moments_text(run))
+    worst, minima = told["moments"][0], {(one.link, one.obstacle): one for one in run.pair_minima}
+    assert worst["clearance"] == run.worst.clearance and worst["step"] == run.worst.step
+    names = [(m["bodies"][0]["link_name"], m["bodies"][1]["id"]) for m in told["moments"]]
+    below = {pair for pair, one in minima.items() if one.clearance < LIMITS.warn}
+    assert set(names) == below and len(names) == len(below) > 1
+    assert [m["clearance"] for m in told["moments"]] == sorted(
+        minima[pair].clearance for pair in below
+    )
+    assert told["n_left_out"] == 0 and told["verdict"] == "contact"
+
+
+def test_numbers_come_back_bit_for_bit_to_us_and_to_what_ros_reads_with():
+    run = record()
+    first = read(moments_text(run))
+    assert first == pytest.importorskip("yaml").safe_load(moments_text(run))
+    one = first["moments"][0]
+    state = one["robot_states"][0]["joint_state"]
+    assert state["name"] == ["pan", "lift", "slide"]
+    assert state["position"] == run.motions[0].positions[one["step"]].tolist()
+    points = [[point[axis] for axis in "xyz"] for point in one["nearest_points"]]
+    assert points == [list(run.worst.point_link), list(run.worst.point_obstacle)]
+    time = one["time_from_start"]
+    assert time["sec"] + time["nanosec"] / 1e9 == pytest.approx(run.worst.time, abs=1e-9)
+    assert 0 <= time["nanosec"] < 10**9
+
+
+def test_a_clear_run_has_its_worst_moment_alone():
+    clear = cl.check(
+        cell(
+            robots=(sliding("left", LEFT),),
+            carries=(),
+            rules=(),
+            obstacles=(box("table", (4, 4, 0.1)),),
+        )
+    )
+    told = read(moments_text(clear.record))
+    assert len(told["moments"]) == 1 and told["moments"][0]["status"] == "clear"
+    assert told["need"] == "steps"
+
+
+def test_a_run_that_asks_for_less_says_so():
+    case = cell(WIDE, (sliding("arm", LEFT),), (box("wall", (0.1, 1, 1), at(1.6)),), ())
+    told = read(moments_text(cl.check(case, need="minimum").record))
+    assert told["need"] == "minimum" and len(told["moments"]) == 1
+
+
+def test_what_is_too_much_is_left_out_and_counted(monkeypatch):
+    run = record(limits=LIMITS)
+    n = len(read(moments_text(run))["moments"])
+    monkeypatch.setattr(moveit_moments, "MOST", n - 2)
+    told = read(moments_text(run))
+    assert (len(told["moments"]), told["n_left_out"]) == (n - 2, 2)
+
+
+def test_links_name_their_robot_where_there_are_several_and_held_parts_the_link():
+    part, wall = box("part", (0.05, 0.05, 0.05), at(0.5, z=0.9)), box("wall", (0.1, 2, 2), at(1.6))
+    carries = (cl.Carry("part", "left/tool", cl.Window(0.0)),)
+    robots = sliding("left", LEFT), sliding("right", LEFT, at(0.0, 3.0))
+    case = cell(WIDE, robots, (part, wall), carries)
+    moments = read(moments_text(cl.check(case).record))["moments"]
+    bodies = [body for moment in moments for body in moment["bodies"]]
+    assert {"type": "ROBOT_LINK", "link_name": "tool", "robot": "left"} in bodies
+    assert {"type": "ROBOT_ATTACHED", "id": "part", "link_name": "tool", "robot": "left"} in bodies
+    assert {"type": "WORLD_OBJECT", "id": "wall"} in bodies
+    left, right = moments[0]["robot_states"]
+    assert left["attached_collision_objects"] == [{"link_name": "tool", "object": {"id": "part"}}]
+    assert (right["robot"], right["attached_collision_objects"]) == ("right", [])
+
+
+def test_padding_and_depth_are_told_where_there_are_some():
+    deep = with_contacts(record())
+    told = read(moments_text(deep))["moments"]
+    for moment in told:
+        assert "padding" not in moment
+        touching = [row for row in deep.worked_out if row.step == moment["step"]]
+        assert not touching or ("depth" in moment) == (moment["status"] == "contact")
+    wall = box("wall", (0.1, 1, 1), at(1.6), padding=0.01)
+    case = cell(WIDE, (sliding("arm", LEFT),), (wall,), ())
+    moment = read(moments_text(cl.check(case).record))["moments"][0]
+    assert moment["padding"] == 0.01
+    assert moment["distance"] == pytest.approx(moment["clearance"] + 0.01, abs=1e-15)
+
+
+def test_the_file_is_in_the_report(tmp_path):
+    run = record()
+    write(run, tmp_path / "out")
+    assert (tmp_path / "out" / "worst_moments.yaml").read_text() == moments_text(run)

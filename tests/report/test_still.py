@@ -1,0 +1,171 @@
+"""The picture of the worst moment: pixels held against rays, the camera, what hides what, and the same bytes."""
+
+import io
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from clearance.report.still import drawing, raster
+from clearance.report.still.camera import Camera, at_gap, overview
+from clearance.report.still.clipping import segments_within, triangles_ahead
+from clearance.report.still.drawing import drawn as drawn_with
+from clearance.report.still.drawing import edges_of
+from clearance.report.still.edges import seen_edges
+from clearance.report.still.raster import NONE, Screen, covered, drawn_segments
+from clearance.report.still.scene import COLOURS, rgb, still_of
+from clearance.simulate.replay import replay_of
+from tests.report.records import record, with_contacts
+
+pytest.importorskip("matplotlib", reason="sets the words")
+
+from clearance.report.still.picture import HEIGHT, WIDTH, png_of
+
+FORWARD = Camera(np.zeros(3), np.array([[0.0, -1, 0], [0, 0, 1], [1, 0, 0]]), 0.01)
+"""Looks along x, z up."""
+
+
+def drawn(still, camera, width, height):
+    return drawn_with(still, camera, width, height, edges_of(still))
+
+
+def slow_owners(screen: Screen, corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(rows, columns) which triangle a ray through each pixel's centre meets first, and how clearly it does."""
+    x = (np.arange(screen.width) + 0.5 - screen.width / 2) / screen.scale
+    y = (screen.height / 2 - np.arange(screen.height) - 0.5) / screen.scale
+    rays = (
+        np.stack([*np.meshgrid(x, y), np.ones((screen.height, screen.width))], -1)
+        @ screen.camera.axes
+    )
+    a, b, c = np.moveaxis(corners - screen.camera.eye, 1, 0)
+    normals = np.cross(b - a, c - a)
+    along = (normals * a).sum(1) / (rays @ normals.T)
+    at = along[..., None] * rays[:, :, None]
+    sides = [
+        (np.cross(q - p, at - p) * normals).sum(-1) / (normals**2).sum(-1)
+        for p, q in ((a, b), (b, c), (c, a))
+    ]
+    inside = np.min(sides, axis=0)
+    hit = (inside >= 0.0) & (along > screen.camera.near)
+    far = np.where(hit, along, np.inf)
+    owners = np.where(hit.any(-1), far.argmin(-1), NONE)
+    return owners, (np.abs(inside) > 1e-6).all(-1)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_every_pixel_shows_what_a_ray_meets_first(seed):
+    rng = np.random.default_rng(seed)
+    screen = Screen(FORWARD, 48, 32)
+    corners = rng.uniform(-3, 3, (12, 1, 3)) + rng.uniform(-2, 2, (12, 3, 3)) + [2.0, 0, 0]
+    found = covered(screen, corners)
+    owners = np.full((32, 48), NONE)
+    window = found.window
+    owners[window.top : window.bottom, window.left : window.right] = found.owner
+    expected, is_sure = slow_owners(screen, corners)
+    assert (owners == expected)[is_sure].all()
+    assert is_sure.mean() > 0.9 and len(set(owners[is_sure].tolist())) > 1
+
+
+def test_small_and_large_triangles_are_drawn_alike(monkeypatch):
+    corners = np.random.default_rng(3).uniform(-3, 3, (40, 3, 3)) + [4.0, 0, 0]
+    screen = Screen(FORWARD, 120, 80)
+    first = covered(screen, corners)
+    monkeypatch.setattr(raster, "SMALL", 0)
+    large = covered(screen, corners)
+    monkeypatch.setattr(raster, "SMALL", 1 << 30)
+    monkeypatch.setattr(raster, "AT_ONCE", 500)
+    small = covered(screen, corners)
+    for other in (large, small):
+        assert np.array_equal(first.owner, other.owner) and np.array_equal(first.depth, other.depth)
+
+
+def test_what_lies_behind_the_camera_is_cut_off():
+    corners = np.array([[[0.0, 0, 1], [1, 0, 3], [0, 1, -1]], [[0, 0, -1], [1, 0, -2], [0, 1, 5]]])
+    parts, owners = triangles_ahead(corners, 0.5)
+    assert owners.tolist() == [1, 0, 0] and (parts[:, :, 2] >= 0.5 - 1e-12).all()
+    areas = [0.5 * np.linalg.norm(np.cross(p[1] - p[0], p[2] - p[0])) for p in (*parts, *corners)]
+    assert areas[1] + areas[2] < areas[3] and areas[0] < areas[4]
+
+
+def test_segments_are_cut_at_the_edge_of_the_picture():
+    ends = np.array(
+        [[[-10.0, 5, 1], [30, 5, 1]], [[5, -10, 1], [5, -1, 1]], [[3, 4, 1], [6, 8, 2]]]
+    )
+    assert segments_within(ends, 20, 10).tolist() == [
+        [[0, 5, 1], [20, 5, 1]],
+        [[3, 4, 1], [6, 8, 2]],
+    ]
+
+
+def test_a_segment_is_hidden_by_what_is_before_it():
+    screen = Screen(FORWARD, 40, 40)
+    ends = np.array([[[4.0, -0.5, 0.01], [4.0, 0.5, 0.01]]])
+    open_to_see = drawn_segments(screen, ends, np.zeros((40, 40)), 0.0)
+    assert open_to_see.any() and open_to_see.any(axis=1).sum() == 2
+    assert not drawn_segments(screen, ends, np.full((40, 40), 1 / 3.9), 0.0).any()
+    assert (drawn_segments(screen, ends, np.full((40, 40), 1 / 4.1), 0.0) == open_to_see).all()
+
+
+def test_the_edges_of_a_box_are_twelve_and_of_a_sheet_its_border():
+    corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    triangles = np.array([[q[0], q[i], q[i + 1]] for q in quads for i in (1, 2)])
+    assert len(seen_edges(corners, triangles)) == 12
+    apart = corners[triangles].reshape(-1, 3)
+    assert len(seen_edges(apart, np.arange(36).reshape(-1, 3))) == 12
+    assert len(seen_edges(corners, triangles[:2])) == 4
+
+
+@pytest.mark.parametrize("look", [overview, at_gap])
+def test_the_line_is_in_the_picture_in_the_colour_of_its_status(look):
+    run = record()
+    still = still_of(replay_of(run))
+    camera = look(still)
+    image = drawn(still, camera, 320, 200)
+    screen = Screen(camera, 320, 200)
+    for end in still.line:
+        x, y, _ = screen.point(end)
+        expected = np.round(rgb(COLOURS[run.status_of(run.worst)]) * 255)
+        assert np.abs(image[int(y), int(x)] - expected).max() <= 1
+    assert len(np.unique(image.reshape(-1, 3), axis=0)) > 50
+
+
+def test_solid_bodies_hide_and_obstacles_do_not():
+    still = still_of(replay_of(record()))
+    solid = [body for body in still.bodies if body.opacity == 1.0]
+    assert {body.kind for body in solid} == {"link"}
+    assert {body.opacity for body in still.bodies} == {1.0, 0.5}
+    without = replace(still, bodies=tuple(solid), nearest=())
+    seen, alone = (drawn(one, overview(still), 160, 100).astype(int) for one in (still, without))
+    opaque = np.abs(seen - alone).max(axis=2)
+    assert (opaque > 5).any() and (opaque <= 5).any()
+
+
+def test_the_common_region_shines_through():
+    run = with_contacts(record())
+    replay = replay_of(run)
+    assert replay.contacts
+    still = still_of(replace(replay, i_worst=replay.contacts[0].frame))
+    assert still.region is not None
+    shown = drawn(still, at_gap(still), 200, 120).astype(int)
+    hidden = drawn(replace(still, region=None), at_gap(still), 200, 120).astype(int)
+    red = shown - hidden
+    assert ((red[..., 0] >= 0) & (red[..., 2] < -3)).any()
+
+
+def test_the_picture_is_a_png_of_its_size_and_the_same_each_time(monkeypatch):
+    run = record()
+    replay = replay_of(run)
+    first = png_of(run, replay)
+    assert Image.open(io.BytesIO(first)).size == (WIDTH, HEIGHT) == (1280, 800)
+    assert np.asarray(Image.open(io.BytesIO(first)).convert("RGB")).std() > 10
+    monkeypatch.setattr(drawing, "FINER", 1)
+    assert png_of(run, replay) == png_of(run, replay) != first
+
+
+def test_names_of_any_letters_are_words_not_formulas(monkeypatch):
+    monkeypatch.setattr(drawing, "FINER", 1)
+    run = record()
+    odd = replace(run, case=replace(run.case, name="$x^{2$ 机器人 " + "long " * 90))
+    assert png_of(odd, replay_of(odd)).startswith(b"\x89PNG")
