@@ -68,4 +68,6 @@ def _notes_on_padding(case: Case, content: SceneContent) -> Iterable[str]:
 
 
 def _any(pattern: str, names: Collection[str]) -> bool:
-    return pattern in names or ("*" in pattern and any(matches(name, pattern) for name in names))
+    return pattern in names or (
+        not {*"*?["}.isdisjoint(pattern) and any(matches(name, pattern) for name in names)
+    )
