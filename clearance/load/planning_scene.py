@@ -67,6 +67,7 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         allow=tuple(_by_obstacle(matrix, _parts(raw), rows)),
         link_padding=padding,
         held=tuple(held),
+        frame=frames.taken,
     )
 
 
@@ -100,10 +101,14 @@ class _Frames:
             )
         return np.eye(4)
 
+    @property
+    def taken(self) -> str:
+        """The frame that is taken for the world, if it is named otherwise; one at most, as `of` sees to."""
+        return next(iter(self._plain - {"", "world"}), "")
+
     def notes(self) -> list[str]:
         """Which frame is taken for the world."""
-        named = sorted(self._plain - {"", "world"})
-        return [f"frame {name!r} is taken for the world of the case" for name in named]
+        return [f"frame {self.taken!r} is taken for the world of the case"] if self.taken else []
 
 
 def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:

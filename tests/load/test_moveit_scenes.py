@@ -158,6 +158,26 @@ def test_rows_of_an_object_of_several_shapes_are_of_them_all(tmp_path):
     assert content_of(tmp_path, matrix + LISTS).allow == (("can/*", "base"),)
 
 
+BALL = "{id: a, header: {frame_id: %s}, primitives: [{type: 2, dimensions: [1]}]}"
+FRAMED = f"world: {{collision_objects: [{BALL}]}}\n"
+
+
+@pytest.mark.parametrize(
+    ("frame", "base", "is_told"),
+    [
+        ("base", "{}", False),
+        ("world", "{xyz: [0, 0, 2]}", False),
+        ("base", "{xyz: [0, 0, 2]}", True),
+        ("upper", "{}", True),
+    ],
+)
+def test_a_frame_that_is_a_link_elsewhere_is_a_warning(tmp_path, frame, base, is_told):
+    given = NAMED.replace("urdf: arm.urdf", f"urdf: arm.urdf, base: {base}")
+    case = load_small(tmp_path, given, cell__yaml=FRAMED % frame)
+    told = [one.text for one in case.notices if one.kind == "frame"]
+    assert [f"the frame of link {frame!r}" in text for text in told] == [True] * is_told
+
+
 def objects(**n_shapes):
     """A world of spheres on one spot, by name how many."""
     ball = "{type: 2, dimensions: [0.05]}"
