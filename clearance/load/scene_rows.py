@@ -60,7 +60,7 @@ def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
                 Severity.WARNING,
                 "frame",
                 f"the scene's file is in the frame of link {frame!r}, which moves or does not stand at the "
-                "origin, but is taken for the world: obstacles may be elsewhere; place the robot so that both agree",
+                "origin, but is taken for the world: obstacles may be elsewhere; place the robot to agree",
             )
 
 
