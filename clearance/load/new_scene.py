@@ -70,10 +70,10 @@ def new_scene(
     content = read_scene(asked)
     rows = content.scene["obstacles"]  # type: ignore[index]  # as the reader checked
     taken = f"scene from {asked.shown}: {counted(len(rows), 'obstacle')}"
-    if content.notices:
+    case, notes = _with_rows(content, asked, placed, meshes)
+    if content.notices or case.notices:
         told = (f"{taken}; it stays the file that it is, since it brings a warning",)
         return NewScene(path_from(folder, given), "as it is, since it brings a warning", taken=told)
-    case, notes = _with_rows(content, asked, placed, meshes)
     contents = dict(_contents(rows, content, asked, folder))
     return NewScene(
         SCENE,

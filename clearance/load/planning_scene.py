@@ -5,6 +5,7 @@ World objects become obstacles, attached ones ride on their link. Not for: the r
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
@@ -18,6 +19,7 @@ from clearance.load.moveit_shapes import Row, SceneMeshes
 from clearance.load.moveit_values import Message, Poses, items, message, messages, number, text
 from clearance.load.pose_row import pose_row
 from clearance.load.scene_request import HeldPart, SceneContent, SceneRequest
+from clearance.world.rules import pattern_of
 
 OCTOMAP = "<octomap>"
 """The name of a map in MoveIt, by which its matrix may allow it."""
@@ -62,9 +64,10 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         {"obstacles": rows},
         (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(meshes.by_variable)),
         tuple(notices_on_stand_ins(meshes.stand_ins)),
-        allow=tuple(_by_obstacle(matrix, rows)),
+        allow=tuple(_by_obstacle(matrix, _parts(raw), rows)),
         link_padding=padding,
         held=tuple(held),
+        frame=frames.taken,
     )
 
 
@@ -98,10 +101,14 @@ class _Frames:
             )
         return np.eye(4)
 
+    @property
+    def taken(self) -> str:
+        """The frame that is taken for the world, if it is named otherwise; one at most, as `of` sees to."""
+        return next(iter(self._plain - {"", "world"}), "")
+
     def notes(self) -> list[str]:
         """Which frame is taken for the world."""
-        named = sorted(self._plain - {"", "world"})
-        return [f"frame {name!r} is taken for the world of the case" for name in named]
+        return [f"frame {self.taken!r} is taken for the world of the case"] if self.taken else []
 
 
 def _world(world: Message, frames: _Frames, meshes: SceneMeshes, poses: Poses) -> Iterator[Row]:
@@ -120,7 +127,7 @@ def _attached(
     for where, given in messages(state, "attached_collision_objects"):
         with at(where):
             link = text(given, "link_name")
-            touch = tuple(dict.fromkeys(_touch_links(given)))
+            touch = tuple(dict.fromkeys(map(pattern_of, _touch_links(given))))
             for row in _held(message(given, "object"), link, meshes, poses):
                 rows.append(row | {"on": link})
                 held.append(HeldPart(row["name"], link, touch))
@@ -142,12 +149,29 @@ def _held(held: Message, link: str, meshes: SceneMeshes, poses: Poses) -> list[R
     return object_rows(held, np.eye(4), meshes, poses)
 
 
-def _by_obstacle(pairs: list[tuple[str, str]], rows: list[Row]) -> Iterator[tuple[str, str]]:
-    """The pairs with the name of an object of several shapes put as a pattern of them all."""
-    single = {row["name"] for row in rows}
-    parted = {name.rpartition("/")[0] for name in single} - single
-    for one, other in pairs:
-        yield tuple(f"{name}/*" if name in parted else name for name in (one, other))  # type: ignore[misc]
+def _parts(raw: Message) -> dict[str, list[str]]:
+    """The names of the obstacles of each object of several shapes."""
+    objects = [one for _, one in messages(message(raw, "world"), "collision_objects")]
+    objects += [one for _, one in _objects_held(message(raw, "robot_state"))]
+    n_shapes = {
+        text(one, "id"): len(items(one, "primitives")) + len(items(one, "meshes"))
+        for one in objects
+    }
+    return {name: [f"{name}/{i}" for i in range(n)] for name, n in n_shapes.items() if n > 1}
+
+
+def _by_obstacle(
+    pairs: list[tuple[str, str]], parts: dict[str, list[str]], rows: list[Row]
+) -> Iterator[tuple[str, str]]:
+    """The pairs with the obstacles of an object of several shapes for its name; one pattern, if of no other."""
+    patterns = {}
+    for name, own in parts.items():
+        before = f"{name}/"
+        alone = sum(row["name"].startswith(before) for row in rows) == len(own)
+        one = [f"{pattern_of(name)}/*"]
+        patterns[pattern_of(name)] = one if alone else [pattern_of(part) for part in own]
+    for first, second in pairs:
+        yield from itertools.product(patterns.get(first, [first]), patterns.get(second, [second]))
 
 
 def _padding(raw: Message) -> dict[str, float]:

@@ -69,7 +69,14 @@ def read_points_text(data: bytes) -> Points:
         raise BadShape("there are no rows below the header", valid="at least one: x, y, z")
     of_axes = [_of(columns, axis) for axis in "xyz"]
     in_own_units(places, of_axes)
-    return Points(places, tuple(note_on_units(of_axes)), of_axes[0].unit is not None)
+    notes = [*_on_more_columns(header, n_cells), *note_on_units(of_axes)]
+    return Points(places, tuple(notes), of_axes[0].unit is not None)
+
+
+def _on_more_columns(header: list[str] | None, n_cells: int) -> Iterator[str]:
+    """A note where it is a guess which columns are x, y and z: some tables begin with a number of the point."""
+    if header is None and n_cells > 3:
+        yield f"no header names its {n_cells} columns: the first three are taken for x, y and z"
 
 
 def _lines(data: bytes) -> Iterator[tuple[int, bytes]]:

@@ -46,6 +46,7 @@ class SceneContent:
         notes: what was left out or decided, one line each. notices: what bears on the verdict.
         allow: names of bodies that may touch, in any order, of which some may not be there.
         link_padding: [m] by link. held: obstacles on links that hold them.
+        frame: what its poses are given in, if its file says so; it is taken for the world.
     """
 
     scene: object
@@ -54,3 +55,4 @@ class SceneContent:
     allow: tuple[tuple[str, str], ...] = ()
     link_padding: dict[str, float] = field(default_factory=dict)
     held: tuple[HeldPart, ...] = ()
+    frame: str = ""

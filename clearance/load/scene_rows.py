@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
+
+import numpy as np
 
 from clearance.load.allow import BodyNames, body_names
 from clearance.load.scene_request import SceneContent
 from clearance.world.case import Case, PlacedRobot
-from clearance.world.notice import listed
+from clearance.world.notice import Notice, Severity, listed
+from clearance.world.robot import JointKind
 from clearance.world.rules import Allowance, matches
+
+ORIGIN = 1e-9
+"""[m] and [-] How far a link's pose may be off the world's and count as the same."""
 
 
 def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]:
-    """The case with the rows of its scene file after its own, and notes on what could not be taken over."""
+    """The case with the rows of its scene file after its own, and notes on what could not be taken over.
+
+    A warning is added where the frame of the file is a link that is not the world's origin.
+    """
+    case = replace(case, notices=(*case.notices, *_on_frame(case, content.frame)))
     if not content.allow and not content.link_padding:
         return case, []
     names = body_names(case)
@@ -42,6 +52,31 @@ def with_scene_rows(case: Case, content: SceneContent) -> tuple[Case, list[str]]
     return replace(case, robots=robots, allow=(*case.allow, *rows)), notes
 
 
+def _on_frame(case: Case, frame: str) -> Iterator[Notice]:
+    """A warning for each robot of which the frame of a scene's file is a link, but not where the world is."""
+    for placed in case.robots:
+        if frame in placed.robot.link_names and not _is_world(placed, frame):
+            yield Notice(
+                Severity.WARNING,
+                "frame",
+                f"the scene's file is in the frame of link {frame!r}, which moves or does not stand at the "
+                "origin, but is taken for the world: obstacles may be elsewhere; place the robot to agree",
+            )
+
+
+def _is_world(placed: PlacedRobot, link: str) -> bool:
+    """True for a link that stands at the origin of the world."""
+    above = {joint.child: joint for joint in placed.robot.joints}
+    pose = np.eye(4)
+    while link in above:
+        joint = above[link]
+        if joint.kind is not JointKind.FIXED:
+            return False
+        pose, link = joint.parent_from_joint @ pose, joint.parent
+    standing = placed.world_from_base @ pose
+    return placed.mount is None and bool(np.abs(standing - np.eye(4)).max() < ORIGIN)
+
+
 def _row(pair: tuple[str, str], names: BodyNames) -> Allowance | None:
     """The row of a link and an obstacle, or of two obstacles that can meet."""
     for one, other in (pair, pair[::-1]):
@@ -68,4 +103,6 @@ def _notes_on_padding(case: Case, content: SceneContent) -> Iterable[str]:
 
 
 def _any(pattern: str, names: Collection[str]) -> bool:
-    return pattern in names or ("*" in pattern and any(matches(name, pattern) for name in names))
+    return pattern in names or (
+        not {*"*?["}.isdisjoint(pattern) and any(matches(name, pattern) for name in names)
+    )

@@ -22,6 +22,11 @@ def matches(name: str, pattern: str) -> bool:
     return name == pattern or fnmatchcase(name, pattern)
 
 
+def pattern_of(name: str) -> str:
+    """The pattern that is of this name alone, whatever wildcards the name holds."""
+    return "".join(f"[{letter}]" if letter in "*?[" else letter for letter in name)
+
+
 @dataclass(frozen=True)
 class PairPattern:
     """Two patterns of bodies, in any order, and when they are meant.

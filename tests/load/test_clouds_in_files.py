@@ -53,6 +53,11 @@ FILES = {
 }
 
 
+GUESSED = {
+    "colours.xyz": ("no header names its 6 columns: the first three are taken for x, y and z",)
+}
+
+
 def as_set(points):
     return sorted(map(tuple, np.asarray(points, dtype=np.float64).tolist()))
 
@@ -61,7 +66,7 @@ def as_set(points):
 def test_the_points_are_those_of_the_file(name):
     found = cloud_from_bytes(FILES[name], name, 0.01)
     assert as_set(found.shape.vertices) == as_set(POINTS)
-    assert (found.shape.ball_radius, found.notes) == (0.01, (GAPS,))
+    assert (found.shape.ball_radius, found.notes) == (0.01, (*GUESSED.get(name, ()), GAPS))
 
 
 @pytest.mark.parametrize("form", ["ascii", "binary", "binary_compressed"])

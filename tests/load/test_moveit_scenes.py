@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 import clearance as cl
 from clearance import cli
 from clearance.errors import BadInput
+from clearance.world.pairs import measured_pairs
+from clearance.world.rules import matches
 from tests.examples import examples
 from tests.load.making import CASE, CUBE, cube_stl, write_case
 from tests.load.making_case import load_small
@@ -154,6 +156,71 @@ def test_rows_of_an_object_of_several_shapes_are_of_them_all(tmp_path):
         "allowed_collision_matrix: {entry_names: [can, base], entry_values: [[1, 1], [1, 1]]}\n"
     )
     assert content_of(tmp_path, matrix + LISTS).allow == (("can/*", "base"),)
+
+
+BALL = "{id: a, header: {frame_id: %s}, primitives: [{type: 2, dimensions: [1]}]}"
+FRAMED = f"world: {{collision_objects: [{BALL}]}}\n"
+
+
+@pytest.mark.parametrize(
+    ("frame", "base", "is_told"),
+    [
+        ("base", "{}", False),
+        ("world", "{xyz: [0, 0, 2]}", False),
+        ("base", "{xyz: [0, 0, 2]}", True),
+        ("upper", "{}", True),
+    ],
+)
+def test_a_frame_that_is_a_link_elsewhere_is_a_warning(tmp_path, frame, base, is_told):
+    given = NAMED.replace("urdf: arm.urdf", f"urdf: arm.urdf, base: {base}")
+    case = load_small(tmp_path, given, cell__yaml=FRAMED % frame)
+    told = [one.text for one in case.notices if one.kind == "frame"]
+    assert [f"the frame of link {frame!r}" in text for text in told] == [True] * is_told
+
+
+def objects(**n_shapes):
+    """A world of spheres on one spot, by name how many."""
+    ball = "{type: 2, dimensions: [0.05]}"
+    rows = [
+        f'  - {{id: "{name.replace("_", "/")}", primitives: [{", ".join([ball] * n)}]}}\n'
+        for name, n in n_shapes.items()
+    ]
+    return "world:\n  collision_objects:\n" + "".join(rows)
+
+
+def allowing(one, other):
+    """A matrix in which two names may touch."""
+    row = f'{{entry_names: ["{one}", "{other}"], entry_values: [[0, 1], [1, 0]]}}'
+    return f"allowed_collision_matrix: {row}\n"
+
+
+def test_an_object_named_below_another_is_no_shape_of_it(tmp_path):
+    both = allowing("can", "base") + objects(can=2, can_lid=1)
+    assert content_of(tmp_path, both).allow == (("can/0", "base"), ("can/1", "base"))
+    gone = allowing("can", "base") + objects(can_lid=1)
+    assert content_of(tmp_path, gone).allow == (("can", "base"),)
+
+
+@pytest.mark.parametrize("name", ["po*", "po[st]", "pos?"])
+def test_wildcards_in_names_of_a_matrix_or_of_touch_links_are_letters(tmp_path, name):
+    document = allowing(name, "base") + objects(post=1, own=1).replace('"own"', f'"{name}"')
+    (tmp_path / "cell.yaml").write_text(document)
+    case = load_small(tmp_path, NAMED)
+    allowed = {obstacle for link, obstacle in _left_out(case) if link == "base"}
+    assert allowed == {name}
+    held = MESSAGE.replace("touch_links: [upper]", f'touch_links: ["{name}"]')
+    assert all(
+        not matches("post", one) for part in content_of(tmp_path, held).held for one in part.touch
+    )
+
+
+def _left_out(case):
+    return {(out.link, out.obstacle) for out in measured_pairs(case)[1]}
+
+
+def test_a_name_that_has_two_rows_in_a_matrix_is_refused(tmp_path):
+    with pytest.raises(BadInput, match="two entry_names have the name 'base'"):
+        content_of(tmp_path, allowing("base", "base") + LISTS)
 
 
 def test_meshes_are_taken_from_the_message_and_from_files(tmp_path):
