@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 import clearance as cl
 from clearance.errors import BadInput
 from clearance.pytest_plugin import assert_clear
+from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates, write_gates
 
 pytest_plugins = ["pytester"]
@@ -215,6 +217,17 @@ def test_what_comes_nearer_is_told(run, asked, told):
     with pytest.raises(AssertionError) as error:
         assert_clear(run, **asked)
     assert told in str(error.value) and "gates is not clear" in str(error.value)
+
+
+def test_suspect_input_is_never_clear_whichever_pair_is_asked_about(tmp_path):
+    case = load_gates(tmp_path, CLEAR)
+    doubt = Notice(Severity.SUSPECT, "units", "lengths look like millimetres")
+    suspect = cl.check(dataclasses.replace(case, notices=(*case.notices, doubt)), need="limit")
+    for asked in ({"between": ("box", A)}, {"at_least": 0.001}, {}):
+        with pytest.raises(AssertionError, match="suspect units: lengths look like"):
+            assert_clear(suspect, **asked)
+    accepted = dataclasses.replace(suspect.record.case, accept=("units",))
+    assert_clear(cl.check(accepted, need="limit"), between=("box", A))
 
 
 def test_pairs_that_are_not_there_are_an_error_with_the_nearest_name(run):
