@@ -62,7 +62,7 @@ def _workers(jobs: int) -> LocalCluster:
                     n_workers=jobs,
                     threads_per_worker=1,
                     processes=True,
-                    dashboard_address=None,
+                    dashboard_address="127.0.0.1:0",
                     memory_limit=0,
                     silence_logs=logging.CRITICAL,
                 )
@@ -127,7 +127,11 @@ def _settings() -> Iterator[None]:
         {
             "distributed.scheduler.allowed-failures": LOST_WITH,
             "distributed.comm.timeouts.connect": f"{CONNECTING}s",
-            "distributed.client.heartbeat": "1s",
+            "distributed.scheduler.work-stealing": False,
+            "distributed.scheduler.active-memory-manager.start": False,
+            "distributed.worker.profile.enabled": False,
+            "distributed.admin.tick.interval": "1s",
+            "distributed.admin.system-monitor.interval": "10s",
         }
     ):
         yield

@@ -131,8 +131,9 @@
     );
     byId("chosen-command").textContent = `clearance view ${quoted(data.store)} ${quoted(data.names[i])}`;
     const link = byId("chosen-page");
-    link.hidden = !data.pages[i];
-    link.href = data.pages[i] ? `${data.pages[i]}/report.html` : "";
+    const page = data.pages[i] || "";
+    link.hidden = !page;
+    link.href = page ? `${page}/report.html` : "";
     draw();
   }
 

@@ -19,7 +19,7 @@ from markupsafe import escape
 
 from clearance import __version__
 from clearance.batch.answer import STATUSES, BatchAnswer
-from clearance.batch.case_page import folder_of
+from clearance.batch.case_page import FOLDER, folder_of
 from clearance.batch.rows import CURVE
 from clearance.report.wording import count
 
@@ -73,7 +73,9 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
     names = table["case"].to_pylist()
     bodies, rules = _Texts(), _Texts()
     keys = table["key"].to_pylist()
-    folders = [folder_of(name, key) if key else "" for name, key in zip(names, keys, strict=True)]
+    written = {path.parent.name for path in place.glob(f"{FOLDER}/*/report.html")}
+    pages = zip(names, keys, strict=True) if written else ()
+    folders = [folder_of(name, key) if key else "" for name, key in pages]
     return {
         "store": place.name,
         "statuses": STATUSES,
@@ -93,10 +95,7 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "levels": _levels(table["fail"].to_pylist(), table["warn"].to_pylist()),
         "curves": _curves(table["curve"].to_pylist(), table["warn"].to_pylist()),
         "n_curve": CURVE,
-        "pages": [
-            folder if folder and (place / folder / "report.html").is_file() else ""
-            for folder in folders
-        ],
+        "pages": [folder if folder.rpartition("/")[2] in written else "" for folder in folders],
     }
 
 
@@ -146,9 +145,8 @@ def _curves(curves: Sequence[list[float] | None], warns: Sequence[float | None])
     heights = np.zeros((len(curves), CURVE), dtype=np.uint8)
     for row, curve, warn in zip(heights, curves, warns, strict=True):
         if curve:
-            values = np.asarray(curve)[np.arange(CURVE) * len(curve) // CURVE]
-            share = np.clip(np.nan_to_num(values, nan=np.inf) / _top(warn), 0.0, 1.0)
-            row[:] = 1 + np.floor(share * (ABOVE - 1)).astype(np.uint8)
+            values = np.array(curve)[np.arange(CURVE) * len(curve) // CURVE]
+            row[:] = 1 + np.clip(values / _top(warn), 0.0, 1.0) * (ABOVE - 1)
     return base64.b64encode(heights.tobytes()).decode()
 
 

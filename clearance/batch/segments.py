@@ -30,7 +30,8 @@ def segment_of(rows: Sequence[dict[str, Any]]) -> bytes:
 
 def rows_in(content: bytes, columns: Sequence[str] | None = None) -> pa.Table:
     """The rows of a segment, or some columns of them."""
-    return pq.read_table(pa.BufferReader(content), columns=None if columns is None else [*columns])
+    wanted = None if columns is None else [*columns]
+    return pq.ParquetFile(pa.BufferReader(content)).read(wanted, use_threads=False)
 
 
 def name_of(content: bytes, generation: int) -> str:

@@ -155,7 +155,10 @@ def _look(
 ) -> None:
     """Sets `found` (n,) where the part is in doubt, at poses (n, 4, 4) of the shell's body and of its own."""
     asked = _near_a_hole if shell.few else _within_bounds
-    rows = np.flatnonzero(asked(shell, part, outer, inner) & ~found)
+    near = asked(shell, part, outer, inner)
+    if not near.any():
+        return
+    rows = np.flatnonzero(near & ~found)
     if not len(rows):
         return
     least, most = np.empty(len(rows)), np.empty(len(rows))

@@ -112,8 +112,11 @@ def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses) -> i
 def _in_doubt(
     case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses, along_a_way: bool = False
 ) -> Iterator[int]:
-    one, other = _shapes(case, pair)
     of_one, of_other = poses.of(pair.a), poses.of(pair.b)
-    for k in np.flatnonzero(doubt.at(of_one, of_other, along_a_way)):
+    open_at = doubt.at(of_one, of_other, along_a_way)
+    if not open_at.any():
+        return
+    one, other = _shapes(case, pair)
+    for k in np.flatnonzero(open_at):
         if not distance(one, other, pose_a=of_one[k], pose_b=of_other[k]).contact:
             yield int(k)

@@ -18,6 +18,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 from statistics import median
 
@@ -62,7 +63,7 @@ def main() -> None:
     rows = []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for row in [*_rates(folder, asked), *_bulk(folder, asked)]:
+        for row in chain(_rates(folder, asked), _bulk(folder, asked)):
             rows.append(dict(zip(COLUMNS, row, strict=True)))
             console.print(f"{row[0]:<64} {row[1]:>10.3g} {row[2]:<12} {row[3]}", highlight=False)
     load = " ".join(f"{value:.1f}" for value in os.getloadavg())
