@@ -27,6 +27,16 @@ LIBRARIES = ("numpy", "numba", "llvmlite", "scipy", "trimesh", "shapely", "lxml"
 """Those that can change a row beside this package; pyarrow's numbers are exact."""
 
 
+def variable_mark(name: str) -> str:
+    """Stands among the files of a case that lie where a variable says, with its value in place of a hash."""
+    return f"(${name})"
+
+
+def variable_of(mark: str) -> str:
+    """The variable that a mark is of."""
+    return mark[2:-1]
+
+
 @functools.cache
 def program() -> str:
     """sha256 of all sources of this package, and of the versions below them."""
