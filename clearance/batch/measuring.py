@@ -6,7 +6,6 @@ A cell is read once in a process and stays for the next case in it. Not for: whi
 from __future__ import annotations
 
 import json
-import os
 import time
 import traceback
 from collections.abc import Sequence
@@ -16,13 +15,14 @@ from typing import Any, NamedTuple
 
 from clearance.batch.file_hashes import Seen, seen
 from clearance.batch.item import Item
-from clearance.batch.keys import DAY, key_of, program, variable_mark
+from clearance.batch.keys import DAY, key_of, program, value_digest, variable_mark
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
 from clearance.errors import ClearanceError, Incomplete
 from clearance.load.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.load.manifest_schema import Reading
 from clearance.load.mesh_paths import variables_of
+from clearance.load.xacro_variables import variables_asked
 from clearance.run import Resources, answer
 from clearance.world.case import Case, Source
 
@@ -186,11 +186,12 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
 
 def conditions_of(item: Item, case: Case) -> tuple[Source, ...]:
     """What a row depends on beside the files of its case, as if each were one: the day, where it has waivers that
-    may end on one, and variables that name folders in which files of it lie.
+    may end on one, variables that name folders in which files of it lie, and those that its xacro files ask for.
     """
     day = [Source(DAY, item.options.today, 0)] if case.waivers else []
     named = variables_of([one.read_from for one in case.sources])
-    return (*day, *(Source(variable_mark(name), os.environ[name], 0) for name in named))
+    named = list(dict.fromkeys([*named, *variables_asked(case.sources)]))
+    return (*day, *(Source(variable_mark(name), value_digest(name), 0) for name in named))
 
 
 @lru_cache(maxsize=CELLS)

@@ -8,14 +8,13 @@ asks for more. Not for: measuring the others (`measuring`).
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.keys import DAY, key_of, variable_of
+from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.store import Store
 from clearance.load.input_files import InputFiles
 from clearance.load.rosbag_file import files_of
@@ -111,7 +110,7 @@ class _Look:
 
 def _is_so(shown: str, value: str, today: str) -> bool:
     """True if the day, or a variable, has the value that it had."""
-    return value == (today if shown == DAY else os.environ.get(variable_of(shown)))
+    return value == (today if shown == DAY else value_digest(variable_of(shown)))
 
 
 def _paths(given: GivenTrajectory) -> list[Path]:

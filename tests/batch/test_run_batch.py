@@ -265,3 +265,21 @@ def test_a_package_that_a_variable_finds_elsewhere_is_measured_again(
     told, now = run_here(manifest, tmp_path / "out")
     assert len(told.measured) == len(NEAREST)
     assert statuses(before)["t003"] == "clear" and statuses(now)["t003"] == "contact"
+
+
+@pytest.mark.cold  # xacro runs in a process of its own
+@pytest.mark.slow  # and is started twice
+def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypatch):
+    pytest.importorskip("xacro")
+    sized = URDF.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    sized = sized.replace('size="0.2 0.2 0.2"', 'size="$(optenv CART_LENGTH 0.2) 0.2 0.2"')
+    (manifest.parent / "cart.urdf.xacro").write_text(sized)
+    cell = manifest.parent / "cell.yaml"
+    cell.write_text(CELL.replace("cart.urdf", "cart.urdf.xacro, xacro: true"))
+    monkeypatch.delenv("CART_LENGTH", raising=False)
+    _, before = run_here(manifest, tmp_path / "out")
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert told.measured == [] and statuses(before)["t003"] == "clear"
+    monkeypatch.setenv("CART_LENGTH", "1.5")
+    told, now = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == len(NEAREST) and statuses(now)["t003"] == "contact"
