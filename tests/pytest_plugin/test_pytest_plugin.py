@@ -13,6 +13,7 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
+from clearance.load.case_list import cases_in
 from clearance.pytest_plugin import assert_clear
 from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates, write_gates
@@ -250,3 +251,11 @@ def test_pytest_collects_nothing_else(inside, pytester):
     write_gates(pytester.path, BROKEN)
     assert inside().ret == pytest.ExitCode.NO_TESTS_COLLECTED
     shutil.rmtree(pytester.path / "reports", ignore_errors=True)
+
+
+def test_a_listed_case_that_is_a_link_to_nowhere_is_not_left_out(tmp_path):
+    write_case(tmp_path, name="there.yaml")
+    (tmp_path / "gone.yaml").symlink_to("nowhere.yaml")
+    listed = tmp_path / "all.clearance.yaml"
+    listed.write_text('cases: ["*.yaml"]')
+    assert [path.name for path in cases_in(listed)] == ["gone.yaml", "there.yaml"]
