@@ -8,7 +8,7 @@ import pyarrow.parquet as pq
 import pytest
 import trimesh
 
-from clearance.batch import file_hashes
+from clearance.batch import file_hashes, rows
 from clearance.batch.engine import InThisProcess
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.keys import key_of, program
@@ -283,3 +283,13 @@ def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypa
     monkeypatch.setenv("CART_LENGTH", "1.5")
     told, now = run_here(manifest, tmp_path / "out")
     assert len(told.measured) == len(NEAREST) and statuses(now)["t003"] == "contact"
+
+
+def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeypatch):
+    _, found = run_here(manifest, tmp_path / "out")
+    assert set(found.cases["incomplete"].to_pylist()) == {""}
+    _, least = run_here(manifest, tmp_path / "least", changes=Changes(need="minimum"))
+    assert all("need 'minimum'" in why for why in least.cases["incomplete"].to_pylist())
+    monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
+    _, cut = run_here(manifest, tmp_path / "cut")
+    assert set(cut.cases["incomplete"].to_pylist()) == {"1 of 1 findings are not listed"}
