@@ -259,3 +259,11 @@ def test_a_listed_case_that_is_a_link_to_nowhere_is_not_left_out(tmp_path):
     listed = tmp_path / "all.clearance.yaml"
     listed.write_text('cases: ["*.yaml"]')
     assert [path.name for path in cases_in(listed)] == ["gone.yaml", "there.yaml"]
+
+
+def test_a_name_that_nothing_has_checked_stays_on_one_line(inside, pytester):
+    rule = r'{name: "x\n::error::told", between: [box, gate_b], fail: 0.001}'
+    write_case(pytester.path, limits=f"{{fail: 0.005, rules: [{rule}]}}")
+    result = inside()
+    result.assert_outcomes(failed=3)
+    assert not [line for line in result.outlines if line.startswith("::error")]
