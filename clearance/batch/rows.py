@@ -130,8 +130,9 @@ def row_of(run: Run) -> dict[str, Any]:
 
 def _incomplete(record: Record, n_findings: int) -> str:
     """Why something that is not clear may have no finding in the row; empty where each has one."""
-    n_left = n_findings - MOST_FINDINGS
-    return why_incomplete(record) or (f"{n_left:,} of {n_findings:,} findings are not listed" if n_left > 0 else "")
+    n_left = max(0, n_findings - MOST_FINDINGS)
+    left = f"{n_left:,} of {n_findings:,} findings are not listed" if n_left else ""
+    return why_incomplete(record) or left
 
 
 def _told(finding: Finding) -> dict[str, Any]:
