@@ -8,7 +8,7 @@ from pathlib import Path
 
 from clearance.batch.item import Item
 from clearance.batch.keys import key_of
-from clearance.batch.measuring import day_of, read_item
+from clearance.batch.measuring import conditions_of, read_item
 from clearance.progress import Progress
 from clearance.run import Resources, Run, answer
 
@@ -31,6 +31,6 @@ def write_case_page(place: Path, item: Item, progress: Progress | None = None) -
     """
     case = read_item(item).case
     run = answer(item.options.of_report().question(case), Resources(progress=progress))
-    files = (*case.sources, *day_of(item, case))
+    files = (*case.sources, *conditions_of(item, case))
     key = key_of(item, [(one.path, one.sha256) for one in files])
     return run, run.save(place / folder_of(item.name, key))

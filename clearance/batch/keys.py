@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import os
 import platform
 from collections.abc import Iterable
 from importlib import metadata
 from pathlib import PurePath
 
 from clearance.batch.item import Item
+from clearance.extras import is_installed
 from clearance.import_closure import PACKAGE, digest_of
 
 FORMAT = 1
@@ -26,12 +28,32 @@ DAY = "(day)"
 LIBRARIES = ("numpy", "numba", "llvmlite", "scipy", "trimesh", "shapely", "lxml", "ruamel.yaml")
 """Those that can change a row beside this package; pyarrow's numbers are exact."""
 
+READERS = ("xacro", "cascadio", "rosbags", "ezdxf", "mujoco")
+"""Those that read inputs of some kinds, where they are installed."""
+
+
+def variable_mark(name: str) -> str:
+    """Stands among the files of a case that depends on a variable, with its `value_digest` in place of a hash."""
+    return f"(${name})"
+
+
+def variable_of(mark: str) -> str:
+    """The variable that a mark is of."""
+    return mark[2:-1]
+
+
+def value_digest(name: str) -> str:
+    """sha256 of a variable's value, which may be no one's business; empty where it is not set."""
+    value = os.environ.get(name)
+    return "" if value is None else hashlib.sha256(os.fsencode(value)).hexdigest()
+
 
 @functools.cache
 def program() -> str:
     """sha256 of all sources of this package, and of the versions below them."""
     digest = hashlib.sha256(digest_of(sorted(PACKAGE.rglob("*.py"))).encode())
     versions = [(name, metadata.version(name)) for name in (*LIBRARIES, "pyarrow")]
+    versions += [(name, metadata.version(name)) for name in READERS if is_installed(name)]
     told = (FORMAT, versions, platform.python_version(), platform.machine())
     digest.update(repr(told).encode())
     return digest.hexdigest()

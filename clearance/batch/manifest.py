@@ -45,7 +45,9 @@ def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
     Raises:
         BadInput: a manifest that is none, a pattern that nothing matches, or two cases of one name.
     """
-    found: dict[tuple[str, str, str | None], Item] = {}
+    if changes.certify_gap == 0.0:
+        raise BadInput("certify: a gap of 0 m", valid="a length above 0")
+    found: dict[tuple[object, ...], Item] = {}
     plain: list[Path] = []
     for argument in arguments:
         for path in _matching(argument, Path()):
@@ -63,9 +65,9 @@ def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
     return items
 
 
-def _identity(item: Item) -> tuple[str, str, str | None]:
-    given = item.trajectory
-    return item.file, "" if given is None else given.path, None if given is None else given.robot
+def _identity(item: Item) -> tuple[object, ...]:
+    """What is measured; the same files with other options, or read otherwise, are another case."""
+    return item.file, item.trajectory, item.options
 
 
 def _is_manifest(path: Path) -> bool:
@@ -157,8 +159,10 @@ def _require_own_names(items: Sequence[Item]) -> None:
     for item in items:
         other = seen.setdefault(item.name, item)
         if other is not item:
+            files = dict.fromkeys([_file(other), _file(item)])
+            told = " and ".join(files) if len(files) > 1 else f"{_file(item)}, asked in two ways"
             raise DuplicateName(
-                f"two cases would be called {item.name!r}: {_file(other)} and {_file(item)}",
+                f"two cases would be called {item.name!r}: {told}",
                 valid="a name: in each manifest, which goes before the names of its cases",
             )
     if not items:

@@ -15,12 +15,14 @@ from typing import Any, NamedTuple
 
 from clearance.batch.file_hashes import Seen, seen
 from clearance.batch.item import Item
-from clearance.batch.keys import DAY, key_of, program
+from clearance.batch.keys import DAY, key_of, program, value_digest, variable_mark
 from clearance.batch.rows import inputs_text, row_of
 from clearance.batch.segments import segment_of
 from clearance.errors import ClearanceError, Incomplete
 from clearance.load.case_file import CellFile, load_case, load_cell, with_trajectory_file
 from clearance.load.manifest_schema import Reading
+from clearance.load.mesh_paths import variables_of
+from clearance.load.xacro_variables import variables_asked
 from clearance.run import Resources, answer
 from clearance.world.case import Case, Source
 
@@ -126,13 +128,14 @@ class _Work:
             text = f"a fault of this program, not of the input: {type(error).__name__}: {error}"
             self.faults.append(Fault(item.number, text, traceback.format_exc()))
             return
-        case, day = found.case, day_of(item, found.case)
-        key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *day)])
-        inputs = inputs_text((*found.kept, *day))
+        case, others = found.case, conditions_of(item, found.case)
+        key = key_of(item, [(one.path, one.sha256) for one in (*case.sources, *others)])
+        inputs = inputs_text((*found.kept, *others))
         self.rows.append({"key": key, "file": item.file, "inputs": inputs} | row)
         reason = row["reasons"][0] if row["reasons"] else ""
         told = (row["status"], row["exit_code"], row["clearance"], reason)
         self.measured.append(Measured(item.number, key, *told))
+        self._note(found.kept, found.since or read)
         self._note(case.sources, read)
 
     def _note(self, sources: Sequence[Source], read: int) -> None:
@@ -150,10 +153,15 @@ class _Work:
 
 
 class ReadItem(NamedTuple):
-    """A case, and the files that it has in common with others of its cell, or all."""
+    """A case, and the files that it has in common with others of its cell, or all.
+
+    Attributes:
+        since: [ns] when reading `kept` began, where a case before has read them; else 0.
+    """
 
     case: Case
     kept: tuple[Source, ...]
+    since: int = 0
 
 
 def read_item(item: Item, batch: str = "") -> ReadItem:
@@ -169,18 +177,25 @@ def read_item(item: Item, batch: str = "") -> ReadItem:
     if given is None:
         case = load_case(item.file)
         return ReadItem(case, case.sources)
-    cell = _cell(item.file, batch)
+    cell, since = _cell(item.file, batch)
     reading = Reading.model_validate(json.loads(given.reading))
     asked = reading.model_copy(update={"file": given.path})
     case = with_trajectory_file(cell, asked, item.name, given.robot)
-    return ReadItem(case, cell.files.sources)
+    return ReadItem(case, cell.files.sources, since)
 
 
-def day_of(item: Item, case: Case) -> tuple[Source, ...]:
-    """The day as if it were a file, where the case has waivers that may end on one."""
-    return (Source(DAY, item.options.today, 0),) if case.waivers else ()
+def conditions_of(item: Item, case: Case) -> tuple[Source, ...]:
+    """What a row depends on beside the files of its case, as if each were one: the day, where it has waivers that
+    may end on one, variables that name folders in which files of it lie, and those that its xacro files ask for.
+    """
+    day = [Source(DAY, item.options.today, 0)] if case.waivers else []
+    named = variables_of([one.read_from for one in case.sources])
+    named = list(dict.fromkeys([*named, *variables_asked(case.sources)]))
+    return (*day, *(Source(variable_mark(name), value_digest(name), 0) for name in named))
 
 
 @lru_cache(maxsize=CELLS)
-def _cell(path: str, batch: str) -> CellFile:
-    return load_cell(path)
+def _cell(path: str, batch: str) -> tuple[CellFile, int]:
+    """A cell, and when [ns] reading it began: what becomes of its files later is not what was read."""
+    since = time.time_ns()
+    return load_cell(path), since

@@ -1,8 +1,8 @@
 """Which cases of a batch the store has answered already, without reading a case: by the hashes of its files.
 
 A case whose files are all as they were when they were last read is what it was then. A file that was not there
-then, and would now be found before another (a mesh in an earlier package folder), goes unnoticed unless `rehash`
-or `fresh` asks for more. Not for: measuring the others (`measuring`).
+then, and would now be found before another (a mesh in an earlier package folder), goes unnoticed unless `fresh`
+asks for more. Not for: measuring the others (`measuring`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.item import GivenTrajectory, Item
-from clearance.batch.keys import DAY, key_of
+from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.store import Store
 from clearance.load.input_files import InputFiles
 from clearance.load.rosbag_file import files_of
@@ -86,14 +86,16 @@ class _Look:
         return self._hashed((files.shown(path), str(path)) for path in _paths(given))
 
     def _as_before(self, inputs: str, today: str) -> Files | None:
-        """The files that a case was made from, if each is as it was; where it has waivers, so must the day be."""
+        """The files that a case was made from, if each is as it was, and so are the day and the variables that it
+        depends on.
+        """
         if inputs not in self._shared:
             told = json.loads(inputs)
-            found = self._hashed((shown, path) for shown, path, _ in told if shown != DAY)
-            files = tuple((shown, sha256) for shown, _, sha256 in told if shown != DAY)
-            days = tuple((shown, day) for shown, _, day in told if shown == DAY)
-            same = found == files and all(day == today for _, day in days)
-            self._shared[inputs] = (*files, *days) if same else None
+            found = self._hashed((shown, path) for shown, path, _ in told if path)
+            files = tuple((shown, sha256) for shown, path, sha256 in told if path)
+            others = tuple((shown, value) for shown, path, value in told if not path)
+            same = found == files and all(_is_so(*one, today) for one in others)
+            self._shared[inputs] = (*files, *others) if same else None
         return self._shared[inputs]
 
     def _hashed(self, paths: Iterable[tuple[str, str]]) -> Files | None:
@@ -104,6 +106,11 @@ class _Look:
                 return None
             found.append((shown, sha256))
         return tuple(found)
+
+
+def _is_so(shown: str, value: str, today: str) -> bool:
+    """True if the day, or a variable, has the value that it had."""
+    return value == (today if shown == DAY else value_digest(variable_of(shown)))
 
 
 def _paths(given: GivenTrajectory) -> list[Path]:

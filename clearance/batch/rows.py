@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.findings.finding import Finding
+from clearance.findings.of_record import why_incomplete
 from clearance.run import Run
 from clearance.simulate.record import Record
 from clearance.world.case import Source
@@ -82,6 +83,7 @@ VERDICT = pa.schema(
         ("not_checked", _TEXTS),
         ("curve", pa.list_(pa.float32())),
         ("n_findings", pa.int64()),
+        ("incomplete", pa.string()),
         ("findings", pa.list_(pa.struct(FINDING))),
     ]
 )
@@ -121,8 +123,16 @@ def row_of(run: Run) -> dict[str, Any]:
         "not_checked": list(verdict.not_checked),
         "curve": curve_of(record),
         "n_findings": len(findings),
+        "incomplete": _incomplete(record, len(findings)),
         "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
     }
+
+
+def _incomplete(record: Record, n_findings: int) -> str:
+    """Why something that is not clear may have no finding in the row; empty where each has one."""
+    n_left = max(0, n_findings - MOST_FINDINGS)
+    left = f"{n_left:,} of {n_findings:,} findings are not listed" if n_left else ""
+    return why_incomplete(record) or left
 
 
 def _told(finding: Finding) -> dict[str, Any]:

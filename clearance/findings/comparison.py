@@ -139,6 +139,7 @@ class _Comparing:
             why = why or self._not_known(one, self.before if before is None else self.now)
             change = Change.NEW if before is None else Change.GONE
         else:
+            why = why or _no_number(before, now)
             change = self._change(before, now)
         return Compared(Change.NOT_COMPARABLE if why else change, before, now, why)
 
@@ -151,9 +152,10 @@ class _Comparing:
         ranks = [STATUSES.index(Status(finding.status)) for finding in (before, now)]
         if ranks[0] != ranks[1]:
             return Change.WORSE if ranks[1] > ranks[0] else Change.BETTER
-        if before.clearance is None or now.clearance is None:
+        old, new = _level(before), _level(now)
+        if old is None or new is None:
             return Change.UNCHANGED
-        gained = now.clearance - before.clearance
+        gained = new - old
         if abs(gained) <= self.tolerance:
             return Change.UNCHANGED
         return Change.BETTER if gained > 0.0 else Change.WORSE
@@ -196,6 +198,20 @@ class _Comparing:
                 "the pair was not measured" if other is self.before else "the pair is not measured"
             )
         return ""
+
+
+def _level(finding: Finding) -> float | None:
+    """[m] What says how it stands: the clearance, or what is proven where nothing nearer is seen."""
+    return finding.proven if finding.kind == UNPROVEN else finding.clearance
+
+
+def _no_number(before: Finding, now: Finding) -> str:
+    """Why it is not known which of two findings is worse; empty where it is."""
+    if _level(before) is not None and _level(now) is not None:
+        return ""
+    if before.status == now.status == Status.CLEAR or before.text == now.text:
+        return ""
+    return "how far it is broken is told in words, and they differ"
 
 
 def _by_key(found: FindingList) -> dict[_Key, Finding]:

@@ -49,7 +49,7 @@ def _matching(pattern: object, path: Path, where: str) -> list[Path]:
     if outside or not pattern:
         raise BadInput(f"{pattern!r:.60} is given", where=where, valid="a pattern below the folder")
     found = sorted(path.parent.glob(str(pattern)))
-    matching = [one for one in found if one.is_file() and one != path]
+    matching = [one for one in found if not one.is_dir() and one != path]
     if not matching:
         valid = "a pattern of case files"
         raise MissingFile(f"no file is called {pattern!r}", where=where, valid=valid)

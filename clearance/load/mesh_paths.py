@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 from urllib.parse import unquote, urlsplit
@@ -184,6 +184,14 @@ def _from_variables() -> Iterator[tuple[Path, str]]:
         for part in os.environ.get(name, "").split(os.pathsep):
             if part:
                 yield Path(part, below), name
+
+
+def variables_of(paths: Iterable[str]) -> list[str]:
+    """The variables that name a folder which one of some files, by absolute path, lies in."""
+    named = [(Path(os.path.abspath(folder)), name) for folder, name in _from_variables()]
+    files = [Path(path) for path in paths] if named else []
+    below = [name for folder, name in named if any(file.is_relative_to(folder) for file in files)]
+    return list(dict.fromkeys(below))
 
 
 def _places(urdf_folder: Path, package_dirs: Sequence[Path]) -> str:

@@ -20,10 +20,10 @@ def assert_clear(
         run: of `check`, or of the fixture `clearance_case`.
         between: patterns of names of two bodies, in any order; all pairs if not given.
         at_least: [m]; the fail limit of the rule that judges each pair if not given. Without it and `between`, the
-            run is passed.
+            run is passed. With either, input must not be suspect and no peer may disagree all the same.
 
     Raises:
-        AssertionError: what comes nearer, how near, when, and what was asked for.
+        AssertionError: what comes nearer, how near, when, and what was asked for; or why the input is in doubt.
         BadInput: no pair is measured between such bodies, with the nearest name.
     """
     __tracebackhide__ = True
@@ -32,7 +32,7 @@ def assert_clear(
     else:
         from clearance.pytest_plugin.kept import faults_of
 
-        faults = faults_of(run, between or ("*", "*"), at_least)
+        faults = [*_doubts(run), *faults_of(run, between or ("*", "*"), at_least)]
     if faults:
         raise AssertionError("\n".join([f"{run.record.case.name} is not clear", *faults]))
 
@@ -40,3 +40,10 @@ def assert_clear(
 def _reasons(run: Run) -> list[str]:
     verdict = run.verdict
     return [] if verdict.passed else [verdict.text(), *verdict.reasons]
+
+
+def _doubts(run: Run) -> list[str]:
+    """Why what was measured is not to be trusted, whichever pair is asked about."""
+    verdict = run.verdict
+    told = [f"suspect {one.kind}: {one.text}" for one in verdict.suspects]
+    return told if verdict.disputed_by is None else [*told, f"{verdict.disputed_by} disagrees"]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from clearance.errors import ClearanceError
+from clearance.errors import ClearanceError, shown
 from clearance.load.case_list import CASES, cases_in, mapping_in
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 DEFAULT = "default"
 """What the limits by themselves are called (`world.rules`)."""
+
+MOST_LETTERS = 200
+"""Of a rule's name in that of a test; nothing has checked it when tests are collected."""
 
 
 class NotClear(Exception):
@@ -157,7 +160,7 @@ def _told(finding: Finding) -> str:
 
 def _items(parent: Any, case_run: CaseRun, content: dict[str, Any]) -> Iterator[pytest.Item]:
     for rule in _rule_names(content):
-        name = f"rule {rule}"
+        name = f"rule {shown(rule)[:MOST_LETTERS]}"
         yield RuleItem.from_parent(parent, name=name, rule=rule, case_run=case_run)
     yield VerdictItem.from_parent(parent, name="verdict", case_run=case_run)
 

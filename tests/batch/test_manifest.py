@@ -107,3 +107,23 @@ def test_a_file_that_is_named_and_not_there_is_a_case(folder):
     text = "cell: cell.yaml\ntrajectories: [t000.csv, gone.csv]\n"
     assert names(written(folder, text)) == ["t000", "gone"]
     assert names([str(folder / "gone.yaml")]) == ["gone"]
+
+
+def test_the_same_files_asked_about_in_two_ways_are_two_cases(folder):
+    usual = 'cell: cell.yaml\ntrajectories: "t*.csv"\n'
+    others = {"limits": "limits: {fail: 0.6, warn: 0.7}\n", "reading": "read_as: {period: 0.5}\n"}
+    (folder / "usual.yaml").write_text(usual)
+    for name, text in others.items():
+        (folder / f"{name}.yaml").write_text(f"name: {name}\n{usual}{text}")
+    given = [str(folder / f"{name}.yaml") for name in ("usual", *others)]
+    items = items_of(given, Changes())
+    assert [item.name for item in items][::3] == ["t000", "limits/t000", "reading/t000"]
+    assert items[3].options.fail == 0.6 and items[0].options.fail is None
+    (folder / "limits.yaml").write_text(f"{usual}{others['limits']}")
+    with pytest.raises(DuplicateName, match=r"'t000': .*t000.csv, asked in two ways"):
+        items_of(given[:2], Changes())
+
+
+def test_a_gap_of_nothing_is_refused_and_not_taken_for_the_usual_one(folder):
+    with pytest.raises(BadInput, match="a gap of 0 m; a length above 0"):
+        items_of([str(folder / "batch.yaml")], Changes(certify_gap=0.0))

@@ -1,14 +1,19 @@
 """A batch in one process: only what is missing or has changed is measured, and the answer has the same bytes."""
 
+import hashlib
 import os
 from datetime import date
 
 import pyarrow.parquet as pq
 import pytest
+import trimesh
 
+from clearance.batch import file_hashes, rows
 from clearance.batch.engine import InThisProcess
-from clearance.batch.keys import key_of
+from clearance.batch.file_hashes import FileHashes
+from clearance.batch.keys import key_of, program
 from clearance.batch.manifest import Changes, items_of
+from clearance.batch.measuring import Task, measure
 from clearance.batch.store import open_store
 from clearance.errors import Incomplete, Unwritable
 from clearance.load.case_file import load_cell, with_trajectory_file
@@ -16,6 +21,7 @@ from clearance.load.pose_schema import TrajectoryFile
 from clearance.run import Question, answer
 from tests.batch.batches import (
     CELL,
+    URDF,
     answer_bytes,
     run_here,
     statuses,
@@ -226,3 +232,64 @@ def test_where_a_case_has_waivers_the_day_decides(manifest, tmp_path):
     assert run_on("2027-03-31")[0].measured == []
     told, found = run_on("2027-04-01")
     assert len(told.measured) == 5 and statuses(found)["t002"] == "violated"
+
+
+def test_a_cell_that_is_edited_while_the_batch_runs_is_not_taken_for_what_was_read(
+    manifest, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(file_hashes, "RACY", 0)
+    first, second, *_ = items_of([str(manifest)], Changes())
+    measure(Task((first,), 60.0, program(), "a batch"))
+    cell = manifest.parent / "cell.yaml"
+    cell.write_text(CELL.replace("fail: 0.05", "fail: 0.29"))
+    hashes = FileHashes({})
+    hashes.learn(measure(Task((second,), 60.0, program(), "a batch")).read)
+    assert hashes.of(str(cell)) == hashlib.sha256(cell.read_bytes()).hexdigest()
+
+
+def test_a_package_that_a_variable_finds_elsewhere_is_measured_again(
+    manifest, tmp_path, monkeypatch
+):
+    urdf = manifest.parent / "cart.urdf"
+    urdf.write_text(
+        URDF.replace('<box size="0.2 0.2 0.2"/>', '<mesh filename="package://pk/m.stl"/>')
+    )
+    for name, size in (("one", 0.2), ("other", 1.0)):
+        (tmp_path / name / "pk").mkdir(parents=True)
+        trimesh.creation.box([size] * 3).export(tmp_path / name / "pk" / "m.stl")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "one"))
+    _, before = run_here(manifest, tmp_path / "out")
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert told.measured == []
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "other"))
+    told, now = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == len(NEAREST)
+    assert statuses(before)["t003"] == "clear" and statuses(now)["t003"] == "contact"
+
+
+@pytest.mark.cold  # xacro runs in a process of its own
+@pytest.mark.slow  # and is started twice
+def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypatch):
+    pytest.importorskip("xacro")
+    sized = URDF.replace("<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    sized = sized.replace('size="0.2 0.2 0.2"', 'size="$(optenv CART_LENGTH 0.2) 0.2 0.2"')
+    (manifest.parent / "cart.urdf.xacro").write_text(sized)
+    cell = manifest.parent / "cell.yaml"
+    cell.write_text(CELL.replace("cart.urdf", "cart.urdf.xacro, xacro: true"))
+    monkeypatch.delenv("CART_LENGTH", raising=False)
+    _, before = run_here(manifest, tmp_path / "out")
+    told, _ = run_here(manifest, tmp_path / "out")
+    assert told.measured == [] and statuses(before)["t003"] == "clear"
+    monkeypatch.setenv("CART_LENGTH", "1.5")
+    told, now = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == len(NEAREST) and statuses(now)["t003"] == "contact"
+
+
+def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeypatch):
+    _, found = run_here(manifest, tmp_path / "out")
+    assert set(found.cases["incomplete"].to_pylist()) == {""}
+    _, least = run_here(manifest, tmp_path / "least", changes=Changes(need="minimum"))
+    assert all("need 'minimum'" in why for why in least.cases["incomplete"].to_pylist())
+    monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
+    _, cut = run_here(manifest, tmp_path / "cut")
+    assert set(cut.cases["incomplete"].to_pylist()) == {"1 of 1 findings are not listed"}

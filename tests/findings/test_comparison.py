@@ -9,6 +9,7 @@ import pytest
 
 import clearance as cl
 from clearance.findings.comparison import TOLERANCE, Change, compared
+from clearance.findings.finding import JOINT_LIMITS, UNPROVEN
 from clearance.findings.findings_file import FindingList, finding_list_of
 from tests.findings.gates import load_gates, write_gates, write_way
 
@@ -115,3 +116,27 @@ def test_a_second_occurrence_is_new(before, tmp_path):
         ("new", 1),
         ("unchanged", 0),
     ]
+
+
+def test_what_is_proven_says_how_an_unproven_limit_stands(before):
+    (one, *_) = before.findings
+    unproven = dataclasses.replace(
+        one, kind=UNPROVEN, body_a="", body_b="", clearance=0.006, proven=0.0049
+    )
+    less = dataclasses.replace(unproven, proven=0.001)
+    pair = [dataclasses.replace(before, findings=(each,)) for each in (unproven, less)]
+    assert [str(row.change) for row in compared(*pair).rows] == ["worse"]
+    assert [str(row.change) for row in compared(*pair[::-1]).rows] == ["better"]
+
+
+def test_joints_that_are_further_beyond_their_limits_are_not_unchanged(before):
+    (one, *_) = before.findings
+    joints = dataclasses.replace(
+        one, kind=JOINT_LIMITS, rule=JOINT_LIMITS, body_a="gantry_box", body_b="", clearance=None,
+        proven=None, text="slide_x at 1.1 m",
+    )  # fmt: skip
+    other = dataclasses.replace(joints, text="slide_x at 9.1 m")
+    first, second = (dataclasses.replace(before, findings=(each,)) for each in (joints, other))
+    assert [str(row.change) for row in compared(first, first).rows] == ["unchanged"]
+    (row,) = compared(first, second).rows
+    assert row.change == Change.NOT_COMPARABLE and row.alarms and "in words" in row.why

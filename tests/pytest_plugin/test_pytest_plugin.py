@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import shutil
 import subprocess
 import sys
@@ -12,7 +13,9 @@ import pytest
 
 import clearance as cl
 from clearance.errors import BadInput
+from clearance.load.case_list import cases_in
 from clearance.pytest_plugin import assert_clear
+from clearance.world.notice import Notice, Severity
 from tests.findings.gates import load_gates, write_gates
 
 pytest_plugins = ["pytester"]
@@ -217,6 +220,17 @@ def test_what_comes_nearer_is_told(run, asked, told):
     assert told in str(error.value) and "gates is not clear" in str(error.value)
 
 
+def test_suspect_input_is_never_clear_whichever_pair_is_asked_about(tmp_path):
+    case = load_gates(tmp_path, CLEAR)
+    doubt = Notice(Severity.SUSPECT, "units", "lengths look like millimetres")
+    suspect = cl.check(dataclasses.replace(case, notices=(*case.notices, doubt)), need="limit")
+    for asked in ({"between": ("box", A)}, {"at_least": 0.001}, {}):
+        with pytest.raises(AssertionError, match="suspect units: lengths look like"):
+            assert_clear(suspect, **asked)
+    accepted = dataclasses.replace(suspect.record.case, accept=("units",))
+    assert_clear(cl.check(accepted, need="limit"), between=("box", A))
+
+
 def test_pairs_that_are_not_there_are_an_error_with_the_nearest_name(run):
     for between, told in (
         (("box", "gate_aa"), "did you mean 'gate_a'?"),
@@ -237,3 +251,19 @@ def test_pytest_collects_nothing_else(inside, pytester):
     write_gates(pytester.path, BROKEN)
     assert inside().ret == pytest.ExitCode.NO_TESTS_COLLECTED
     shutil.rmtree(pytester.path / "reports", ignore_errors=True)
+
+
+def test_a_listed_case_that_is_a_link_to_nowhere_is_not_left_out(tmp_path):
+    write_case(tmp_path, name="there.yaml")
+    (tmp_path / "gone.yaml").symlink_to("nowhere.yaml")
+    listed = tmp_path / "all.clearance.yaml"
+    listed.write_text('cases: ["*.yaml"]')
+    assert [path.name for path in cases_in(listed)] == ["gone.yaml", "there.yaml"]
+
+
+def test_a_name_that_nothing_has_checked_stays_on_one_line(inside, pytester):
+    rule = r'{name: "x\n::error::told", between: [box, gate_b], fail: 0.001}'
+    write_case(pytester.path, limits=f"{{fail: 0.005, rules: [{rule}]}}")
+    result = inside()
+    result.assert_outcomes(failed=3)
+    assert not [line for line in result.outlines if line.startswith("::error")]
