@@ -14,6 +14,9 @@ import pyarrow as pa
 FEW = 100_000
 """Rows that take less time one by one than the import of `pyarrow.compute` does."""
 
+_AT_ONCE = 4096
+"""Rows whose names are in memory at a time."""
+
 
 def names_of(codes: np.ndarray, names: Sequence[str]) -> pa.Array:
     """(n,) the name of each code, null where that is negative."""
@@ -27,8 +30,11 @@ def codes_of(column: pa.Array | pa.ChunkedArray, names: Sequence[str]) -> np.nda
     """(n,) int64 which of the names each is; -1 where it is none of them or null."""
     if len(column) < FEW:
         place = {name: code for code, name in enumerate(names)}
-        found = [-1 if name is None else place.get(name, -1) for name in column.to_pylist()]
-        return np.array(found, dtype=np.int64)
+        found = np.empty(len(column), dtype=np.int64)
+        for start in range(0, len(column), _AT_ONCE):
+            part = column.slice(start, _AT_ONCE).to_pylist()
+            found[start : start + _AT_ONCE] = [place.get(name, -1) for name in part]
+        return found
     import pyarrow.compute
 
     places = pyarrow.compute.index_in(column, pa.array(names, type=pa.string())).fill_null(-1)

@@ -228,6 +228,7 @@ def test_a_full_disk_under_stdout_is_no_verdict(folder):
 
 INTERRUPTED = """
 import os, signal
+signal.signal(signal.SIGINT, signal.default_int_handler)
 import clearance.crosscheck.compare as compare
 from clearance import cli
 def interrupted(run, progress=None):
