@@ -94,7 +94,8 @@ def _add_products(out, n, e, n_e, f, n_f, sign):
     """Adds sign * e * f of two expansions to `out`."""
     for i in range(n_e):
         for j in range(n_f):
-            assert n + 2 <= ROOM
+            if n + 2 > ROOM:
+                raise AssertionError("no room for the product")
             n = grow_product(out, n, sign * e[i], f[j])
     return compress(out, n)
 

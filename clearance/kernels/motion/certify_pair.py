@@ -284,7 +284,8 @@ def hold(bodies, witness_faces, motion, least, aim, scratch, tally, table):
         away = 0
         if turn < MOST_TURNED and marks_within(bounds, target):
             away = turned_away_while(a, b, search.views, nodes, slack, cos_turn, sin_turn, moved)
-        assert n_waiting + WIDTH <= STACK_DEPTH
+        if n_waiting + WIDTH > STACK_DEPTH:
+            raise AssertionError("no room for what waits")
         first = n_waiting
         for k in range(count):
             if away >> k & 1:

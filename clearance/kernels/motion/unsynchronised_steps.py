@@ -348,7 +348,8 @@ def _least_of_steps(surface, clocks, least_only, state, found, tally, table):
         n_left, in_a = _look(lent, surface, clocks, r, count, state, found, tally, table)
         if n_left == 0:
             continue
-        assert n_waiting + 2 <= DEPTH
+        if n_waiting + 2 > DEPTH:
+            raise AssertionError("no room for what waits")
         earlier, later = halves_of(tree_a, tree_b, r, in_a)
         row = middle_leaf(tree_a, r.node_a)
         seen = tree_a.start + row if in_a else found.step_b[row]

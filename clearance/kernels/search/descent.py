@@ -246,7 +246,8 @@ def descend(roots, best, first, limits, planes, front, scratch, table):
             marks = (1 << count) - 1
             bounds = bounds_of_group(a, b, near.views, nodes, marks, slack, near.cut)
             n_nodes += count
-            assert n_waiting + WIDTH <= STACK_DEPTH
+            if n_waiting + WIDTH > STACK_DEPTH:
+                raise AssertionError("no room for what waits")
             n_waiting, marks, low, far = _wait_for_near(
                 a, b, near, nodes, marks, bounds, slack, scratch, n_waiting
             )

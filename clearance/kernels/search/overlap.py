@@ -65,7 +65,8 @@ def overlap(roots, slack, scratch, table):
         p, q = boxes_of_group(a, b, nodes)
         bounds = lower_bound_boxes(p, q, back if nodes.is_of_b else m, slack)
         near = ((1 << count) - 1) & marks_within(bounds, 0.0)
-        assert n_waiting + WIDTH <= STACK_DEPTH
+        if n_waiting + WIDTH > STACK_DEPTH:
+            raise AssertionError("no room for what waits")
         first = n_waiting
         while near:
             i = first_of(near)
