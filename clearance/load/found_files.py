@@ -4,10 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from clearance.load.mesh_paths import MeshPath
 from clearance.world.notice import Notice, Severity
 
 Found = Mapping[str, Mapping[str, str]]
 """By package or variable: what was asked for, and the file as it is shown."""
+
+
+class FoundFiles:
+    """What is to be told of the files that one robot or scene names."""
+
+    def __init__(self) -> None:
+        self._by_variable: dict[str, dict[str, str]] = {}
+        self._stand_ins: dict[str, dict[str, str]] = {}
+
+    def add(self, given: str, found: MeshPath, shown: str) -> None:
+        """Keeps where a file was found, where that is to be told.
+
+        Args:
+            given: as it was named. shown: the file's own name.
+        """
+        if found.variable:
+            self._by_variable.setdefault(found.variable, {}).setdefault(given, shown)
+        if found.package:
+            self._stand_ins.setdefault(found.package, {}).setdefault(given, shown)
+
+    def notes(self) -> list[str]:
+        """A line for each variable of the environment that led to files."""
+        return notes_on_variables(self._by_variable)
+
+    def notices(self) -> list[Notice]:
+        """A warning for each package that is not there, on the files that stand in for its own."""
+        return _notices_on_stand_ins(self._stand_ins)
 
 
 def notes_on_variables(by_variable: Found) -> list[str]:
@@ -15,7 +43,7 @@ def notes_on_variables(by_variable: Found) -> list[str]:
     return [f"${name} leads to {_first(files)}" for name, files in by_variable.items()]
 
 
-def notices_on_stand_ins(stand_ins: Found) -> list[Notice]:
+def _notices_on_stand_ins(stand_ins: Found) -> list[Notice]:
     """A warning for each package that is not there, on the files that stand in for its own."""
     return [
         Notice(

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from clearance.errors import BadDimension, BadInput, BadShape, nearest_name
+from clearance.load.found_files import FoundFiles
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.moveit_values import Message, items, number, text
 from clearance.load.octree_file import file_of_message, octree_of
@@ -57,8 +58,7 @@ class SceneMeshes:
         self._asked = asked
         self._n_inline = 0
         self._n_left = MOST_VALUES
-        self.by_variable: dict[str, dict[str, str]] = {}
-        self.stand_ins: dict[str, dict[str, str]] = {}
+        self.found = FoundFiles()
 
     def take(self, n: int) -> None:
         """Counts what is read: a file may name one part of itself again and again.
@@ -119,10 +119,7 @@ class SceneMeshes:
             raise BadDimension(f"scale {scale}", valid="a scale is not zero")
         found = mesh_path(uri, self._asked.path.parent, self._asked.package_dirs)
         shown = self._asked.files.shown(found.path)
-        if found.variable:
-            self.by_variable.setdefault(found.variable, {}).setdefault(uri, shown)
-        if found.package:
-            self.stand_ins.setdefault(found.package, {}).setdefault(uri, shown)
+        self.found.add(uri, found, shown)
         axis = {"collada_up_axis": "ros"} if uri.lower().endswith(".dae") else {}
         file = os.path.relpath(found.path, self._asked.path.parent)
         return {"mesh": {"file": file, "scale": scale} | axis}

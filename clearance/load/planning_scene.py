@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from clearance.errors import BadDimension, BadInput, at
-from clearance.load.found_files import notes_on_variables, notices_on_stand_ins
 from clearance.load.moveit_matrix import allowed_pairs
 from clearance.load.moveit_objects import object_rows
 from clearance.load.moveit_shapes import Row, SceneMeshes
@@ -62,8 +61,8 @@ def planning_scene(raw: dict[str, Any], asked: SceneRequest) -> SceneContent:
         notes.append("no cell of the octomap is occupied, so there is no obstacle of it")
     return SceneContent(
         {"obstacles": rows},
-        (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(meshes.by_variable)),
-        tuple(notices_on_stand_ins(meshes.stand_ins)),
+        (*(f"{asked.shown}: {note}" for note in notes), *meshes.found.notes()),
+        tuple(meshes.found.notices()),
         allow=tuple(_by_obstacle(matrix, _parts(raw), rows)),
         link_padding=padding,
         held=tuple(held),

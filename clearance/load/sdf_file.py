@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput, at
-from clearance.load.found_files import notes_on_variables, notices_on_stand_ins
+from clearance.load.found_files import FoundFiles
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.plausibility import angle_notices, odd_angles
 from clearance.load.pose_row import pose_row
@@ -38,15 +38,15 @@ def read_sdf(asked: SceneRequest) -> SceneContent:
         root = reader.root(asked.path)
         scope = Scope(asked.path.parent, reader.include, (asked.shown,))
         shapes = [shape for place in _places(root) for shape in _shapes(place, scope)]
-        files = _Files(asked, reader.by_variable)
+        files = _Files(asked, reader.found)
         obstacles = [files.obstacle(shape) for shape in shapes]
         renamed = _make_unique(obstacles)
     notes = [*notes_on(reader.documents, reader.missing_suns, shapes), *renamed]
     odd = [text for document in reader.documents for text in _odd(document)]
     return SceneContent(
         {"obstacles": obstacles},
-        (*(f"{asked.shown}: {note}" for note in notes), *notes_on_variables(files.by_variable)),
-        (*angle_notices(odd), *notices_on_stand_ins(files.stand_ins), *unseen(reader.documents)),
+        (*(f"{asked.shown}: {note}" for note in notes), *reader.found.notes()),
+        (*angle_notices(odd), *reader.found.notices(), *unseen(reader.documents)),
     )
 
 
@@ -69,9 +69,8 @@ def _shapes(place: tuple[str, Element], scope: Scope) -> list[SdfShape]:
 class _Files:
     """Finds meshes, and keeps what is to be reported of them."""
 
-    def __init__(self, asked: SceneRequest, by_variable: dict[str, dict[str, str]]) -> None:
-        self._asked, self.by_variable = asked, by_variable
-        self.stand_ins: dict[str, dict[str, str]] = {}
+    def __init__(self, asked: SceneRequest, known: FoundFiles) -> None:
+        self._asked, self._known = asked, known
 
     def obstacle(self, shape: SdfShape) -> dict[str, Any]:
         """The row of a YAML scene for a collision."""
@@ -84,10 +83,7 @@ class _Files:
     def _file(self, uri: str, folder: Path) -> str:
         found = mesh_path(uri, folder, self._asked.package_dirs)
         shown = self._asked.files.shown(found.path)
-        if found.variable:
-            self.by_variable.setdefault(found.variable, {}).setdefault(uri, shown)
-        if found.package:
-            self.stand_ins.setdefault(found.package, {}).setdefault(uri, shown)
+        self._known.add(uri, found, shown)
         return os.path.relpath(found.path, self._asked.path.parent)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput, MissingFile, at
+from clearance.load.found_files import FoundFiles
 from clearance.load.mesh_paths import model_path
 from clearance.load.scene_request import SceneRequest
 from clearance.load.sdf_document import NEWEST, sdf_element, text_of
@@ -32,7 +33,7 @@ class IncludeReader:
         self._roots: dict[Path, Element] = {}
         self._n_elements = 0
         self.missing_suns = 0
-        self.by_variable: dict[str, dict[str, str]] = {}
+        self.found = FoundFiles()
 
     @property
     def documents(self) -> list[Element]:
@@ -69,8 +70,7 @@ class IncludeReader:
             return Included(None, folder, uri)
         path = _file_of(found.path, self._asked)
         shown = self._asked.files.shown(path)
-        if found.variable:
-            self.by_variable.setdefault(found.variable, {}).setdefault(uri, shown)
+        self.found.add(uri, found, shown)
         if shown in chain:
             raise BadInput(f"{shown} includes itself", valid="no ring of files")
         with at(shown):

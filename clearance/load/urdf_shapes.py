@@ -12,7 +12,7 @@ import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import SHAPES
-from clearance.load.found_files import notes_on_variables, notices_on_stand_ins
+from clearance.load.found_files import FoundFiles
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore, Scale
 from clearance.load.notes import grouped, short
@@ -34,8 +34,7 @@ class ShapeReader:
         self.meshes = meshes
         self._notes: list[tuple[str, str]] = []
         self._scales: dict[str, Scale] = {}
-        self._stand_ins: dict[str, dict[str, str]] = {}
-        self._by_variable: dict[str, dict[str, str]] = {}
+        self._found = FoundFiles()
 
     def kind(self, link: Element) -> str:
         """Which elements of a link are its shape."""
@@ -53,21 +52,18 @@ class ShapeReader:
         given = mesh.get("filename")
         found = mesh_path(given, self.request.path.parent, self.request.package_dirs)
         shown = self.meshes.files.shown(found.path)
-        if found.variable:
-            self._by_variable.setdefault(found.variable, {}).setdefault(given, shown)
-        if found.package:
-            self._stand_ins.setdefault(found.package, {}).setdefault(given, shown)
+        self._found.add(given, found, shown)
         scale = tuple(np.broadcast_to(numbers(mesh, "scale", (1.0,)), 3).tolist())
         self._scales[short(shown)] = scale
         return found.path, scale
 
     def notes(self) -> list[str]:
         """What was mended in the files, a line for each kind of fault."""
-        return [*grouped(self._notes), *notes_on_variables(self._by_variable)]
+        return [*grouped(self._notes), *self._found.notes()]
 
     def notices(self) -> list[Notice]:
         """Files that stand in for others, and scales that look like another unit."""
-        return [*notices_on_stand_ins(self._stand_ins), *scale_notices(list(self._scales.items()))]
+        return [*self._found.notices(), *scale_notices(list(self._scales.items()))]
 
     def _unmoved(self, element: Element) -> tuple[Polyhedron, str]:
         kind = element.tag
