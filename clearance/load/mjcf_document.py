@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput, BadSyntax, MissingKey, NotFinite, at
 from clearance.load.input_files import InputFiles
+from clearance.load.xml_document import plain_root
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -108,7 +109,7 @@ class _Including:
             raise BadSyntax(
                 "the model is too long", valid=f"{MOST_BYTES} bytes in {MOST_FILES} files"
             )
-        return parsed(data)
+        return plain_root(data, "an MJCF file")
 
     def expand(self, root: Element) -> None:
         """Puts the children of included files' roots in place of each `<include>`, until none is left."""
@@ -127,27 +128,6 @@ class _Including:
             place = parent.index(element)
             parent[place : place + 1] = children
             waiting += [found for child in children for found in child.iter("include")]
-
-
-def parsed(data: bytes) -> Element:
-    """The root element of an XML document without entities; comments are gone.
-
-    Raises:
-        BadSyntax: not XML, or something in it stands for something else.
-    """
-    from lxml import etree
-
-    parser = etree.XMLParser(
-        remove_comments=True, remove_pis=True, resolve_entities=False, no_network=True
-    )
-    try:
-        root = etree.fromstring(data.lstrip(), parser)
-    except (etree.XMLSyntaxError, ValueError) as error:
-        problem = getattr(error, "msg", None) or str(error)
-        raise BadSyntax(f"not XML: {problem}", valid="an MJCF file is needed") from None
-    if root.getroottree().docinfo.doctype or next(root.iter(etree.Entity), None) is not None:
-        raise BadSyntax("it has a document type or an entity", valid="plain elements")
-    return root
 
 
 def _require_readable(root: Element) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from clearance.errors import BadInput, BadShape, BadSyntax, MissingKey, NotFinite
 from clearance.geometry.pose import pose_from_quaternion, pose_from_rpy
+from clearance.load.xml_document import plain_root, with_entities
 from clearance.world.names import checked_name
 
 if TYPE_CHECKING:
@@ -27,22 +28,11 @@ def sdf_element(data: bytes) -> Element:
     Raises:
         BadSyntax: not XML, not SDF, an entity or a document type, or too long. BadInput: a newer version.
     """
-    from lxml import etree
-
     if len(data) > MOST_BYTES:
         raise BadSyntax(f"{len(data)} bytes are given", valid=f"{MOST_BYTES} or fewer")
     if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
-        raise _with_entities()
-    parser = etree.XMLParser(
-        remove_comments=True, remove_pis=True, resolve_entities=False, no_network=True
-    )
-    try:
-        root = etree.fromstring(data.lstrip(), parser)
-    except (etree.XMLSyntaxError, ValueError) as error:
-        problem = getattr(error, "msg", None) or str(error)
-        raise BadSyntax(f"not XML: {problem}", valid="an SDF file is needed") from None
-    if root.getroottree().docinfo.doctype or next(root.iter(etree.Entity), None) is not None:
-        raise _with_entities()
+        raise with_entities()
+    root = plain_root(data, "an SDF file")
     if root.tag not in ("sdf", "gazebo"):
         raise BadSyntax(f"the root element is <{root.tag}>", valid="<sdf> is needed")
     _require_version(root.get("version") or "")
@@ -143,10 +133,3 @@ def _require_version(given: str) -> None:
         raise BadInput(f"version={given!r:.60}", where="sdf", valid="a version such as 1.9")
     if tuple(map(int, parts)) > NEWEST and tuple(map(int, parts))[:2] != NEWEST:
         raise BadInput(f"version {given} is given", where="sdf", valid="1.11 or older is read")
-
-
-def _with_entities() -> BadSyntax:
-    return BadSyntax(
-        "a document type or an entity, which may stand for anything",
-        valid="write out what it stands for",
-    )
