@@ -12,7 +12,6 @@ import numpy as np
 from clearance.errors import (
     BadDimension,
     BadInput,
-    BadShape,
     BadTime,
     NothingToMeasure,
     NoTrajectory,
@@ -20,6 +19,11 @@ from clearance.errors import (
     at,
 )
 from clearance.geometry.pose import validated_pose
+from clearance.world.bodies_apart import (
+    require_names_apart,
+    require_other_names,
+    require_surfaces,
+)
 from clearance.world.body import Obstacle
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
@@ -52,8 +56,7 @@ class Limits:
 
     Raises:
         BadDimension: a level that is below 0 or not finite, or `warn` below `fail`. DuplicateName: two rules of
-        one
-            name.
+            one name.
     """
 
     fail: float = 0.0
@@ -346,11 +349,11 @@ def _require_bodies(case: Case) -> None:
     require_own_names("obstacle", [obstacle.name for obstacle in case.obstacles])
     for placed in case.robots:
         require_own_names("link", list(placed.robot.link_names))
-        _require_surfaces(placed.robot)
+        require_surfaces(placed.robot)
     if len(case.robots) > 1:
-        _require_names_apart(case.robots, case.obstacles)
+        require_names_apart([placed.robot for placed in case.robots], case.obstacles)
     elif case.robots[0].self_clearance or case._stand_on_others:
-        _require_other_names(case.robots[0].robot, case.obstacles)
+        require_other_names(case.robots[0].robot, case.obstacles)
     require_one_carrier(case.carries)
 
 
@@ -366,45 +369,3 @@ def index_of_robot(robots: Sequence[PlacedRobot], name: str | None) -> int:
     if name is None or names.count(name) != 1:
         raise UnknownRobot(f"there is no one robot {name!r}", valid=f"one of {', '.join(names)}")
     return names.index(name)
-
-
-def _require_surfaces(robot: Robot) -> None:
-    for body in robot.bodies:
-        if body.is_cloud:
-            raise BadShape(
-                f"link {body.name!r} of robot {robot.name!r} is a cloud of points",
-                valid="links have surfaces; only obstacles may be clouds",
-            )
-
-
-def _require_names_apart(robots: Sequence[PlacedRobot], obstacles: Sequence[Obstacle]) -> None:
-    """Refuses names by which links of several robots and obstacles could be taken for each other."""
-    for i, placed in enumerate(robots):
-        if "/" in placed.robot.name:
-            raise BadInput(
-                f"robot {placed.robot.name!r} has a '/' in its name",
-                where=f"robots[{i}]",
-                valid="another name, since links of several robots are called robot/link",
-            )
-    names = {placed.robot.name for placed in robots}
-    names |= {
-        f"{placed.robot.name}/{link}" for placed in robots for link in placed.robot.link_names
-    }
-    names |= {link for placed in robots for link in placed.robot.link_names}  # as patterns say them
-    for i, obstacle in enumerate(obstacles):
-        if obstacle.name in names:
-            raise BadInput(
-                f"an obstacle and a robot or its link are both called {obstacle.name!r}",
-                where=f"obstacles[{i}]",
-                valid="another name for the obstacle",
-            )
-
-
-def _require_other_names(robot: Robot, obstacles: Sequence[Obstacle]) -> None:
-    """Refuses an obstacle with a link's name where a name could be either's."""
-    for obstacle in obstacles:
-        if obstacle.name in robot.link_names:
-            raise BadInput(
-                f"an obstacle and a link of robot {robot.name!r} are both called {obstacle.name!r}",
-                valid="another name for the obstacle, since links are meant by their names too",
-            )

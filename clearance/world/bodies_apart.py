@@ -1,0 +1,53 @@
+"""What the links of robots and the obstacles of one case must be, so that each can be meant by its name.
+
+Not for: names of one kind (`names`), and what a case needs beside its bodies (`case`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from clearance.errors import BadInput, BadShape
+from clearance.world.body import Obstacle
+from clearance.world.robot import Robot
+
+
+def require_surfaces(robot: Robot) -> None:
+    """Refuses links that are clouds of points."""
+    for body in robot.bodies:
+        if body.is_cloud:
+            raise BadShape(
+                f"link {body.name!r} of robot {robot.name!r} is a cloud of points",
+                valid="links have surfaces; only obstacles may be clouds",
+            )
+
+
+def require_names_apart(robots: Sequence[Robot], obstacles: Sequence[Obstacle]) -> None:
+    """Refuses names by which links of several robots and obstacles could be taken for each other."""
+    for i, robot in enumerate(robots):
+        if "/" in robot.name:
+            raise BadInput(
+                f"robot {robot.name!r} has a '/' in its name",
+                where=f"robots[{i}]",
+                valid="another name, since links of several robots are called robot/link",
+            )
+    names = {robot.name for robot in robots}
+    names |= {f"{robot.name}/{link}" for robot in robots for link in robot.link_names}
+    names |= {link for robot in robots for link in robot.link_names}  # as patterns say them
+    for i, obstacle in enumerate(obstacles):
+        if obstacle.name in names:
+            raise BadInput(
+                f"an obstacle and a robot or its link are both called {obstacle.name!r}",
+                where=f"obstacles[{i}]",
+                valid="another name for the obstacle",
+            )
+
+
+def require_other_names(robot: Robot, obstacles: Sequence[Obstacle]) -> None:
+    """Refuses an obstacle with a link's name where a name could be either's."""
+    for obstacle in obstacles:
+        if obstacle.name in robot.link_names:
+            raise BadInput(
+                f"an obstacle and a link of robot {robot.name!r} are both called {obstacle.name!r}",
+                valid="another name for the obstacle, since links are meant by their names too",
+            )
