@@ -11,12 +11,11 @@ from types import MappingProxyType
 
 from clearance.load.collada_file import UpAxis
 from clearance.load.foreign_files import is_mjcf
-from clearance.load.input_files import InputFiles, resolved
+from clearance.load.input_files import InputFiles
 from clearance.load.mesh_store import MeshStore
 from clearance.load.mjcf_robot import read_mjcf
-from clearance.load.robot_request import Geometry, RobotRequest
+from clearance.load.robot_request import Geometry, RobotRequest, request_in_memory
 from clearance.load.urdf import read_urdf
-from clearance.load.xacro_file import checked_args
 from clearance.world.robot import Robot
 
 
@@ -62,7 +61,5 @@ def load_robot(
     Raises:
         BadInput: with the file and the element.
     """
-    path = resolved(str(path), Path())
-    folders, args = tuple(map(Path, package_dirs)), checked_args(xacro_args)
-    request = RobotRequest(path, folders, geometry, collada_up_axis, xacro, args)
-    return read_robot(request, MeshStore(InputFiles(path.parent)))
+    request = request_in_memory(path, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
+    return read_robot(request, MeshStore(InputFiles(request.path.parent)))

@@ -17,10 +17,10 @@ from clearance.load.limit_files import limited, note_on_accelerations
 from clearance.load.mesh_store import MeshStore
 from clearance.load.resting import resting_positions
 from clearance.load.robot_formats import read_robot
-from clearance.load.robot_request import RobotRequest
+from clearance.load.robot_request import RobotRequest, checked_args
 from clearance.load.srdf import read_srdf
 from clearance.load.timed_files import trajectory_of
-from clearance.load.xacro_file import SUFFIX, checked_args, hold_expanded
+from clearance.load.xacro_file import SUFFIX, hold_expanded
 from clearance.world.case import PlacedRobot, SelfClearance
 from clearance.world.mount import Mount
 from clearance.world.robot import Robot

@@ -17,16 +17,16 @@ from clearance.load.axis_check import axis_notices
 from clearance.load.collada_file import UpAxis
 from clearance.load.compound_joints import frames_between
 from clearance.load.foreign_files import refuse_foreign
-from clearance.load.input_files import InputFiles, resolved
+from clearance.load.input_files import InputFiles
 from clearance.load.joints import joints_of
 from clearance.load.mesh_store import MeshStore
 from clearance.load.plausibility import angle_notices
-from clearance.load.robot_request import Geometry, RobotRequest
+from clearance.load.robot_request import Geometry, RobotRequest, request_in_memory
 from clearance.load.robot_tree import links_from_root
 from clearance.load.shape_kinds import notes_on_bare, refuse_other_geometry, unseen
 from clearance.load.urdf_elements import odd_origins, parse_document
 from clearance.load.urdf_shapes import ShapeReader
-from clearance.load.xacro_file import checked_args, expanded, refuse_unasked
+from clearance.load.xacro_file import expanded, refuse_unasked
 from clearance.world.body import Body
 from clearance.world.names import require_own_names
 from clearance.world.robot import Robot
@@ -53,10 +53,8 @@ def load_urdf(
     Raises:
         BadInput: with the file and the element.
     """
-    path = resolved(str(path), Path())
-    folders, args = tuple(map(Path, package_dirs)), checked_args(xacro_args)
-    request = RobotRequest(path, folders, geometry, collada_up_axis, xacro, args)
-    return read_urdf(request, MeshStore(InputFiles(path.parent)))
+    request = request_in_memory(path, package_dirs, geometry, collada_up_axis, xacro, xacro_args)
+    return read_urdf(request, MeshStore(InputFiles(request.path.parent)))
 
 
 def read_urdf(request: RobotRequest, meshes: MeshStore) -> Robot:

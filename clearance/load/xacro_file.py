@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from clearance.errors import (
-    BadInput,
     BadSyntax,
     MissingFile,
     Unavailable,
@@ -188,19 +187,3 @@ def _warnings(said: str, shown: str, folder: Path) -> list[str]:
         return []
     others = f" and {len(lines) - 1} more" if len(lines) > 1 else ""
     return [f"{shown}: xacro warns: {lines[0].replace(f'{os.path.abspath(folder)}/', '')}{others}"]
-
-
-def checked_args(given: Mapping[str, str | bool | int | float]) -> tuple[tuple[str, str], ...]:
-    """The arguments of a case file as on xacro's command line.
-
-    Raises:
-        BadInput: a name that no argument can have.
-    """
-    for name in given:
-        if not name or ":=" in name or name != name.strip():
-            raise BadInput(f"{name!r:.60} is given", valid="names of the file's xacro:arg elements")
-    return tuple((name, _as_text(value)) for name, value in given.items())
-
-
-def _as_text(value: str | bool | int | float) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -8,7 +8,7 @@ import pytest
 from clearance import check, load_case
 from clearance.cli import run
 from clearance.errors import BadInput, BadSyntax, ClearanceError, MissingFile, UnknownKey
-from clearance.load import xacro_file
+from clearance.load import robot_request, xacro_file
 from clearance.load.input_files import InputFiles
 from clearance.load.robot_request import RobotRequest
 from clearance.load.urdf import load_urdf
@@ -94,7 +94,7 @@ def test_arguments(tmp_path):
     path.write_text(CASE.format("xacro: true, xacro_args: {size: [1]}"))
     with pytest.raises(BadInput, match=r"robot\.xacro_args\.size"):
         load_case(path)
-    assert xacro_file.checked_args({"a": True, "b": 0.1, "c": "x y"}) == (
+    assert robot_request.checked_args({"a": True, "b": 0.1, "c": "x y"}) == (
         ("a", "true"), ("b", "0.1"), ("c", "x y"),
     )  # fmt: skip
 
