@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import mujoco  # noqa: F401 - its import starts a process, which no test of one may
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
