@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import mujoco  # noqa: F401 - its import starts a process, which no test of one may
+import mujoco  # noqa: F401 - its import starts a process, so it comes before any test
 import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
