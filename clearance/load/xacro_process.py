@@ -111,6 +111,8 @@ def _main() -> None:
 
 
 def _answer(asked: dict[str, Any]) -> dict[str, Any]:
+    sys.dont_write_bytecode = True  # of modules that are imported while writing is refused
+
     import xacro
     import xacro.substitution_args  # before anything is watched
     import xacro.xmlutils  # noqa: F401

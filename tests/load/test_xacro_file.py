@@ -53,6 +53,13 @@ def test_it_is_what_the_written_out_urdf_is(tmp_path):
     assert ours.clearances.tobytes() == plain.clearances.tobytes()
 
 
+def test_modules_that_are_not_compiled_yet_are_no_fault(tmp_path, monkeypatch):
+    main = write_package(tmp_path)
+    monkeypatch.delenv("PYTHONDONTWRITEBYTECODE", raising=False)
+    monkeypatch.setenv("PYTHONPYCACHEPREFIX", str(tmp_path / "empty"))
+    assert b"<robot" in made(main).urdf
+
+
 def test_what_it_reads_is_hashed_and_what_it_did_is_told(tmp_path):
     case = load_case(write_case(tmp_path))
     paths = [source.path for source in case.sources]
