@@ -190,7 +190,7 @@ def test_states_of_the_srdf_make_a_motion_and_rest(capsys):
     assert load_case("out/case.yaml").robots[0].fixed_positions == {"lift": 0.02}
     assert new(*words) == 0
     text = Path("out/case.yaml").read_text()
-    assert "# state: home  # where a state of the SRDF says; it has [home, out]" in text
+    assert "# state: home  # where a state says; there are [home, out]" in text
 
 
 def test_what_a_scene_says_is_held_is_carried_also_between_states():
