@@ -47,8 +47,10 @@ _SAYS = {
 
 _DOCUMENTS = {".yaml", ".yml", ".json"}
 
-_KEY = re.compile(rb"""(?:^|[{,])[ \t\r\n-]*(["']?)([A-Za-z_]+)\1[ \t]*:""", re.MULTILINE)
+_KEY = re.compile(rb"""(?:^|[{,])[ \t-]*(["']?)([A-Za-z_]+)\1[ \t]*:""", re.MULTILINE)
 _COMMENT = re.compile(rb"(?:^|(?<=\s))#[^\n]*")
+_QUOTED = re.compile(rb"""("(?:[^"\\\n]|\\.)*"|'[^'\n]*')([ \t]*:)?""")
+"""Text in quotes, which may say anything where it is no key."""
 
 _WANTED = "a trajectory, a scene or poses"
 
@@ -91,7 +93,8 @@ def _head(path: Path, files: InputFiles) -> bytes:
 
 def _of_keys(head: bytes) -> FileKind | None:
     """By the first key that only one of them has; nested ones count, since messages hold messages."""
-    for found in _KEY.finditer(_COMMENT.sub(b"", head)):
+    keys = _QUOTED.sub(lambda text: text[0] if text[2] else b"", _COMMENT.sub(b"", head))
+    for found in _KEY.finditer(keys):
         kind = _SAYS.get(found[2].decode())
         if kind is not None:
             return kind

@@ -7,6 +7,7 @@ warns of it. Not for: a whole case (`new_case`).
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -53,7 +54,7 @@ def converted_scene(asked: SceneRequest, target: Path) -> ConvertedScene:
     if not rows:
         raise BadShape("there is no obstacle in it", where=asked.shown, valid="a scene with some")
     _refuse_suspect(content, asked.shown)
-    left = _left_out(content)
+    left = [*_on_comments(asked), *_left_out(content)]
     content = replace(content, notices=(*content.notices, *_on_padding(content, asked.shown)))
     remarks = [line for one in left for line in one.remarks]
     made = written_scene(content, asked, target.parent, "clearance convert", remarks)
@@ -72,6 +73,12 @@ class _LeftOut(NamedTuple):
 
     note: str
     remarks: tuple[str, ...] = ()
+
+
+def _on_comments(asked: SceneRequest) -> Iterator[_LeftOut]:
+    is_yaml = asked.path.suffix.lower() in SCENE_SUFFIXES
+    if is_yaml and re.search(rb"^[ \t]*#", asked.files.read(asked.path), re.MULTILINE):
+        yield _LeftOut("left out: its comments")
 
 
 def _left_out(content: SceneContent) -> list[_LeftOut]:

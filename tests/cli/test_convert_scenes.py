@@ -125,8 +125,15 @@ def test_what_a_scene_cannot_hold_is_told_with_what_a_case_says(capsys):
         assert line in told.out.splitlines()
     assert "warning: padding of links that held.yaml gives is left out" in told.err
     assert "robot: {padding: {upper: 0.01, ghost: 1.0}}" in told.err
+    assert "note: held.yaml: left out: its comments" not in told.out
     text = Path("made/scene.yaml").read_text()
     assert "# - [base, post]" in text and "# - {part: tool, by: tip" in text
+
+
+def test_comments_are_told(capsys):
+    Path("ours.yaml").write_text(f"# measured on Monday\n{OURS}")
+    assert convert("ours.yaml", "made/scene.yaml") == 0
+    assert "note: ours.yaml: left out: its comments" in capsys.readouterr().out
 
 
 def test_padding_that_is_left_out_is_a_warning_of_each_check(capsys):
