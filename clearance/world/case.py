@@ -25,6 +25,7 @@ from clearance.world.bodies_apart import (
     require_surfaces,
 )
 from clearance.world.body import Obstacle
+from clearance.world.budget import Budget
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
 from clearance.world.collision_matrix import CollisionMatrix
@@ -258,6 +259,7 @@ class Case:
         allow: pairs that are not measured; two patterns of names (`fnmatch`) become an `Allowance`.
         carries: which parts are carried, by what and when.
         clock: how far the actors' clocks may be apart.
+        tolerance: what the real machine may differ by; None where nothing is given.
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
@@ -283,6 +285,7 @@ class Case:
     sign_off: SignOff | None = None
     carries: tuple[Carry, ...] = ()
     clock: Clock = COMMON
+    tolerance: Budget | None = None
 
     def __post_init__(self) -> None:
         if not self.robots:
