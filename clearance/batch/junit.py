@@ -72,9 +72,9 @@ def _case(row: dict[str, Any]) -> str:
 
 
 def _quoted(text: str) -> str:
-    return quoteattr(_clean(text), {"\n": "&#10;", "\t": "&#9;", "\r": "&#13;"})
+    return quoteattr(clean(text), {"\n": "&#10;", "\t": "&#9;", "\r": "&#13;"})
 
 
-def _clean(text: str) -> str:
+def clean(text: str) -> str:
     """The text with characters that XML cannot hold as their escapes."""
     return _NO_XML.sub(lambda found: found[0].encode("unicode_escape").decode(), text)

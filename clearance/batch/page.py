@@ -52,6 +52,15 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
     )
 
 
+def unfinished_page(name: str, text: str) -> str:
+    """The page of a batch that has no answer yet."""
+    style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
+    title, told = escape(f"{name}: not finished"), escape(text)
+    return Template(_own("unfinished.html")).substitute(
+        title=title, style=style, name=escape(name), text=told, version=escape(__version__)
+    )
+
+
 def _counted(answer: BatchAnswer) -> str:
     told = ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items()))
     return f"{count(answer.cases.num_rows, 'case')}: {told or 'none'}"

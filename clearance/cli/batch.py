@@ -138,10 +138,11 @@ def check(
 @batch.command()
 @click.argument("place", metavar="STORE", type=click.Path(path_type=Path))
 def status(place: Path) -> int:
-    """How far the last batch of STORE is: done, missing, failed, and the worst.
+    """How far the last batch of STORE is: done, missing, unreadable, failed, and the worst.
 
-    Missing is what was never measured, and what is of files that have changed since. Exit code: the
-    greatest of the cases that are done; 4 where some are missing.
+    Missing is what was never measured, and what is of files that have changed since; unreadable is
+    what was bad input when it was last tried. Exit code: the greatest of the cases that are done, 1
+    for one that is unreadable; 4 where some are missing.
     """
     from clearance.batch.status import status_of
     from clearance.batch.store import open_store

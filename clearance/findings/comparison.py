@@ -95,7 +95,8 @@ class Comparison:
     @property
     def passed(self) -> bool:
         """True if nothing alarms, and as much is known as before."""
-        return not (self.less or any(row.alarms for row in (*self.rows, *self.doubts)))
+        alarms = any(row.alarms for row in self.rows) or any(one.alarms for one in self.doubts)
+        return not (alarms or self.less)
 
 
 def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE) -> Comparison:

@@ -170,3 +170,18 @@ def test_a_comparison_fails_by_suspect_input_alone(place, capsys):
     assert told.lstrip().startswith("since the baseline: NEW suspect input; ")
     assert "new: suspect units: CHECK UNITS" in told
     assert run(["compare", "of_suspect", "of_clear", "--quiet"]) == 0
+
+
+def test_a_run_that_is_stopped_leaves_no_older_junit(place, monkeypatch):
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    asked = ("clear/case.yaml", "--junit", "junit.xml", "--quiet")
+    assert check(*asked) == 0
+    first = (place / "junit.xml").read_bytes()
+    monkeypatch.setattr("clearance.run.answer", stopped)
+    assert check(*asked) == 130
+    assert b'<error type="Incomplete"' in (place / "junit.xml").read_bytes()
+    monkeypatch.undo()
+    monkeypatch.chdir(place)
+    assert check(*asked) == 0 and (place / "junit.xml").read_bytes() == first
