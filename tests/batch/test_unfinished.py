@@ -60,10 +60,12 @@ def test_an_interrupted_batch_leaves_nothing_green(folder, monkeypatch):
     assert batch() == 0 and answer_bytes(folder / "store") == first
 
 
-def test_a_part_of_a_batch_leaves_no_older_answer(folder):
+def test_a_part_of_a_batch_leaves_no_older_answer(folder, capsys):
     assert batch() == 0
     first = answer_bytes(folder / "store")
     assert batch("--shard", "1/2") == 0 and is_withdrawn(folder / "store")
+    assert run(["batch", "status", "store"]) == 0
+    assert "answer      not written yet" in capsys.readouterr().out
     assert batch() == 0 and answer_bytes(folder / "store") == first
 
 
