@@ -8,6 +8,8 @@ Not for: what is in them (`answer`, `junit`, `page`).
 
 from __future__ import annotations
 
+import json
+
 import pyarrow as pa
 import pyarrow.parquet as pq
 
@@ -19,7 +21,11 @@ from clearance.report.wording import count
 
 CASES, FINDINGS = "cases.parquet", "findings.parquet"
 PAGE, JUNIT = "batch.html", "junit.xml"
+ANSWER = (CASES, FINDINGS, PAGE, JUNIT)
 
+
+_STALE = b"stale waivers"
+"""Key of the table of cases under which its metadata holds what is wrong with shared waivers, as JSON."""
 
 UNFINISHED = "this batch is not finished"
 
@@ -39,7 +45,7 @@ def withdraw_answer(store: Store, n_cases: int) -> None:
     )
     with store.locked():
         with unwritable(store.place):
-            for name in (CASES, FINDINGS, PAGE, JUNIT):
+            for name in ANSWER:
                 (store.place / name).unlink(missing_ok=True)
         write_file(store.place / JUNIT, unfinished_junit(clean(store.place.name), told))
         write_file(store.place / PAGE, unfinished_page(store.place.name, told).encode())
@@ -55,7 +61,8 @@ def write_answer(answer: BatchAnswer, store: Store) -> None:
     from clearance.batch.page import page_of
 
     with store.locked():
-        write_file(store.place / CASES, _parquet(answer.cases))
+        marked = answer.cases.replace_schema_metadata({_STALE: json.dumps(answer.stale)})
+        write_file(store.place / CASES, _parquet(marked))
         write_file(store.place / FINDINGS, _parquet(answer.findings))
         write_file(store.place / JUNIT, junit_of(answer, store.place.name))
         write_file(store.place / PAGE, page_of(answer, store.place).encode())
@@ -78,5 +85,7 @@ def rewrite_page(store: Store) -> None:
     with store.locked():
         tables = [store.place / name for name in (CASES, FINDINGS)]
         if all(path.is_file() for path in tables):
-            answer = BatchAnswer(*(pq.read_table(path, partitioning=None) for path in tables))
+            cases, findings = (pq.read_table(path, partitioning=None) for path in tables)
+            stale = (cases.schema.metadata or {}).get(_STALE, b"[]")
+            answer = BatchAnswer(cases, findings, tuple(json.loads(stale)))
             write_file(store.place / PAGE, page_of(answer, store.place).encode())

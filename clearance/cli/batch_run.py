@@ -21,6 +21,7 @@ from clearance.cli.batch_verdict import print_answer
 from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.simulate.parts import usable_cores
+from clearance.world.waiver import Waiver
 
 FEW = 32
 """Cases that one process has measured before others are ready to help."""
@@ -37,6 +38,7 @@ class Asked:
     rehash: bool
     strict: bool
     quiet: bool
+    waivers: tuple[Waiver, ...] = ()
 
 
 def run_asked(items: Sequence[Item], store: Store, asked: Asked) -> int:
@@ -52,7 +54,7 @@ def run_asked(items: Sequence[Item], store: Store, asked: Asked) -> int:
         write_list(store.place, items)
     withdraw_answer(store, len(items))
     own = list(items) if asked.shard is None else shard_of(items, asked.shard)
-    outcome = Outcome(own)
+    outcome = Outcome(own, waivers=asked.waivers, whole=asked.shard is None)
     try:
         try:
             with shown_progress(asked.quiet) as watch:

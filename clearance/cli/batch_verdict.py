@@ -53,7 +53,7 @@ def print_status(status: BatchStatus) -> None:
 
 
 def _headline(answer: BatchAnswer) -> str:
-    worst = next(reversed(answer.counts), "nothing").upper()
+    worst = answer.status.upper() if answer.counts else "NOTHING"
     return f"{worst}  {count(answer.cases.num_rows, 'case')}: {_counted(answer)}"
 
 
@@ -62,6 +62,8 @@ def _counted(answer: BatchAnswer) -> str:
 
 
 def _print_facts(answer: BatchAnswer) -> None:
+    for text in answer.stale:
+        click.echo(shown(f"  waivers     {text}"))
     for basis, n in answer.bases.items():
         click.echo(f"  basis       {count(n, 'case')} {_BASES[basis]}")
     least = answer.least
