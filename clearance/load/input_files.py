@@ -41,6 +41,7 @@ class InputFiles:
         self.folder = folder
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
+        self._lookups: dict[str, Source] = {}
         self._held: set[Path] = set()
 
     @cached_property
@@ -49,8 +50,9 @@ class InputFiles:
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """Every file read so far, sorted by its shown path."""
-        return tuple(sorted(self._sources.values(), key=lambda source: source.path))
+        """Every file read so far, sorted by its shown path, and what was looked for."""
+        found = [*self._sources.values(), *self._lookups.values()]
+        return tuple(sorted(found, key=lambda source: source.path))
 
     def read(self, path: Path) -> bytes:
         """The content of a file; a second call gives the same bytes without reading again.
@@ -105,6 +107,11 @@ class InputFiles:
     def add_sources(self, others: InputFiles) -> None:
         """Takes over the checksums of files that were read through others."""
         self._sources |= others._sources
+        self._lookups |= others._lookups
+
+    def note(self, source: Source) -> None:
+        """Keeps what is no file and decides what is read all the same."""
+        self._lookups[source.read_from] = source
 
     def _note(self, path: Path, digest: str, n_bytes: int) -> None:
         from clearance.world.case import Source
