@@ -109,11 +109,11 @@ class InputFiles:
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
-        path = Path(os.path.abspath(path))
-        brought = self._brought
-        if brought is not None and path.is_relative_to(brought):
-            return PYBULLET_DATA + path.relative_to(brought).as_posix()
-        return relative_path(path, self.folder)
+        whole = os.path.abspath(path)
+        brought = None if self._brought is None else _below(whole, self._brought)
+        return (
+            relative_path(Path(path), self.folder) if brought is None else PYBULLET_DATA + brought
+        )
 
 
 def read_bytes(path: Path, shown: str) -> bytes:
@@ -178,7 +178,10 @@ def _openable(shown: str) -> Iterator[None]:
 
 def relative_path(path: Path, folder: Path) -> str:
     """`path` as seen from `folder`, with `/`; the bare name where they share only the root."""
-    folder = Path(os.path.abspath(folder))
+    path, folder = Path(os.path.abspath(path)), Path(os.path.abspath(folder))
+    below = _below(str(path), folder)
+    if below is not None:
+        return below
     try:
         shared = Path(os.path.commonpath([path, folder]))
     except ValueError:  # two drives
@@ -186,6 +189,14 @@ def relative_path(path: Path, folder: Path) -> str:
     if shared == Path(shared.anchor) and folder != shared:
         return path.name
     return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def _below(path: str, folder: Path) -> str | None:
+    """What follows a folder in a path below it, with `/`, or None for another path; both absolute."""
+    before = os.path.join(folder, "")
+    if not path.startswith(before) or path == before:
+        return None
+    return path[len(before) :].replace(os.sep, "/")
 
 
 def resolved(given: str, folder: Path) -> Path:

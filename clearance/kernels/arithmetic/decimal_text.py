@@ -1,4 +1,4 @@
-"""Tables of decimal numbers in text: each the double that is nearest to what is written, or the table is left alone.
+"""Tables of decimal numbers in text: each the double nearest to what is written, or the table is left alone.
 
 Numbers of up to 19 digits whose last stands for 10^-22 to 10^22 are read. Not for: whatever else may stand in a
 table, as quotes, words, nan, and faults: a reader that can tell them takes such a table as a whole.
