@@ -39,6 +39,7 @@ class InputFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._place = os.path.abspath(folder)
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
         self._held: set[Path] = set()
@@ -110,10 +111,10 @@ class InputFiles:
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
         whole = os.path.abspath(path)
-        brought = None if self._brought is None else _below(whole, self._brought)
-        return (
-            relative_path(Path(path), self.folder) if brought is None else PYBULLET_DATA + brought
-        )
+        brought = None if self._brought is None else _below(whole, str(self._brought))
+        if brought is not None:
+            return PYBULLET_DATA + brought
+        return _below(whole, self._place) or relative_path(Path(whole), self.folder)
 
 
 def read_bytes(path: Path, shown: str) -> bytes:
@@ -178,10 +179,7 @@ def _openable(shown: str) -> Iterator[None]:
 
 def relative_path(path: Path, folder: Path) -> str:
     """`path` as seen from `folder`, with `/`; the bare name where they share only the root."""
-    path, folder = Path(os.path.abspath(path)), Path(os.path.abspath(folder))
-    below = _below(str(path), folder)
-    if below is not None:
-        return below
+    folder = Path(os.path.abspath(folder))
     try:
         shared = Path(os.path.commonpath([path, folder]))
     except ValueError:  # two drives
@@ -191,7 +189,7 @@ def relative_path(path: Path, folder: Path) -> str:
     return Path(os.path.relpath(path, folder)).as_posix()
 
 
-def _below(path: str, folder: Path) -> str | None:
+def _below(path: str, folder: str) -> str | None:
     """What follows a folder in a path below it, with `/`, or None for another path; both absolute."""
     before = os.path.join(folder, "")
     if not path.startswith(before) or path == before:

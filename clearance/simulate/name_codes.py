@@ -7,6 +7,7 @@ names there are (`names`, `status`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import repeat
 
 import numpy as np
 import pyarrow as pa
@@ -34,7 +35,7 @@ def codes_of(column: pa.Array | pa.ChunkedArray, names: Sequence[str]) -> np.nda
         found = np.empty(len(column), dtype=np.int64)
         for start in range(0, len(column), _AT_ONCE):
             part = column.slice(start, _AT_ONCE).to_numpy(zero_copy_only=False).tolist()
-            found[start : start + _AT_ONCE] = [place.get(name, -1) for name in part]
+            found[start : start + _AT_ONCE] = [*map(place.get, part, repeat(-1))]
         return found
     import pyarrow.compute
 

@@ -83,7 +83,7 @@ class _Frames:
     """How far the frames of robots and obstacles get from the origin along an axis at most [m]."""
 
     def __init__(self, case: Case, motions: Sequence[Motion]) -> None:
-        self._case, self._motions = case, motions
+        self._case, self._motions, self._origins = case, motions, _origins(case)
 
     def of_robot(self, i: int) -> float:
         """Of all links of a robot."""
@@ -94,7 +94,7 @@ class _Frames:
     def of_obstacle(self, i: int) -> float:
         """Of an obstacle, whoever has carried it."""
         obstacle = self._case.obstacles[i]
-        own = _origins(self._case)[i]
+        own = self._origins[i]
         if obstacle.moves is not None:
             own += float(np.abs(obstacle.moves.positions).sum(axis=1).max())
         return own + self._below(obstacle.mount)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -72,7 +73,7 @@ class Robot:
     notes: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
 
-    @property
+    @cached_property
     def moving_joints(self) -> tuple[Joint, ...]:
         """The joints that a trajectory can name: not fixed and not mimicking."""
         return tuple(j for j in self.joints if j.kind is not JointKind.FIXED and j.mimic is None)
