@@ -39,6 +39,7 @@ class InputFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._place = os.path.abspath(folder)
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
         self._lookups: dict[str, Source] = {}
@@ -120,11 +121,11 @@ class InputFiles:
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
-        path = Path(os.path.abspath(path))
-        brought = self._brought
-        if brought is not None and path.is_relative_to(brought):
-            return PYBULLET_DATA + path.relative_to(brought).as_posix()
-        return relative_path(path, self.folder)
+        whole = os.path.abspath(path)
+        brought = None if self._brought is None else _below(whole, str(self._brought))
+        if brought is not None:
+            return PYBULLET_DATA + brought
+        return _below(whole, self._place) or relative_path(Path(whole), self.folder)
 
 
 def read_bytes(path: Path, shown: str) -> bytes:
@@ -197,6 +198,14 @@ def relative_path(path: Path, folder: Path) -> str:
     if shared == Path(shared.anchor) and folder != shared:
         return path.name
     return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def _below(path: str, folder: str) -> str | None:
+    """What follows a folder in a path below it, with `/`, or None for another path; both absolute."""
+    before = os.path.join(folder, "")
+    if not path.startswith(before) or path == before:
+        return None
+    return path[len(before) :].replace(os.sep, "/")
 
 
 def resolved(given: str, folder: Path) -> Path:
