@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 import pyarrow as pa
 
+from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_sequence import ContactSequence, StepContact
 from clearance.simulate.every_pair import EveryPair
@@ -178,6 +179,7 @@ class Record(Samples):
         timeline: when what moves how.
         of_pairs: what the rules come to of some of the pairs alone; None where no more can be asked.
         today: the day that waivers are held against; None where the case has none.
+        budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic" or "simulated".
     """
@@ -199,6 +201,7 @@ class Record(Samples):
     profiles: tuple[ProfileAnswer, ...] = ()
     of_pairs: OfPairs | None = None
     today: date | None = None
+    budget: tuple[RuleBudget, ...] | None = None
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""

@@ -25,6 +25,7 @@ from clearance.world.bodies_apart import (
     require_surfaces,
 )
 from clearance.world.body import Obstacle
+from clearance.world.budget import Budget
 from clearance.world.carry import Carry, require_one_carrier
 from clearance.world.cell import Cell, cell_of, once_a_cell
 from clearance.world.collision_matrix import CollisionMatrix
@@ -90,19 +91,29 @@ class Limits:
         return Limits(*self.rules[i_rule - 1].levels(self.fail), self.joints)
 
 
+LOOKUP = "(lookup) "
+"""How the path of a source begins that is no file, but what was looked for in several places."""
+
+
 @dataclass(frozen=True)
 class Source:
-    """A file that the case was made from.
+    """A file that the case was made from, or a search that led to one.
 
     Attributes:
-        path: as it is shown, the same on every machine.
-        read_from: where it was found, for nobody but who must not overwrite it.
+        path: as it is shown, the same on every machine; of a search `LOOKUP` and what was looked for.
+        sha256: of its content; of a search that of where it led.
+        read_from: where it was found, for nobody but who must not overwrite it; of a search what repeats it.
     """
 
     path: str
     sha256: str
     n_bytes: int
     read_from: str = field(default="", compare=False, repr=False)
+
+    @property
+    def is_file(self) -> bool:
+        """False for a search."""
+        return not self.path.startswith(LOOKUP)
 
 
 @dataclass(frozen=True)
@@ -258,6 +269,7 @@ class Case:
         allow: pairs that are not measured; two patterns of names (`fnmatch`) become an `Allowance`.
         carries: which parts are carried, by what and when.
         clock: how far the actors' clocks may be apart.
+        tolerance: what the real machine may differ by; None where nothing is given.
         contact_response: in simulated motion, obstacles push back.
         sources: every file read, for the summary.
         notes: what loading had to mend or assume, one line each.
@@ -283,6 +295,7 @@ class Case:
     sign_off: SignOff | None = None
     carries: tuple[Carry, ...] = ()
     clock: Clock = COMMON
+    tolerance: Budget | None = None
 
     def __post_init__(self) -> None:
         if not self.robots:
