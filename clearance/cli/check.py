@@ -261,7 +261,8 @@ def _compile_ahead(quiet: bool) -> None:
 
 def _print(run: Run, out: Path | None, terminal: Terminal) -> None:
     if terminal.as_json:
-        from clearance.report import json_text, summary_of
+        from clearance.report.output import json_text
+        from clearance.report.summary import summary_of
 
         click.echo(json_text(summary_of(run.record)), nl=False)
     elif not terminal.quiet:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from clearance.findings.finding import JOINT_LIMITS, PROFILE, UNPROVEN, Finding
-from clearance.findings.judgement import Judgement
 from clearance.report.wording import (
     gap_text,
     limit_mm,
@@ -14,6 +15,9 @@ from clearance.report.wording import (
     span_text,
 )
 from clearance.world.rules import DEFAULT
+
+if TYPE_CHECKING:
+    from clearance.findings.judgement import Judgement
 
 
 def finding_line(finding: Finding) -> str:
