@@ -5,6 +5,8 @@ Not for: writing (`profile_file`), or curves that are not profiles, which `clear
 
 from __future__ import annotations
 
+from typing import TypeGuard
+
 import numpy as np
 
 from clearance.errors import BadSyntax, MissingKey, at
@@ -14,7 +16,7 @@ from clearance.profiles.profile import Origin, Profile
 FORMAT = "clearance-profile-1"
 
 
-def is_profile(document) -> bool:
+def is_profile(document: object) -> TypeGuard[dict]:
     """Whether a YAML document claims to be a profile of ours."""
     return isinstance(document, dict) and "contours" in document and "format" in document
 
