@@ -17,7 +17,7 @@ from clearance.errors import ClearanceError
 from scripts.bench.fuzz_seeds import Reader
 
 MAY_BE_INFINITE = frozenset(
-    {"lower", "upper", "velocity", "acceleration", "limits", "trajectory", "goal", "end"}
+    {"lower", "upper", "velocity", "acceleration", "limits", "trajectory", "goal", "start", "end"}
 )
 """What is called so has no bound where it is infinite."""
 

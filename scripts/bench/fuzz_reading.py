@@ -113,11 +113,11 @@ def bag_folder(path: Path) -> object:
     return bag(path.parent)
 
 
-def poses(path: Path) -> object:
+def poses(data: bytes, folder: Path, name: str) -> object:
     from clearance.load.pose_formats import read_poses
     from clearance.load.pose_table_request import PoseRequest
 
-    return read_poses(PoseRequest(lambda: path.open("rb"), path.stat().st_size), path.name)
+    return read_poses(PoseRequest(lambda: io.BytesIO(data), len(data)), name)
 
 
 def xacro(path: Path) -> object:

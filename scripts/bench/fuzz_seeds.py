@@ -140,7 +140,7 @@ def _scenes() -> dict[str, Reader]:
 
 def _motions() -> dict[str, Reader]:
     read, where = reading.trajectory, "load.trajectory_file"
-    poses, tables = reading.by_path(reading.poses), "load.pose_formats"
+    poses, tables = reading.poses, "load.pose_formats"
     yml = (".yml",)
     return {
         "trajectory": Reader("path.csv", texts.PATH, read, table_damaged, where),
