@@ -1,7 +1,7 @@
 """Damage to the structure of every kind of file: it is read, or refused by an error of ours, in little memory.
 
-The kinds are the rows of `scripts/bench/fuzz_seeds.py`; `fuzz_readers.py` tries thousands of files of each. Here are
-some that hypothesis draws and makes small again, and cuts; and no suffix in a table of readers is without a row.
+The kinds are the rows of `scripts/bench/fuzz_seeds.py`; `fuzz_readers.py` tries thousands of files of each. Here
+are some that hypothesis draws and makes small again, and cuts; and no suffix in a table of readers is without a row.
 """
 
 from __future__ import annotations
@@ -26,11 +26,15 @@ import clearance.load
 from scripts.bench.fuzz_outcome import not_finite, outcome
 from scripts.bench.fuzz_seeds import readers
 from scripts.bench.fuzz_trees import yaml_damaged
-from tests.examples import share_of
+from tests.examples import share_of, some_slow
 
 READERS = readers()
+SLOW = {
+    "bag bag", "bag mcap", "bag mcap states", "bag metadata", "bag rosbag2 sqlite3", "case", "controllers",
+    "joint limits", "octomap message", "PlanningScene", "SRDF",
+}  # fmt: skip
 KINDS = [
-    *(kind for kind in READERS if kind != "STEP"),
+    *some_slow([kind for kind in READERS if kind != "STEP"], SLOW),
     pytest.param("STEP", marks=[pytest.mark.cold, pytest.mark.slow]),  # read by another process
 ]
 WRITERS = {"load.trajectory_writer"}
@@ -76,7 +80,7 @@ def test_files_cut_off_are_read_or_refused(kind, tmp_path, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("kind", [kind for kind in READERS if kind != "STEP"])
+@pytest.mark.parametrize("kind", KINDS[:-1])
 def test_little_memory_is_taken(kind, tmp_path):
     reader = READERS[kind]
     reader.read(reader.valid, tmp_path)
