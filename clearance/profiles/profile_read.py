@@ -51,8 +51,15 @@ def profile_of(document: dict) -> Profile:
         n_steps=int(_length(document, "steps")),
         origin=_origin(document.get("origin"), sum(contour.n_pieces for contour in made)),
         parts=_parts(document),
-        notes=tuple(map(str, document.get("notes") or ())),
+        notes=_notes(document),
     )
+
+
+def _notes(document: dict) -> tuple[str, ...]:
+    notes = document.get("notes") or []
+    if not isinstance(notes, list):
+        raise BadSyntax(f"{notes!r:.40}", where="notes", valid="a list of text")
+    return tuple(map(str, notes))
 
 
 def _parts(document: dict) -> dict[str, Profile]:

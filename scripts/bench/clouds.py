@@ -3,10 +3,10 @@
     python scripts/bench/clouds.py [--count N] [--passes N] [--csv FILE]
 
 One robot, the Panda of `scenes/panda_shelf` on its way, in what a scanner might see: a table with things on it,
-a vault all round, and the table higher, so that the arm is in it for half of its way. The mesh is the surface; the
-cloud is one point a triangle, in its middle. CPU seconds, least of interleaved passes after one to warm up; memory in
-bytes of the arrays that are searched. The target is that the cloud takes no more than three times as long a step as
-the mesh.
+a vault all round, and the table higher, so that the arm is in it for half of its way. The mesh is the surface;
+the cloud is one point a triangle, in its middle. CPU seconds, least of interleaved passes after one to warm up;
+memory in bytes of the arrays that are searched. The target is that the cloud takes no more than three times as
+long a step as the mesh.
 """
 
 from __future__ import annotations

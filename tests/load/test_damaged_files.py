@@ -1,7 +1,7 @@
 """Damage to the structure of every kind of file: it is read, or refused by an error of ours, in little memory.
 
 The kinds are the rows of `scripts/bench/fuzz_seeds.py`; `fuzz_readers.py` tries thousands of files of each. Here
-are some that hypothesis draws and makes small again, and cuts; and no suffix in a table of readers is without a row.
+are some that hypothesis draws and makes small again, and cuts; no suffix in a table of readers is without a row.
 """
 
 from __future__ import annotations
@@ -23,6 +23,8 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import clearance.load
+from clearance.load.rosbag_file import SUFFIXES
+from clearance.load.xacro_file import SUFFIX
 from scripts.bench.fuzz_outcome import not_finite, outcome
 from scripts.bench.fuzz_seeds import readers
 from scripts.bench.fuzz_trees import yaml_damaged
@@ -37,8 +39,6 @@ KINDS = [
     *some_slow([kind for kind in READERS if kind != "STEP"], SLOW),
     pytest.param("STEP", marks=[pytest.mark.cold, pytest.mark.slow]),  # read by another process
 ]
-WRITERS = {"load.trajectory_writer"}
-"""Modules with a table of suffixes that are written."""
 
 MOST_MEMORY = 24_000_000
 """[bytes] What a damaged file of some kilobytes may take while it is read, at its peak."""
@@ -94,24 +94,17 @@ def test_little_memory_is_taken(kind, tmp_path):
 
 
 def suffixes() -> dict[str, list[str]]:
-    """The suffixes in each table of readers, by its module."""
-    found = {"load.xacro_file": [".xacro"], "load.rosbag_file": [".bag", ".mcap", ".db3"]}
+    """The suffixes in each table of readers, by the module that begins with it."""
+    found = {"load.xacro_file": [SUFFIX], "load.rosbag_file": [*SUFFIXES]}
+    seen: list[object] = []
     for module in pkgutil.iter_modules(clearance.load.__path__):
-        name = f"load.{module.name}"
-        if name in WRITERS or name == "load.xacro_process":  # which is no module of the package's
-            continue
-        held = vars(importlib.import_module(f"clearance.{name}"))
+        held = vars(importlib.import_module(f"clearance.load.{module.name}"))
         for table in (value for key, value in held.items() if key.endswith("READERS")):
             keys = [key for key in table if isinstance(key, str) and key.startswith(".")]
-            if keys and _is_own(held, table):
-                found[name] = keys
+            if keys and not any(table is one for one in seen):
+                seen.append(table)
+                found[f"load.{module.name}"] = keys
     return found
-
-
-def _is_own(held: dict, table: dict) -> bool:
-    """True where the table is made in the module, not imported into it."""
-    source = Path(held["__file__"]).read_text(encoding="utf-8")
-    return "READERS: " in source and bool(table)
 
 
 def test_every_suffix_in_a_table_of_readers_has_a_row():
