@@ -15,6 +15,7 @@ from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
+from clearance.cli.tolerances import tolerance_options, with_tolerances
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ if TYPE_CHECKING:
     type=click.Choice(KINDS),
     help=f"Let no suspect input of this kind decide the verdict ({', '.join(KINDS)}).",
 )
+@tolerance_options
 @click.option(
     "--contact",
     type=click.Choice(["none", "events", "every"]),
@@ -98,6 +100,8 @@ def check(
     certify_mm: float | None,
     need: str,
     accept: tuple[str, ...],
+    tolerance: Path | None,
+    unproven_ok: bool,
     contact: str,
     jobs: int | None,
     cross_check: bool,
@@ -120,9 +124,9 @@ def check(
 
     The verdict is proven for the motion between the samples too. Without --out nothing is
     written. With it, the same command goes on where an interrupted one was. Exit code: 0 clear
-    (or near), 1 a limit is violated or a waiver is stale, 2 bad or suspect input, 3 the
-    cross-check disagrees; the greatest that holds. A baseline does not change it: `clearance
-    compare` has an exit code of its own.
+    (or near), 1 a limit is violated or, with tolerances, not proven, or a waiver is stale, 2 bad
+    or suspect input, 3 the cross-check disagrees; the greatest that holds. A baseline does not
+    change it: `clearance compare` has an exit code of its own.
     """
     if samples_only and (certify or certify_mm is not None):
         raise click.UsageError(
@@ -137,6 +141,7 @@ def check(
 
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
+    case = with_tolerances(case, tolerance, unproven_ok)
     outputs.refuse_inputs(case)
     before = baseline_of(baseline, outputs.files)
     question = Question(

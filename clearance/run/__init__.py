@@ -5,13 +5,16 @@ Two ways in: `check` takes a case and the usual options; `answer` takes a `Quest
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from os import PathLike
+from typing import Any
 
 from clearance.errors import BadInput
 from clearance.run.answers import answered
 from clearance.run.question import Question, limited
 from clearance.run.result import Run
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
+from clearance.world.budget import Budget
 from clearance.world.case import Case, Limits
 
 __all__ = ["Question", "Resources", "Run", "answer", "check"]
@@ -22,6 +25,7 @@ def check(
     *,
     need: str = "steps",
     limits: Limits | None = None,
+    tolerance: Budget | Mapping[str, Any] | str | PathLike[str] | None = None,
     certify: bool = True,
     cross_check: bool = False,
     contact: str = "events",
@@ -34,13 +38,18 @@ def check(
         case: or the path of a case file.
         need, certify, cross_check, contact, motion: as in `Question`, which has further options for `answer`.
         limits: instead of the case's.
+        tolerance: instead of the case's: a budget, the block of a case file as plain data, or a file with it.
         resources: threads, progress, and where rows are kept; the answer does not depend on them.
 
     Raises:
-        BadInput: an unknown motion or need, or some that do not go together.
+        BadInput: an unknown motion or need, or some that do not go together; tolerances of what is not there.
         NothingToMeasure: no pair is left.
     """
     asked = limited(case if isinstance(case, Case) else _loaded(case), limits)
+    if tolerance is not None:
+        from clearance.load.tolerance_file import with_tolerance
+
+        asked = with_tolerance(asked, tolerance)
     question = Question(
         asked,
         need=need,
