@@ -13,6 +13,7 @@ from weakref import WeakKeyDictionary
 
 from clearance.simulate.fingerprint import robot_digest
 from clearance.simulate.record import Record
+from clearance.world.budget import Budget, RobotTolerance
 from clearance.world.case import Limits, PlacedRobot
 from clearance.world.robot import Robot
 from clearance.world.rules import DEFAULT
@@ -54,6 +55,7 @@ class MeasuredAs:
         need, method, motion: as in `run.Question`. basis: "motion" or "samples", what the verdict rests on.
         certify_gap: [m] how far the bound may be below a distance that occurs; None at the samples only.
         pairs: all that were measured at some time.
+        tolerances: sha256 of the errors that were counted with; empty without any.
     """
 
     need: str
@@ -64,6 +66,7 @@ class MeasuredAs:
     robots: tuple[MeasuredRobot, ...]
     rules: tuple[MeasuredRule, ...]
     pairs: tuple[MeasuredPairs, ...]
+    tolerances: str = ""
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -86,7 +89,26 @@ def measured_as(record: Record) -> MeasuredAs:
         robots=tuple(_robot(record, placed) for placed in record.case.robots),
         rules=tuple(_rules(record.case.limits)),
         pairs=tuple(_pairs(record)),
+        tolerances=_tolerances(record.case.tolerance),
     )
+
+
+def _tolerances(budget: Budget | None) -> str:
+    """Of what decides what is proven and expected: not where the numbers come from, nor what is let pass."""
+    if budget is None:
+        return ""
+    told = (
+        sorted((name, _sorted(one)) for name, one in budget.robots.items()),
+        sorted((name, repr(one)) for name, one in budget.obstacles.items()),
+        budget.coverage,
+        budget.is_normal,
+    )
+    return hashlib.sha256(repr(told).encode()).hexdigest()
+
+
+def _sorted(robot: RobotTolerance) -> str:
+    errors = sorted(robot.joints.items()), sorted(robot.surfaces.items())
+    return repr((*errors, robot.base, robot.timing))
 
 
 def _robot(record: Record, placed: PlacedRobot) -> MeasuredRobot:

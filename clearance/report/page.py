@@ -21,6 +21,7 @@ from markupsafe import Markup, escape
 
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
+from clearance.report.budget_curve import BudgetCurve
 from clearance.report.markup import element
 from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import NOTHING, badge_text, header, sections
@@ -42,6 +43,7 @@ def page_of(
     pictures: dict[str, str] | None = None,
     curves: PairCurves | None = None,
     findings: Markup = NOTHING,
+    budget: BudgetCurve | None = None,
 ) -> str:
     """The whole page.
 
@@ -49,6 +51,7 @@ def page_of(
         pictures: SVG of each profile by its name.
         curves: each pair's own, if every pair was measured at every step.
         findings: the section of what each rule comes to.
+        budget: what tolerances leave over time, if there are any.
 
     Raises:
         Unavailable: meshcat is installed without its viewer.
@@ -56,16 +59,20 @@ def page_of(
     template = Template(_own("page.html"))
     return template.substitute(
         title=escape(f"{summary['name']}: {badge_text(summary)}"),
-        style=_own("page.css"),
+        style=_own("page.css") + _of_tolerances(summary, "css"),
         header=header(summary),
         stage_note=_stage_note(replay),
         sections=sections(summary, pictures or {}, findings),
         footer=element("p", f"clearance {summary['versions']['clearance']}"),
-        data=_json_inside_script(_data(summary, replay) | _pairs(summary, replay, curves)),
+        data=_json_inside_script(
+            _data(summary, replay) | _pairs(summary, replay, curves) | _budget(budget)
+        ),
         plotly=_inside_script(_plotly()),
         meshcat=_inside_script(_meshcat()),
         replay_script=_inside_script(_own("replay.js")),
-        page_script=_inside_script(_own("page.js")),
+        page_script=_inside_script(
+            ("" if budget is None else _own("tolerances.js")) + _own("page.js")
+        ),
     )
 
 
@@ -143,6 +150,22 @@ def _pairs(summary: dict[str, Any], replay: Replay, curves: PairCurves | None) -
         return {"pairs": pairs, "curves": None}
     rows = [_floats(row, "<f4") for row in curves.clearances]
     return {"pairs": pairs, "curves": {"times": _floats(curves.times, "<f8"), "clearances": rows}}
+
+
+def _budget(curve: BudgetCurve | None) -> dict[str, Any]:
+    """What tolerances leave over time; nothing without any."""
+    if curve is None:
+        return {}
+    return {
+        "budget": {
+            name: _floats(getattr(curve, name), "<f8") for name in ("times", "proven", "expected")
+        }
+    }
+
+
+def _of_tolerances(summary: dict[str, Any], kind: str) -> str:
+    """A file that only pages of cases with tolerances hold."""
+    return _own(f"tolerances.{kind}") if "tolerances" in summary else ""
 
 
 def _bands(intervals: list[dict[str, Any]], apart: float) -> list[list[float]]:

@@ -18,6 +18,7 @@ from clearance.report.intervals import events, intervals, not_listed, status_cou
 from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
 from clearance.report.rules import rules_of, told_moment
+from clearance.report.tolerances import tolerances_of
 from clearance.report.verdict import Verdict, verdict_of
 from clearance.report.wording import count
 from clearance.simulate.certificate import Certificate
@@ -35,9 +36,10 @@ FORMAT = 3
 
 def summary_of(record: Record) -> dict[str, Any]:
     """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
-    exist is None."""
+    exist is None. There is a key `tolerances` where the case has some."""
     case, verdict, certificate = record.case, verdict_of(record), record.certificate
     times = record.steps["time"].to_numpy()
+    tolerances = tolerances_of(record)
     return {
         "format": FORMAT,
         "name": case.name,
@@ -80,7 +82,7 @@ def summary_of(record: Record) -> dict[str, Any]:
         "notes": notes_of(record),
         "inputs": inputs(case),
         "versions": versions(),
-    }
+    } | ({} if tolerances is None else {"tolerances": tolerances | {"verdict": verdict.tolerances}})
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:
