@@ -16,13 +16,14 @@ import pyarrow.compute as pc
 from clearance.batch.rows import ERROR, VERDICT, error_row
 from clearance.batch.run import Outcome
 from clearance.batch.store import Store
+from clearance.findings.finding import NOT_PROVEN
 
 FAULT = 70
 """The exit code where this program is at fault, as of `clearance check`."""
 
 VIOLATED, BAD_INPUT = 1, 2
 
-STATUSES = ("clear", "near", "stale waiver", "violated", "contact", "suspect", ERROR)
+STATUSES = ("clear", "near", "stale waiver", NOT_PROVEN, "violated", "contact", "suspect", ERROR)
 """As a case's status can be, the better before the worse."""
 
 
