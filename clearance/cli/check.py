@@ -14,8 +14,9 @@ from clearance.cli import ExitCode
 from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
-from clearance.cli.options import Millimetres, OutputPath, motion_option
-from clearance.cli.tolerances import tolerance_options, with_tolerances
+from clearance.cli.options import Millimetres, OutputPath
+from clearance.cli.recorded import recorded_options, require_recorded, with_recording
+from clearance.cli.tolerances import tolerance_options, with_leniency, with_tolerances
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ if TYPE_CHECKING:
     type=Millimetres(),
     help="With --method paper: its rule 1 leaves out polygons this far apart or farther.  [default: none]",
 )
-@motion_option
+@recorded_options
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
 @more_files_options
@@ -108,6 +109,9 @@ def check(
     method: str,
     paper_tolerance: float | None,
     motion: str,
+    recorded: Path | None,
+    recorded_offset: float | None,
+    recorded_robot: str | None,
     as_json: bool,
     junit: Path | None,
     png: Path | None,
@@ -132,6 +136,7 @@ def check(
         raise click.UsageError(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
+    require_recorded(motion, recorded, recorded_offset, recorded_robot)
     _require_extras(cross_check, motion)
     outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
@@ -141,7 +146,10 @@ def check(
 
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
-    case = with_tolerances(case, tolerance, unproven_ok)
+    case = with_tolerances(case, tolerance)
+    if recorded is not None:
+        case = with_recording(case, recorded, recorded_offset, recorded_robot)
+    case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
     before = baseline_of(baseline, outputs.files)
     question = Question(

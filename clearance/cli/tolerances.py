@@ -34,16 +34,25 @@ def tolerance_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return command
 
 
-def with_tolerances(case: Case, path: Path | None, unproven_ok: bool) -> Case:
-    """The case with the tolerances of a file, if one is given, and what becomes of a limit that is not proven.
+def with_tolerances(case: Case, path: Path | None) -> Case:
+    """The case with the tolerances of a file, if one is given.
 
     Raises:
-        BadInput: with the field and the file. UsageError: the case has no tolerances to be lenient with.
+        BadInput: with the field and the file.
     """
-    if path is not None:
-        from clearance.load.tolerance_file import with_tolerance
+    if path is None:
+        return case
+    from clearance.load.tolerance_file import with_tolerance
 
-        case = with_tolerance(case, path)
+    return with_tolerance(case, path)
+
+
+def with_leniency(case: Case, unproven_ok: bool) -> Case:
+    """The case in which limits that are not proven with its tolerances may pass, if that is wanted.
+
+    Raises:
+        UsageError: it has no tolerances to be lenient with.
+    """
     if not unproven_ok:
         return case
     if case.tolerance is None:

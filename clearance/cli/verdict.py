@@ -21,6 +21,7 @@ from clearance.report import certified_of, contact_of, notes_of, tessellation_bo
 from clearance.report.actors import carried_of, paddings_of
 from clearance.report.contact import HEADS
 from clearance.report.intervals import Interval, extent, intervals
+from clearance.report.recordings import recording_lines
 from clearance.report.tolerances import source_lines
 from clearance.report.verdict import Verdict, moment_line, profile_text
 from clearance.report.wording import (
@@ -69,6 +70,7 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     lines: list[Text | Table | Callable[[], list[Text]]] = [_headline(record, verdict)]
     lines += [*_beside(verdict), *_worst(record), *_rules(record), *_carried(record)]
     lines += _paddings(record)
+    lines += [_row("recorded", line) for line in recording_lines(record)]
     if record.budget is not None:
         lines.append(partial(_tolerances, record))
     if record.need != "minimum":

@@ -8,13 +8,13 @@ from typing import Any
 
 from clearance.findings import findings_file
 from clearance.findings.comparison import Comparison
-from clearance.report.budget_curve import budget_curve
 from clearance.report.budget_table import FILE_NAME as BUDGET
 from clearance.report.budget_table import budget_table
 from clearance.report.findings import findings
 from clearance.report.folder import LAST, fill_folder
 from clearance.report.moments_file import FILE_NAME as MOMENTS
 from clearance.report.moments_file import moments_text
+from clearance.report.more_curves import more_curves
 from clearance.report.page import page_of
 from clearance.report.pair_curves import pair_curves
 from clearance.report.summary import summary_of
@@ -70,7 +70,7 @@ def write(
     moments = moments_text(record)
     found = findings_file.finding_list_of(record)
     told = findings(found.findings, comparison)
-    page = page_of(summary, replay, pictures, pair_curves(record, kept), told, budget_curve(record))
+    page = page_of(summary, replay, pictures, pair_curves(record, kept), told, more_curves(record))
 
     def fill(place: Path) -> None:
         write_parquet(step_batches(record, kept), place / "steps.parquet")

@@ -24,6 +24,7 @@ from clearance.report.markup import (
 )
 from clearance.report.matrix import matrix
 from clearance.report.profiles import profiles
+from clearance.report.recordings import recordings
 from clearance.report.rules import name_shown, rules
 from clearance.report.tolerance_section import tolerances
 from clearance.report.verdict import ACCEPTED, STALE, verdict_text
@@ -195,6 +196,7 @@ def sections(
                 element("div", events(summary), certainty(summary)),
                 class_="columns",
             ),
+            recordings(summary),
             tolerances(summary),
             findings,
             rules(summary),

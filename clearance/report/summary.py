@@ -17,6 +17,7 @@ from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, not_listed, status_counts
 from clearance.report.pair_judge import PairJudge
 from clearance.report.provenance import inputs, public_origin, versions
+from clearance.report.recordings import recordings_of
 from clearance.report.rules import rules_of, told_moment
 from clearance.report.tolerances import tolerances_of
 from clearance.report.verdict import Verdict, verdict_of
@@ -36,10 +37,9 @@ FORMAT = 3
 
 def summary_of(record: Record) -> dict[str, Any]:
     """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
-    exist is None. There is a key `tolerances` where the case has some."""
+    exist is None. Keys `tolerances` and `recordings` are there where a case has some."""
     case, verdict, certificate = record.case, verdict_of(record), record.certificate
     times = record.steps["time"].to_numpy()
-    tolerances = tolerances_of(record)
     return {
         "format": FORMAT,
         "name": case.name,
@@ -82,7 +82,16 @@ def summary_of(record: Record) -> dict[str, Any]:
         "notes": notes_of(record),
         "inputs": inputs(case),
         "versions": versions(),
-    } | ({} if tolerances is None else {"tolerances": tolerances | {"verdict": verdict.tolerances}})
+    } | _where_given(record, verdict)
+
+
+def _where_given(record: Record, verdict: Verdict) -> dict[str, Any]:
+    """What only cases with tolerances, or a recorded run, have."""
+    tolerances, recordings = tolerances_of(record), recordings_of(record)
+    told = (
+        {} if tolerances is None else {"tolerances": tolerances | {"verdict": verdict.tolerances}}
+    )
+    return told if recordings is None else told | {"recordings": recordings}
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from clearance.errors import BadInput
@@ -30,6 +31,8 @@ def check(
     cross_check: bool = False,
     contact: str = "events",
     motion: str = "kinematic",
+    recorded: str | PathLike[str] | None = None,
+    recorded_offset: float = 0.0,
     resources: Resources = DEFAULT_RESOURCES,
 ) -> Run:
     """The least clearance of every step of a case, and the proof for the motion between.
@@ -39,6 +42,8 @@ def check(
         need, certify, cross_check, contact, motion: as in `Question`, which has further options for `answer`.
         limits: instead of the case's.
         tolerance: instead of the case's: a budget, the block of a case file as plain data, or a file with it.
+        recorded: with motion "recorded", a bag or a table of what the robot did. recorded_offset: [s] added to its
+            times.
         resources: threads, progress, and where rows are kept; the answer does not depend on them.
 
     Raises:
@@ -50,6 +55,7 @@ def check(
         from clearance.load.tolerance_file import with_tolerance
 
         asked = with_tolerance(asked, tolerance)
+    asked = _with_recorded(asked, motion, recorded, recorded_offset)
     question = Question(
         asked,
         need=need,
@@ -68,6 +74,26 @@ def answer(question: Question, resources: Resources = DEFAULT_RESOURCES) -> Run:
         NothingToMeasure: no pair is left.
     """
     return Run(answered(question, resources), resources.rows)
+
+
+def _with_recorded(
+    case: Case, motion: str, path: str | PathLike[str] | None, offset: float
+) -> Case:
+    """The case as it was driven, where a recording is given.
+
+    Raises:
+        BadInput: a recording of no use, or none.
+    """
+    if path is None and motion != "recorded":
+        return case
+    if path is None or motion != "recorded":
+        raise BadInput(
+            f"motion {motion!r} and {'no' if path is None else 'a'} recording",
+            valid="motion 'recorded' and recorded: the file",
+        )
+    from clearance.load.recorded_run import with_recorded
+
+    return with_recorded(case, Path(path), offset)
 
 
 def _loaded(path: str | PathLike[str]) -> Case:

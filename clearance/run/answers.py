@@ -21,14 +21,21 @@ from clearance.simulate.fingerprint import fingerprint
 from clearance.simulate.judged import Judged, judged
 from clearance.simulate.measure import Measurement, measure
 from clearance.simulate.parts import blocks
-from clearance.simulate.record import CrossCheck, PairTest, ProfileAnswer, Record, Samples
+from clearance.simulate.record import (
+    AskedCourse,
+    CrossCheck,
+    PairTest,
+    ProfileAnswer,
+    Record,
+    Samples,
+)
 from clearance.simulate.replay_bodies import notes_on_drawing
 from clearance.simulate.resources import DEFAULT_RESOURCES, Resources
 from clearance.simulate.rule_answer import RuleAnswer
 from clearance.simulate.section_answer import SectionAnswer
 from clearance.simulate.sections import Section, SectionPlan, section_plan
 from clearance.simulate.steps import PairMinima, cut_throughout, every_pair, step_table
-from clearance.world.case import Case
+from clearance.world.case import Case, PlacedRobot
 from clearance.world.clocks import require_clocks
 from clearance.world.motion import Motion, kinematic_motion
 from clearance.world.notice import Notice, Severity, listed, worst_first
@@ -103,7 +110,7 @@ def _plan(question: Question) -> MeasurementPlan:
 def _motions(question: Question) -> tuple[Motion, ...]:
     """The motion of each robot at the times of its own table."""
     case = question.case
-    if question.motion == "kinematic":
+    if question.motion != "simulated":
         return tuple(kinematic_motion(placed) for placed in case.robots)
     from clearance.simulate.simulated import simulated_motions
 
@@ -312,7 +319,24 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         cross_check=answers.cross_check,
         of_pairs=partial(_of_pairs, plan),
         today=question.today,
+        asked=_asked(question) if question.motion == "recorded" else None,
     )
+
+
+def _asked(question: Question) -> AskedCourse:
+    """What the case comes to at the steps of what was asked, where its robots have done something else."""
+    robots = tuple(_as_asked(placed) for placed in question.case.robots)
+    case = replace(question.case, robots=robots, tolerance=None)
+    asked = Question(case, certify=False, contact="none", today=question.today)
+    record = answered(asked, DEFAULT_RESOURCES)
+    return AskedCourse(record.steps["time"].to_numpy(), record.clearances, record.worst_sample)
+
+
+def _as_asked(placed: PlacedRobot) -> PlacedRobot:
+    found = placed.recording
+    if found is None:
+        return placed
+    return replace(placed, trajectory=found.asked, timing=found.timing, recording=None)
 
 
 def _of_pairs(

@@ -16,7 +16,7 @@ from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
 from clearance.world.plausibility import notices_of
 
-MOTIONS = ("kinematic", "simulated")
+MOTIONS = ("kinematic", "simulated", "recorded")
 METHODS = ("exact", "paper")
 CONTACT = ("none", "events", "every")
 
@@ -32,7 +32,7 @@ class Question:
             "minimum" for the least of all steps. The worst step is exact in each.
         method: "exact", or "paper" for the first paper's algorithm as published (no guarantee).
         motion: "kinematic" follows the trajectory exactly, "simulated" is what a physics engine's
-            controlled robot makes of it.
+            controlled robot makes of it, "recorded" what a robot really did, of a case with a recording.
         certify: also prove a lower bound for the motion between the steps, joints moving linearly or, where
             the trajectory has velocities, on cubics; the verdict then rests on it. Without it, and with method
             "paper", which proves nothing, the verdict is of the samples only, and says so.
@@ -86,6 +86,7 @@ class Question:
             raise BadInput(
                 f"cross-check needs every step, not {self.need!r}", valid="need 'steps' or 'pairs'"
             )
+        _require_recording(self)
         _require_one_clock(self)
         _require_surfaces(self)
         object.__setattr__(self, "certify", self.certify and self.method == "exact")
@@ -103,6 +104,16 @@ class Question:
             self.certify,
             self.certify_gap,
             self.paper_tolerance,
+        )
+
+
+def _require_recording(question: Question) -> None:
+    """Nothing, if there is a recording where one is meant, and none else."""
+    there = any(placed.recording is not None for placed in question.case.robots)
+    if there != (question.motion == "recorded"):
+        given = "has a recording" if there else "has no recording"
+        raise BadInput(
+            f"motion {question.motion!r} of a case that {given}", valid="both, or neither"
         )
 
 

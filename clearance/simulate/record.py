@@ -127,6 +127,20 @@ class ProfileAnswer:
 
 
 @dataclass(frozen=True, eq=False)
+class AskedCourse:
+    """The clearances of what was asked, beside those of what was done.
+
+    Attributes:
+        times: (n,) [s]. clearances: (n,) [m] of the pair that stands worst at each step; NaN where there is none.
+        worst: the step that stands worst.
+    """
+
+    times: np.ndarray
+    clearances: np.ndarray
+    worst: Moment
+
+
+@dataclass(frozen=True, eq=False)
 class Samples:
     """The steps of a run: what a peer is held against, and what sweeps a profile.
 
@@ -181,7 +195,7 @@ class Record(Samples):
         today: the day that waivers are held against; None where the case has none.
         budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
-        motion_kind: "kinematic" or "simulated".
+        motion_kind: "kinematic", "simulated" or "recorded". asked: of recorded motion, what was asked instead.
     """
 
     pair_minima: Sequence[PairMinimum]
@@ -202,6 +216,7 @@ class Record(Samples):
     of_pairs: OfPairs | None = None
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
+    asked: AskedCourse | None = None
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
