@@ -71,6 +71,11 @@ if TYPE_CHECKING:
 @click.option(
     "--jobs", type=click.IntRange(min=1), help="Threads.  [default: all cores; same bytes]"
 )
+@click.option(
+    "--body-gaps",
+    is_flag=True,
+    help="Tell which gaps people may be caught in, by the widths of ISO 13854; no verdict depends on it.",
+)
 @click.option("--cross-check", is_flag=True, help="Hold every step against FCL.")
 @click.option(
     "--method",
@@ -105,6 +110,7 @@ def check(
     unproven_ok: bool,
     contact: str,
     jobs: int | None,
+    body_gaps: bool,
     cross_check: bool,
     method: str,
     paper_tolerance: float | None,
@@ -163,6 +169,7 @@ def check(
         contact=contact,
         paper_tolerance=paper_tolerance,
         today=today,
+        body_gaps=body_gaps,
     )
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
     return ExitCode(run.verdict.exit_code)

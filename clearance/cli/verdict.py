@@ -19,6 +19,7 @@ from clearance.cli.progress import shown_progress
 from clearance.errors import shown
 from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
 from clearance.report.actors import carried_of, paddings_of
+from clearance.report.body_gaps import gap_lines
 from clearance.report.contact import HEADS
 from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.recordings import recording_lines
@@ -73,6 +74,10 @@ def _lines(run: Run, out: Path | None) -> list[Text | Table | Callable[[], list[
     lines += [_row("recorded", line) for line in recording_lines(record)]
     if record.budget is not None:
         lines.append(partial(_tolerances, record))
+    if record.body_gaps:
+        lines += [
+            _row("body gaps" if i == 0 else "", told) for i, told in enumerate(gap_lines(record))
+        ]
     if record.need != "minimum":
         lines += [_row(_LEVELS[level], _interval_text(record, level)) for level in _LEVELS]
     lines.append(partial(_deepest, record))

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from clearance.findings.finding import NOT_PROVEN
 from clearance.findings.of_budget import NOT_WORKED_OUT
 from clearance.report.background import certainty, loaded, provenance, sign_off, unmeasured
+from clearance.report.body_gaps import body_gaps
 from clearance.report.cell_time import cell_time
 from clearance.report.contact import contacts
 from clearance.report.markup import (
@@ -142,7 +143,7 @@ def _with_tolerances(summary: dict[str, Any]) -> list[Markup]:
     if told is None:
         return []
     marked = told["verdict"] in (NOT_PROVEN, ACCEPTED)
-    lines = told["lines"] or [NOT_WORKED_OUT]
+    lines = told["lines"] or [f"{NOT_WORKED_OUT[0].upper()}{NOT_WORKED_OUT[1:]}."]
     return [element("li", line, class_="text-violated" if marked else None) for line in lines]
 
 
@@ -198,6 +199,7 @@ def sections(
             ),
             recordings(summary),
             tolerances(summary),
+            body_gaps(summary),
             findings,
             rules(summary),
             cell_time(summary),

@@ -13,6 +13,7 @@ import numpy as np
 
 from clearance.geometry.point_cloud import PointCloud
 from clearance.report.actors import actors_of, carried_of, clock_of, paddings_of
+from clearance.report.body_gaps import body_gaps_of
 from clearance.report.contact import contact_of
 from clearance.report.intervals import events, intervals, not_listed, status_counts
 from clearance.report.pair_judge import PairJudge
@@ -37,7 +38,7 @@ FORMAT = 3
 
 def summary_of(record: Record) -> dict[str, Any]:
     """Everything about a record that fits on a page, as JSON-ready values; a limit that does not
-    exist is None. Keys `tolerances` and `recordings` are there where a case has some."""
+    exist is None. Keys `tolerances`, `recordings` and `body_gaps` are there where a case has them."""
     case, verdict, certificate = record.case, verdict_of(record), record.certificate
     times = record.steps["time"].to_numpy()
     return {
@@ -86,12 +87,13 @@ def summary_of(record: Record) -> dict[str, Any]:
 
 
 def _where_given(record: Record, verdict: Verdict) -> dict[str, Any]:
-    """What only cases with tolerances, or a recorded run, have."""
+    """What only cases with tolerances, a recorded run or body gaps have."""
     tolerances, recordings = tolerances_of(record), recordings_of(record)
     told = (
         {} if tolerances is None else {"tolerances": tolerances | {"verdict": verdict.tolerances}}
     )
-    return told if recordings is None else told | {"recordings": recordings}
+    told |= {} if recordings is None else {"recordings": recordings}
+    return told | ({"body_gaps": body_gaps_of(record)} if record.body_gaps else {})
 
 
 def _verdict(verdict: Verdict) -> dict[str, Any]:

@@ -319,6 +319,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         cross_check=answers.cross_check,
         of_pairs=partial(_of_pairs, plan),
         today=question.today,
+        body_gaps=question.body_gaps,
         asked=_asked(question) if question.motion == "recorded" else None,
     )
 

@@ -42,6 +42,8 @@ class Question:
         contact: of which overlaps depth, volume and way out are worked out, when they are first looked at: the
             deepest moment of each of the "events" (a pair in contact without a break), "every" one, or "none".
             The verdict does not depend on it.
+        body_gaps: tell which gaps between what moves and what stands are of a width that parts of a person may be
+            caught in; no verdict depends on it.
         today: the day that the case's waivers are held against; that of the clock, in UTC, if not given; None
             where it has none.
         paper_tolerance: [m] of the paper's rule 1, as `tolerance` of `distance`.
@@ -61,6 +63,7 @@ class Question:
     contact: str = "events"
     paper_tolerance: float | None = None
     today: date | None = None
+    body_gaps: bool = False
 
     def __post_init__(self) -> None:
         if not isinstance(self.case, Case):
@@ -76,6 +79,11 @@ class Question:
                 given = getattr(self, what)
                 raise BadInput(f"unknown {what} {given!r}", valid=f"one of {', '.join(valid)}")
         _require_tolerance(self.paper_tolerance, self.method)
+        if self.body_gaps and self.need not in ("steps", "pairs"):
+            raise BadInput(
+                f"body gaps need the least of every pair, not {self.need!r}",
+                valid="need 'steps' or 'pairs'",
+            )
         object.__setattr__(self, "certify_gap", _checked_gap(self.certify_gap))
         if self.need != "steps" and self.method != "exact":
             raise BadInput(

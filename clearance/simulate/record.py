@@ -196,6 +196,7 @@ class Record(Samples):
         budget: what the case's tolerances leave, of each of `rules`; None where the case has none.
         method: "exact" or "paper", which leaves out what is farther than `paper_tolerance` [m]; None for nothing.
         motion_kind: "kinematic", "simulated" or "recorded". asked: of recorded motion, what was asked instead.
+        body_gaps: whether gaps that people may be caught in are to be told.
     """
 
     pair_minima: Sequence[PairMinimum]
@@ -217,6 +218,7 @@ class Record(Samples):
     today: date | None = None
     budget: tuple[RuleBudget, ...] | None = None
     asked: AskedCourse | None = None
+    body_gaps: bool = False
 
     def work_out_contacts(self, progress: Callable[[int, int], None] | None = None) -> None:
         """Works out now what the run asks for of its contacts; `progress` is called with how many of how many."""
