@@ -1,7 +1,7 @@
 """Gaps between what moves and what stands, held against the widths that parts of a person need: information only.
 
-In a gap as wide as its width here a part of a person is not caught, nor in one that it cannot enter. Who can get where
-is not known here, so no verdict follows. Not for: limits of the case (`rules`).
+In a gap as wide as its width here a part of a person is not caught, nor in one that it cannot enter. Who can get
+where is not known here, so no verdict follows. Not for: limits of the case (`rules`).
 
 Source: ISO 13854, minimum gaps, as the page of AUVA (app.auva.at) gives them; the standard itself was not read.
 """
@@ -78,8 +78,8 @@ def body_gaps(summary: dict[str, Any]) -> Markup:
         return Markup("")
     widths = ", ".join(f"{part} {limit_mm(width)} mm" for part, width in WIDTHS.items())
     told = (
-        "Information, no verdict: who can get there, and which gaps are too narrow to enter, is not known here. Told "
-        "are pairs of which one moves and one stands, with their least gap at the steps, less padding. By the "
+        "Information, no verdict: who can get there, and which gaps are too narrow to enter, is not known here. "
+        "Told are pairs of which one moves and one stands, with their least gap at the steps, less padding. By the "
         f"{SOURCE}: {widths}."
     )
     rows = [_row(one) for one in found[:MOST_ROWS]]
