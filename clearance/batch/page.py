@@ -47,21 +47,26 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
         style=style + _own("page.css") + (_NOT_PROVEN if NOT_PROVEN in answer.counts else ""),
         name=escape(place.name),
         verdict=escape(_counted(answer)),
-        worst=_worst_status(answer),
-        basis=escape(_basis(answer)),
+        worst=answer.status.split()[0],
+        basis=escape("; ".join([_basis(answer), *answer.stale])),
         version=escape(__version__),
         data=json.dumps(_data(answer, place), allow_nan=False).replace("<", "\\u003c"),
         script=re.sub(r"</(?=script)", r"<\\/", _own("page.js"), flags=re.IGNORECASE),
     )
 
 
+def unfinished_page(name: str, text: str) -> str:
+    """The page of a batch that has no answer yet."""
+    style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
+    title, told = escape(f"{name}: not finished"), escape(text)
+    return Template(_own("unfinished.html")).substitute(
+        title=title, style=style, name=escape(name), text=told, version=escape(__version__)
+    )
+
+
 def _counted(answer: BatchAnswer) -> str:
     told = ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items()))
     return f"{count(answer.cases.num_rows, 'case')}: {told or 'none'}"
-
-
-def _worst_status(answer: BatchAnswer) -> str:
-    return next(reversed(answer.counts), "clear")
 
 
 def _basis(answer: BatchAnswer) -> str:
@@ -94,7 +99,7 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "bodies": bodies.texts,
         "rules": rules.texts,
         "reasons": [lines or [] for lines in table["reasons"].to_pylist()],
-        "warnings": [lines or [] for lines in table["warnings"].to_pylist()],
+        "beside": [*map(_beside, *(table[name].to_pylist() for name in ("warnings", "waived")))],
         "levels": _levels(table["fail"].to_pylist(), table["warn"].to_pylist()),
         "curves": _curves(table["curve"].to_pylist(), table["warn"].to_pylist()),
         "n_curve": CURVE,
@@ -105,6 +110,12 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
 def _statuses(answer: BatchAnswer) -> list[str]:
     """All statuses, the better before the worse; "not proven" only where tolerances made a case so."""
     return [one for one in STATUSES if one != NOT_PROVEN or one in answer.counts]
+
+
+def _beside(warnings: list[str] | None, waived: list[str] | None) -> list[str]:
+    return [f"warning: {line}" for line in warnings or ()] + [
+        f"waived: {line}" for line in waived or ()
+    ]
 
 
 class _Texts:

@@ -17,7 +17,7 @@ from clearance.load.tolerance_schema import CONTROLLERS, ERRORS
 from clearance.world.notice import KINDS
 
 _NAMES_OF_STATES = {
-    "description": "a state of the SRDF, or several",
+    "description": "a state of the SRDF, or of the MJCF without one; or several",
     "anyOf": [
         {"type": "number"},
         {"type": "string", "minLength": 1},

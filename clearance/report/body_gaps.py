@@ -79,8 +79,8 @@ def body_gaps(summary: dict[str, Any]) -> Markup:
     widths = ", ".join(f"{part} {limit_mm(width)} mm" for part, width in WIDTHS.items())
     told = (
         "Information, no verdict: who can get there, and which gaps are too narrow to enter, is not known here. "
-        "Told are pairs of which one moves and one stands, with their least gap at the steps, less padding. By the "
-        f"{SOURCE}: {widths}."
+        "Told are pairs of which one moves and one stands, with their least gap at the steps, less padding. By "
+        f"the {SOURCE}: {widths}."
     )
     rows = [_row(one) for one in found[:MOST_ROWS]]
     heads = ("Between", ">Gap, mm", "When", "May catch")

@@ -5,12 +5,13 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.findings.finding import NOT_PROVEN, Finding
 from clearance.findings.of_budget import of_budget
 from clearance.report.finding_text import finding_line, waived_lines
@@ -37,22 +38,14 @@ from clearance.world.rules import DEFAULT
 if TYPE_CHECKING:
     from clearance.findings.judgement import Judgement
 
-SUSPECT = "suspect"
-"""The status where the input is in doubt, whatever was measured."""
-
 MOTION, SAMPLES = "motion", "samples"
 """What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
-
-SURROUNDINGS = "surroundings (the scene is empty)"
 
 STALE = "stale waiver"
 """The status where all would be well, but for a waiver that has expired or that nothing needs."""
 
 KEPT, ACCEPTED = "kept", "accepted"
 """What tolerances make of limits: proven to be kept with them, or not, which may pass; else `NOT_PROVEN`."""
-
-SELF_COLLISION = "self-collision"
-"""What is not measured unless the case asks for it."""
 
 _PASSING = (Status.CLEAR, Status.NEAR)
 
@@ -161,8 +154,7 @@ def _with_tolerances(text: str, tolerances: str, not_proven: str) -> str:
 def verdict_of(record: Record) -> Verdict:
     """The verdict of a record."""
     notices = record.notices
-    suspects = [notice for notice in notices if notice.severity is Severity.SUSPECT]
-    open_suspects = tuple(one for one in suspects if one.kind not in record.case.accept)
+    suspects = open_suspects(record)
     judgement = _judgement(record)
     measured = _measured(record, judgement)
     check = record.cross_check
@@ -177,20 +169,20 @@ def verdict_of(record: Record) -> Verdict:
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
     broken = [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
     reasons += broken
-    reasons += [f"suspect {one.kind}: {one.text}" for one in open_suspects]
+    reasons += [f"suspect {one.kind}: {one.text}" for one in suspects]
     if disputing is not None:
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(f"{disputing.peer} disagrees at {n_steps}")
     return Verdict(
-        status=SUSPECT if open_suspects else _less_open(measured, open_limits, stale),
+        status=SUSPECT if suspects else _less_open(measured, open_limits, stale),
         measured=measured,
         basis=SAMPLES if record.certificate is None else MOTION,
         reasons=tuple(reasons),
         unproven=unproven,
-        suspects=open_suspects,
+        suspects=suspects,
         warnings=tuple(_warnings(record, notices)),
         disputed_by=None if disputing is None else disputing.peer,
-        not_checked=tuple(_not_checked(record.case)),
+        not_checked=tuple(not_checked(record.case)),
         broken=tuple(broken),
         nearest=_nearest(record),
         clocks=clock_text(record.case.clock.slack),
@@ -225,17 +217,6 @@ def _judgement(record: Record) -> Judgement | None:
     from clearance.findings.judgement import judgement_of
 
     return judgement_of(record)
-
-
-def _not_checked(case: Case) -> Iterator[str]:
-    """That nothing stands around the robots, and those whose links are not measured against one another."""
-    if not case.obstacles:
-        yield SURROUNDINGS
-    left_out = [placed.robot.name for placed in case.robots if not placed.self_clearance]
-    if len(left_out) == len(case.robots):
-        yield SELF_COLLISION
-    else:
-        yield from (f"{SELF_COLLISION} of {name}" for name in left_out)
 
 
 def _measured(record: Record, judgement: Judgement | None) -> str:
