@@ -15,6 +15,7 @@ import numpy as np
 
 from clearance.run.question import Question
 from clearance.simulate import inside
+from clearance.simulate.budget_answer import RuleBudget
 from clearance.simulate.certificate import Certificate
 from clearance.simulate.contact_sequence import ContactSequence
 from clearance.simulate.fingerprint import fingerprint
@@ -70,7 +71,7 @@ class Answers:
     """All that was found.
 
     Attributes:
-        cross_check: None where no peer was asked.
+        cross_check: None where no peer was asked. budget: None where the case has no tolerances.
     """
 
     judged: Judged
@@ -79,6 +80,7 @@ class Answers:
     notices: tuple[Notice, ...]
     profiles: tuple[ProfileAnswer, ...]
     cross_check: CrossCheck | None
+    budget: tuple[RuleBudget, ...] | None
 
 
 def answered(question: Question, resources: Resources) -> Record:
@@ -125,7 +127,8 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         for section, own in zip(plan.sections.sections, parts, strict=True)
     ]
     all_judged = judged(plan.sections, found, question.case, plan.motions)
-    samples = _samples(plan, all_judged, resources)
+    budget = _budget(plan, found, resources)
+    samples = _samples(plan, all_judged, budget, resources)
     return Answers(
         all_judged,
         samples,
@@ -133,6 +136,7 @@ def _answers(plan: MeasurementPlan, resources: Resources) -> Answers:
         _notices(plan, all_judged.certificate, found),
         _profiles(plan),
         _peer(question.case, samples, found, resources) if question.cross_check else None,
+        budget,
     )
 
 
@@ -180,10 +184,31 @@ def _certificate(
     return certify_motion(section.in_motion, found, gap, need, resources)
 
 
-def _samples(plan: MeasurementPlan, judged: Judged, resources: Resources) -> Samples:
+def _budget(
+    plan: MeasurementPlan, found: Sequence[SectionAnswer], resources: Resources
+) -> tuple[RuleBudget, ...] | None:
+    """What the case's tolerances leave of what was found."""
+    if plan.question.case.tolerance is None:
+        return None
+    from clearance.budget.answer import budget_answers
+
+    return budget_answers(plan.question.case, plan.sections, found, resources)
+
+
+def _samples(
+    plan: MeasurementPlan,
+    judged: Judged,
+    budget: tuple[RuleBudget, ...] | None,
+    resources: Resources,
+) -> Samples:
     case, motions, pairs = plan.question.case, plan.motions, plan.sections.pairs
     simulated = plan.question.motion == "simulated"
-    batches = step_table(case, motions, pairs, judged, with_error=simulated)
+    left = None
+    if budget is not None:
+        from clearance.budget.answer import columns_of
+
+        left = columns_of(budget)
+    batches = step_table(case, motions, pairs, judged, with_error=simulated, left=left)
     unmeasured = (*plan.sections.unmeasured, *cut_throughout(case, pairs, judged.found))
     return Samples(case, motions, resources.rows.table("steps", batches), unmeasured)
 
@@ -317,6 +342,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         contacts=answers.contacts,
         profiles=answers.profiles,
         cross_check=answers.cross_check,
+        budget=answers.budget,
         of_pairs=partial(_of_pairs, plan),
         today=question.today,
         body_gaps=question.body_gaps,
