@@ -68,8 +68,15 @@ def finding_list_of(record: Record, findings: tuple[Finding, ...] | None = None)
 
 
 def findings_text(found: FindingList) -> str:
-    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN."""
-    return json.dumps(asdict(found), indent=1, sort_keys=True, allow_nan=False) + "\n"
+    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances nothing where
+    there are none."""
+    told = asdict(found)
+    if not found.measured.tolerances:
+        del told["measured"]["tolerances"]
+    for finding in told["findings"]:
+        if not finding["accepted"]:
+            del finding["accepted"]
+    return json.dumps(told, indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
 def read_findings(path: str | Path) -> FindingList:

@@ -63,7 +63,7 @@ def limited(entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFi
         shown = files.shown(path)
         with at(f"{entry.field}.controllers"), at(shown):
             controllers = parse_controllers(files.read(path))
-            tolerances = _of_robot(_widest(controllers), names)
+            tolerances = _of_robot(widest(controllers), names)
         notes += [
             f"{shown}: {note}" for note in _notes_on_tolerances(controllers, tolerances, robot)
         ]
@@ -150,7 +150,7 @@ def note_on_accelerations(
         yield "accelerations are not held against their limits: the trajectory gives no velocities"
 
 
-def _widest(controllers: list[Controller]) -> dict[str, PathTolerance]:
+def widest(controllers: list[Controller]) -> dict[str, PathTolerance]:
     """By joint; of several controllers of one, which of them runs is not known."""
     found: dict[str, PathTolerance] = {}
     for controller in controllers:

@@ -42,6 +42,14 @@ def standing_contacts(record: Record) -> list[tuple[str, str]]:
     return touching
 
 
+def standing_bodies(record: Record) -> frozenset[str]:
+    """The names of the measured bodies that never move."""
+    standing = [_standing_links(motion) for motion in record.motions]
+    bodies = {body for pair in section_plan(record.timeline).pairs for body in (pair.a, pair.b)}
+    case = record.case
+    return frozenset(body.name_in(case) for body in bodies if _stands(case, body, standing))
+
+
 def _stands(case: Case, body: BodyIndex, standing: list[set[str]]) -> bool:
     """True for an obstacle that stands and is never carried, and for a link that no joint moves."""
     if body.is_obstacle:
