@@ -15,6 +15,7 @@ from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
+from clearance.cli.verify import receipt_option, refuse_case, require_receipt, write_receipt_of
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -85,6 +86,7 @@ if TYPE_CHECKING:
 @motion_option
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
+@receipt_option
 @more_files_options
 @ci_options
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
@@ -106,6 +108,7 @@ def check(
     motion: str,
     as_json: bool,
     junit: Path | None,
+    receipt: str | None,
     png: Path | None,
     glb: Path | None,
     trajectory: Path | None,
@@ -129,6 +132,7 @@ def check(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
     _require_extras(cross_check, motion)
+    require_receipt(receipt, out, certify=not samples_only, motion=motion, method=method)
     outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
     _require_file(case_file)
@@ -138,6 +142,7 @@ def check(
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
     outputs.refuse_inputs(case)
+    refuse_case(receipt, case)
     before = baseline_of(baseline, outputs.files)
     question = Question(
         case,
@@ -152,6 +157,8 @@ def check(
         today=today,
     )
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
+    if receipt is not None and out is not None:
+        write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
 
 

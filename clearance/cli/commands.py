@@ -15,6 +15,7 @@ from clearance.cli.pre_commit import pre_commit
 from clearance.cli.profile import profile
 from clearance.cli.schema import schema
 from clearance.cli.srdf import srdf
+from clearance.cli.verify import verify
 from clearance.cli.view import view
 from clearance.cli.workspace import workspace
 
@@ -35,5 +36,6 @@ clearance.add_command(pre_commit)
 clearance.add_command(profile)
 clearance.add_command(schema)
 clearance.add_command(srdf)
+clearance.add_command(verify)
 clearance.add_command(view)
 clearance.add_command(workspace)

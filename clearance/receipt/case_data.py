@@ -17,7 +17,7 @@ from clearance.receipt.proof.motion_data import NONE, Joints, Shape, Stretch
 from clearance.world.case import Case, Omission
 from clearance.world.forest import WORLD, forest_of, joined_positions
 from clearance.world.motion import Motion, kinematic_motion
-from clearance.world.pairs import OBSTACLE, BodyIndex, selected_pairs
+from clearance.world.pairs import OBSTACLE, BodyIndex, Pair, selected_pairs
 from clearance.world.phase import Phase
 from clearance.world.timeline import timeline_of
 
@@ -62,11 +62,13 @@ def case_data(case: Case) -> CaseData:
     Raises:
         BadInput: a case that no receipt can be written of, and why.
     """
-    _require_covered(case)
+    require_covered(case)
     timeline = timeline_of(case, [kinematic_motion(placed) for placed in case.robots])
     bodies = _bodies(case)
     number = {body: i for i, body in enumerate(bodies)}
-    stretches, pairs, left_out = [], set(), {}
+    stretches: list[Stretch] = []
+    pairs: set[Pair] = set()
+    left_out: dict[Omission, None] = {}
     for phase in timeline.phases:
         selection = selected_pairs(phase)
         left_out |= dict.fromkeys(selection.unmeasured)
@@ -86,7 +88,12 @@ def case_data(case: Case) -> CaseData:
     )
 
 
-def _require_covered(case: Case) -> None:
+def require_covered(case: Case) -> None:
+    """Nothing, if receipts can be written of a case.
+
+    Raises:
+        BadInput: why they cannot.
+    """
     if case.clock.slack != 0.0:
         raise BadInput(
             "no receipt for cases whose clocks are not tied", where="clock", valid="clock: common"

@@ -1,4 +1,4 @@
-"""The direction of the nearest points of two convex parts: by Gilbert, Johnson and Keerthi's algorithm, many at once.
+"""The direction of the nearest points of two convex parts: by Gilbert, Johnson and Keerthi's method, many at once.
 
 Whatever direction comes out, it only has to do; what it proves is decided elsewhere (`receipt.proof`).
 """
@@ -25,17 +25,17 @@ SUBSETS = [list(one) for size in (1, 2, 3, 4) for one in itertools.combinations(
 
 
 def nearest_directions(stage: Stage, items: Items) -> tuple[np.ndarray, np.ndarray]:
-    """(3, k) unit vectors from the first to the second part of each item in the middle of its time; (k,) [m] how far
-    they are apart there beyond what is wanted and what their motion is off straight.
+    """(3, k) unit vectors from the first to the second part of each item in the middle of its time; (k,) [m] how
+    far they are apart there beyond what is wanted and what their motion is off straight.
     """
     n = len(items.pair)
     found, slack = np.zeros((3, n)), np.zeros(n)
     for rows, at, a, b in stage.middles(items):
         found[:, rows], apart = _directions(stage, at, a, b)
         own = items.of(rows)
-        wanted = stage.wanted[own.pair, own.start + own.count // 2]
+        wanted = stage.wanted[own.pair, own.start + own.span // 2]
         lost = sum(at.rest[s.place] + stage.halves.radius[s.body] for s in (a, b))
-        slack[rows] = apart - wanted - np.where(own.count > 1, 0.0, lost)
+        slack[rows] = apart - wanted - np.where(own.span > 1, 0.0, lost)
     return found, slack
 
 

@@ -1,7 +1,8 @@
 """Finds evidence: for each item balls, a direction, or how to cut it, by the proof's own bounds.
 
-A direction is that of the nearest points of what holds both parts in the middle of their time, as quantised. Where
-it does not do, time is cut if the parts are apart there, else the larger part. Not for: deciding (`receipt.proof`).
+A direction is that of the nearest points of what holds both parts in the middle of their time, as quantised.
+Where it does not do, time is cut if the parts are apart there, else what is largest. Not for:
+deciding (`receipt.proof`).
 """
 
 from __future__ import annotations
@@ -40,6 +41,17 @@ class Found:
         self.codes: dict[int, list[np.ndarray]] = {most: [] for _, most in SIZES}
         self.n_items = 0
 
+    @property
+    def all_deeds(self) -> np.ndarray:
+        """(items,) what is done with each."""
+        return np.concatenate(self.deeds) if self.deeds else np.empty(0, dtype=np.uint8)
+
+    @property
+    def all_codes(self) -> dict[int, np.ndarray]:
+        """(n, 2) all directions of each size."""
+        none = np.empty((0, 2), dtype=np.int64)
+        return {most: np.concatenate([none, *rows]) for most, rows in self.codes.items()}
+
     def add(self, deeds: np.ndarray, codes: dict[int, np.ndarray]) -> None:
         """Adds what is done with the items of a level."""
         self.deeds.append(deeds.astype(np.uint8))
@@ -65,7 +77,8 @@ def evidence_for(
             found.add(deeds, codes)
             if found.n_items > MOST_ITEMS:
                 raise BadInput(
-                    f"a full receipt takes more than {MOST_ITEMS:,} proofs", valid="--receipt sampled"
+                    f"a full receipt takes more than {MOST_ITEMS:,} proofs",
+                    valid="--receipt sampled",
                 )
             items = cut(items, deeds)
         inside = one_inside(stage)
@@ -98,34 +111,30 @@ def _deeds(stage: Stage, items: Items) -> tuple[np.ndarray, dict[int, np.ndarray
     if len(rest):
         deeds[rest] = _cuts(stage, own, slack)
     stage.note_apart(items.of(np.flatnonzero(deeds < CUT_TIME)))
-    return deeds, {
-        most: codes[deeds == deed]
-        for deed, most in SIZES
-    }
+    return deeds, {most: codes[deeds == deed] for deed, most in SIZES}
 
 
 def _cuts(stage: Stage, items: Items, slack: np.ndarray) -> np.ndarray:
-    """How to cut items that no direction proves.
+    """How to cut items that no direction proves: in time where they are apart in its middle, else what is largest,
+    a part or the way that the parts go against each other.
 
     Args:
         slack: (k,) [m] by how much they are apart beyond what is wanted in the middle of their time.
     """
     bodies = stage.stretch.pairs[items.pair]
-    sizes = [
-        stage.halves.sizes(bodies[:, k], node)
-        for k, node in enumerate((items.node_a, items.node_b))
-    ]
-    lengths = [_lengths(stage.halves, bodies[:, k], n) for k, n in enumerate((items.node_a, items.node_b))]
-    can = np.array(sizes) > 1
-    cut_node = np.where(can[0] & (~can[1] | (lengths[0] >= lengths[1])), CUT_A, CUT_B)
-    in_time = (slack > 0.0) | ~can.any(axis=0)
-    if (in_time & (items.depth >= DEEPEST)).any():
-        row = int(np.flatnonzero(in_time & (items.depth >= DEEPEST))[0])
+    sides = [(bodies[:, k], nodes) for k, nodes in enumerate((items.node_a, items.node_b))]
+    sizes = np.array([stage.halves.sizes(*side) for side in sides])
+    lengths = np.where(sizes > 1, [_lengths(stage.halves, *side) for side in sides], -1.0)
+    in_time = (slack > 0.0) | (stage.ways(items) >= lengths.max(axis=0))
+    in_time |= (sizes == 1).all(axis=0)
+    stuck = np.flatnonzero(in_time & (items.depth >= DEEPEST))
+    if len(stuck):
+        row = int(stuck[0])
         raise BadInput(
             f"no receipt: {_pair_text(stage, int(items.pair[row]))} cannot be proven apart in interval "
             f"{stage.stretch.first + int(items.start[row])}"
         )
-    return np.where(in_time, CUT_TIME, cut_node)
+    return np.where(in_time, CUT_TIME, np.where(lengths[0] >= lengths[1], CUT_A, CUT_B))
 
 
 def _lengths(halves: Halves, bodies: np.ndarray, nodes: np.ndarray) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Cuts a body's faces in halves, and those again, by the faces alone: the nodes that evidence speaks of.
 
-Node 0 is all of it, the halves of node i are 2 i + 1 and 2 i + 2, the earlier one smaller along the axis along which
-the middles of its faces are farthest apart. Not for: where bodies are (`placing`).
+Node 0 is all of it, the halves of node i are 2 i + 1 and 2 i + 2, the earlier one smaller along the axis along
+which the middles of its faces are farthest apart. Not for: where bodies are (`placing`).
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from clearance.receipt.proof.motion_data import Shape
 
 FEW = 8
-"""Faces of a node whose corners are looked at one by one; of more, the boxes of its eight parts three cuts down."""
+"""Faces of a node whose corners are looked at one by one; of more, the boxes of its parts three cuts down."""
 
 
 class Halves(NamedTuple):
@@ -68,7 +68,7 @@ def _widened(corners: np.ndarray, width: int) -> np.ndarray:
 def _halved(corners: np.ndarray) -> tuple[np.ndarray, ...]:
     """Starts, stops, boxes of all nodes of one body, and its faces in their order."""
     n = len(corners)
-    middles = sum(corners[:, k] for k in range(corners.shape[1]))
+    middles = np.add.reduce(corners, axis=1)
     order, starts, stops = np.arange(n), np.array([0]), np.array([n])
     all_starts, all_stops = [starts], [stops]
     while (stops - starts).max() > 1:
@@ -116,7 +116,9 @@ def _boxes(
     return np.concatenate(lows).T, np.concatenate(highs).T
 
 
-def farthest(halves: Halves, bodies: np.ndarray, nodes: np.ndarray, along: np.ndarray) -> np.ndarray:
+def farthest(
+    halves: Halves, bodies: np.ndarray, nodes: np.ndarray, along: np.ndarray
+) -> np.ndarray:
     """(t, k) the greatest `along . p` of the points of some nodes, or of boxes that hold them; of balls of their
     middles.
 
@@ -164,7 +166,9 @@ def farthest_points(
     rows = np.flatnonzero(~few)
     eighths = halves.first_node[bodies[rows]] + _eighths(nodes[rows])
     g = along[:, None, rows]
-    found[:, rows] = _tips(np.where(g > 0.0, halves.high[:, eighths], halves.low[:, eighths]), g[:, 0])
+    found[:, rows] = _tips(
+        np.where(g > 0.0, halves.high[:, eighths], halves.low[:, eighths]), g[:, 0]
+    )
     return found
 
 

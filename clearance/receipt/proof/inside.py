@@ -1,8 +1,8 @@
 """Whether a body is inside another: surfaces that keep apart do not tell.
 
-A point is inside a closed surface that the surface winds about: the sum of the solid angles of its triangles is not
-0. Surfaces that are not closed, each edge run along as often one way as the other, hold nothing. Source: Van
-Oosterom & Strackee 1983 for the angle of a triangle. Not for: distances.
+A point is inside a closed surface that winds about it: the sum of the solid angles of its triangles is not 0.
+Closed are those whose edges are run along as often one way as the other; others hold nothing. Source: Van Oosterom
+& Strackee 1983 for the angle of a triangle. Not for: distances.
 """
 
 from __future__ import annotations

@@ -76,7 +76,9 @@ def joint_positions(stretch: Stretch, arcs: dict[int, Arcs], pieces: Pieces) -> 
     return found
 
 
-def _of(table: np.ndarray, rows: np.ndarray, columns: np.ndarray, factors: np.ndarray) -> np.ndarray:
+def _of(
+    table: np.ndarray, rows: np.ndarray, columns: np.ndarray, factors: np.ndarray
+) -> np.ndarray:
     return table[rows[:, None], columns[None]] * factors
 
 

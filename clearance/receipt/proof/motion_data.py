@@ -42,7 +42,7 @@ class Joints(NamedTuple):
     """The links, parents first, and the joint above each.
 
     Attributes:
-        parents: (links,) or `NONE` of a root, which stands. kinds: (links,). axes: (links, 3) in the joint's frame.
+        parents: (links,) or `NONE` of a root, which stands. kinds: (links,). axes: (links, 3) in its frame.
         fixed: (links, 4, 4) the joint in its parent's frame [m]; of a root its pose in the world.
         columns: (links,) of the positions that it follows. factors, offsets: (links,) its position is factor
             times that, plus offset.

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from clearance.receipt.proof.joint_paths import Arcs, JointPositions, Pieces, joint_positions
-from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, TURNING, Stretch
+from clearance.receipt.proof.motion_data import FIXED, NONE, SLIDING, Stretch
 from clearance.receipt.proof.views import Views
 
 LEVEL = 2.0**-44
@@ -86,7 +86,11 @@ def placed(
         found.turn[:, :, own], found.at[:, own] = pose[:, :3, None], pose[:, 3:]
         if frame != NONE:
             found.turn[:, :, own] = np.moveaxis(frames.turn[frame], 0, -1)
-            for part, moving in ((found.at, frames.at), (found.omega, frames.omega), (found.v0, frames.v0)):
+            for part, moving in (
+                (found.at, frames.at),
+                (found.omega, frames.omega),
+                (found.v0, frames.v0),
+            ):
                 part[:, own] = moving[frame].T
         bounds = _bounds(view, stretch, views, balls, joints, frames)
         for part, bound in zip((found.way, found.rest, found.rounding), bounds, strict=True):

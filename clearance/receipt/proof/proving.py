@@ -30,7 +30,6 @@ from clearance.receipt.proof.motion_data import Shape, Stretch
 from clearance.receipt.proof.separation import BYTE, LONG, SHORT, directions
 from clearance.receipt.proof.stage import Stage, all_of_item, by_balls, by_directions
 
-
 SIZES = ((BYTE_DIRECTION, BYTE), (SHORT_DIRECTION, SHORT), (LONG_DIRECTION, LONG))
 """The deeds that come with directions, and how large these are."""
 

@@ -1,8 +1,8 @@
 """Whether the motion of two parts of bodies keeps them apart along a direction, or as balls; rounding included.
 
-Along U, of any length, and for |t| <= 1 in a piece, the least of U . (y + t v(y)) over one part less the greatest of
-U . (x + t v(x)) over the other is concave in t, so it is least at t = -1 or 1. What it is there, less what both may
-be off straight, is a bound of |U| times the distance. Not for: which parts (`items`).
+Along U, of any length, and for |t| <= 1 in a piece, the least of U . (y + t v(y)) over one part less the greatest
+of U . (x + t v(x)) over the other is concave in t, so it is least at t = -1 or 1. What it is there, over |U|, less
+what both may be off straight, is a bound of the distance. Not for: which parts (`items`).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def directions(codes: np.ndarray, most: int) -> np.ndarray:
 
 
 def along(halves: Halves, placed: Placed, a: Sides, b: Sides, u: np.ndarray) -> np.ndarray:
-    """(k,) [m] no row's parts come nearer than this, by directions u (3, k) from a to b; -inf without a direction."""
+    """(k,) [m] no row's parts come nearer than this, by directions u (3, k) from a to b; -inf where u is 0."""
     length = np.sqrt(dot(u, u))
     apart = -(_greatest(halves, placed, b, -u) + _greatest(halves, placed, a, u)).max(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -63,23 +63,26 @@ def _greatest(halves: Halves, placed: Placed, side: Sides, u: np.ndarray) -> np.
 
 def as_balls(halves: Halves, placed: Placed, a: Sides, b: Sides) -> np.ndarray:
     """(k,) [m] no row's parts come nearer than this, by balls that hold them and as far as they can move."""
-    centres, radii = [], np.zeros(len(a.place))
+    between = centre_of(halves, placed, b) - centre_of(halves, placed, a)
+    radii = np.zeros(len(a.place))
     for side in (a, b):
         node = halves.first_node[side.body] + side.node
-        low, high = halves.low[:, node], halves.high[:, node]
-        middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        turn = placed.turn[:, :, side.place]
-        turned = np.stack([dot(turn[k], middle) for k in range(3)])
-        centres.append(turned + placed.at[:, side.place])
+        half = 0.5 * (halves.high[:, node] - halves.low[:, node])
         radii = radii + np.sqrt(dot(half, half))
-    between = centres[1] - centres[0]
     apart = np.sqrt(dot(between, between)) / OUTWARD - radii * OUTWARD
     return apart - _lost(halves, placed, a, b, placed.way)
 
 
-def _lost(
-    halves: Halves, placed: Placed, a: Sides, b: Sides, moves: np.ndarray
-) -> np.ndarray:
+def centre_of(halves: Halves, placed: Placed, side: Sides) -> np.ndarray:
+    """(3, k) [m] the middles of the parts' boxes."""
+    node = halves.first_node[side.body] + side.node
+    middle = 0.5 * (halves.low[:, node] + halves.high[:, node])
+    turn = placed.turn[:, :, side.place]
+    turned = np.stack([dot(turn[k], middle) for k in range(3)])
+    return turned + placed.at[:, side.place]
+
+
+def _lost(halves: Halves, placed: Placed, a: Sides, b: Sides, moves: np.ndarray) -> np.ndarray:
     """(k,) [m] what balls about corners, rounding, and `moves` of both sides take away."""
     own = halves.radius[a.body] + halves.radius[b.body]
     sides = sum(moves[s.place] + placed.rounding[s.place] for s in (a, b))

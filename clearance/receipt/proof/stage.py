@@ -14,7 +14,7 @@ from clearance.receipt.proof.items import Items
 from clearance.receipt.proof.joint_paths import Pieces, arcs_of
 from clearance.receipt.proof.motion_data import NOT_CLAIMED, UNIT, Shape, Stretch
 from clearance.receipt.proof.placing import Balls, Placed, placed
-from clearance.receipt.proof.separation import Sides, along, as_balls
+from clearance.receipt.proof.separation import Sides, along, as_balls, centre_of, dot
 from clearance.receipt.proof.views import views_of
 
 BLOCK = 2**13
@@ -23,8 +23,8 @@ BLOCK = 2**13
 PIECES = 2**9
 """Pieces of intervals that are placed together."""
 
-Bound = Callable[[Halves, Placed, Sides, Sides], np.ndarray]
-"""A lower bound [m] of each row."""
+Bound = Callable[..., np.ndarray]
+"""A lower bound [m] of each row, of halves, places, both sides and, where it takes one, a direction."""
 
 
 class Stage:
@@ -65,10 +65,23 @@ class Stage:
 
     def middles(self, items: Items) -> Iterator[tuple[np.ndarray, Placed, Sides, Sides]]:
         """Some of the items in the middle of their time: rows, where all is then, and both sides."""
-        middle = items._replace(start=items.start + items.count // 2, count=np.ones_like(items.count))
+        middle = items._replace(start=items.start + items.span // 2, span=np.ones_like(items.span))
         everything = np.arange(len(items.pair))
         for block, pieces, at in self._blocks(middle, everything, middle.start):
             yield block, at, *self._sides(items, block, pieces, at)
+
+    def ways(self, items: Items) -> np.ndarray:
+        """(k,) [m] about how far the parts of items move against each other in their time."""
+        n = self.stretch.n_intervals
+        centres = []
+        for interval in (items.start, items.start + items.span - 1):
+            sides = self._sides(items, np.arange(len(interval)), interval, self.whole)
+            a, b = (centre_of(self.halves, self.whole, side) for side in sides)
+            centres.append(b - a)
+        far = np.sqrt(dot(centres[1] - centres[0], centres[1] - centres[0]))
+        pairs = self.views.pairs[items.pair]
+        way = sum(self.whole.way[pairs[:, k] * n + items.start] for k in (0, 1))
+        return np.where(items.span > 1, far, way * 0.5**items.depth)
 
     def note_apart(self, items: Items) -> None:
         """Notes the intervals of items that are proven of whole bodies: these are not inside each other there."""

@@ -18,8 +18,9 @@ class Views(NamedTuple):
     Attributes:
         above: (frames,) the frame that each hangs on as it is seen, or `NONE`; parents first.
         links: (frames,) whose joint it hangs by.
-        frames: (views,) the frame that a seen body is fixed to, or `NONE`: then it stands at `poses` (views, 4, 4).
-        bodies: (views,) which body is seen. pairs: (p, 2) the views of a stretch's pairs.
+        frames: (views,) the frame that a seen body is fixed to, or `NONE`: then it stands at `poses`.
+        poses: (views, 4, 4) [m]. bodies: (views,) which body is seen.
+        pairs: (p, 2) the views of a stretch's pairs.
     """
 
     above: np.ndarray
