@@ -29,9 +29,9 @@ class Verification:
     Attributes:
         name: of the case. kind: "full" or "sampled".
         failure: what is not proven, first of all; empty if all is.
-        bounds: [m] proven of each rule that judges something, over all intervals that are claimed.
+        bounds: [m] proven of each rule that judges something, over all intervals but those of `n_contact`.
         n_pairs, n_intervals: of the run. n_claimed: intervals of which something is claimed.
-        n_contact: how many of those have a bound of 0 or less, so that nothing is left to prove.
+        n_contact: how many of those have a bound of 0 or less by some rule, so that nothing is proven of it there.
         data: sha256 of the case's numbers. inputs: path and sha256 of the files.
         unmeasured: links and pairs that are left out, and why.
         nominal: the case has tolerances, of which the bound takes nothing off.
@@ -65,10 +65,11 @@ class Verification:
             f"at least {np.floor(bound * 1e6) / 1e3:.3f} mm ({rule})"
             for rule, bound in self.bounds.items()
         )
+        bounds = bounds or "nothing"
         span = f"{self.n_claimed} of {self.n_intervals}" if sampled else f"{self.n_intervals}"
         touch = ""
         if self.n_contact:
-            touch = f", in {self.n_contact} of which bodies may touch"
+            touch = f", except in {self.n_contact} intervals, in which bodies may touch"
         nominal = ", nominal: tolerances are not taken off" if self.nominal else ""
         return (
             f"{sampled}PROVEN: {bounds} between all {self.n_pairs} pairs over {span} intervals of motion{touch}"
@@ -102,8 +103,8 @@ def verify(
         receipt.head["kind"],
         failure,
         {
-            data.rules[i]: max(0.0, float(receipt.claims[i, row].min()) * UNIT)
-            for i, row in enumerate(claimed)
+            data.rules[i]: float(receipt.claims[i, row].min()) * UNIT
+            for i, row in enumerate(claimed & (receipt.claims > 0))
             if row.any()
         },
         data.n_pairs,
