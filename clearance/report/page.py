@@ -17,10 +17,11 @@ from string import Template
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from clearance.errors import Unavailable
 from clearance.extras import importing, install
+from clearance.report.head import head_of
 from clearance.report.markup import element
 from clearance.report.pair_curves import PairCurves
 from clearance.report.sections import NOTHING, badge_text, header, sections
@@ -55,8 +56,7 @@ def page_of(
     """
     template = Template(_own("page.html"))
     return template.substitute(
-        title=escape(f"{summary['name']}: {badge_text(summary)}"),
-        style=_own("page.css"),
+        head=head_of(f"{summary['name']}: {badge_text(summary)}"),
         header=header(summary),
         stage_note=_stage_note(replay),
         sections=sections(summary, pictures or {}, findings),
