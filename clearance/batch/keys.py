@@ -65,9 +65,12 @@ def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:
     Args:
         files: path as shown and sha256 of each file that was read.
     """
-    given, path = item.trajectory, PurePath(item.file)
-    told: tuple[object, ...] = (path.parent.name, path.name)  # a case without a name takes theirs
-    if given is not None:
+    given = item.trajectory
+    told: tuple[object, ...]
+    if given is None:
+        path = PurePath(item.file)
+        told = (path.parent.name, path.name)  # a case without a name takes theirs
+    else:
         told = (item.name, given.reading, given.robot)
     asked = (program(), told, item.options, sorted(set(files)))
     return hashlib.sha256(repr(asked).encode()).hexdigest()
