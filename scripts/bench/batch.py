@@ -4,7 +4,7 @@ two.
     python scripts/bench/batch.py [--cases N] [--many N] [--only rates|workers|many] [--scene NAME] [--csv FILE]
 
 `--cases` trajectories of 300 steps in one cell of `scenes/`, for both bases of a verdict; `--many` short ones for
-memory, after a tenth of them and after all, and for the second run. Rates are of processor time, after the cell is
+memory, after a tenth of them and after all, and for the second run. All rates are of processor time, after the cell is
 read and all is compiled: the median of tasks of 20 cases and the best of them, which says more on a busy machine.
 Two workers are held against one by the wall, in turns. The conditions are printed.
 """
@@ -137,13 +137,13 @@ def _bulk(folder: Path, asked: argparse.Namespace) -> Iterator[tuple]:
     n_bytes = sum(path.stat().st_size for path in (folder / "kept" / "segments").iterdir())
     yield "store a case", n_bytes / len(items), "bytes", ""
     for k in range(2):
-        begun = time.perf_counter()
+        begun = time.process_time()
         items = items_of([str(folder / "many" / "batch.yaml")], Changes())
         store, outcome = open_store(folder / "kept"), Outcome(items)
         run_batch(outcome, store, _here, _Unseen())
-        known = time.perf_counter()
+        known = time.process_time()
         write_answer(answer_of(outcome, store), store)
-        ended = time.perf_counter()
+        ended = time.process_time()
         assert outcome.n_cached == len(items)
         name = "second run" if k == 0 else "third run"
         yield (
