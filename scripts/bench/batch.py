@@ -4,7 +4,7 @@ two.
     python scripts/bench/batch.py [--cases N] [--many N] [--only rates|workers|many] [--scene NAME] [--csv FILE]
 
 `--cases` trajectories of 300 steps in one cell of `scenes/`, for both bases of a verdict; `--many` short ones for
-memory, after a tenth of them and after all, and for the second run. All rates are of processor time, after the cell is
+memory, after a tenth of them and after all, and for the second run. Rates are of processor time, after the cell is
 read and all is compiled: the median of tasks of 20 cases and the best of them, which says more on a busy machine.
 Two workers are held against one by the wall, in turns. The conditions are printed.
 """
