@@ -43,6 +43,7 @@ class InputFiles:
         self._sources: dict[Path, Source] = {}
         self._lookups: dict[str, Source] = {}
         self._held: set[Path] = set()
+        self._shown: dict[str, str] = {}
 
     @cached_property
     def _brought(self) -> Path | None:
@@ -115,7 +116,12 @@ class InputFiles:
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
-        path = Path(os.path.abspath(path))
+        place = os.path.abspath(path)
+        if place not in self._shown:
+            self._shown[place] = self._shown_first(Path(place))
+        return self._shown[place]
+
+    def _shown_first(self, path: Path) -> str:
         brought = self._brought
         if brought is not None and path.is_relative_to(brought):
             return PYBULLET_DATA + path.relative_to(brought).as_posix()
