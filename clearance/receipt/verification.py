@@ -111,7 +111,7 @@ def verify(
         data.n_intervals,
         int(claimed.any(axis=0).sum()),
         int((claimed & (receipt.claims <= 0)).any(axis=0).sum()),
-        data.digest(),
+        data.digest,
         tuple((one["path"], one["sha256"]) for one in receipt.head["inputs"]),
         data.unmeasured,
         given.tolerance is not None,
@@ -205,7 +205,7 @@ def _require_data(data: CaseData, receipt: Receipt) -> None:
         BadSyntax: they are not.
     """
     with at(FILE_NAME):
-        if data.digest() != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
+        if data.digest != receipt.head["data"] or list(data.rules) != receipt.head["rules"]:
             raise BadSyntax(
                 f"it is of other numbers than those of case {data.name!r}",
                 valid="the case that the receipt was made of",

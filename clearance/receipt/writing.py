@@ -54,7 +54,7 @@ def write_receipt(
         "kind": kind,
         "case": _way(place, case_file),
         "name": data.name,
-        "data": data.digest(),
+        "data": data.digest,
         "inputs": [{"path": s.path, "sha256": s.sha256} for s in record.case.sources],
         "report": report,
         "rules": list(data.rules),
