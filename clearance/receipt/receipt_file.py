@@ -21,7 +21,7 @@ from clearance.receipt.proof.proving import SIZES, BadEvidence
 FILE_NAME = "receipt.bin"
 MAGIC = b"clearance receipt 1\n"
 
-MOST_ITEMS = 2**24
+MOST_ITEMS = 2**23
 """Of a receipt; more would take minutes to go through."""
 
 LARGEST = 2**28

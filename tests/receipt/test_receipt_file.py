@@ -47,7 +47,7 @@ def test_every_changed_byte_is_found():
     "head",
     [
         b"[]", b"{}", b"[" * 100_000, b'{"shapes": 3}', b'{"shapes": {"claims": [1, 99999999999]}}',
-        b'{"shapes": {"claims": [1, 0], "deeds": [16777216], "codes_127": [0, 2], "codes_32767": [0, 2], '
+        b'{"shapes": {"claims": [1, 0], "deeds": [8388608], "codes_127": [0, 2], "codes_32767": [0, 2], '
         b'"codes_2147483647": [0, 2]}}',
     ],
 )  # fmt: skip
