@@ -15,7 +15,7 @@ from clearance.cli.check_outputs import Outputs
 from clearance.cli.for_ci import ForCi, baseline_of, ci_options, comparison_of, with_waivers
 from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath, motion_option
-from clearance.cli.verify import receipt_option, refuse_case, require_receipt, write_receipt_of
+from clearance.cli.verify import receipt_option, require_receipt, write_receipt_of
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -132,7 +132,6 @@ def check(
             "--samples-only proves nothing; leave out --certify and --certify-mm"
         )
     _require_extras(cross_check, motion)
-    require_receipt(receipt, out, certify=not samples_only, motion=motion, method=method)
     outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
     _require_file(case_file)
@@ -142,7 +141,6 @@ def check(
     _compile_ahead(quiet)
     case = with_waivers(_case(case_file, fail_mm, warn_mm, accept), waivers)
     outputs.refuse_inputs(case)
-    refuse_case(receipt, case)
     before = baseline_of(baseline, outputs.files)
     question = Question(
         case,
@@ -156,9 +154,9 @@ def check(
         paper_tolerance=paper_tolerance,
         today=today,
     )
+    require_receipt(receipt, out, question)
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
-    if receipt is not None and out is not None:
-        write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
+    write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
 
 
