@@ -21,9 +21,12 @@ from clearance import __version__
 from clearance.batch.answer import STATUSES, BatchAnswer
 from clearance.batch.case_page import FOLDER, folder_of
 from clearance.batch.rows import CURVE
+from clearance.findings.finding import NOT_PROVEN
 from clearance.report.wording import count
 
 _HERE = Path(__file__).parent
+
+_NOT_PROVEN = ".tag.not { background: var(--violated); }\n"
 
 TOPS = 4.0
 """[-] Of the warn limit, the clearance at the top of a curve."""
@@ -41,24 +44,29 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
     style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
     return Template(_own("page.html")).substitute(
         title=escape(f"{place.name}: {_counted(answer)}"),
-        style=style + _own("page.css"),
+        style=style + _own("page.css") + (_NOT_PROVEN if NOT_PROVEN in answer.counts else ""),
         name=escape(place.name),
         verdict=escape(_counted(answer)),
-        worst=_worst_status(answer),
-        basis=escape(_basis(answer)),
+        worst=answer.status.split()[0],
+        basis=escape("; ".join([_basis(answer), *answer.stale])),
         version=escape(__version__),
         data=json.dumps(_data(answer, place), allow_nan=False).replace("<", "\\u003c"),
         script=re.sub(r"</(?=script)", r"<\\/", _own("page.js"), flags=re.IGNORECASE),
     )
 
 
+def unfinished_page(name: str, text: str) -> str:
+    """The page of a batch that has no answer yet."""
+    style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
+    title, told = escape(f"{name}: not finished"), escape(text)
+    return Template(_own("unfinished.html")).substitute(
+        title=title, style=style, name=escape(name), text=told, version=escape(__version__)
+    )
+
+
 def _counted(answer: BatchAnswer) -> str:
     told = ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items()))
     return f"{count(answer.cases.num_rows, 'case')}: {told or 'none'}"
-
-
-def _worst_status(answer: BatchAnswer) -> str:
-    return next(reversed(answer.counts), "clear")
 
 
 def _basis(answer: BatchAnswer) -> str:
@@ -70,7 +78,7 @@ def _basis(answer: BatchAnswer) -> str:
 
 def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
     table = answer.cases
-    names = table["case"].to_pylist()
+    names, statuses = table["case"].to_pylist(), _statuses(answer)
     bodies, rules = _Texts(), _Texts()
     keys = table["key"].to_pylist()
     written = {path.parent.name for path in place.glob(f"{FOLDER}/*/report.html")}
@@ -78,9 +86,9 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
     folders = [folder_of(name, key) if key else "" for name, key in pages]
     return {
         "store": place.name,
-        "statuses": STATUSES,
+        "statuses": statuses,
         "names": names,
-        "status": [STATUSES.index(status) for status in table["status"].to_pylist()],
+        "status": [statuses.index(status) for status in table["status"].to_pylist()],
         "clearance": _millimetres(table["clearance"].to_pylist()),
         "bound": _millimetres(table["lower_bound"].to_pylist()),
         "time": _rounded(table["time"].to_pylist(), 3),
@@ -91,12 +99,23 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "bodies": bodies.texts,
         "rules": rules.texts,
         "reasons": [lines or [] for lines in table["reasons"].to_pylist()],
-        "warnings": [lines or [] for lines in table["warnings"].to_pylist()],
+        "beside": [*map(_beside, *(table[name].to_pylist() for name in ("warnings", "waived")))],
         "levels": _levels(table["fail"].to_pylist(), table["warn"].to_pylist()),
         "curves": _curves(table["curve"].to_pylist(), table["warn"].to_pylist()),
         "n_curve": CURVE,
         "pages": [folder if folder.rpartition("/")[2] in written else "" for folder in folders],
     }
+
+
+def _statuses(answer: BatchAnswer) -> list[str]:
+    """All statuses, the better before the worse; "not proven" only where tolerances made a case so."""
+    return [one for one in STATUSES if one != NOT_PROVEN or one in answer.counts]
+
+
+def _beside(warnings: list[str] | None, waived: list[str] | None) -> list[str]:
+    return [f"warning: {line}" for line in warnings or ()] + [
+        f"waived: {line}" for line in waived or ()
+    ]
 
 
 class _Texts:

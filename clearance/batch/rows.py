@@ -13,7 +13,9 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.findings.finding import Finding
+from clearance.findings.judgement import judgement_of
 from clearance.findings.of_record import why_incomplete
+from clearance.report.tolerances import least_expected
 from clearance.run import Run
 from clearance.simulate.record import Record
 from clearance.world.case import Source
@@ -68,6 +70,8 @@ VERDICT = pa.schema(
         ("need", pa.string()),
         ("clearance", pa.float64()),
         ("lower_bound", pa.float64()),
+        ("proven", pa.float64()),
+        ("expected", pa.float64()),
         ("time", pa.float64()),
         ("step", pa.int64()),
         ("body_a", pa.string()),
@@ -81,6 +85,8 @@ VERDICT = pa.schema(
         ("reasons", _TEXTS),
         ("warnings", _TEXTS),
         ("not_checked", _TEXTS),
+        ("waived", _TEXTS),
+        ("waivers", _TEXTS),
         ("curve", pa.list_(pa.float32())),
         ("n_findings", pa.int64()),
         ("incomplete", pa.string()),
@@ -108,6 +114,7 @@ def row_of(run: Run) -> dict[str, Any]:
         "need": record.need,
         "clearance": worst.clearance,
         "lower_bound": None if certificate is None else float(certificate.lower_bound.min()),
+        **_with_tolerances(record),
         "time": worst.time,
         "step": worst.step,
         "body_a": worst.link,
@@ -121,11 +128,31 @@ def row_of(run: Run) -> dict[str, Any]:
         "reasons": list(verdict.reasons),
         "warnings": list(verdict.warnings),
         "not_checked": list(verdict.not_checked),
+        "waived": list(verdict.waived),
+        "waivers": _needed(record),
         "curve": curve_of(record),
         "n_findings": len(findings),
         "incomplete": _incomplete(record, len(findings)),
         "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
     }
+
+
+def _with_tolerances(record: Record) -> dict[str, float | None]:
+    """The least that tolerances leave, proven and expected [m], of all rules; None without any."""
+    found = record.budget or ()
+    expected = [one for one in map(least_expected, found) if one is not None]
+    return {
+        "proven": min((one.least for one in found), default=None),
+        "expected": min(expected, default=None),
+    }
+
+
+def _needed(record: Record) -> list[str]:
+    """Of waivers that many cases share, those that this one needs."""
+    if not any(waiver.shared for waiver in record.case.waivers):
+        return []
+    uses = judgement_of(record).uses
+    return [str(use.waiver) for use in uses if use.waiver.shared and use.used]
 
 
 def _incomplete(record: Record, n_findings: int) -> str:

@@ -70,7 +70,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     "--states",
     type=_Names(),
     metavar="A,B,…",
-    help="Without a trajectory: states of the SRDF, between which the joints go straight.",
+    help="Without a trajectory: states of the SRDF, or keyframes of MJCF, between which the joints go straight.",
 )
 @click.option("--scene", metavar="FILE", help="YAML, SDF, or a scene of MoveIt.")
 @click.option("--srdf", metavar="FILE", help="Asks for self-clearance, and excuses pairs of it.")
@@ -78,7 +78,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     "--rest",
     multiple=True,
     metavar="STATE",
-    help="Of the SRDF, for joints that nothing moves; may be given again.",
+    help="Of the SRDF or MJCF, for joints that nothing moves; may be given again.",
 )
 @click.option("--joint-limits", metavar="FILE", help="joint_limits.yaml of MoveIt.")
 @click.option("--controllers", metavar="FILE", help="ros2_controllers.yaml.")
@@ -171,26 +171,15 @@ def _only_one(states: list[str] | None, keys: list[str]) -> str:
 
 def _write(made: NewCase, out_dir: Path, force: bool) -> None:
     """Writes all files or none."""
-    from clearance.cli.places import refuse_inputs
+    from clearance.cli.written_files import write_files
     from clearance.errors import Unwritable
     from clearance.load.new_case import CASE, TRAJECTORY
     from clearance.load.new_scene import SCENE
-    from clearance.report.folder import fill_folder
 
     if out_dir.exists() and not out_dir.is_dir():
         raise Unwritable("is a file", where=str(out_dir), valid="a folder is needed")
-    there = [name for name in (CASE, TRAJECTORY, SCENE, *made.files) if (out_dir / name).exists()]
-    if there and not force:
-        raise Unwritable(
-            "is there already", where=str(out_dir / there[0]), valid="--force overwrites it"
-        )
-    refuse_inputs([out_dir / name for name in there], [one.read_from for one in made.sources])
-
-    def fill(folder: Path) -> None:
-        for name, content in made.files.items():
-            (folder / name).write_bytes(content)
-
-    fill_folder(out_dir, fill, {CASE, TRAJECTORY, SCENE, *made.files})
+    read = [one.read_from for one in made.sources]
+    write_files(out_dir, made.files, read, force=force, others=(CASE, TRAJECTORY, SCENE))
 
 
 def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:

@@ -1,7 +1,7 @@
 """A run held against a baseline: what is new, worse, unchanged, better, gone or not comparable.
 
-Findings are matched by kind, rule, bodies and occurrence. Not for: files (`findings_file`), nor how it is shown
-(`report.findings`).
+Findings are matched by kind, rule, bodies and occurrence. Not for: what stands beside them (`doubts_compared`),
+files (`findings_file`), nor how it is shown (`report.findings`).
 """
 
 from __future__ import annotations
@@ -12,10 +12,16 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
-from clearance.findings.finding import UNPROVEN, Finding
+from clearance.findings.doubts_compared import (
+    DoubtCompared,
+    doubts_compared,
+    known_less,
+    slack_text,
+)
+from clearance.findings.finding import ORDER, PROFILE, TOLERANCES, UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measured_as import MeasuredAs
-from clearance.simulate.status import STATUSES, Status
+from clearance.simulate.status import Status
 
 TOLERANCE = 1e-4
 """[m] A clearance that differs by no more is unchanged: how far a proven bound is from what occurs, by default."""
@@ -69,12 +75,16 @@ class Comparison:
     Attributes:
         before, now: the cases' names. rows: new ones first, of each change the worst first.
         whole: why nothing is comparable, where that is so.
+        doubts: what stands beside the findings of either run, what alarms first.
+        less: what is not known any more that was known before, one line each.
     """
 
     before: str
     now: str
     rows: tuple[Compared, ...]
     whole: str = ""
+    doubts: tuple[DoubtCompared, ...] = ()
+    less: tuple[str, ...] = ()
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -84,8 +94,9 @@ class Comparison:
 
     @property
     def passed(self) -> bool:
-        """True if nothing alarms."""
-        return not any(row.alarms for row in self.rows)
+        """True if nothing alarms, and as much is known as before."""
+        alarms = any(row.alarms for row in self.rows) or any(one.alarms for one in self.doubts)
+        return not (alarms or self.less)
 
 
 def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE) -> Comparison:
@@ -98,7 +109,8 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
     rows = list(_Comparing(before, now, tolerance, whole).rows())
     order = list(Change)
     rows.sort(key=lambda row: (order.index(row.change), row.finding.standing))
-    return Comparison(before.case, now.case, tuple(rows), whole)
+    doubts, less = doubts_compared(before, now), known_less(before, now)
+    return Comparison(before.case, now.case, tuple(rows), whole, doubts, less)
 
 
 def _measured_otherwise(before: MeasuredAs, now: MeasuredAs) -> str:
@@ -107,6 +119,8 @@ def _measured_otherwise(before: MeasuredAs, now: MeasuredAs) -> str:
         one, other = getattr(before, what), getattr(now, what)
         if one != other:
             return f"{what.replace('_', ' ')} was {one}, and is {other}"
+    if before.clock_slack != now.clock_slack:
+        return f"clock slack was {slack_text(before)}, and is {slack_text(now)}"
     if before.need != now.need and not {before.need, now.need} <= _ALIKE:
         return f"need was {before.need}, and is {now.need}"
     return ""
@@ -149,7 +163,7 @@ class _Comparing:
             kept[0] != kept[1]
         ):  # what is clear is listed only where it is the nearest pair of its rule
             return Change.NEW if kept[0] else Change.GONE
-        ranks = [STATUSES.index(Status(finding.status)) for finding in (before, now)]
+        ranks = [ORDER.index(finding.status) for finding in (before, now)]
         if ranks[0] != ranks[1]:
             return Change.WORSE if ranks[1] > ranks[0] else Change.BETTER
         old, new = _level(before), _level(now)
@@ -170,6 +184,9 @@ class _Comparing:
         )
         if old.get(finding.rule) != new.get(finding.rule):
             return f"rule {finding.rule!r} is another"
+        tolerances = {self.before.measured.tolerances, self.now.measured.tolerances}
+        if finding.kind == TOLERANCES and len(tolerances) > 1:
+            return "its tolerances are others"
         return ""
 
     def _robot_of(self, body: str) -> str:
@@ -192,7 +209,7 @@ class _Comparing:
             return f"{other.not_listed} findings are not listed"
         if self.before.measured.rules != self.now.measured.rules:
             return "other rules may have judged it"
-        has_pair = finding.body_b and finding.kind != UNPROVEN
+        has_pair = finding.body_b and finding.kind not in (UNPROVEN, TOLERANCES)
         if has_pair and not other.measured.has_pair(finding.body_a, finding.body_b):
             return (
                 "the pair was not measured" if other is self.before else "the pair is not measured"
@@ -202,7 +219,7 @@ class _Comparing:
 
 def _level(finding: Finding) -> float | None:
     """[m] What says how it stands: the clearance, or what is proven where nothing nearer is seen."""
-    return finding.proven if finding.kind == UNPROVEN else finding.clearance
+    return finding.proven if finding.kind in (UNPROVEN, TOLERANCES) else finding.clearance
 
 
 def _no_number(before: Finding, now: Finding) -> str:
@@ -221,6 +238,6 @@ def _by_key(found: FindingList) -> dict[_Key, Finding]:
 def _key(finding: Finding) -> _Key:
     """What a finding's name is of, without the case."""
     bodies = tuple(sorted((finding.body_a, finding.body_b)))
-    if finding.kind == "profile":
+    if finding.kind in (PROFILE, TOLERANCES):
         bodies = ()
     return finding.kind, finding.rule, bodies, finding.occurrence

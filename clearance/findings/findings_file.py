@@ -6,11 +6,12 @@ Not for: what a finding is (`finding`), nor comparing (`comparison`). The keys a
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 from clearance.errors import BadInput, BadSyntax
+from clearance.findings.doubts import Doubt, doubts_of
 from clearance.findings.finding import Finding
 from clearance.findings.measured_as import MeasuredAs, measured_as
 from clearance.findings.of_record import findings_of, why_incomplete
@@ -20,11 +21,14 @@ from clearance.simulate.record import Record
 
 FILE_NAME = "findings.json"
 
-FORMAT = 1
+FORMAT = 2
 """Which keys there are: `NOTES.md`."""
 
 MOST_LISTED = 10_000
 """Most findings in a file, the worst; how many more there are is said."""
+
+MOST_UNMEASURED = 2_000_000
+"""Pairs of a file that is read."""
 
 MOST_BYTES = 64 * 2**20
 """Of a file that is read."""
@@ -37,6 +41,7 @@ class FindingList:
     Attributes:
         incomplete: why a pair below its warn limit may have no finding; empty where each has one.
         not_listed: how many findings are left out, none worse than those that are there.
+        doubts: what a reader must know beside the findings, those that fail the run first.
         findings: the worst first.
     """
 
@@ -44,6 +49,7 @@ class FindingList:
     incomplete: str
     not_listed: int
     measured: MeasuredAs
+    doubts: tuple[Doubt, ...]
     findings: tuple[Finding, ...]
     format: int = FORMAT
 
@@ -56,13 +62,21 @@ def finding_list_of(record: Record, findings: tuple[Finding, ...] | None = None)
         incomplete=why_incomplete(record),
         not_listed=max(0, len(found) - MOST_LISTED),
         measured=measured_as(record),
+        doubts=doubts_of(record),
         findings=found[:MOST_LISTED],
     )
 
 
 def findings_text(found: FindingList) -> str:
-    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN."""
-    return json.dumps(asdict(found), indent=1, sort_keys=True, allow_nan=False) + "\n"
+    """What `findings.json` holds: sorted keys, floats that read back the same, no NaN; of tolerances nothing where
+    there are none."""
+    told = asdict(found)
+    if not found.measured.tolerances:
+        del told["measured"]["tolerances"]
+    for finding in told["findings"]:
+        if not finding["accepted"]:
+            del finding["accepted"]
+    return json.dumps(told, indent=1, sort_keys=True, allow_nan=False) + "\n"
 
 
 def read_findings(path: str | Path) -> FindingList:
@@ -78,31 +92,36 @@ def read_findings(path: str | Path) -> FindingList:
     data = read_bytes(path, str(path))
     if len(data) > MOST_BYTES:
         raise BadInput(f"{len(data)} bytes", where=str(path), valid=f"at most {MOST_BYTES}")
-    return _checked(_parsed(data, str(path)), str(path))
+    _require_format(data, str(path))
+    return _checked(data, str(path))
 
 
-def _parsed(data: bytes, shown: str) -> dict[str, Any]:
+def _require_format(data: bytes, shown: str) -> None:
     try:
-        raw = json.loads(data, parse_constant=_refused)
+        raw = json.loads(data, parse_constant=_refused, parse_float=_finite)
     except (ValueError, RecursionError) as error:
         raise BadSyntax(f"not JSON: {error}", where=shown, valid="findings.json of a run") from None
     number = raw.get("format") if isinstance(raw, dict) else None
     if number != FORMAT:
-        raise BadInput(
-            f"format {number!r:.40}", where=shown, valid=f"findings.json of format {FORMAT}"
-        )
-    return raw
+        valid = f"findings.json of format {FORMAT}, which the same check writes anew"
+        raise BadInput(f"format {number!r:.40}", where=shown, valid=valid)
+
+
+def _finite(text: str) -> float:
+    if not math.isfinite(float(text)):
+        raise ValueError(f"{text:.40} is beyond doubles")
+    return float(text)
 
 
 def _refused(name: str) -> float:
     raise ValueError(f"{name} is no number")
 
 
-def _checked(raw: dict[str, Any], shown: str) -> FindingList:
+def _checked(data: bytes, shown: str) -> FindingList:
     from pydantic import TypeAdapter, ValidationError
 
     try:
-        return TypeAdapter(FindingList).validate_python(raw)
+        found = TypeAdapter(FindingList).validate_json(data, strict=True)  # text is no number
     except ValidationError as error:
         first = error.errors()[0]
         raise BadInput(
@@ -110,3 +129,11 @@ def _checked(raw: dict[str, Any], shown: str) -> FindingList:
             where=f"{shown}: {place(tuple(first['loc']))}",
             valid="findings.json as a run writes it",
         ) from None
+    n_pairs = sum(len(block.a) * len(block.b) for block in found.measured.unmeasured)
+    if n_pairs > MOST_UNMEASURED:
+        raise BadInput(
+            f"{n_pairs:,} pairs that are not measured",
+            where=f"{shown}: measured.unmeasured",
+            valid=f"at most {MOST_UNMEASURED:,}",
+        )
+    return found

@@ -115,7 +115,7 @@ def verify(
         data.digest,
         tuple((one["path"], one["sha256"]) for one in receipt.head["inputs"]),
         data.unmeasured,
-        given.tolerance is not None,
+        receipt.head["nominal"] or given.tolerance is not None,
     )
 
 

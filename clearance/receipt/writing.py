@@ -59,6 +59,7 @@ def write_receipt(
         "inputs": [{"path": s.path, "sha256": s.sha256} for s in record.case.sources],
         "report": report,
         "rules": list(data.rules),
+        "nominal": record.case.tolerance is not None,
     }
     receipt = Receipt(head, claims, found.all_deeds, found.all_codes)
     write_file(place / FILE_NAME, receipt_bytes(receipt))

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -63,6 +65,8 @@ class Robot:
         bodies: the links that have a shape (in the link frame), in the order of `link_names`.
         notes: what loading had to mend or leave out, one line each, for the report.
         notices: suspect input and warnings that only loading can find.
+        excluded: pairs of links that the robot's own file takes out of contact.
+        states: positions of joints [rad] or [m] that its own file names, by the state's name and the joint's.
     """
 
     name: str
@@ -71,8 +75,10 @@ class Robot:
     bodies: tuple[Body, ...]
     notes: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
+    excluded: tuple[tuple[str, str], ...] = ()
+    states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def moving_joints(self) -> tuple[Joint, ...]:
         """The joints that a trajectory can name: not fixed and not mimicking."""
         return tuple(j for j in self.joints if j.kind is not JointKind.FIXED and j.mimic is None)

@@ -267,6 +267,32 @@ def test_a_package_that_a_variable_finds_elsewhere_is_measured_again(
     assert statuses(before)["t003"] == "clear" and statuses(now)["t003"] == "contact"
 
 
+@pytest.mark.parametrize("nearer", ["in/pk/m.stl", "first/pk/m.stl", "first/m.stl"])
+def test_a_mesh_that_appears_nearer_is_measured(nearer, manifest, tmp_path):
+    """In the file's folder, in an earlier package folder, or in one that its manifest makes the package."""
+    urdf, cell = manifest.parent / "cart.urdf", manifest.parent / "cell.yaml"
+    urdf.write_text(
+        URDF.replace('<box size="0.2 0.2 0.2"/>', '<mesh filename="package://pk/m.stl"/>')
+    )
+    dirs = "[../first, ../last]" if nearer.startswith("first") else "[]"
+    cell.write_text(CELL.replace("cart.urdf", f"cart.urdf, package_dirs: {dirs}"))
+    (tmp_path / "first").mkdir()
+    for folder in ("last/pk", "pk"):  # the last package folder, and the folder above the file's
+        (tmp_path / folder).mkdir(parents=True)
+        trimesh.creation.box([0.2] * 3).export(tmp_path / folder / "m.stl")
+    _, before = run_here(manifest, tmp_path / "out")
+    assert run_here(manifest, tmp_path / "out")[0].measured == []
+    (tmp_path / nearer).parent.mkdir(exist_ok=True)
+    trimesh.creation.box([1.0] * 3).export(tmp_path / nearer)
+    (tmp_path / "first" / "package.xml").write_text("<package><name>pk</name></package>")
+    told, now = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == len(NEAREST)
+    assert statuses(before)["t003"] == "clear" and statuses(now)["t003"] == "contact"
+    (tmp_path / nearer).unlink()
+    told, again = run_here(manifest, tmp_path / "out")
+    assert told.measured == [] and statuses(again) == statuses(before)
+
+
 @pytest.mark.cold  # xacro runs in a process of its own
 @pytest.mark.slow  # and is started twice
 def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypatch):
@@ -293,3 +319,15 @@ def test_where_findings_are_missing_the_row_says_why(manifest, tmp_path, monkeyp
     monkeypatch.setattr(rows, "MOST_FINDINGS", 0)
     _, cut = run_here(manifest, tmp_path / "cut")
     assert set(cut.cases["incomplete"].to_pylist()) == {"1 of 1 findings are not listed"}
+
+
+def test_a_limit_that_is_not_proven_with_tolerances_fails_its_case(tmp_path):
+    manifest = write_cell(tmp_path / "in", [0.2])
+    cell = tmp_path / "in" / "cell.yaml"
+    cell.write_text(cell.read_text() + "tolerance: {base: {xyz: 0.3}}\n")
+    _, found = run_here(manifest, tmp_path / "store")
+    (row,) = found.cases.to_pylist()
+    assert (row["status"], row["measured"], row["exit_code"]) == ("not proven", "near", 1)
+    assert any("with the tolerances" in reason for reason in row["reasons"])
+    page = (tmp_path / "store" / "batch.html").read_text()
+    assert '"not proven"' in page and ".tag.not" in page

@@ -12,7 +12,8 @@ from clearance.receipt.receipt_file import MAGIC, GoneThrough, Receipt, receipt_
 
 def small():
     head = {
-        "kind": "full", "case": "case.yaml", "name": "small", "data": "0" * 64, "rules": ["default"],
+        "kind": "full", "case": "case.yaml", "name": "small", "data": "0" * 64, "nominal": False,
+        "rules": ["default"],
         "inputs": [{"path": "case.yaml", "sha256": "1" * 64}], "report": {"summary.json": "2" * 64},
     }  # fmt: skip
     codes = {most: np.array([[most, -most]]) for _, most in SIZES}
