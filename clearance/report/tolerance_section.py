@@ -101,7 +101,7 @@ def _row(i: int, source: dict[str, Any]) -> Markup:
         element("td", source["given"]),
         element("td", mm(source["proven"]), class_="number"),
         element("td", mm(source["expected"]), class_="number"),
-        element("td", at_most, class_="text-violated" if "none" in at_most else None),
+        element("td", at_most or "not enough alone", class_=None if at_most else "text-violated"),
     )
 
 

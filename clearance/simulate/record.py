@@ -244,11 +244,11 @@ class Record(Samples):
     @cached_property
     def steps_with_contacts(self) -> pa.Table:
         """`steps` with penetration and volume where all pairs in contact at a step are worked out, upper bounds if
-        not exact, null at all others; and with what tolerances leave, as `with_budget_columns` adds it."""
-        from clearance.simulate.budget_columns import with_budget_columns
+        not exact, null at all others; with tolerances that of the motion too, as `with_proven_between` adds it."""
+        from clearance.simulate.budget_columns import with_proven_between
         from clearance.simulate.contact_columns import with_contact_columns
 
-        return with_budget_columns(with_contact_columns(self.steps, self.contacts), self.budget)
+        return with_proven_between(with_contact_columns(self.steps, self.contacts), self.budget)
 
     @property
     def worst_step(self) -> int:
