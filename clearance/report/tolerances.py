@@ -45,7 +45,8 @@ def budget_lines(record: Record) -> tuple[str, ...]:
 def _line(record: Record, budget: Budget, one: RuleBudget) -> str:
     proven, expected = one.least, least_expected(one)
     basis = "the samples only" if one.between is None else "the motion"
-    left = f"at least {mm(proven)} mm are left"
+    waived = " (waived pairs among them)" if record.case.waivers else ""
+    left = f"at least {mm(proven)} mm are left{waived}"
     if proven <= 0.0:
         left = "contact is not ruled out" + (
             f" (they could overlap by {depth_mm(-proven)} mm)" if proven < 0.0 else ""
@@ -122,7 +123,7 @@ def source_lines(record: Record) -> Iterator[str]:
     where = f"{moment.link} - {moment.obstacle} at {moment_text(moment)}"
     yield f"{mm(moment.clearance)} mm nominal, {mm(worst.proven)} mm proven: {where}"
     taken = [
-        f"{source_text(record, source)} {mm(source.proven)} mm ({given_text(source)})"
+        f"{source_text(record, source)} {depth_mm(source.proven)} mm ({given_text(source)})"
         for source in worst.sources[:MOST_SOURCES]
         if source.proven > 0.0
     ]

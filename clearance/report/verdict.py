@@ -161,7 +161,7 @@ def verdict_of(record: Record) -> Verdict:
     disputing = None if check is None or check.agrees else check
     judging = record.rules if judgement is None else judgement.judging
     unproven = _unproven(record, judging)
-    open_limits = of_budget(record, judging)
+    open_limits = of_budget(record, judgement)
     reasons = [reason for reason in (_occurring(record, judging), unproven) if reason is not None]
     reasons += [finding_line(finding) for finding in open_limits]
     stale = () if judgement is None else judgement.faults
