@@ -17,6 +17,7 @@ from clearance.cli.more_files import MoreFiles, more_files_options
 from clearance.cli.options import Millimetres, OutputPath
 from clearance.cli.recorded import recorded_options, require_recorded, with_recording
 from clearance.cli.tolerances import tolerance_options, with_leniency, with_tolerances
+from clearance.cli.verify import receipt_option, refuse_case, require_receipt, write_receipt_of
 from clearance.world.notice import KINDS
 
 if TYPE_CHECKING:
@@ -93,6 +94,7 @@ if TYPE_CHECKING:
 @recorded_options
 @click.option("--json", "as_json", is_flag=True, help="Print the summary as one JSON object only.")
 @click.option("--junit", metavar="FILE", type=OutputPath(), help="Write JUnit XML.")
+@receipt_option
 @more_files_options
 @ci_options
 @click.option("--quiet", is_flag=True, help="Print nothing but errors; the exit code tells.")
@@ -120,6 +122,7 @@ def check(
     recorded_robot: str | None,
     as_json: bool,
     junit: Path | None,
+    receipt: str | None,
     png: Path | None,
     glb: Path | None,
     trajectory: Path | None,
@@ -144,6 +147,7 @@ def check(
         )
     require_recorded(motion, recorded, recorded_offset, recorded_robot)
     _require_extras(cross_check, motion)
+    require_receipt(receipt, out, certify=not samples_only, motion=motion, method=method)
     outputs = Outputs(out, junit, ForCi(summary, github), MoreFiles(png, glb, trajectory))
     outputs.require_writable()
     _require_file(case_file)
@@ -157,6 +161,7 @@ def check(
         case = with_recording(case, recorded, recorded_offset, recorded_robot)
     case = with_leniency(case, unproven_ok)
     outputs.refuse_inputs(case)
+    refuse_case(receipt, case)
     before = baseline_of(baseline, outputs.files)
     question = Question(
         case,
@@ -172,6 +177,8 @@ def check(
         body_gaps=body_gaps,
     )
     run = _answer(question, before, outputs, jobs, Terminal(as_json, quiet))
+    if receipt is not None and out is not None:
+        write_receipt_of(run, receipt, out, case_file, quiet=as_json or quiet)
     return ExitCode(run.verdict.exit_code)
 
 
@@ -281,7 +288,8 @@ def _compile_ahead(quiet: bool) -> None:
 
 def _print(run: Run, out: Path | None, terminal: Terminal) -> None:
     if terminal.as_json:
-        from clearance.report import json_text, summary_of
+        from clearance.report.output import json_text
+        from clearance.report.summary import summary_of
 
         click.echo(json_text(summary_of(run.record)), nl=False)
     elif not terminal.quiet:

@@ -17,12 +17,12 @@ from rich.text import Text
 
 from clearance.cli.progress import shown_progress
 from clearance.errors import shown
-from clearance.report import certified_of, contact_of, notes_of, tessellation_bound
 from clearance.report.actors import carried_of, paddings_of
 from clearance.report.body_gaps import gap_lines
-from clearance.report.contact import HEADS
+from clearance.report.contact import HEADS, contact_of
 from clearance.report.intervals import Interval, extent, intervals
 from clearance.report.recordings import recording_lines
+from clearance.report.summary import certified_of, notes_of, tessellation_bound
 from clearance.report.tolerances import source_lines
 from clearance.report.verdict import Verdict, moment_line, profile_text
 from clearance.report.wording import (

@@ -30,7 +30,6 @@ from clearance.load.scene_file import make_obstacles
 from clearance.load.scene_request import SceneContent
 from clearance.load.scene_rows import with_scene_rows
 from clearance.load.tolerance_block import budget_of
-from clearance.load.waiver_file import waivers_of
 from clearance.world.case import Case, Clock, PlacedRobot, SignOff, Source, index_of_robot
 from clearance.world.clocks import require_clocks
 from clearance.world.forest import require_known
@@ -255,6 +254,10 @@ def _placed_joints(placed: PlacedRobot) -> list[str]:
 
 
 def _waivers(given: schema.Case, path: Path, files: InputFiles) -> Iterator[Waiver]:
+    if not given.waivers:
+        return
+    from clearance.load.waiver_file import waivers_of
+
     for i, name in enumerate(given.waivers):
         with at(f"waivers[{i}]"):
             yield from waivers_of(files, path.parent / name)

@@ -9,11 +9,10 @@ import math
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from clearance.errors import BadInput, UnknownJoint, at, nearest_name
 from clearance.load import schema
-from clearance.load.controllers_file import Controller, parse_controllers
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joint_limits_file import NONE, FileLimits, parse_joint_limits
 from clearance.world.joint_positions import turns
@@ -21,6 +20,9 @@ from clearance.world.motion_limits import MotionLimit, PathTolerance
 from clearance.world.notice import listed
 from clearance.world.robot import Joint, JointKind, Robot
 from clearance.world.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from clearance.load.controllers_file import Controller
 
 _Value = TypeVar("_Value")
 
@@ -55,6 +57,8 @@ def limited(entry: schema.RobotEntry, robot: Robot, folder: Path, files: InputFi
         motion = {name: one.motion for name, one in known.items() if one.motion != NONE}
         notes += [f"{shown}: {note}" for note in _notes_on_limits(limits, known, robot)]
     if given.controllers is not None:
+        from clearance.load.controllers_file import parse_controllers
+
         path = resolved(given.controllers, folder)
         shown = files.shown(path)
         with at(f"{entry.field}.controllers"), at(shown):

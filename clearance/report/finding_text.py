@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from clearance.findings.finding import (
     JOINT_LIMITS,
     OF_TOLERANCES,
@@ -10,7 +12,6 @@ from clearance.findings.finding import (
     WAIVED_TOLERANCES,
     Finding,
 )
-from clearance.findings.judgement import Judgement
 from clearance.report.wording import (
     gap_text,
     limit_mm,
@@ -21,6 +22,9 @@ from clearance.report.wording import (
     span_text,
 )
 from clearance.world.rules import DEFAULT
+
+if TYPE_CHECKING:
+    from clearance.findings.judgement import Judgement
 
 
 def finding_line(finding: Finding) -> str:

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
-from clearance.simulate.contact_phases import ContactsOfPhases
 from clearance.simulate.contact_rows import ContactRows
 from clearance.simulate.handling import gap_between, handling_hints
 from clearance.simulate.record import Record
@@ -67,6 +66,10 @@ def always_in_contact(record: Record) -> list[tuple[str, str]]:
     A link that a joint moves against an obstacle that stands is left out: that is what a run looks for.
     """
     rows = record.contacts
+    if not len(rows):
+        return []
+    from clearance.simulate.contact_phases import ContactsOfPhases
+
     if record.steps.num_rows < 2 or not isinstance(rows, ContactRows | ContactsOfPhases):
         return []
     case, plan = record.case, section_plan(record.timeline)
