@@ -9,7 +9,7 @@ import clearance as cl
 from clearance.findings.comparison import compared
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES, WAIVED_TOLERANCES
 from clearance.findings.findings_file import finding_list_of
-from clearance.report import write_junit
+from clearance.report.junit import write_junit
 from clearance.world.waiver import Waiver
 from tests.findings.gates import load_gates
 

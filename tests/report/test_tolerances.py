@@ -14,10 +14,13 @@ from clearance.findings.comparison import compared
 from clearance.findings.finding import NOT_PROVEN, TOLERANCES
 from clearance.findings.findings_file import finding_list_of, findings_text, read_findings
 from clearance.findings.of_record import findings_of
-from clearance.report import summary_of, verdict_of, write, write_junit
 from clearance.report.annotations import annotation_lines
+from clearance.report.junit import write_junit
 from clearance.report.markdown import markdown
+from clearance.report.output import write
+from clearance.report.summary import summary_of
 from clearance.report.tolerances import largest_text
+from clearance.report.verdict import verdict_of
 from clearance.run import Run
 from clearance.simulate.budget_answer import ErrorSource
 from clearance.world.budget import Budget, ObstacleTolerance
