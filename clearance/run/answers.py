@@ -344,6 +344,7 @@ def _record(plan: MeasurementPlan, answers: Answers) -> Record:
         cross_check=answers.cross_check,
         budget=answers.budget,
         of_pairs=partial(_of_pairs, plan),
+        budget_of_pairs=None if answers.budget is None else partial(_budget_of_pairs, plan),
         today=question.today,
         body_gaps=question.body_gaps,
         asked=_asked(question) if question.motion == "recorded" else None,
@@ -370,15 +371,28 @@ def _of_pairs(
     plan: MeasurementPlan, is_meant: PairTest, need: str | None = None
 ) -> tuple[RuleAnswer, ...]:
     """What the rules come to of some pairs alone, as if there were no others."""
+    some, found = _some(plan, is_meant, need)
+    return judged(some, found, plan.question.case, plan.motions).rules if found else ()
+
+
+def _budget_of_pairs(plan: MeasurementPlan, is_meant: PairTest) -> tuple[RuleBudget, ...]:
+    """What the case's tolerances leave of some pairs alone."""
+    from clearance.budget.answer import budget_answers
+
+    some, found = _some(plan, is_meant)
+    return budget_answers(plan.question.case, some, found, DEFAULT_RESOURCES) if found else ()
+
+
+def _some(
+    plan: MeasurementPlan, is_meant: PairTest, need: str | None = None
+) -> tuple[SectionPlan, list[SectionAnswer]]:
+    """The sections of some pairs alone, and what they come to; none where no pair is meant."""
     case = plan.question.case
     question = plan.question if need is None else replace(plan.question, need=need)
     parts = [_part(case, section, is_meant) for section in plan.sections.sections]
     sections = tuple(part for part in parts if part.pairs)
-    if not sections:
-        return ()
     found = [_of_section(question, section, DEFAULT_RESOURCES) for section in sections]
-    some = replace(plan.sections, sections=sections)
-    return judged(some, found, case, plan.motions).rules
+    return replace(plan.sections, sections=sections), found
 
 
 def _part(case: Case, section: Section, is_meant: PairTest) -> Section:
