@@ -44,7 +44,6 @@ class InputFiles:
         self._sources: dict[Path, Source] = {}
         self._lookups: dict[str, Source] = {}
         self._held: set[Path] = set()
-        self._shown: dict[str, str] = {}
 
     @cached_property
     def _brought(self) -> Path | None:
