@@ -1,0 +1,148 @@
+"""The search for the least change: linear programmes about where it is, each step measured anew, proven at the end.
+
+A step is taken where the linear rows have a least solution within the trust region, else to where they are missed by
+least. What is measured decides: a step that makes it worse halves the region. Not for: what may be changed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from clearance.gain.programme import Box, least_missing
+from clearance.gain.shortfalls import Rows, State, Wanted, keeps, measured, proven, with_extra
+from clearance.simulate.approaches import Approach
+from clearance.simulate.record import Record
+from clearance.world.case import Case
+
+MOST_STEPS = 40
+"""Of one search; most need 4 to 10."""
+
+MOST_PROOFS = 6
+"""Times that the motion between the steps may ask for more."""
+
+FINE = 1e-7
+"""[m] A pair that is less below what is wanted is at it; proofs near a limit are as fine."""
+
+SMALLER = 1e-4
+"""[-] A change that is smaller by less than this share is no better."""
+
+WIDER, NARROWER = 2.0, 0.4
+"""[-] The trust region after a step that did what was foretold, and after one that did not."""
+
+
+class Change(Protocol):
+    """What may be changed, by m variables that are 0 for no change."""
+
+    @property
+    def box(self) -> Box:
+        """What the variables may be."""
+
+    @property
+    def first_reach(self) -> np.ndarray:
+        """(m,) how far a first step may go."""
+
+    def case_of(self, x: np.ndarray) -> Case:
+        """The changed case."""
+
+    def gradient(self, approach: Approach) -> np.ndarray | None:
+        """(k, m) what clearances grow by; None where nothing of it changes them."""
+
+    def size(self, x: np.ndarray) -> float:
+        """How large a change is, in its unit."""
+
+    def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
+        """(m,) the least change in a box that keeps all rows, linear about x; None if none does."""
+
+    def swing(self, reach: np.ndarray) -> float:
+        """[m] What no clearance changes more by, where no variable changes by more than (m,) `reach`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Where a search ended.
+
+    Attributes:
+        state: the least change that keeps what is wanted, else the one that misses it by least.
+        record: the proof; None where the steps do not keep it.
+        n_measured: how many cases were measured.
+    """
+
+    state: State
+    record: Record | None
+    n_measured: int
+
+    @property
+    def kept(self) -> bool:
+        """True if every rule is proven to hold."""
+        return self.record is not None and keeps(self.record)
+
+
+class Search:
+    """One search for a change.
+
+    Args:
+        margin: [m] above the fail limits.
+    """
+
+    def __init__(self, change: Change, margin: float) -> None:
+        self.change, self.margin = change, margin
+        self.wanted = Wanted(margin + 2.0 * FINE, np.zeros(0))
+        self.n_measured = 0
+
+    def from_point(self, start: np.ndarray) -> Found:
+        """The search from some variables (m,)."""
+        state, record = self._state(start, self.change.first_reach), None
+        for _ in range(MOST_PROOFS):
+            state = self._improved(state)
+            if state.worst > FINE:
+                break
+            record = proven(state.case, self.margin)
+            if keeps(record):
+                break
+            extra = with_extra(self.wanted.extra, record)
+            self.wanted = Wanted(self.wanted.margin, extra)
+            state = self._state(state.x, self.change.first_reach)
+        return Found(state, record if state.worst <= FINE else None, self.n_measured)
+
+    def _state(self, x: np.ndarray, reach: np.ndarray) -> State:
+        self.n_measured += 1
+        return measured(self.change.case_of(x), x, self.wanted, self.change.swing(reach) + FINE)
+
+    def _improved(self, state: State) -> State:
+        """The best state that steps from one lead to."""
+        reach = self.change.first_reach
+        for _ in range(MOST_STEPS):
+            x = self._aim(state, reach)
+            if x is None or np.array_equal(x, state.x):
+                return state
+            tried = self._state(x, reach)
+            if not self._is_better(tried, state):
+                reach = NARROWER * reach
+                if (reach < 1e-7 * self.change.first_reach).all():
+                    return state
+                continue
+            state, reach = tried, np.minimum(WIDER * reach, 8.0 * self.change.first_reach)
+        return state
+
+    def _aim(self, state: State, reach: np.ndarray) -> np.ndarray | None:
+        """Where the next step goes; None where there is nothing to gain."""
+        rows = state.rows(self.change.gradient)
+        box = self.change.box.about(state.x, reach)
+        x = self.change.least(rows, state.x, box)
+        if x is None:
+            return least_missing(rows, state.x, box)[0] if state.worst > FINE else None
+        x = np.clip(x, box.low, box.high)
+        if state.worst <= FINE and not self._is_smaller(x, state.x):
+            return None
+        return x
+
+    def _is_smaller(self, x: np.ndarray, than: np.ndarray) -> bool:
+        return self.change.size(x) < self.change.size(than) * (1.0 - SMALLER)
+
+    def _is_better(self, tried: State, state: State) -> bool:
+        if state.worst > FINE:
+            return tried.worst < state.worst
+        return tried.worst <= FINE and self._is_smaller(tried.x, state.x)
