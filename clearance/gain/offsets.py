@@ -42,6 +42,7 @@ class JointOffsets:
     case: Case
     i_robot: int
     basis: Basis
+    price: float = 100.0
     weights: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:

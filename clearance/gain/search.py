@@ -23,18 +23,25 @@ MOST_STEPS = 40
 MOST_PROOFS = 6
 """Times that the motion between the steps may ask for more."""
 
-FINE = 1e-7
-"""[m] A pair that is less below what is wanted is at it; proofs near a limit are as fine."""
+FINE = 2e-7
+"""[m] A pair that is less below what is wanted is at it: as much more is wanted, and proofs are as fine."""
 
 SMALLER = 1e-4
 """[-] A change that is smaller by less than this share is no better."""
 
+LEAST_SHARE, GOOD_SHARE = 0.05, 0.5
+"""[-] Of what is foretold: a step that does less is not taken, after one that does more the next may go farther."""
+
 WIDER, NARROWER = 2.0, 0.4
-"""[-] The trust region after a step that did what was foretold, and after one that did not."""
+"""[-] What the trust region is multiplied by then."""
 
 
 class Change(Protocol):
     """What may be changed, by m variables that are 0 for no change."""
+
+    @property
+    def price(self) -> float:
+        """What a metre of clearance that is missing weighs against the size; more than any metre can cost."""
 
     @property
     def box(self) -> Box:
@@ -116,33 +123,39 @@ class Search:
         reach = self.change.first_reach
         for _ in range(MOST_STEPS):
             x = self._aim(state, reach)
-            if x is None or np.array_equal(x, state.x):
+            foretold = self._merit(x, self._missing_at(state, x))
+            gain = self._merit(state.x, state.worst) - foretold
+            if gain <= SMALLER * self.change.size(state.x):
                 return state
             tried = self._state(x, reach)
-            if not self._is_better(tried, state):
-                reach = NARROWER * reach
-                if (reach < 1e-7 * self.change.first_reach).all():
+            done = self._merit(state.x, state.worst) - self._merit(x, tried.worst)
+            if done < LEAST_SHARE * gain:
+                reach = NARROWER * np.minimum(reach, np.abs(x - state.x).max())
+                if (reach < 1e-6 * self.change.first_reach).all():
                     return state
                 continue
-            state, reach = tried, np.minimum(WIDER * reach, 8.0 * self.change.first_reach)
+            if done > GOOD_SHARE * gain:
+                reach = np.minimum(WIDER * reach, 8.0 * self.change.first_reach)
+            state = tried
         return state
 
-    def _aim(self, state: State, reach: np.ndarray) -> np.ndarray | None:
-        """Where the next step goes; None where there is nothing to gain."""
+    def _aim(self, state: State, reach: np.ndarray) -> np.ndarray:
+        """Where the next step goes: the least change that keeps all rows, or misses them by as little as can be."""
         rows = state.rows(self.change.gradient)
         box = self.change.box.about(state.x, reach)
         x = self.change.least(rows, state.x, box)
         if x is None:
-            return least_missing(rows, state.x, box)[0] if state.worst > FINE else None
-        x = np.clip(x, box.low, box.high)
-        if state.worst <= FINE and not self._is_smaller(x, state.x):
-            return None
-        return x
+            nearest, left = least_missing(rows, state.x, box)
+            relaxed = rows._replace(missing=rows.missing - left * (1.0 + 1e-6) - FINE)
+            x = self.change.least(relaxed, state.x, box)
+            x = nearest if x is None else x
+        return np.clip(x, box.low, box.high)
 
-    def _is_smaller(self, x: np.ndarray, than: np.ndarray) -> bool:
-        return self.change.size(x) < self.change.size(than) * (1.0 - SMALLER)
+    def _missing_at(self, state: State, x: np.ndarray) -> float:
+        """[m] What the rows foretell to be missing."""
+        rows = state.rows(self.change.gradient)
+        return max(0.0, float((rows.missing - rows.gradients @ (x - state.x)).max(initial=0.0)))
 
-    def _is_better(self, tried: State, state: State) -> bool:
-        if state.worst > FINE:
-            return tried.worst < state.worst
-        return tried.worst <= FINE and self._is_smaller(tried.x, state.x)
+    def _merit(self, x: np.ndarray, missing: float) -> float:
+        """What a step is to lower: the size of the change, and what is missing at its price."""
+        return self.change.size(x) + self.change.price * max(0.0, missing - FINE)

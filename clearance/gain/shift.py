@@ -36,6 +36,7 @@ class Shift:
     moved: Callable[[Case, BodyIndex], bool]
     place: Callable[[Case, np.ndarray], Case]
     box: Box
+    price: float = 30.0
 
     @property
     def first_reach(self) -> np.ndarray:
