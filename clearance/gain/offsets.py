@@ -97,18 +97,16 @@ class JointOffsets:
         return replace(self.case, robots=tuple(robots))
 
     def gradient(self, approach: Approach) -> np.ndarray | None:
-        by_joint = approach.by_columns()[:, self._columns]
+        by_joint = approach.by_columns()[:, self.columns]
         if not by_joint.any():
             return None
         splines = self.basis.at(self._table_times(approach))
         return np.asarray((by_joint[:, :, None] * splines[:, None, :]).reshape(len(splines), -1))
 
     @cached_property
-    def _columns(self) -> list[int]:
+    def columns(self) -> list[int]:
         """The column of the case's forest of each joint of the table."""
-        before = sum(len(one.robot.moving_joints) for one in self.case.robots[: self.i_robot])
-        names = [joint.name for joint in self.placed.robot.moving_joints]
-        return [before + names.index(name) for name in self.placed.asked.joint_names]
+        return columns_of(self.case, self.i_robot)
 
     def _table_times(self, approach: Approach) -> np.ndarray:
         timing = self.placed.timing
@@ -207,3 +205,10 @@ def joint_offsets(
             valid="a path that ends",
         )
     return JointOffsets(case, i_robot, Basis(placed.asked.times, n_intervals, kept))
+
+
+def columns_of(case: Case, i_robot: int) -> list[int]:
+    """The column of the case's forest of each joint of a robot's table."""
+    before = sum(len(one.robot.moving_joints) for one in case.robots[:i_robot])
+    names = [joint.name for joint in case.robots[i_robot].robot.moving_joints]
+    return [before + names.index(name) for name in case.robots[i_robot].asked.joint_names]

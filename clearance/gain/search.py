@@ -6,7 +6,7 @@ least. What is measured decides: a step that makes it worse halves the region. N
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -96,12 +96,16 @@ class Search:
 
     def __init__(self, change: Change, margin: float) -> None:
         self.change, self.margin = change, margin
-        self.wanted = Wanted(margin + 2.0 * FINE, np.zeros(0))
+        self.wanted = Wanted(margin, 2.0 * FINE, np.zeros(0))
         self.n_measured = 0
 
-    def from_point(self, start: np.ndarray) -> Found:
-        """The search from some variables (m,)."""
-        state, record = self._state(start, self.change.first_reach), None
+    def state_at(self, x: np.ndarray) -> State:
+        """The case of some variables (m,), measured."""
+        return self._state(x, self.change.first_reach)
+
+    def from_state(self, state: State) -> Found:
+        """The search from a case that is measured."""
+        record = None
         for _ in range(MOST_PROOFS):
             state = self._improved(state)
             if state.worst > FINE:
@@ -110,7 +114,7 @@ class Search:
             if keeps(record):
                 break
             extra = with_extra(self.wanted.extra, record)
-            self.wanted = Wanted(self.wanted.margin, extra)
+            self.wanted = replace(self.wanted, extra=extra)
             state = self._state(state.x, self.change.first_reach)
         return Found(state, record if state.worst <= FINE else None, self.n_measured)
 

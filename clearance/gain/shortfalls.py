@@ -44,11 +44,12 @@ class Wanted:
     """What a case is to keep.
 
     Attributes:
-        margin: [m] above the fail limit of each rule.
+        margin: [m] above the fail limit of each rule. beyond: [m] that is to cover rounding.
         extra: (n,) [m] beyond that at each step, so that the motion between them keeps it too.
     """
 
     margin: float
+    beyond: float
     extra: np.ndarray
 
 
@@ -66,6 +67,11 @@ class State:
     near: Sequence[Approach]
     wanted: Wanted
 
+    @property
+    def margin(self) -> float:
+        """[m] Above the fail limit of each rule."""
+        return self.wanted.margin
+
     @cached_property
     def worst(self) -> float:
         """[m] How far the worst pair is below what is wanted; 0 where none is."""
@@ -73,7 +79,7 @@ class State:
 
     def missing(self, approach: Approach) -> np.ndarray:
         """(k,) [m] how far an approach is below what is wanted; negative above it."""
-        level = approach.rule.limits.fail + self.wanted.margin
+        level = approach.rule.limits.fail + self.wanted.margin + self.wanted.beyond
         return level + self.wanted.extra[approach.steps] - approach.clearances
 
     def rows(self, gradient: Gradient) -> Rows:
@@ -95,7 +101,7 @@ def measured(case: Case, x: np.ndarray, wanted: Wanted, beyond: float) -> State:
     record = answer(Question(case, certify=False, contact="none")).record
     if len(wanted.extra) != len(record.motions[0].times):
         wanted = replace(wanted, extra=np.zeros(len(record.motions[0].times)))
-    level = wanted.margin + float(wanted.extra.max(initial=0.0)) + beyond
+    level = wanted.margin + wanted.beyond + float(wanted.extra.max(initial=0.0)) + beyond
     return State(x, case, record, [*approaches(record.rules, level)], wanted)
 
 

@@ -1,0 +1,233 @@
+"""What can be gained: the least change of a kind, proven, with what no such change can do better.
+
+Not for: how it is written down (`written`), what it looks like (`page`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from os import PathLike
+
+import numpy as np
+
+from clearance.errors import BadDimension, BadInput, UnknownRobot, nearest_name
+from clearance.gain.blocked import Blocked, blocked_by, worst_pair
+from clearance.gain.delay import least_delay
+from clearance.gain.offsets import joint_offsets
+from clearance.gain.search import Change, Found, Search
+from clearance.gain.shift import Shift, base_shift, obstacle_shift
+from clearance.gain.shortfalls import State
+from clearance.gain.unreachable import least_offset, least_shift
+from clearance.run import Question, Run, answer
+from clearance.world.case import Case
+
+KINDS = ("waypoints", "obstacle", "base", "timing")
+
+INTERVALS = (12, 24, 48, 96)
+"""Of the splines of a path, the coarsest that is enough is taken."""
+
+NO_WORSE = 1.02
+"""[-] A change that is within this of what no change can beat is not sought elsewhere."""
+
+FARTHER = 0.05
+"""[m] How far the other sides are looked at from, at least."""
+
+MOST_DELAY = 60.0
+"""[s] That is looked at, if nothing is given."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What may be changed.
+
+    Attributes:
+        kind: one of `KINDS`. margin: [m] above the fail limits.
+        robot, obstacle: names; where there is one, it need not be given.
+        keep: (start, end) of the run [s] in which a path stays as it is. keep_ends: its ends stay.
+        most_delay: [s].
+    """
+
+    kind: str
+    margin: float = 0.0
+    robot: str | None = None
+    obstacle: str | None = None
+    keep: tuple[tuple[float, float], ...] = ()
+    keep_ends: bool = True
+    most_delay: float = MOST_DELAY
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise BadInput(f"unknown kind {self.kind!r:.60}", valid=f"one of {', '.join(KINDS)}")
+        if not 0.0 <= self.margin < np.inf:
+            raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
+        for start, end in self.keep:
+            if not start <= end:
+                raise BadInput(f"from {start:g} s to {end:g} s is kept", valid="a start before its end")
+
+
+@dataclass(frozen=True, eq=False)
+class Gain:
+    """What a change comes to.
+
+    Attributes:
+        asked: what was to be changed. kept: every rule is proven to hold by the margin, in the changed case.
+        case: the changed case; the best that was reached where it is not kept.
+        change: (3,) [m] of a shift; (n, k) [rad or m] of the samples of a path; (1,) [s] of a delay.
+        size: of it [m], [rad] or [s]; 0 where nothing had to be changed. lower_bound: no smaller change of the
+            kind is enough; 0 where nothing is known. who: the robot or obstacle that is changed.
+        before, after: certified runs of both cases, by their own limits.
+        blocked: what stays too near, where it is not kept.
+        n_measured: how many cases were measured.
+    """
+
+    asked: Asked
+    kept: bool
+    case: Case
+    change: np.ndarray
+    size: float
+    lower_bound: float
+    who: str
+    before: Run
+    after: Run
+    blocked: Blocked | None
+    n_measured: int
+    joint_names: tuple[str, ...] = field(default=())
+
+    @property
+    def unit(self) -> str:
+        """Of `size` and `lower_bound`."""
+        return {"waypoints": "rad", "timing": "s"}.get(self.asked.kind, "m")
+
+
+def gain(case: Case | str | PathLike[str], kind: str = "waypoints", **how: object) -> Gain:
+    """The least change of a kind that makes every rule of a case hold, proven.
+
+    Args:
+        case: or the path of a case file.
+        kind: "waypoints": smooth offsets of a robot's joints; "obstacle", "base": a shift along x, y and z, the
+            joints as they are; "timing": a robot begins later.
+        how: as the attributes of `Asked`.
+
+    Raises:
+        BadInput: what cannot be changed. UnknownRobot, UnknownObstacle: with the nearest name.
+    """
+    from clearance.load.case_file import load_case
+
+    whole = case if isinstance(case, Case) else load_case(case)
+    return gained(whole, Asked(kind, **how))  # type: ignore[arg-type]
+
+
+def gained(case: Case, asked: Asked) -> Gain:
+    """The gain of what is asked."""
+    ways = {"timing": _by_delay, "waypoints": _by_path, "obstacle": _by_shift, "base": _by_shift}
+    return ways[asked.kind](case, asked)
+
+
+def _by_shift(case: Case, asked: Asked) -> Gain:
+    shift, who = _shift(case, asked)
+    search = Search(shift, asked.margin)
+    first = search.state_at(np.zeros(3))
+    at_least = least_shift(shift, first, asked.margin)
+    blocked = blocked_by(first, shift.gradient)
+    if blocked is not None:
+        return _gain(case, asked, Found(first, None, 1), np.zeros(3), shift, at_least, who, blocked)
+    found = _least_of_several(search, shift, first, at_least)
+    return _gain(case, asked, found, found.state.x, shift, at_least, who, None)
+
+
+def _least_of_several(search: Search, shift: Shift, first: State, at_least: float) -> Found:
+    """The least of a search from where it is, and, where that may be beaten, from six sides."""
+    best = search.from_state(first)
+    if best.kept and shift.size(best.state.x) <= NO_WORSE * at_least:
+        return best
+    far = max(shift.size(best.state.x), FARTHER)
+    for side in (*np.eye(3), *-np.eye(3)):
+        found = search.from_state(search.state_at(far * side))
+        if (not found.kept, shift.size(found.state.x)) < (not best.kept, shift.size(best.state.x)):
+            best = found
+    return best
+
+
+def _by_path(case: Case, asked: Asked) -> Gain:
+    i_robot = _robot(case, asked.robot)
+    who = case.robots[i_robot].robot.name
+    for n_intervals in INTERVALS:
+        offsets = joint_offsets(case, i_robot, n_intervals, _kept(case, i_robot, asked))
+        search = Search(offsets, asked.margin)
+        first = search.state_at(np.zeros(offsets.n_joints * offsets.n_splines))
+        at_least = least_offset(offsets, first, asked.margin)
+        blocked = blocked_by(first, offsets.gradient)
+        found = Found(first, None, 1) if blocked else search.from_state(first)
+        if found.kept:
+            break
+    change = offsets.offsets(found.state.x)
+    told = _gain(case, asked, found, change, offsets, at_least, who, blocked)
+    return replace(told, joint_names=offsets.placed.asked.joint_names)
+
+
+def _kept(case: Case, i_robot: int, asked: Asked) -> tuple[tuple[float, float], ...]:
+    """The windows of the robot's table [s] in which its path stays as it is."""
+    placed = case.robots[i_robot]
+    times, timing = placed.asked.times, placed.timing
+    kept = [tuple((time - timing.start) * timing.rate for time in window) for window in asked.keep]
+    if asked.keep_ends:
+        kept += [(times[0], times[0]), (times[-1], times[-1])]
+    return tuple((float(start), float(end)) for start, end in kept)
+
+
+def _gain(
+    case: Case,
+    asked: Asked,
+    found: Found,
+    change: np.ndarray,
+    way: Change,
+    at_least: float,
+    who: str,
+    blocked: Blocked | None,
+) -> Gain:
+    size = way.size(found.state.x)
+    if found.kept:
+        at_least = min(at_least, size)
+    elif blocked is None:
+        blocked = worst_pair(found.state)
+    runs = answer(Question(case)), answer(Question(found.state.case))
+    return Gain(
+        asked, found.kept, found.state.case, change, size, at_least, who, *runs, blocked, found.n_measured
+    )
+
+
+def _by_delay(case: Case, asked: Asked) -> Gain:
+    i_robot = _robot(case, asked.robot)
+    found = least_delay(case, i_robot, asked.margin, asked.most_delay)
+    blocked = None if found.kept else worst_pair(found.state)
+    runs = answer(Question(case)), answer(Question(found.state.case))
+    change = np.array([found.delay])
+    return Gain(
+        asked, found.kept, found.state.case, change, found.delay, found.at_least,
+        case.robots[i_robot].robot.name, *runs, blocked, found.n_measured,
+    )  # fmt: skip
+
+
+def _shift(case: Case, asked: Asked) -> tuple[Shift, str]:
+    if asked.kind == "base":
+        who = case.robots[_robot(case, asked.robot)].robot.name
+        return base_shift(case, who), who
+    if asked.obstacle is None and len(case.obstacles) != 1:
+        names = ", ".join(obstacle.name for obstacle in case.obstacles[:8])
+        raise BadInput("which obstacle may be moved is not said", valid=f"one of {names}")
+    who = asked.obstacle or case.obstacles[0].name
+    return obstacle_shift(case, who), who
+
+
+def _robot(case: Case, name: str | None) -> int:
+    """Which robot is meant.
+
+    Raises:
+        UnknownRobot: with the nearest name. BadInput: none is named, and there are several.
+    """
+    names = [placed.robot.name for placed in case.robots]
+    if name is None and len(names) > 1:
+        raise BadInput("which robot may be changed is not said", valid=f"one of {', '.join(names)}")
+    if name is not None and name not in names:
+        raise UnknownRobot(f"there is no robot {name!r}", valid=nearest_name(name, names))
+    return 0 if name is None else names.index(name)
