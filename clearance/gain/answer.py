@@ -142,8 +142,11 @@ def _least_of_several(search: Search, shift: Shift, first: State, at_least: floa
         return best
     far = max(shift.size(best.state.x), FARTHER)
     for side in (*np.eye(3), *-np.eye(3)):
-        found = search.from_state(search.state_at(far * side))
-        if (not found.kept, shift.size(found.state.x)) < (not best.kept, shift.size(best.state.x)):
+        start = search.state_at(far * side)
+        if start.record.nearest.touches:
+            continue
+        found = search.from_state(start, shift.size(best.state.x) if best.kept else np.inf)
+        if found.kept:
             best = found
     return best
 

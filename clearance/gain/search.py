@@ -103,20 +103,21 @@ class Search:
         """The case of some variables (m,), measured."""
         return self._state(x, self.change.first_reach)
 
-    def from_state(self, state: State) -> Found:
-        """The search from a case that is measured."""
+    def from_state(self, state: State, below: float = np.inf) -> Found:
+        """The search from a case that is measured; what is not smaller than `below` is not proven."""
         record = None
         for _ in range(MOST_PROOFS):
             state = self._improved(state)
-            if state.worst > FINE:
+            if state.worst > FINE or self.change.size(state.x) >= below:
                 break
             record = proven(state.case, self.margin)
             if keeps(record):
                 break
+            record = None
             extra = with_extra(self.wanted.extra, record)
             self.wanted = replace(self.wanted, extra=extra)
             state = self._state(state.x, self.change.first_reach)
-        return Found(state, record if state.worst <= FINE else None, self.n_measured)
+        return Found(state, record, self.n_measured)
 
     def _state(self, x: np.ndarray, reach: np.ndarray) -> State:
         self.n_measured += 1

@@ -19,7 +19,7 @@ from clearance.world.body import Obstacle
 from clearance.world.case import Case, PlacedRobot
 from clearance.world.pairs import BodyIndex
 
-FIRST_REACH = 0.05
+FIRST_REACH = 0.02
 """[m] How far the first step may go along each axis."""
 
 

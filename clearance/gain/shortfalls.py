@@ -58,14 +58,24 @@ class State:
     """A case as it was measured, with what comes near.
 
     Attributes:
-        x: (m,) the variables that it is made of.
+        x: (m,) the variables that it is made of. beyond: [m] above what is wanted, what counts as near.
     """
 
     x: np.ndarray
     case: Case
     record: Record
-    near: Sequence[Approach]
+    beyond: float
     wanted: Wanted
+
+    @cached_property
+    def near(self) -> Sequence[Approach]:
+        """All that comes near, at the steps."""
+        extra = float(self.wanted.extra.max(initial=0.0))
+        return [
+            *approaches(
+                self.record.rules, self.margin + self.wanted.beyond + extra + self.beyond
+            )
+        ]
 
     @property
     def margin(self) -> float:
@@ -101,8 +111,7 @@ def measured(case: Case, x: np.ndarray, wanted: Wanted, beyond: float) -> State:
     record = answer(Question(case, certify=False, contact="none")).record
     if len(wanted.extra) != len(record.motions[0].times):
         wanted = replace(wanted, extra=np.zeros(len(record.motions[0].times)))
-    level = wanted.margin + wanted.beyond + float(wanted.extra.max(initial=0.0)) + beyond
-    return State(x, case, record, [*approaches(record.rules, level)], wanted)
+    return State(x, case, record, beyond, wanted)
 
 
 def proven(case: Case, margin: float) -> Record:
