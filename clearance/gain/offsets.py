@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gain.basis import Basis
-from clearance.gain.programme import Box
+from clearance.gain.programme import Box, reachable
 from clearance.gain.shortfalls import Rows
 from clearance.simulate.approaches import Approach
 from clearance.world.case import Case, PlacedRobot
@@ -26,6 +26,9 @@ FIRST_REACH = 0.05
 
 ARM = 0.5
 """[m] How far what comes near is from the joints, to guess what a step may bring near."""
+
+PER_INTERVAL = 6
+"""Samples of each interval of the splines at which the greatest offset is sought."""
 
 EVENLY = 0.01
 """[-] What the sum of all offsets weighs beside the greatest."""
@@ -79,6 +82,13 @@ class JointOffsets:
     def _samples(self) -> np.ndarray:
         return self.basis.at(self.placed.asked.times)
 
+    @cached_property
+    def _few_samples(self) -> np.ndarray:
+        """The same at some of the samples, as many as the splines can tell apart."""
+        n_rows, wanted = len(self._samples), PER_INTERVAL * self.basis.n_intervals + 1
+        few = np.unique(np.linspace(0, n_rows - 1, min(n_rows, wanted)).astype(int))
+        return self._samples[few]
+
     def offsets(self, x: np.ndarray) -> np.ndarray:
         """(n, k) [rad or m] of the samples of the table."""
         return np.asarray(self._samples @ x.reshape(self.n_joints, -1).T)
@@ -123,26 +133,23 @@ class JointOffsets:
     def least(self, rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
         from scipy.optimize import linprog
 
-        programme = self._programme(rows, x)
-        if programme is None:
-            return None
-        a, b, cost = programme
+        a, b, cost = self._programme(reachable(rows, x, box), x)
         size = len(x)
         bounds = [*zip(box.low, box.high, strict=True)]
         bounds += [(0.0, None)] * (size + 1)
         found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
         return None if found.x is None else np.asarray(found.x[:size])
 
-    def _programme(self, rows: Rows, x: np.ndarray) -> tuple | None:
+    def _programme(self, rows: Rows, x: np.ndarray) -> tuple:  # type: ignore[type-arg]
         """A, b and cost of: x, its magnitudes, and the greatest offset."""
         from scipy.sparse import block_array, csr_array, eye_array, kron
 
-        size, n_samples = len(x), len(self._samples)
+        size = len(x)
         wanted = rows.missing + rows.gradients @ x
-        offsets = kron(csr_array(np.diag(self.weights)), csr_array(self._samples))
-        ones = csr_array(np.ones((self.n_joints * n_samples, 1)))
+        offsets = kron(csr_array(np.diag(self.weights)), csr_array(self._few_samples))
+        ones = csr_array(np.ones((offsets.shape[0], 1)))
         unit = eye_array(size)
-        kept, most = self._kept_limits()
+        kept, most = self._kept_limits
         a = block_array(
             [
                 [csr_array(-rows.gradients), None, csr_array((len(wanted), 1))],
@@ -154,12 +161,13 @@ class JointOffsets:
             ],
             format="csr",
         )
-        flat = np.zeros(2 * len(ones.toarray()) + 2 * size)
+        flat = np.zeros(2 * offsets.shape[0] + 2 * size)
         weight = EVENLY / size * np.repeat(self.weights, self.n_splines)
         cost = np.concatenate([np.zeros(size), weight, [1.0]])
         return a, np.concatenate([-wanted, flat, most]), cost
 
-    def _kept_limits(self):  # type: ignore[no-untyped-def]
+    @cached_property
+    def _kept_limits(self) -> tuple:  # type: ignore[type-arg]
         """A and b of the limits of joints, which hold at the samples, and of their speeds between them."""
         from scipy.sparse import csr_array, kron, vstack
 

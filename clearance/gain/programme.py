@@ -23,6 +23,15 @@ class Box(NamedTuple):
         return Box(np.maximum(self.low, x - reach), np.minimum(self.high, x + reach))
 
 
+def reachable(rows: Rows, x: np.ndarray, box: Box) -> Rows:
+    """The rows that some point of a box may break, linear about x."""
+    low, high = box.low - x, box.high - x
+    gradients = rows.gradients
+    least = np.minimum(gradients * low, gradients * high).sum(axis=1)
+    some = rows.missing > least
+    return Rows(rows.missing[some], gradients[some])
+
+
 def least_norm(rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
     """(m,) the point of a box of least Euclidean length that keeps all rows, linear about x; None if none does.
 
@@ -55,6 +64,7 @@ def least_missing(rows: Rows, x: np.ndarray, box: Box) -> tuple[np.ndarray, floa
     """(m,) the point of a box at which the worst row, linear about x, is least below 0, and how much that is."""
     from scipy.optimize import linprog
 
+    rows = reachable(rows, x, box)
     n_rows, size = rows.gradients.shape
     cost = np.zeros(size + 1)
     cost[-1] = 1.0

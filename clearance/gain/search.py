@@ -20,6 +20,9 @@ from clearance.world.case import Case
 MOST_STEPS = 40
 """Of one search; most need 4 to 10."""
 
+PATIENCE, LESS = 6, 0.9
+"""A search ends where so many steps have left more than this share of what was missing."""
+
 MOST_PROOFS = 6
 """Times that the motion between the steps may ask for more."""
 
@@ -113,8 +116,7 @@ class Search:
             record = proven(state.case, self.margin)
             if keeps(record):
                 break
-            record = None
-            extra = with_extra(self.wanted.extra, record)
+            extra, record = with_extra(self.wanted.extra, record), None
             self.wanted = replace(self.wanted, extra=extra)
             state = self._state(state.x, self.change.first_reach)
         return Found(state, record, self.n_measured)
@@ -125,8 +127,10 @@ class Search:
 
     def _improved(self, state: State) -> State:
         """The best state that steps from one lead to."""
-        reach = self.change.first_reach
+        reach, missing = self.change.first_reach, [state.worst]
         for _ in range(MOST_STEPS):
+            if len(missing) > PATIENCE and missing[-1] > max(FINE, LESS * missing[-PATIENCE]):
+                return state
             x = self._aim(state, reach)
             foretold = self._merit(x, self._missing_at(state, x))
             gain = self._merit(state.x, state.worst) - foretold
@@ -142,6 +146,7 @@ class Search:
             if done > GOOD_SHARE * gain:
                 reach = np.minimum(WIDER * reach, 8.0 * self.change.first_reach)
             state = tried
+            missing.append(state.worst)
         return state
 
     def _aim(self, state: State, reach: np.ndarray) -> np.ndarray:
