@@ -31,12 +31,14 @@ class Delayed:
 
     Attributes:
         delay: [s] the least found that keeps the rules, else the last looked at. at_least: [s] no shorter one does.
+        n_measured: how many delays were measured.
     """
 
     state: State
     record: Record | None
     delay: float
     at_least: float
+    n_measured: int
 
     @property
     def kept(self) -> bool:
@@ -64,7 +66,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
     speed = greatest_speed(case, i_robot)
     wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
     record: Record | None = None
-    for _ in range(MOST_DELAYS):
+    for n_measured in range(1, MOST_DELAYS + 1):
         state = measured(case_later(case, i_robot, delay), np.zeros(0), wanted, 0.0)
         if state.worst <= 0.0:
             record = proven(state.case, margin)
@@ -75,7 +77,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
         if max(excluded, delay + FINEST) > most:
             break
         delay = max(excluded, delay + FINEST)
-    return Delayed(state, record, delay, min(at_least, delay))
+    return Delayed(state, record, delay, min(at_least, delay), n_measured)
 
 
 def greatest_speed(case: Case, i_robot: int) -> float:

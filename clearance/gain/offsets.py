@@ -13,7 +13,7 @@ import numpy as np
 
 from clearance.errors import BadInput
 from clearance.gain.basis import Basis
-from clearance.gain.programme import Box, reachable
+from clearance.gain.programme import Box, Inequalities, reachable
 from clearance.gain.shortfalls import Rows
 from clearance.simulate.approaches import Approach
 from clearance.world.case import Case, PlacedRobot
@@ -149,7 +149,7 @@ class JointOffsets:
         offsets = kron(csr_array(np.diag(self.weights)), csr_array(self._few_samples))
         ones = csr_array(np.ones((offsets.shape[0], 1)))
         unit = eye_array(size)
-        kept, most = self._kept_limits
+        kept, most = self.kept
         a = block_array(
             [
                 [csr_array(-rows.gradients), None, csr_array((len(wanted), 1))],
@@ -167,8 +167,8 @@ class JointOffsets:
         return a, np.concatenate([-wanted, flat, most]), cost
 
     @cached_property
-    def _kept_limits(self) -> tuple:  # type: ignore[type-arg]
-        """A and b of the limits of joints, which hold at the samples, and of their speeds between them."""
+    def kept(self) -> Inequalities:
+        """The limits of joints, which hold at the samples, and of their speeds between them."""
         from scipy.sparse import csr_array, kron, vstack
 
         asked = self.placed.asked
@@ -192,8 +192,8 @@ class JointOffsets:
                     most.append(rate - sign * speeds[:, i])
         if not parts:
             size = self.n_joints * self.n_splines
-            return csr_array((0, size)), np.zeros(0)
-        return vstack(parts, format="csr"), np.concatenate(most)
+            return Inequalities(csr_array((0, size)), np.zeros(0))
+        return Inequalities(vstack(parts, format="csr"), np.concatenate(most))
 
 
 def joint_offsets(

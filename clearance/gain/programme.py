@@ -5,7 +5,7 @@ scipy's solvers are the adapters: `nnls` (Lawson & Hanson 1974), `linprog` (HiGH
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -60,17 +60,39 @@ def least_norm(rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
     return -left[:size] / left[-1] * scale
 
 
-def least_missing(rows: Rows, x: np.ndarray, box: Box) -> tuple[np.ndarray, float]:
-    """(m,) the point of a box at which the worst row, linear about x, is least below 0, and how much that is."""
+class Inequalities(NamedTuple):
+    """What the variables x keep beside their bounds: a x <= b.
+
+    Attributes:
+        a: (k, m), a sparse matrix. b: (k,).
+    """
+
+    a: Any
+    b: np.ndarray
+
+
+def least_missing(
+    rows: Rows, x: np.ndarray, box: Box, kept: Inequalities | None
+) -> tuple[np.ndarray, float]:
+    """(m,) the point of a box at which the worst row, linear about x, is least below 0, and how much that is.
+
+    Args:
+        kept: what is kept beside the box; None for nothing.
+    """
     from scipy.optimize import linprog
 
     rows = reachable(rows, x, box)
     n_rows, size = rows.gradients.shape
     cost = np.zeros(size + 1)
     cost[-1] = 1.0
-    above = np.hstack([-rows.gradients, -np.ones((n_rows, 1))])
+    above, most = np.hstack([-rows.gradients, -np.ones((n_rows, 1))]), -rows.missing
+    if kept is not None:
+        from scipy.sparse import csr_array, hstack, vstack
+
+        beside = hstack([kept.a, csr_array((len(kept.b), 1))])
+        above, most = vstack([csr_array(above), beside]), np.concatenate([most, kept.b - kept.a @ x])
     bounds = [*zip(box.low - x, box.high - x, strict=True), (0.0, None)]
-    found = linprog(cost, A_ub=above, b_ub=-rows.missing, bounds=bounds, method="highs")
+    found = linprog(cost, A_ub=above, b_ub=most, bounds=bounds, method="highs")
     if found.x is None:
         return x, float(rows.missing.max(initial=0.0))
     return x + found.x[:size], float(found.x[-1])

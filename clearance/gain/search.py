@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from clearance.gain.programme import Box, least_missing
+from clearance.gain.programme import Box, Inequalities, least_missing
 from clearance.gain.shortfalls import Rows, State, Wanted, keeps, measured, proven, with_extra
 from clearance.simulate.approaches import Approach
 from clearance.simulate.record import Record
@@ -29,7 +29,7 @@ MOST_PROOFS = 6
 FINE = 2e-7
 """[m] A pair that is less below what is wanted is at it: as much more is wanted, and proofs are as fine."""
 
-SMALLER = 1e-4
+SMALLER = 1e-5
 """[-] A change that is smaller by less than this share is no better."""
 
 LEAST_SHARE, GOOD_SHARE = 0.05, 0.5
@@ -49,6 +49,10 @@ class Change(Protocol):
     @property
     def box(self) -> Box:
         """What the variables may be."""
+
+    @property
+    def kept(self) -> Inequalities | None:
+        """What the variables keep beside the box."""
 
     @property
     def first_reach(self) -> np.ndarray:
@@ -155,7 +159,7 @@ class Search:
         box = self.change.box.about(state.x, reach)
         x = self.change.least(rows, state.x, box)
         if x is None:
-            nearest, left = least_missing(rows, state.x, box)
+            nearest, left = least_missing(rows, state.x, box, self.change.kept)
             relaxed = rows._replace(missing=rows.missing - left * (1.0 + 1e-6) - FINE)
             x = self.change.least(relaxed, state.x, box)
             x = nearest if x is None else x

@@ -37,6 +37,7 @@ class Shift:
     place: Callable[[Case, np.ndarray], Case]
     box: Box
     price: float = 30.0
+    kept: None = None
 
     @property
     def first_reach(self) -> np.ndarray:

@@ -20,7 +20,7 @@ from clearance.world.case import Case
 from clearance.world.forest import link_poses_at
 from clearance.world.pairs import Pair
 
-MOST_DEPTHS = 24
+MOST_DEPTHS = 12
 """Steps in contact of one pair whose depth is worked out, evenly spread; one takes 2 to 20 ms."""
 
 APART = 1e-9
