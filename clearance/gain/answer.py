@@ -62,7 +62,9 @@ class Asked:
             raise BadDimension(f"a margin of {self.margin!r:.60} m", valid="a length, 0 or more")
         for start, end in self.keep:
             if not start <= end:
-                raise BadInput(f"from {start:g} s to {end:g} s is kept", valid="a start before its end")
+                raise BadInput(
+                    f"from {start:g} s to {end:g} s is kept", valid="a start before its end"
+                )
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +197,16 @@ def _gain(
         blocked = worst_pair(found.state)
     runs = answer(Question(case)), answer(Question(found.state.case))
     return Gain(
-        asked, found.kept, found.state.case, change, size, at_least, who, *runs, blocked, found.n_measured
+        asked,
+        found.kept,
+        found.state.case,
+        change,
+        size,
+        at_least,
+        who,
+        *runs,
+        blocked,
+        found.n_measured,
     )
 
 

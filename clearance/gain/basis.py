@@ -22,7 +22,8 @@ class Basis:
     """Splines on so many equal intervals of a table's times, those that reach into a window that is kept left out.
 
     Attributes:
-        times: (n,) [s] of the table. kept: (start, end) of its times [s] in which there is no offset, nor a speed of one.
+        times: (n,) [s] of the table.
+        kept: (start, end) of its times [s] in which there is no offset, nor a speed of one.
     """
 
     times: np.ndarray

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.gain.shortfalls import State, Wanted, keeps, measured, proven
 from clearance.gain.offsets import columns_of
+from clearance.gain.shortfalls import State, Wanted, keeps, measured, proven
 from clearance.gain.unreachable import motion_radii, way_needed
 from clearance.simulate.record import Record
 from clearance.world.case import Case
@@ -30,7 +30,8 @@ class Delayed:
     """Where the search ended.
 
     Attributes:
-        delay: [s] the least found that keeps the rules, else the last looked at. at_least: [s] no shorter one does.
+        delay: [s] the least found that keeps the rules, else the last looked at.
+        at_least: [s] no shorter one does.
         n_measured: how many delays were measured.
     """
 
@@ -50,9 +51,7 @@ def case_later(case: Case, i_robot: int, delay: float) -> Case:
     """The case with one robot that begins later by `delay` [s]."""
     robots = list(case.robots)
     timing = robots[i_robot].timing
-    robots[i_robot] = replace(
-        robots[i_robot], timing=replace(timing, start=timing.start + delay)
-    )
+    robots[i_robot] = replace(robots[i_robot], timing=replace(timing, start=timing.start + delay))
     return replace(case, robots=tuple(robots))
 
 
@@ -66,7 +65,9 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
     speed = greatest_speed(case, i_robot)
     wanted, delay, at_least = Wanted(margin, 0.0, np.zeros(0)), 0.0, 0.0
     record: Record | None = None
-    for n_measured in range(1, MOST_DELAYS + 1):
+    n_measured = 0
+    while n_measured < MOST_DELAYS:
+        n_measured += 1
         state = measured(case_later(case, i_robot, delay), np.zeros(0), wanted, 0.0)
         if state.worst <= 0.0:
             record = proven(state.case, margin)
@@ -83,7 +84,7 @@ def least_delay(case: Case, i_robot: int, margin: float, most: float) -> Delayed
 def greatest_speed(case: Case, i_robot: int) -> float:
     """[m/s] No point of any body moves faster by the joints of a robot, on its table's lines or cubics.
 
-    On a cubic a velocity lies between the least and the greatest of the three Bernstein coefficients of its parabola.
+    On a cubic a velocity lies between the least and the greatest of the Bernstein coefficients of its parabola.
     """
     placed = case.robots[i_robot]
     asked = placed.asked
@@ -94,7 +95,9 @@ def greatest_speed(case: Case, i_robot: int) -> float:
         rates = [before, after, 3.0 * mean - before - after]
     fastest = np.abs(np.concatenate(rates)).max(axis=0) * placed.timing.rate
     columns = columns_of(case, i_robot)
-    bodies = [BodyIndex(i, k) for i, one in enumerate(case.robots) for k in range(len(one.robot.bodies))]
+    bodies = [
+        BodyIndex(i, k) for i, one in enumerate(case.robots) for k in range(len(one.robot.bodies))
+    ]
     bodies += [BodyIndex(-1, i) for i in range(len(case.obstacles))]
     return max(float(motion_radii(case, body)[columns] @ fastest) for body in bodies)
 
@@ -112,7 +115,9 @@ def _way(state: State, i_robot: int, margin: float) -> float:
 def _require_another(case: Case, i_robot: int) -> None:
     """Nothing, if a delay can change anything."""
     placed = case.robots[i_robot]
-    others = [one for i, one in enumerate(case.robots) if i != i_robot and one.trajectory is not None]
+    others = [
+        one for i, one in enumerate(case.robots) if i != i_robot and one.trajectory is not None
+    ]
     others_move = bool(others) or any(one.moves is not None for one in case.obstacles)
     if placed.trajectory is None or placed.trajectory.n_steps < 2 or not others_move:
         raise BadInput(

@@ -1,13 +1,14 @@
 """A change of path: smooth offsets of a robot's joints over its table, and the limits that they keep.
 
-A change is as large as the greatest offset of any joint at any sample, slides counted by `SLIDE`. Of those that are
-as large the least in sum is taken. Not for: by how much (`search`).
+A change is as large as the greatest offset of any joint at any sample, slides counted by `SLIDE`. Of those
+that are as large the least in sum is taken. Not for: by how much (`search`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -99,9 +100,7 @@ class JointOffsets:
         if velocities is not None:
             rates = self.basis.at(asked.times, 1)
             velocities = velocities + rates @ x.reshape(self.n_joints, -1).T
-        changed = replace(
-            asked, positions=asked.positions + self.offsets(x), velocities=velocities
-        )
+        changed = replace(asked, positions=asked.positions + self.offsets(x), velocities=velocities)
         robots = list(self.case.robots)
         robots[self.i_robot] = replace(self.placed, trajectory=changed)
         return replace(self.case, robots=tuple(robots))
@@ -140,7 +139,7 @@ class JointOffsets:
         found = linprog(cost, A_ub=a, b_ub=b, bounds=bounds, method="highs")
         return None if found.x is None else np.asarray(found.x[:size])
 
-    def _programme(self, rows: Rows, x: np.ndarray) -> tuple:  # type: ignore[type-arg]
+    def _programme(self, rows: Rows, x: np.ndarray) -> tuple[Any, np.ndarray, np.ndarray]:
         """A, b and cost of: x, its magnitudes, and the greatest offset."""
         from scipy.sparse import block_array, csr_array, eye_array, kron
 

@@ -1,6 +1,7 @@
 """The two programmes that a step of the search solves: the least point of linear rows, and the least violation.
 
-scipy's solvers are the adapters: `nnls` (Lawson & Hanson 1974), `linprog` (HiGHS). Not for: the rows (`shortfalls`).
+scipy's solvers are the adapters: `nnls` (Lawson & Hanson 1974), `linprog` (HiGHS). Not for: the
+rows (`shortfalls`).
 """
 
 from __future__ import annotations
@@ -41,9 +42,7 @@ def least_norm(rows: Rows, x: np.ndarray, box: Box) -> np.ndarray | None:
 
     size = len(x)
     bounded = [np.isfinite(box.low), np.isfinite(box.high)]
-    a = np.concatenate(
-        [rows.gradients, np.eye(size)[bounded[0]], -np.eye(size)[bounded[1]]]
-    )
+    a = np.concatenate([rows.gradients, np.eye(size)[bounded[0]], -np.eye(size)[bounded[1]]])
     b = np.concatenate(
         [rows.missing + rows.gradients @ x, box.low[bounded[0]], -box.high[bounded[1]]]
     )
@@ -90,7 +89,10 @@ def least_missing(
         from scipy.sparse import csr_array, hstack, vstack
 
         beside = hstack([kept.a, csr_array((len(kept.b), 1))])
-        above, most = vstack([csr_array(above), beside]), np.concatenate([most, kept.b - kept.a @ x])
+        above, most = (
+            vstack([csr_array(above), beside]),
+            np.concatenate([most, kept.b - kept.a @ x]),
+        )
     bounds = [*zip(box.low - x, box.high - x, strict=True), (0.0, None)]
     found = linprog(cost, A_ub=above, b_ub=most, bounds=bounds, method="highs")
     if found.x is None:

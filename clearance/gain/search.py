@@ -1,7 +1,7 @@
-"""The search for the least change: linear programmes about where it is, each step measured anew, proven at the end.
+"""The search for the least change: linear programmes, each step measured anew, proven at the end.
 
-A step is taken where the linear rows have a least solution within the trust region, else to where they are missed by
-least. What is measured decides: a step that makes it worse halves the region. Not for: what may be changed.
+A step is taken where the linear rows have a least solution within the trust region, else to where they are missed
+by least. What is measured decides: a step that makes it worse halves the region. Not for: what may be changed.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ SMALLER = 1e-5
 """[-] A change that is smaller by less than this share is no better."""
 
 LEAST_SHARE, GOOD_SHARE = 0.05, 0.5
-"""[-] Of what is foretold: a step that does less is not taken, after one that does more the next may go farther."""
+"""[-] Of what is foretold: with less a step is not taken, with more the next goes farther."""
 
 WIDER, NARROWER = 2.0, 0.4
 """[-] What the trust region is multiplied by then."""
@@ -154,7 +154,7 @@ class Search:
         return state
 
     def _aim(self, state: State, reach: np.ndarray) -> np.ndarray:
-        """Where the next step goes: the least change that keeps all rows, or misses them by as little as can be."""
+        """Where the next step goes: the least change that keeps all rows, or misses them by least."""
         rows = state.rows(self.change.gradient)
         box = self.change.box.about(state.x, reach)
         x = self.change.least(rows, state.x, box)

@@ -112,9 +112,8 @@ def base_shift(case: Case, name: str, box: Box = ANYWHERE) -> Shift:
 def _moved_obstacle(obstacle: Obstacle, x: np.ndarray) -> Obstacle:
     if obstacle.moves is None:
         return replace(obstacle, world_from_body=_moved(obstacle.world_from_body, x))
-    columns = obstacle.moves.columns.copy()
-    columns[:, :3] += x
-    return replace(obstacle, moves=replace(obstacle.moves, columns=columns))
+    table = obstacle.moves
+    return replace(obstacle, moves=replace(table, positions=table.positions + x))
 
 
 def _moved_base(placed: PlacedRobot, x: np.ndarray) -> PlacedRobot:

@@ -20,6 +20,7 @@ from clearance.simulate.record import Record
 from clearance.simulate.status import STATUSES, Status
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case, Limits
+from clearance.world.rules import Rule
 
 VIOLATED = STATUSES.index(Status.VIOLATED)
 
@@ -72,9 +73,7 @@ class State:
         """All that comes near, at the steps."""
         extra = float(self.wanted.extra.max(initial=0.0))
         return [
-            *approaches(
-                self.record.rules, self.margin + self.wanted.beyond + extra + self.beyond
-            )
+            *approaches(self.record.rules, self.margin + self.wanted.beyond + extra + self.beyond)
         ]
 
     @property
@@ -149,7 +148,7 @@ def _raised(limits: Limits, margin: float) -> Limits:
     return replace(limits, fail=fail, warn=max(limits.warn, fail), rules=rules)
 
 
-def _raised_rule(rule, margin: float, fail: float):  # type: ignore[no-untyped-def]
+def _raised_rule(rule: Rule, margin: float, fail: float) -> Rule:
     own = fail if rule.fail is None else rule.fail + margin
     warn = None if rule.warn is None else max(rule.warn, own)
     return replace(rule, fail=None if rule.fail is None else own, warn=warn)

@@ -1,8 +1,9 @@
 """What no change can reach: the least size below which no change of a kind brings all pairs far enough apart.
 
-A translation by t changes no distance by more than t; to part bodies that overlap and bring them d apart takes the
-depth and d. Joints that are off by w_k move no point of a body farther than the sum of w_k r_k, r_k the farthest that
-it gets from joint k in any pose (`kernels.motion.interval_motion_bound`). Not for: what can be reached (`search`).
+A translation by t changes no distance by more than t; to part bodies that overlap and bring them d apart takes
+the depth and d. Joints that are off by w_k move no point of a body farther than the sum of w_k r_k, r_k the
+farthest that it gets from joint k in any pose (`kernels.motion.interval_motion_bound`). Not for: what can be
+reached (`search`).
 """
 
 from __future__ import annotations

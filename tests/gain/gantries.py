@@ -34,7 +34,7 @@ def standing(name, shape, xyz):
 
 
 def slot(fail=0.04, off=0.03, shift=(0.0, 0.0, 0.0)):
-    """A bar through a slot of 0.2, off its middle: `0.05 - off` is left on the side of y, `0.05 + off` on the other."""
+    """A bar through a slot, off its middle: 0.05 less `off` is left on the side of y, more on the other."""
     bar = gantry(size=(0.4, 0.1, 0.1))
     wall = cl.box((0.5, 0.4, 2.0))
     walls = [
