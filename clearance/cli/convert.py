@@ -1,18 +1,30 @@
-"""`clearance convert`: a trajectory from one format to another."""
+"""`clearance convert`: a trajectory, a scene or poses from one format to another."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from clearance.cli import ExitCode
 from clearance.cli.options import OutputPath
+from clearance.errors import shown
+
+if TYPE_CHECKING:
+    from clearance.load.conversion import Conversion, Converted
+
+_KINDS = ("trajectory", "scene", "poses")
 
 
 @click.command()
 @click.argument("in_file", metavar="IN", type=click.Path(path_type=Path))
 @click.argument("out_file", metavar="OUT", type=OutputPath())
+@click.option(
+    "--kind",
+    type=click.Choice(_KINDS),
+    help="What IN holds.  [default: what its suffix and its first lines say]",
+)
 @click.option(
     "--which",
     metavar="N",
@@ -20,32 +32,94 @@ from clearance.cli.options import OutputPath
     help="Which trajectory of a file that holds several, from 1.",
 )
 @click.option("--topic", help="Which topic of a bag.")
-@click.option("--force", is_flag=True, help="Overwrite OUT where it is there.")
+@click.option(
+    "--package-dir",
+    "package_dirs",
+    metavar="DIR",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="Where package:// and model:// of a scene are looked for; may be given again.",
+)
+@click.option(
+    "--force", is_flag=True, help="Overwrite OUT, and meshes beside it, where they are there."
+)
 def convert(
-    in_file: Path, out_file: Path, which: int | None, topic: str | None, force: bool
+    in_file: Path,
+    out_file: Path,
+    kind: str | None,
+    which: int | None,
+    topic: str | None,
+    package_dirs: tuple[Path, ...],
+    force: bool,
 ) -> int:
-    """The trajectory IN as OUT: a CSV table, or a JointTrajectory message in YAML or JSON, by suffix.
+    """IN as OUT, by suffix: a trajectory as a CSV table or a JointTrajectory message in YAML or JSON; poses as a
+    CSV table or stamped poses in YAML or JSON; a scene as this package's YAML.
 
-    IN may be a bag, too. Every number comes back bit for bit; times of messages are whole
-    nanoseconds, and a note says where they were not. Exit code: 0, or 2 for bad input.
+    IN may be a bag, or a scene in SDF, MJCF or of MoveIt. Every number comes back bit for bit; times of
+    messages are whole nanoseconds, and a note says where they were not. What OUT cannot hold is told, a line
+    each; warnings stand in a scene, so that each check tells them. Meshes that are written out in a scene get
+    files beside OUT. Exit code: 0, or 2 for bad input.
     """
-    from clearance.cli.places import refuse_inputs, require_file_place
-    from clearance.errors import Unwritable, at, unwritable
-    from clearance.load.timed_files import load_trajectory
+    from clearance.load.conversion import Conversion, converted
+    from clearance.load.file_kind import FileKind, kind_of
+    from clearance.load.input_files import InputFiles
     from clearance.load.trajectory_request import Choice
-    from clearance.load.trajectory_writer import written
 
-    require_file_place(out_file)
-    refuse_inputs([out_file], [in_file])
-    if out_file.exists() and not force:
-        raise Unwritable("is there already", where=str(out_file), valid="--force overwrites it")
-    trajectory, notes = load_trajectory(in_file, Choice(which, topic=topic))
-    with at(in_file.name):
-        content, changes = written(trajectory, out_file.name)
-    with unwritable(out_file):
-        out_file.write_bytes(content)
-    for note in (*notes, *(f"{out_file.name}: {change}" for change in changes)):
-        click.echo(f"note: {note}")
-    n_joints = len(trajectory.joint_names)
-    click.echo(f"written {out_file}: {trajectory.n_steps} samples of {n_joints} joints")
+    _require_place(in_file, out_file)
+    _refuse_there([out_file], force)
+    asked = Conversion(
+        in_file, out_file, InputFiles(in_file.parent), Choice(which, topic=topic), package_dirs
+    )
+    found = kind_of(in_file, asked.files) if kind is None else FileKind(kind)
+    made = converted(asked, found)
+    _write(asked, made, force)
+    _print(out_file, made)
     return ExitCode.CLEAR
+
+
+def _require_place(in_file: Path, out_file: Path) -> None:
+    from clearance.cli.places import refuse_inputs, require_file_place
+    from clearance.errors import Unwritable
+
+    if not out_file.absolute().parent.is_dir():
+        raise Unwritable(
+            "cannot write here: there is no such folder", where=str(out_file), valid="make it first"
+        )
+    require_file_place(out_file, "OUT")
+    refuse_inputs([out_file], [in_file])
+
+
+def _refuse_there(files: list[Path], force: bool) -> None:
+    from clearance.errors import Unwritable
+
+    for file in files:
+        if file.is_dir():
+            raise Unwritable("is a folder", where=str(file), valid="another name for OUT")
+        if file.exists() and not force:
+            raise Unwritable("is there already", where=str(file), valid="--force overwrites it")
+
+
+def _write(asked: Conversion, made: Converted, force: bool) -> None:
+    """Writes all files or none."""
+    from clearance.cli.places import refuse_inputs
+    from clearance.report.folder import fill_folder
+
+    folder = asked.target.parent
+    files = [folder / name for name in made.files]
+    refuse_inputs(files, [asked.source, *(one.read_from for one in asked.files.sources)])
+    _refuse_there(files, force)
+
+    def fill(fresh: Path) -> None:
+        for name, content in made.files.items():
+            (fresh / name).write_bytes(content)
+
+    fill_folder(folder, fill, set(made.files))
+
+
+def _print(out_file: Path, made: Converted) -> None:
+    for warning in made.warnings:
+        click.echo(f"warning: {shown(warning)}", err=True)
+    for note in made.notes:
+        click.echo(f"note: {shown(note)}")
+    beside = [str(out_file.parent / name) for name in made.files if name != out_file.name]
+    click.echo(f"written {out_file}: {made.told}" + (f"; {', '.join(beside)}" if beside else ""))

@@ -70,7 +70,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     "--states",
     type=_Names(),
     metavar="A,B,…",
-    help="Without a trajectory: states of the SRDF, between which the joints go straight.",
+    help="Without a trajectory: states of the SRDF, or keyframes of MJCF, between which the joints go straight.",
 )
 @click.option("--scene", metavar="FILE", help="YAML, SDF, or a scene of MoveIt.")
 @click.option("--srdf", metavar="FILE", help="Asks for self-clearance, and excuses pairs of it.")
@@ -78,7 +78,7 @@ def _with_xacro(command: Callable[..., int]) -> Callable[..., int]:
     "--rest",
     multiple=True,
     metavar="STATE",
-    help="Of the SRDF, for joints that nothing moves; may be given again.",
+    help="Of the SRDF or MJCF, for joints that nothing moves; may be given again.",
 )
 @click.option("--joint-limits", metavar="FILE", help="joint_limits.yaml of MoveIt.")
 @click.option("--controllers", metavar="FILE", help="ros2_controllers.yaml.")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from clearance.errors import at
 from clearance.load import schema
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
-from clearance.load.scene_formats import read_scene
+from clearance.load.scene_formats import read_scene, with_own_words
 from clearance.load.scene_request import SceneContent, SceneRequest
 from clearance.load.schema_errors import validated
 from clearance.load.yaml_file import parse_yaml
@@ -49,7 +49,9 @@ def read_schema(
     if isinstance(raw, dict) and isinstance(raw.get("scene"), str):
         scene_at = _scene_of(raw, path, files)
         raw = {**raw, "scene": scene_at.content.scene}
-    return validated(model, raw, path.name), scene_at
+        return validated(model, raw, path.name), scene_at
+    case = validated(model, raw, path.name)
+    return case, replace(scene_at, content=with_own_words(scene_at.content, case.scene))
 
 
 def _scene_of(raw: dict[str, object], path: Path, files: InputFiles) -> ScenePlace:

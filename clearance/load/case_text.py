@@ -20,7 +20,7 @@ class CaseText:
     Attributes:
         name: of the case. made_from: the files, as they are shown.
         robot: its keys and values, in order. link: its first with a shape, for examples.
-        resting: what stands under `joints`. states: of the SRDF, one of which could stand there.
+        resting: what stands under `joints`. states: of which one could stand there.
         scene: a file, or nothing. trajectory: a file; `motion` says where it comes from, `motion_notes` how it was
             read.
         carry: parts that links carry, as a case has them. allow: pairs that are not measured.
@@ -87,7 +87,7 @@ def _resting(case: CaseText) -> Iterator[str]:
         return
     yield "joints:  # those that the trajectory does not move"
     if case.states:
-        yield f"  # state: {flow(case.states[0])}  # where a state of the SRDF says; it has {flow(case.states)}"
+        yield f"  # state: {flow(case.states[0])}  # where a state says; there are {flow(case.states)}"
     for name, value in case.resting.items():
         yield f"  {flow(name)}: {flow(value)}{_remark(case, name)}"
 

@@ -46,6 +46,10 @@ _ADVICE = {
         "a MoveIt planning scene",
         "name it in a case file: scene: {name}, beside robot and trajectory",
     ),
+    "case": (
+        "a case file",
+        "`clearance check {name}` checks it; what is asked for is one of the files that it names",
+    ),
     "mesh": (
         "a mesh",
         "name it in a case file: scene: {{obstacles: [{{name: …, mesh: {{file: {name}, scale: 1}}}}]}}",
@@ -55,6 +59,7 @@ _ADVICE = {
 """What a file is, and what to do; `clearance schema` and the README show a whole case file."""
 
 _LEFT = {
+    "case": ("a case file",),
     "urdf": ("a URDF file",),
     "planning scene": ("a scene",),
     "xacro": ("a URDF file",),
@@ -65,7 +70,9 @@ _LEFT = {
 _MESSAGES = {".yaml", ".yml", ".json"}
 """What is read as a trajectory of messages."""
 
-_MESHES = {".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf", ".step", ".stp"}
+_MESHES = {
+    *(".stl", ".obj", ".dae", ".ply", ".off", ".glb", ".gltf", ".step", ".stp", ".bt", ".ot"),
+}
 
 _ROOT = re.compile(rb"\s*<(?:\w+:)?([A-Za-z_][\w.-]*)[\s/>]")
 
@@ -77,13 +84,13 @@ def refuse_foreign(data: bytes, shown: str, wanted: str) -> None:
     """Nothing, if the file is not known to be something else than what is wanted.
 
     Args:
-        wanted: "a case file", "a scene", "a trajectory", "a table of poses" or "a URDF file".
+        wanted: "a case file", "a scene", "a trajectory", "a table of poses", "a URDF file", or what else there is.
 
     Raises:
         BadSyntax: what it is, and what to do with it.
     """
     name = PurePath(shown).name
-    kind = _kind(data, name)
+    kind = known_kind(data, shown)
     if kind is None or wanted in _LEFT.get(kind, ()):
         return
     if (kind, wanted) == ("joint trajectory", "a trajectory") and _suffix(name) in _MESSAGES:
@@ -102,8 +109,9 @@ def _suffix(name: str) -> str:
     return PurePath(name).suffix.lower()
 
 
-def _kind(data: bytes, name: str) -> str | None:
-    suffix = _suffix(name)
+def known_kind(data: bytes, shown: str) -> str | None:
+    """What a file is, one of the keys of `_ADVICE`, if its name or its first lines say so."""
+    suffix = _suffix(shown)
     if suffix in _MESHES:
         return "mesh"
     start = data[:65536].removeprefix(b"\xef\xbb\xbf").lstrip()
@@ -118,7 +126,15 @@ def _kind(data: bytes, name: str) -> str | None:
         return "joint trajectory"
     if b"collision_objects" in keys:
         return "planning scene"
-    return None
+    return "case" if _is_case(start) else None
+
+
+def _is_case(start: bytes) -> bool:
+    """True for keys that only a case file has beside each other, in the first column."""
+    keys = set(re.findall(rb"^\"?([a-z]+)\"?:", start.removeprefix(b"{"), re.MULTILINE))
+    return not keys.isdisjoint((b"robot", b"robots")) and not keys.isdisjoint(
+        (b"scene", b"trajectory", b"limits")
+    )
 
 
 def _xml_kind(start: bytes) -> str | None:

@@ -102,6 +102,10 @@ class InputFiles:
         made.__dict__["_brought"] = self._brought
         return made
 
+    def add_sources(self, others: InputFiles) -> None:
+        """Takes over the checksums of files that were read through others."""
+        self._sources |= others._sources
+
     def _note(self, path: Path, digest: str, n_bytes: int) -> None:
         from clearance.world.case import Source
 

@@ -15,7 +15,7 @@ from clearance.load.strict_model import StrictModel
 from clearance.world.notice import KINDS
 
 _NAMES_OF_STATES = {
-    "description": "a state of the SRDF, or several",
+    "description": "a state of the SRDF, or of the MJCF without one; or several",
     "anyOf": [
         {"type": "number"},
         {"type": "string", "minLength": 1},

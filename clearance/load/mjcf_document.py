@@ -29,7 +29,7 @@ MOST_ELEMENTS = 500_000
 MOST_MADE = 20_000
 """Files are text; a file may include others, and `<replicate>` may make so many copies of elements."""
 
-_NEEDED = ("compiler", "default", "asset", "worldbody", "contact", "equality")
+_NEEDED = ("compiler", "default", "asset", "worldbody", "contact", "equality", "keyframe")
 """Sections of the root that say what there is and where; the others say how it is driven, seen and simulated."""
 
 _IDLE = ("site", "camera", "light", "plugin", "texture", "skin", "layer")
@@ -200,6 +200,11 @@ def _reduce(document: MjcfDocument) -> None:
     for element in list(_loops(root)):
         document.left_out[element.tag] = document.left_out.get(element.tag, 0) + 1
         element.getparent().remove(element)
+    for key in root.iterfind(
+        "keyframe/key"
+    ):  # the rest is of motors and tendons, which are taken out
+        for name in set(key.attrib) - {"name", "qpos"}:
+            del key.attrib[name]
     for mesh in root.iterfind("asset/mesh"):
         _name(mesh)
 

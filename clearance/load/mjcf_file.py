@@ -21,7 +21,15 @@ import numpy as np
 from clearance.errors import BadSyntax
 from clearance.extras import importing
 from clearance.geometry.pose import inverse, pose_from_quaternion
-from clearance.load.mjcf_model import Follows, MjcfBody, MjcfGeom, MjcfJoint, MjcfMesh, MjcfModel
+from clearance.load.mjcf_model import (
+    Follows,
+    MjcfBody,
+    MjcfGeom,
+    MjcfJoint,
+    MjcfKey,
+    MjcfMesh,
+    MjcfModel,
+)
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -166,6 +174,10 @@ class _Plain:
             tuple(
                 (self.bodies[pair >> 16], self.bodies[pair & 0xFFFF])
                 for pair in compiled.exclude_signature.tolist()
+            ),
+            tuple(
+                MjcfKey(compiled.key(i).name or f"key{i}", compiled.key_qpos[i].copy())
+                for i in range(compiled.nkey)
             ),
         )
 

@@ -86,6 +86,13 @@ class Follows(NamedTuple):
     active: bool
 
 
+class MjcfKey(NamedTuple):
+    """A keyframe; `positions`: (n,) of all joints in their order, 7 of a free one, 4 of a ball, 1 of others."""
+
+    name: str
+    positions: np.ndarray
+
+
 @dataclass(frozen=True, eq=False)
 class MjcfModel:
     """A compiled model; bodies with parents before children, the world first.
@@ -100,3 +107,4 @@ class MjcfModel:
     geoms: tuple[MjcfGeom, ...]
     follows: tuple[Follows, ...]
     excludes: tuple[tuple[str, str], ...]
+    keys: tuple[MjcfKey, ...]

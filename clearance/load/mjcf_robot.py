@@ -16,6 +16,7 @@ from clearance.load.mjcf_document import MjcfDocument, mjcf_document
 from clearance.load.mjcf_followers import with_followers
 from clearance.load.mjcf_model import MjcfGeom, MjcfModel
 from clearance.load.mjcf_shapes import MjcfShapes, compiled
+from clearance.load.mjcf_states import states_of
 from clearance.load.mjcf_tree import joints_of
 from clearance.load.robot_request import Geometry, RobotRequest
 from clearance.load.robot_tree import links_from_root
@@ -59,6 +60,8 @@ def read_mjcf(request: RobotRequest, meshes: MeshStore) -> Robot:
         tuple(bodies),
         (*shapes.notes(), *(f"{file}: {note}" for note in told)),
         (*notices, *_notices(document, model), *unseen(kinds, request.geometry)),
+        model.excludes,
+        states_of(model),
     )
 
 
@@ -140,8 +143,11 @@ def _notes(
         if geom.shown
         else "are hidden and collide with nothing"
         for geom in model.geoms
+        if geom.kind != "plane"
     )
-    notes.append("geoms: " + ", ".join(f"{n} {what}" for what, n in sorted(counted.items())))
+    if counted:
+        told = ", ".join(f"{n} {what}" for what, n in sorted(counted.items()))
+        notes.append(f"geoms: {told}")
     moving = [repr(body.name) for body in model.bodies if body.is_mocap]
     if moving:
         notes.append(f"mocap bodies stay where the file has them: {listed(moving, 6)}")
@@ -156,7 +162,7 @@ def _notes(
     if model.excludes:
         pairs = [f"{a} - {b}" for a, b in model.excludes]
         notes.append(
-            f"{len(pairs)} pairs that the model excludes from contact are measured by self_clearance unless srdf "
-            f"excuses them: {listed(pairs, 6)}"
+            f"pairs that the model excludes from contact are not measured by self_clearance, unless srdf is "
+            f"given, which then says which are: {listed(pairs, 6)}"
         )
     return [*notes, *notes_on_bare(kinds)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from typing import Any
 
 import numpy as np
@@ -77,9 +78,14 @@ def _mesh(name: str, shapes: MjcfShapes, asked: SceneRequest) -> dict[str, Any]:
         file = os.path.relpath(path, asked.path.parent)
         return {"file": file, "scale": mesh.scale.tolist(), "collada_up_axis": "ros"}
     vertices, triangles = triangles_of(shapes.mesh(name)[0])
-    file = f"{asked.path.name}.{name}.off"
+    file = f"{asked.path.name}.{_as_file_name(name)}.off"
     asked.files.hold(asked.path.parent / file, off_text(vertices.tolist(), triangles.tolist()))
     return {"file": file}
+
+
+def _as_file_name(name: str) -> str:
+    """The name with codes for what a file's name cannot hold; two names stay two."""
+    return re.sub(r"[^\w.-]", lambda found: f"%{ord(found[0]):02x}", name)
 
 
 def _notes(model: MjcfModel, kept: list[MjcfGeom]) -> list[str]:

@@ -1,15 +1,13 @@
-"""A motion between named states of an SRDF, for who has no trajectory yet. Not for: planning one."""
+"""A motion between named states, for who has no trajectory yet. Not for: planning one."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
 from clearance.errors import BadInput
-from clearance.load.input_files import InputFiles
-from clearance.load.srdf_states import positions_in_states
+from clearance.load.srdf_states import NamedStates, positions_in_states
 from clearance.world.robot import Robot
 from clearance.world.trajectory import Trajectory
 
@@ -17,9 +15,7 @@ PERIOD = 2.0
 """[s] From one state to the next."""
 
 
-def motion_between(
-    path: Path, states: Sequence[str], robot: Robot, files: InputFiles
-) -> Trajectory:
+def motion_between(known: NamedStates, states: Sequence[str], robot: Robot) -> Trajectory:
     """The robot in each state in turn, joints moving linearly; one that a state leaves alone stays where it was.
 
     Raises:
@@ -29,7 +25,7 @@ def motion_between(
         raise BadInput(
             f"{len(states)} state is given", valid="two or more, for a motion between them"
         )
-    found = [positions_in_states(path, [state], robot, files).positions for state in states]
+    found = [positions_in_states(known, [state], robot).positions for state in states]
     names = [joint.name for joint in robot.moving_joints if any(joint.name in one for one in found)]
     rows = np.array([[_held(name, i, found) for name in names] for i in range(len(found))])
     return Trajectory(PERIOD * np.arange(len(states)), tuple(names), rows)

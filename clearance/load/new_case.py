@@ -21,7 +21,7 @@ from clearance.load.named_motion import PERIOD, motion_between
 from clearance.load.new_robot import Given, NewRobot, new_robot
 from clearance.load.new_scene import NewScene, new_scene
 from clearance.load.notes import counted
-from clearance.load.srdf_states import names_of, read_states
+from clearance.load.srdf_states import NamedStates, names_of, states_known
 from clearance.load.trajectory_writer import written
 from clearance.world.case import Case, Source
 from clearance.world.names import checked_name
@@ -119,11 +119,11 @@ def _motion(given: Given, robot: NewRobot, files: InputFiles) -> tuple[Trajector
             "or --srdf FILE and --states home,ready",
         )
     with at("states"):
-        if given.srdf is None:
+        known = _states(given, robot, files)
+        if given.srdf is None and not known.states:
             raise MissingKey(f"state {given.states[0]!r} is in no file", valid="--srdf FILE")
-        path = resolved(given.srdf, Path())
-        trajectory = motion_between(path, given.states, robot.placed.robot, files)
-    return trajectory, f"{files.shown(path)}, states {', '.join(given.states)}"
+        trajectory = motion_between(known, given.states, robot.placed.robot)
+    return trajectory, f"{known.shown}, states {', '.join(given.states)}"
 
 
 def _told(trajectory: Trajectory) -> str:
@@ -151,7 +151,7 @@ def _text(
     """What the case file says."""
     named = (given.keys["urdf"], (given.trajectory or {}).get("file"), given.scene, given.srdf)
     resting = robot.resting(motion.trajectory)
-    states = [] if given.srdf is None or given.rest or not resting else _states(given.srdf, files)
+    states = [] if given.rest or not resting else names_of(_states(given, robot, files).states)
     return CaseText(
         name=checked_name(folder.name) or "case",
         made_from=[files.shown(resolved(one, Path())) for one in named if one is not None],
@@ -170,9 +170,11 @@ def _text(
     )
 
 
-def _states(srdf: str, files: InputFiles) -> list[str]:
-    """The names of the SRDF's states, for the user to choose from."""
-    return names_of(read_states(resolved(srdf, Path()), files))
+def _states(given: Given, robot: NewRobot, files: InputFiles) -> NamedStates:
+    """The states of the SRDF or of the robot's own file."""
+    srdf = None if given.srdf is None else resolved(given.srdf, Path())
+    placed = robot.placed
+    return states_known(srdf, placed.robot, Path(placed.urdf_path), files)
 
 
 def _read_back(contents: Mapping[str, bytes], folder: Path) -> Case:

@@ -44,8 +44,8 @@ class Given:
 
     Attributes:
         keys: of a robot in a case file, but for its trajectory and joints.
-        trajectory: keys of a trajectory. states: of the SRDF, to move between where there is none.
-        rest: states of the SRDF for the joints that the motion leaves alone. scene: a file.
+        trajectory: keys of a trajectory. states: to move between where there is none.
+        rest: states for the joints that the motion leaves alone. scene: a file.
     """
 
     keys: Mapping[str, Any]

@@ -1,18 +1,17 @@
 """The scene of a new case: our YAML of what a scene file holds, or that file where our YAML would say less.
 
-Not for: reading it (`scene_formats`).
+Not for: reading it (`scene_formats`), nor the text of it (`scene_writer`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from clearance.errors import shown
 from clearance.load.held_parts import with_held_parts
-from clearance.load.input_files import PYBULLET_DATA, resolved
+from clearance.load.input_files import resolved
 from clearance.load.mesh_store import MeshStore
 from clearance.load.notes import counted
 from clearance.load.obstacle_schema import Scene
@@ -20,9 +19,9 @@ from clearance.load.scene_file import make_obstacles
 from clearance.load.scene_formats import read_scene
 from clearance.load.scene_request import SceneContent, SceneRequest
 from clearance.load.scene_rows import with_scene_rows
+from clearance.load.scene_writer import written_scene
 from clearance.load.schema_errors import validated
 from clearance.load.written_paths import path_from
-from clearance.load.yaml_text import flow
 from clearance.world.carry import Carry
 from clearance.world.case import Case, PlacedRobot
 
@@ -74,11 +73,11 @@ def new_scene(
     if content.notices or case.notices:
         told = (f"{taken}; it stays the file that it is, since it brings a warning",)
         return NewScene(path_from(folder, given), "as it is, since it brings a warning", taken=told)
-    contents = dict(_contents(rows, content, asked, folder))
+    made = written_scene(content, asked, folder, "clearance new")
     return NewScene(
         SCENE,
         f"from {asked.shown}",
-        contents,
+        {SCENE: made.content, **made.meshes},
         [_carried(carry) for carry in case.carries],
         [row.between for row in case.allow],
         case.robots[0].padding,
@@ -102,48 +101,3 @@ def _carried(carry: Carry) -> dict[str, Any]:
     """A part that is carried all the time, as a case file has it."""
     touch = {"touch": list(carry.touch)} if carry.touch else {}
     return {"part": carry.part, "by": carry.by, "from": carry.window.start, **touch}
-
-
-def _contents(
-    rows: Sequence[Mapping[str, Any]], content: SceneContent, asked: SceneRequest, folder: Path
-) -> Iterator[tuple[str, bytes]]:
-    """The scene's file, and the meshes that are written out in it."""
-    paths = _Paths(asked, folder)
-    lines = [
-        f"# Made by `clearance new` from {shown(asked.shown)}; yours to edit. Metres and radians."
-    ]
-    lines += [f"# {shown(note)}" for note in content.notes]
-    lines.append("obstacles:" if rows else "obstacles: []")
-    lines += [f"- {flow(_moved(row, paths))}" for row in rows]
-    yield SCENE, "\n".join([*lines, ""]).encode()
-    yield from paths.held.items()
-
-
-class _Paths:
-    """Turns paths as seen from the scene's file into those from a folder; meshes not on disk get a file there."""
-
-    def __init__(self, asked: SceneRequest, folder: Path) -> None:
-        self._asked, self._folder = asked, folder
-        self.held: dict[str, bytes] = {}
-
-    def written(self, given: str) -> str:
-        """How a path is written in the folder."""
-        if given.startswith(PYBULLET_DATA):
-            return given
-        path, files = self._asked.path.parent / given, self._asked.files
-        if not files.is_held(path):
-            return path_from(self._folder, path)
-        self.held[path.name] = files.read(path)
-        return path.name
-
-
-def _moved(row: Mapping[str, Any], paths: _Paths) -> dict[str, Any]:
-    """An obstacle with paths as they are to be written."""
-    moved = dict(row)
-    for key in {"mesh", "points", "moves"} & set(row):
-        given = row[key]
-        if isinstance(given, str):
-            moved[key] = paths.written(given)
-        else:
-            moved[key] = {**given, "file": paths.written(given["file"])}
-    return moved

@@ -155,6 +155,12 @@ class Obstacle(_Shaped):
 
 
 class Scene(StrictModel):
-    """What stands around the robots, or moves there."""
+    """What stands around the robots, or moves there. `frame` is what poses are given in: it is taken for the
+    world, with a warning where it is a link that stands elsewhere. `warnings` are told by each check, a line each.
+    """
+
+    FILLED = frozenset({"frame"})
 
     obstacles: list[Obstacle]
+    frame: Name | None = None
+    warnings: list[Name] = []

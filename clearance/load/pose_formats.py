@@ -11,9 +11,9 @@ from pathlib import PurePath
 from clearance.errors import at
 from clearance.load.pose_messages import read_json_poses, read_yaml_poses
 from clearance.load.pose_table_file import read_csv_poses
-from clearance.load.pose_table_request import PoseRequest, ReadPoses
+from clearance.load.pose_table_request import PoseRequest, ReadPoses, ReadSamples
 
-READERS: dict[str, Callable[[PoseRequest], ReadPoses]] = {
+READERS: dict[str, Callable[[PoseRequest], ReadSamples]] = {
     ".csv": read_csv_poses,
     ".json": read_json_poses,
     ".yaml": read_yaml_poses,
@@ -22,8 +22,8 @@ READERS: dict[str, Callable[[PoseRequest], ReadPoses]] = {
 """By suffix in small letters; a file of another suffix is read as CSV."""
 
 
-def read_poses(request: PoseRequest, shown: str) -> ReadPoses:
-    """The samples in a file.
+def read_samples(request: PoseRequest, shown: str) -> ReadSamples:
+    """The samples in a file, as they stand there.
 
     Args:
         shown: the file's name, in errors.
@@ -33,3 +33,17 @@ def read_poses(request: PoseRequest, shown: str) -> ReadPoses:
     """
     with at(shown):
         return READERS.get(PurePath(shown).suffix.lower(), read_csv_poses)(request)
+
+
+def read_poses(request: PoseRequest, shown: str) -> ReadPoses:
+    """The table of the samples in a file.
+
+    Args:
+        shown: the file's name, in errors.
+
+    Raises:
+        BadInput: as the reader says, with the place in the file.
+    """
+    samples, notes = read_samples(request, shown)
+    with at(shown):
+        return ReadPoses(samples.table(), notes)

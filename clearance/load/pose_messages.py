@@ -21,8 +21,7 @@ from clearance.load.message_documents import (
 )
 from clearance.load.message_times import NANO, nanoseconds_in
 from clearance.load.moveit_values import items, message, numbers, text
-from clearance.load.pose_table_request import PoseRequest, ReadPoses
-from clearance.world.pose_table import PoseTable
+from clearance.load.pose_table_request import PoseRequest, PoseSamples, ReadSamples
 
 MOST = 1_000_000
 """Poses in a file."""
@@ -38,7 +37,7 @@ class _Stamped(NamedTuple):
     quaternion: list[float]
 
 
-def read_yaml_poses(request: PoseRequest) -> ReadPoses:
+def read_yaml_poses(request: PoseRequest) -> ReadSamples:
     """The poses in a YAML file.
 
     Raises:
@@ -47,7 +46,7 @@ def read_yaml_poses(request: PoseRequest) -> ReadPoses:
     return _read(request, yaml_documents)
 
 
-def read_json_poses(request: PoseRequest) -> ReadPoses:
+def read_json_poses(request: PoseRequest) -> ReadSamples:
     """The poses in a JSON file.
 
     Raises:
@@ -56,7 +55,7 @@ def read_json_poses(request: PoseRequest) -> ReadPoses:
     return _read(request, json_documents)
 
 
-def _read(request: PoseRequest, documents_in: Any) -> ReadPoses:
+def _read(request: PoseRequest, documents_in: Any) -> ReadSamples:
     request.refuse_units("messages are in metres")
     with request.opened() as file:
         documents = documents_in(file.read(MOST_JSON + 1))
@@ -70,7 +69,7 @@ def _read(request: PoseRequest, documents_in: Any) -> ReadPoses:
                 stamped.append(one)
     if not stamped:
         raise BadShape("there is no pose", valid=_NEEDED)
-    return _table_of(stamped)
+    return _samples_of(stamped)
 
 
 def _poses_in(given: Any) -> Iterator[_Stamped]:
@@ -135,7 +134,7 @@ def _refuse_standing(before: Sequence[_Stamped], one: _Stamped) -> None:
         raise BadTime("its stamp is not after that of the pose before", where="header.stamp")
 
 
-def _table_of(stamped: Sequence[_Stamped]) -> ReadPoses:
+def _samples_of(stamped: Sequence[_Stamped]) -> ReadSamples:
     first = stamped[0]
     times = np.array([(one.nanoseconds - first.nanoseconds) / NANO for one in stamped])
     positions = np.array([one.position for one in stamped])
@@ -145,8 +144,8 @@ def _table_of(stamped: Sequence[_Stamped]) -> ReadPoses:
         if first.frame
         else "in no frame"
     )
-    return ReadPoses(
-        PoseTable(times, positions, quaternions),
+    return ReadSamples(
+        PoseSamples(times, positions, quaternions, first.frame, first.child, first.nanoseconds),
         (f"{len(stamped)} stamped poses {where}; their times count from the first at 0 s",),
     )
 

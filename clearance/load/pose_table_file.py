@@ -23,7 +23,7 @@ from clearance.load.csv_table import (
     refuse_standing_time,
     require_time,
 )
-from clearance.load.pose_table_request import PoseRequest, ReadPoses
+from clearance.load.pose_table_request import PoseRequest, PoseSamples, ReadSamples
 from clearance.tolerance import LARGEST, ROTATION
 from clearance.world.pose_table import PoseTable
 
@@ -34,7 +34,7 @@ _SLIDES = dict.fromkeys(_POSITION, False)
 COLUMNS = (TIME, *_POSITION, *_QUATERNION)
 
 
-def read_csv_poses(request: PoseRequest) -> ReadPoses:
+def read_csv_poses(request: PoseRequest) -> ReadSamples:
     """The samples in a CSV file.
 
     Raises:
@@ -58,13 +58,13 @@ def read_csv_poses(request: PoseRequest) -> ReadPoses:
     _refuse_far(positions, table)
     _refuse_off_length_one(quaternions, table)
     notes = (*note_on_separators(table), *note_on_units(columns))
-    return ReadPoses(PoseTable(times[:, 0], positions, quaternions), notes)
+    return ReadSamples(PoseSamples(times[:, 0], positions, quaternions), notes)
 
 
 def parse_pose_table(data: bytes, shown: str) -> PoseTable:
     """The samples in the content of a CSV file, as `read_csv_poses` finds them in the file."""
     with at(shown):
-        return read_csv_poses(PoseRequest(lambda: io.BytesIO(data), len(data))).table
+        return read_csv_poses(PoseRequest(lambda: io.BytesIO(data), len(data))).samples.table()
 
 
 def _refuse_units(by_name: dict[str, Column]) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from clearance.errors import BadInput
 from clearance.load.csv_table import Opener
 from clearance.world.pose_table import PoseTable
@@ -31,6 +33,39 @@ class PoseRequest:
         """
         if self.length is not None:
             raise BadInput(f"'units' is given, and {why}", valid="leave 'units' out of moves")
+
+
+@dataclass(frozen=True, eq=False)
+class PoseSamples:
+    """What a file of poses says, number by number.
+
+    Attributes:
+        times: (n,) [s]. positions: (n, 3) [m]. quaternions: (n, 4) xyzw, before they are made of length one.
+        frame: what they are seen from, and child: what they are of, where messages say so.
+        stamp: [ns] of the first sample in a file of messages, whose times count from there.
+    """
+
+    times: np.ndarray
+    positions: np.ndarray
+    quaternions: np.ndarray
+    frame: str = ""
+    child: str = ""
+    stamp: int = 0
+
+    def table(self) -> PoseTable:
+        """What a body follows.
+
+        Raises:
+            BadTime, BadPose, NotFinite: samples that nothing can follow.
+        """
+        return PoseTable(self.times, self.positions, self.quaternions)
+
+
+class ReadSamples(NamedTuple):
+    """What a file says, and a line each on what was taken how."""
+
+    samples: PoseSamples
+    notes: tuple[str, ...] = ()
 
 
 class ReadPoses(NamedTuple):

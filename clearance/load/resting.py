@@ -1,4 +1,5 @@
-"""Where the joints rest that a trajectory does not move: by the values of a case file, then by states of an SRDF.
+"""Where the joints rest that a trajectory does not move: by the values of a case file, then by states of an SRDF
+or of the robot's own file.
 
 Not for: the states themselves (`srdf_states`).
 """
@@ -13,7 +14,7 @@ from clearance.load import schema
 from clearance.load.input_files import InputFiles, resolved
 from clearance.load.joints_schema import states_of
 from clearance.load.motion_names import check_not_given_twice
-from clearance.load.srdf_states import StatePositions, positions_in_states
+from clearance.load.srdf_states import StatePositions, positions_in_states, states_known
 from clearance.world.moving_joints import require_moving_joints
 from clearance.world.notice import listed
 from clearance.world.robot import Robot
@@ -28,7 +29,7 @@ def resting_positions(
         moved: the joints of the trajectory. folder: against which the SRDF's path is looked up.
 
     Raises:
-        BadInput: a joint that cannot be set, or is moved. MissingKey: a state without an SRDF.
+        BadInput: a joint that cannot be set, or is moved. MissingKey: a state that no file names.
     """
     given, field = entry.robot, f"{entry.field}.joints"
     by_value, names = given.joints, states_of(given.joints)
@@ -38,17 +39,16 @@ def resting_positions(
     if not names:
         return StatePositions(dict(by_value), ())
     with at(f"{field}.state"):
-        if given.srdf is None:
+        if given.srdf is None and not robot.states:
             raise MissingKey(
                 f"state {names[0]!r} is in no file", valid=f"{entry.field}.srdf: the file"
             )
-        path = resolved(given.srdf, folder)
-        found, notes = positions_in_states(path, names, robot, files)
+        srdf = None if given.srdf is None else resolved(given.srdf, folder)
+        known = states_known(srdf, robot, resolved(given.urdf, folder), files)
+        found, notes = positions_in_states(known, names, robot)
     taken = {name: found[name] for name in found if name not in by_value and name not in moved}
     others = [name for name in found if name not in taken]
-    return StatePositions(
-        {**by_value, **taken}, (*notes, _note(files.shown(path), names, taken, others))
-    )
+    return StatePositions({**by_value, **taken}, (*notes, _note(known.shown, names, taken, others)))
 
 
 def _note(shown: str, names: Sequence[str], taken: dict[str, float], others: Sequence[str]) -> str:

@@ -6,6 +6,7 @@ Not for: making solids of it (`scene_file`).
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from clearance.load.mjcf_scene import read_mjcf_scene
 from clearance.load.moveit_scene_file import read_moveit_scene
@@ -14,6 +15,7 @@ from clearance.load.scene_request import SceneContent, SceneRequest
 from clearance.load.scene_yaml import read_scene_yaml
 from clearance.load.schema_errors import validated
 from clearance.load.sdf_file import read_sdf
+from clearance.world.notice import Notice, Severity
 
 READERS: dict[str, Callable[[SceneRequest], SceneContent]] = {
     ".yaml": read_scene_yaml,
@@ -33,5 +35,12 @@ def read_scene(asked: SceneRequest) -> SceneContent:
         BadInput: as the reader says, with the place in the file.
     """
     content = READERS.get(asked.path.suffix.lower(), read_scene_yaml)(asked)
-    validated(Scene, content.scene, asked.shown)
-    return content
+    return with_own_words(content, validated(Scene, content.scene, asked.shown))
+
+
+def with_own_words(content: SceneContent, scene: Scene) -> SceneContent:
+    """The content with the frame and the warnings that stand in the scene itself."""
+    notices = tuple(Notice(Severity.WARNING, "scene", text) for text in scene.warnings)
+    return replace(
+        content, notices=(*content.notices, *notices), frame=scene.frame or content.frame
+    )

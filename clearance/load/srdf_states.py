@@ -1,4 +1,4 @@
-"""Named states of an SRDF, `<group_state>`, to positions of a robot's joints.
+"""Named states, of an SRDF (`<group_state>`) or of the robot's own file, to positions of its joints.
 
 Not for: which links may touch (`srdf`).
 """
@@ -54,10 +54,34 @@ class StatePositions(NamedTuple):
     notes: tuple[str, ...]
 
 
-def positions_in_states(
-    path: Path, names: Sequence[str], robot: Robot, files: InputFiles
-) -> StatePositions:
-    """The positions that states of an SRDF file give to joints of the robot; those it cannot set are left out.
+class NamedStates(NamedTuple):
+    """The states that a file names, and how that file is shown."""
+
+    shown: str
+    states: list[GroupState]
+
+
+def states_known(
+    srdf: Path | None, robot: Robot, robot_file: Path, files: InputFiles
+) -> NamedStates:
+    """The states of an SRDF file; without one, those that the robot's own file names.
+
+    Raises:
+        BadInput: with the file and the element.
+    """
+    if srdf is None:
+        states = [
+            GroupState("", name, {joint: (value,) for joint, value in positions.items()})
+            for name, positions in robot.states.items()
+        ]
+        return NamedStates(files.shown(robot_file), states)
+    shown = files.shown(srdf)
+    with at(shown):
+        return NamedStates(shown, read_states(srdf, files))
+
+
+def positions_in_states(known: NamedStates, names: Sequence[str], robot: Robot) -> StatePositions:
+    """The positions that states give to joints of the robot; those it cannot set are left out.
 
     Args:
         names: of states, or group/state.
@@ -66,10 +90,9 @@ def positions_in_states(
         UnknownState: no such state, or of several groups. BadInput: two that give one joint another position, or
         one that speaks of no joint of the robot; with the file.
     """
-    shown = files.shown(path)
+    shown = known.shown
     with at(shown):
-        states = read_states(path, files)
-        asked = [_chosen(name, states) for name in names]
+        asked = [_chosen(name, known.states) for name in names]
         positions: dict[str, float] = {}
         for state in asked:
             _take(positions, state, robot)

@@ -13,9 +13,9 @@ from clearance.errors import BadInput, at
 from clearance.load.csv_table import Opener
 from clearance.load.foreign_files import refuse_foreign
 from clearance.load.input_files import InputFiles, resolved
-from clearance.load.pose_formats import read_poses
+from clearance.load.pose_formats import read_poses, read_samples
 from clearance.load.pose_schema import PoseFile, TrajectoryFile
-from clearance.load.pose_table_request import PoseRequest, ReadPoses
+from clearance.load.pose_table_request import PoseRequest, ReadPoses, ReadSamples
 from clearance.load.rosbag_file import files_of, is_bag, read_bag
 from clearance.load.trajectory_file import read_trajectory
 from clearance.load.trajectory_request import Choice, ReadTrajectory, TrajectoryRequest
@@ -63,8 +63,11 @@ def trajectory_of(
     return found
 
 
-def load_trajectory(path: Path, choice: Choice) -> ReadTrajectory:
+def load_trajectory(path: Path, choice: Choice, files: InputFiles | None = None) -> ReadTrajectory:
     """The trajectory in a file, whatever robot it is for.
+
+    Args:
+        files: what it is read through, if that is to be known afterwards.
 
     Raises:
         BadInput: with the place in the file.
@@ -73,10 +76,26 @@ def load_trajectory(path: Path, choice: Choice) -> ReadTrajectory:
     def read(opened: Opener, n_bytes: int, shown: str) -> ReadTrajectory:
         return read_trajectory(TrajectoryRequest(opened, n_bytes, choice=choice), shown)
 
-    files = InputFiles(path.parent)
+    files = files or InputFiles(path.parent)
     if is_bag(path):
         return _of_bag(path, files, choice, {})
     return _read(path, files, read, "a trajectory")
+
+
+def load_samples(path: Path, files: InputFiles) -> ReadSamples:
+    """The poses in a file, as they stand there, which something can follow.
+
+    Raises:
+        BadInput: with the place in the file.
+    """
+
+    def read(opened: Opener, n_bytes: int, shown: str) -> ReadSamples:
+        found = read_samples(PoseRequest(opened, n_bytes), shown)
+        with at(shown):
+            found.samples.table()
+        return found
+
+    return _read(path, files, read, "a table of poses")
 
 
 def _of_bag(

@@ -10,17 +10,17 @@ import csv
 import io
 import json
 from collections.abc import Callable
-from fractions import Fraction
 from pathlib import PurePath
 from typing import NamedTuple
 
 import numpy as np
 
-from clearance.errors import BadInput, BadTime, ClearanceError
+from clearance.errors import BadInput, ClearanceError
 from clearance.load.column_units import VELOCITY
 from clearance.load.csv_table import TIME
-from clearance.load.message_times import NANO, split_time
+from clearance.load.message_times import split_time, whole_times
 from clearance.load.trajectory_file import parse_trajectory
+from clearance.load.yaml_text import flow
 from clearance.world.trajectory import Trajectory
 
 
@@ -42,12 +42,10 @@ def written(trajectory: Trajectory, shown: str) -> WrittenTrajectory:
         raise BadInput(f"{shown!r} has no suffix to write", valid=f"one of {', '.join(WRITERS)}")
     to_text, in_nanoseconds = WRITERS[suffix]
     content = to_text(trajectory).encode()
-    n_rounded = _n_other_times(trajectory) if in_nanoseconds else 0
-    _refuse_other(trajectory, content, shown, n_rounded > 0)
-    rounded = (
-        f"{n_rounded} of {trajectory.n_steps} times are rounded to nanoseconds, as ROS keeps them"
-    )
-    return WrittenTrajectory(content, (rounded,) if n_rounded else ())
+    whole = whole_times(trajectory.times.tolist()) if in_nanoseconds else None
+    is_rounded = whole is not None and whole.n_rounded > 0
+    _refuse_other(trajectory, content, shown, is_rounded)
+    return WrittenTrajectory(content, (whole.note(),) if whole and is_rounded else ())
 
 
 def _csv(trajectory: Trajectory) -> str:
@@ -69,9 +67,9 @@ def _yaml(trajectory: Trajectory) -> str:
     names = ", ".join(json.dumps(name, ensure_ascii=False) for name in trajectory.joint_names)
     lines = [f"joint_names: [{names}]", "points:"]
     for i, (seconds, nanoseconds) in enumerate(map(split_time, trajectory.times.tolist())):
-        lines.append(f"- positions: {_yaml_numbers(trajectory.positions[i])}")
+        lines.append(f"- positions: {flow(trajectory.positions[i].tolist())}")
         if trajectory.velocities is not None:
-            lines.append(f"  velocities: {_yaml_numbers(trajectory.velocities[i])}")
+            lines.append(f"  velocities: {flow(trajectory.velocities[i].tolist())}")
         lines.append(f"  time_from_start: {{sec: {seconds}, nanosec: {nanoseconds}}}")
     return "\n".join([*lines, ""])
 
@@ -94,29 +92,6 @@ WRITERS: dict[str, tuple[Callable[[Trajectory], str], bool]] = {
     ".yml": (_yaml, True),
 }
 """By suffix: what writes it, and whether it keeps times in whole nanoseconds."""
-
-
-def _yaml_numbers(row: np.ndarray) -> str:
-    """As YAML 1.1 and 1.2 both know them: with a point before an exponent."""
-    words = [repr(value) for value in row.tolist()]
-    return f"[{', '.join(word if '.' in word else word.replace('e', '.0e') for word in words)}]"
-
-
-def _n_other_times(trajectory: Trajectory) -> int:
-    """How many times are not the nearest doubles of whole nanoseconds.
-
-    Raises:
-        BadTime: two of them are the same then.
-    """
-    times = trajectory.times.tolist()
-    wholes = [round(Fraction(time) * NANO) for time in times]
-    for before, after, time in zip(wholes, wholes[1:], times[1:], strict=False):
-        if before == after:
-            raise BadTime(
-                f"the sample at {time} s is less than a nanosecond after the one before",
-                valid="a CSV file keeps such times",
-            )
-    return sum(whole / NANO != time for whole, time in zip(wholes, times, strict=True))
 
 
 def _refuse_other(trajectory: Trajectory, content: bytes, shown: str, is_rounded: bool) -> None:

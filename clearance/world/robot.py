@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -63,6 +64,8 @@ class Robot:
         bodies: the links that have a shape (in the link frame), in the order of `link_names`.
         notes: what loading had to mend or leave out, one line each, for the report.
         notices: suspect input and warnings that only loading can find.
+        excluded: pairs of links that the robot's own file takes out of contact.
+        states: positions of joints [rad] or [m] that its own file names, by the state's name and the joint's.
     """
 
     name: str
@@ -71,6 +74,8 @@ class Robot:
     bodies: tuple[Body, ...]
     notes: tuple[str, ...] = ()
     notices: tuple[Notice, ...] = ()
+    excluded: tuple[tuple[str, str], ...] = ()
+    states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     @property
     def moving_joints(self) -> tuple[Joint, ...]:

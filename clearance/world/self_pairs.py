@@ -7,6 +7,7 @@ obstacle (`pairs`).
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from clearance.world.collision_matrix import ADJACENT, NEVER, CollisionMatrix
@@ -14,6 +15,12 @@ from clearance.world.robot import JointKind, Robot
 
 RIGID = "joined by fixed joints"
 """Why a pair that nothing moves is left out."""
+
+EXCLUDED = "excluded by the robot's own file"
+"""Why a pair is left out of which no SRDF speaks."""
+
+Reasons = Callable[[str, str], str | None]
+"""Why two links need not be measured, or None."""
 
 
 @dataclass(frozen=True)
@@ -31,13 +38,13 @@ def self_pairs(
     """All pairs of links with geometry in the robot's order.
 
     Args:
-        matrix: of an SRDF; without one, neighbours are excused as adjacent.
+        matrix: of an SRDF; without one, neighbours are excused as adjacent, and what the robot's file excludes.
         trust_never: excuse its pairs of reason Never too, which were not seen to meet in random poses.
     """
     rigid = rigid_bodies(robot)
-    adjacent = frozenset() if matrix else adjacent_bodies(robot)
+    reason = _own_reasons(robot, rigid) if matrix is None else _reasons_in(matrix, trust_never)
     return [
-        SelfPair(a, b, _excuse(a, b, rigid, adjacent, matrix, trust_never))
+        SelfPair(a, b, RIGID if rigid[a] == rigid[b] else reason(a, b))
         for a, b in itertools.combinations((body.name for body in robot.bodies), 2)
     ]
 
@@ -74,17 +81,21 @@ def adjacent_bodies(robot: Robot) -> frozenset[frozenset[int]]:
     return frozenset(found)
 
 
-def _excuse(
-    a: str,
-    b: str,
-    rigid: dict[str, int],
-    adjacent: frozenset[frozenset[int]],
-    matrix: CollisionMatrix | None,
-    trust_never: bool,
-) -> str | None:
-    if rigid[a] == rigid[b]:
-        return RIGID
-    if matrix is None:
-        return ADJACENT if frozenset((rigid[a], rigid[b])) in adjacent else None
-    reason = matrix.reason(a, b)
-    return None if reason == NEVER and not trust_never else reason
+def _own_reasons(robot: Robot, rigid: dict[str, int]) -> Reasons:
+    adjacent = adjacent_bodies(robot)
+    excluded = frozenset(map(frozenset, robot.excluded))
+
+    def reason(a: str, b: str) -> str | None:
+        if frozenset((rigid[a], rigid[b])) in adjacent:
+            return ADJACENT
+        return EXCLUDED if frozenset((a, b)) in excluded else None
+
+    return reason
+
+
+def _reasons_in(matrix: CollisionMatrix, trust_never: bool) -> Reasons:
+    def reason(a: str, b: str) -> str | None:
+        found = matrix.reason(a, b)
+        return None if found == NEVER and not trust_never else found
+
+    return reason

@@ -109,7 +109,10 @@ def test_one_of_several_is_chosen(tmp_path):
     [
         (["a.yaml", "b.csv"], "b.csv: is there already; --force overwrites it"),
         (["a.yaml", "a.yaml", "--force"], "would overwrite"),
-        (["a.yaml", "c.txt"], "'c.txt' has no suffix to write; one of .csv, .json, .yaml, .yml"),
+        (
+            ["a.yaml", "c.txt"],
+            "'c.txt' has no suffix to write for a trajectory; one of .csv, .json, .yaml, .yml",
+        ),
         (["no.yaml", "c.csv"], "there is no file 'no.yaml'"),
         (["a.yaml", "c.csv", "--which", "3"], "which is 3, the file holds 1"),
         (["a.yaml", "no/c.csv"], "cannot write here"),

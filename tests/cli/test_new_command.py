@@ -14,7 +14,7 @@ from clearance.cli import run
 from clearance.load.written_paths import path_from
 from clearance.load.yaml_file import parse_yaml
 from clearance.load.yaml_text import flow
-from tests.load.making import CUBE, PATH, cube_stl
+from tests.load.making import CASE, CUBE, PATH, cube_stl
 from tests.load.making_case import TWO_JOINTS
 from tests.load.making_messages import ROS2
 from tests.load.making_moveit import FIRST, MESSAGE
@@ -50,7 +50,7 @@ def cell(tmp_path, monkeypatch):
         "arm.urdf": ARM, "one.urdf": TWO_JOINTS, "arm.srdf": SRDF,
         "path.csv": PATH, "degrees.csv": DEGREES, "path.yaml": ROS2,
         "scene.yaml": SCENE, "door.csv": DOOR, "world.sdf": sdf(world(model(link(collision())))),
-        "planning.yaml": PLANNING, "held.yaml": MESSAGE, "cell.scene": FIRST,
+        "case.yaml": CASE, "planning.yaml": PLANNING, "held.yaml": MESSAGE, "cell.scene": FIRST,
     }  # fmt: skip
     (tmp_path / "cell").mkdir()
     for name, text in files.items():
@@ -190,7 +190,7 @@ def test_states_of_the_srdf_make_a_motion_and_rest(capsys):
     assert load_case("out/case.yaml").robots[0].fixed_positions == {"lift": 0.02}
     assert new(*words) == 0
     text = Path("out/case.yaml").read_text()
-    assert "# state: home  # where a state of the SRDF says; it has [home, out]" in text
+    assert "# state: home  # where a state says; there are [home, out]" in text
 
 
 def test_what_a_scene_says_is_held_is_carried_also_between_states():
@@ -270,6 +270,7 @@ USUAL = ("--trajectory", "cell/path.csv", "--scene", "cell/scene.yaml")
         ((*USUAL, "--package-dir", "no"), "robot.package_dirs: [0]: there is no folder 'no'"),
         ((*USUAL[:2], "--scene", "cell/no.sdf"), "scene: cell/no.sdf: there is no file 'cell/no.sdf'"),
         (("--trajectory", "cell/door.csv"), "unknown joint 'x'"),
+        ((*USUAL, "--robot", "cell/case.yaml"), "cell/case.yaml: this is a case file, not a URDF file; `"),
         ((*USUAL, "--robot", "cell/arm.srdf"), "this is a MoveIt SRDF, not a URDF file; name it in a case file"),
     ],
 )  # fmt: skip

@@ -79,6 +79,16 @@ def test_what_is_no_case_file_is_told_what_it_is(tmp_path, name, content, says):
             "t.yaml: this is a MoveIt scene, not a scene; call it .scene",
             {"t__yaml": SCENE},
         ),
+        (
+            changed("urdf: arm.urdf", "urdf: other.yaml"),
+            "robot.urdf: other.yaml: this is a case file, not a URDF file; `clearance check other.yaml`",
+            {"other__yaml": CASE},
+        ),
+        (
+            CASE.partition("scene:")[0] + "scene: other.yaml\ntrajectory: path.csv\n",
+            "other.yaml: this is a case file, not a scene; `clearance check other.yaml` checks it",
+            {"other__yaml": CASE},
+        ),
     ],
 )
 def test_so_is_what_a_case_names(tmp_path, case, says, files):

@@ -10,6 +10,7 @@ from clearance.load.mesh_store import MeshStore
 from clearance.load.robot_formats import read_robot
 from clearance.load.robot_request import RobotRequest
 from clearance.simulate.physics_model import write_physics_urdf
+from clearance.world.pairs import measured_pairs
 from clearance.world.robot import JointKind
 from tests.load.making_case import changed, load_small
 from tests.load.making_mjcf import BALL, load_mjcf, mjcf, tetrahedron_stl, write_mjcf
@@ -95,6 +96,7 @@ def test_a_model_that_is_only_seen_says_what_to_give(tmp_path):
 def test_geoms_of_the_world_stand_with_the_robot_and_planes_do_not(tmp_path):
     loaded = load_mjcf(tmp_path, mjcf(f'<geom type="plane" size="1 1 1" name="floor"/>{BALL}'))
     assert [body.name for body in loaded.bodies] == ["world"]
+    assert "toy.xml: geoms: 1 collide" in loaded.notes  # the plane is in the warning alone
     assert (
         "toy.xml: 1 geoms of the world itself stand with the robot, as its link 'world'"
         in loaded.notes
@@ -103,6 +105,8 @@ def test_geoms_of_the_world_stand_with_the_robot_and_planes_do_not(tmp_path):
         "planes are no part of a robot and not measured: 'floor'; name the file as scene to measure them"
     ]
 
+
+SRDF = ", srdf: toy.srdf"
 
 FOLLOWS = (
     f'<body name="a"><joint name="j" ref="10" type="slide"/>{BALL}<body name="b"><joint name="k" ref="0.5" '
@@ -128,12 +132,23 @@ def test_equalities_of_joints_are_followed_or_told(tmp_path, row, mimic, says):
     assert says in " ".join([*loaded.notes, *(notice.text for notice in loaded.notices)])
 
 
-def test_pairs_that_are_excluded_are_a_note(tmp_path):
-    text = mjcf(FOLLOWS, '<contact><exclude body1="a" body2="b"/></contact>')
-    assert (
-        "measured by self_clearance unless srdf excuses them: a - b"
-        in load_mjcf(tmp_path, text).notes[-1]
-    )
+def test_pairs_that_are_excluded_are_not_measured_and_told(tmp_path):
+    bodies = f'{FOLLOWS}<body name="c" pos="3 0 0"><joint name="m"/>{BALL}</body>'
+    excluded = mjcf(bodies, '<contact><exclude body1="c" body2="b"/></contact>')
+    said = "pairs that the model excludes from contact are not measured by self_clearance, unless srdf is given"
+    assert said in load_mjcf(tmp_path, excluded).notes[-1]
+    path = "time,j,k,m\n0,0,0,0\n1,0.1,0.1,0.1\n"
+    for text, keys, n_links in ((mjcf(bodies), "", 1), (excluded, "", 0), (excluded, SRDF, 3)):
+        asked = f"urdf: toy.xml, self_clearance: true{keys}"
+        case = load_small(
+            tmp_path, changed("urdf: arm.urdf", asked), trajectory=path, toy__xml=text,
+            toy__srdf='<robot name="toy"><group name="g"/></robot>',
+        )  # fmt: skip
+        pairs, left_out = measured_pairs(case)
+        assert sum(not pair.b.is_obstacle for pair in pairs) == n_links
+        why = {(one.link, one.obstacle): one.reason for one in left_out}
+        told = "excused: excluded by the robot's own file"
+        assert (why.get(("c", "b")) == told) == (n_links == 0)
 
 
 def test_meshes_are_read_from_their_files_with_all_their_faces(tmp_path):

@@ -180,6 +180,10 @@ def test_a_case_names_a_bag(tmp_path, capsys):
     assert any("joints that cannot be set are left out: x" in note for note in record.case.notes)
     assert {source.path for source in record.case.sources} >= {f"{bag.name}/metadata.yaml"}
     assert run(["convert", str(bag), str(tmp_path / "out.csv")]) == 0
+    inside = bag / "metadata.yaml"
+    before = inside.read_bytes()
+    assert run(["convert", str(bag), str(inside), "--force"]) == 2
+    assert "which this run reads" in capsys.readouterr().err and inside.read_bytes() == before
     write_case(tmp_path, changed("file: path.csv", f"file: {bag.name}, topic: /t"), urdf=TWO_JOINTS)
     capsys.readouterr()
     assert run(["check", str(case)]) == 2

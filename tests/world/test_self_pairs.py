@@ -1,6 +1,7 @@
 """Pairs of one robot's links: what is rigid, what is adjacent, and what a file excuses."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from clearance.geometry.shapes import box
 from clearance.world.body import Body
 from clearance.world.collision_matrix import ADJACENT, CollisionMatrix
 from clearance.world.robot import Joint, JointKind, Robot
-from clearance.world.self_pairs import RIGID, self_pairs
+from clearance.world.self_pairs import EXCLUDED, RIGID, self_pairs
 
 SHAPE = box((0.1, 0.1, 0.1))
 
@@ -62,3 +63,12 @@ def test_with_a_file_only_what_it_says_is_excused_and_never_is_not():
     matrix = CollisionMatrix(disabled=(("c", "a", "Never"), ("b", "c", "User")))
     assert excuses(robot, matrix) == {"ab": None, "ac": None, "bc": "User"}
     assert excuses(robot, matrix, trust_never=True) == {"ab": None, "ac": "Never", "bc": "User"}
+
+
+def test_what_the_robots_own_file_excludes_counts_where_no_srdf_speaks():
+    plain = tree("abcd", "abcd", ab="revolute", bc="revolute", cd="fixed")
+    robot = replace(plain, excluded=(("d", "a"), ("a", "b"), ("c", "d")))
+    assert excuses(robot) == {
+        "ab": ADJACENT, "ac": None, "ad": EXCLUDED, "bc": ADJACENT, "bd": ADJACENT, "cd": RIGID,
+    }  # fmt: skip
+    assert excuses(robot, CollisionMatrix())["ad"] is None

@@ -1,0 +1,158 @@
+"""`clearance convert` of poses: tables and stamped messages there and back, frames kept or told."""
+
+from __future__ import annotations
+
+import json
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from clearance import check
+from clearance.cli import run
+from clearance.load.pose_formats import read_samples
+from clearance.load.pose_table_request import PoseRequest, PoseSamples
+from clearance.load.pose_writer import SUFFIXES, written_poses
+from tests.examples import examples
+from tests.load.making_cell import load_cell
+from tests.load.test_pose_formats import STAMPED, pose
+
+TABLE = (
+    "time,x,y,z,qx,qy,qz,qw\n"
+    "0.0,4.0,0.1,0.30000000000000004,0.0,0.0,0.0,1.0\n"
+    "0.4,4.0,0.5,-0.0,0.18257418583505536,0.3651483716701107,0.5477225575051661,0.7302967433402214\n"
+    "1.0,4.0,1.0,1e-07,0.0,0.0,1.0,0.0\n"
+)
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def convert(*arguments: object) -> int:
+    return run(["convert", *map(str, arguments)])
+
+
+def samples_in(content: bytes, name: str) -> PoseSamples:
+    return read_samples(PoseRequest(lambda: BytesIO(content), len(content)), name).samples
+
+
+@pytest.mark.parametrize("between", ["door.yaml", "door.yml", "door.json"])
+def test_there_and_back_gives_the_same_bytes(tmp_path, capsys, between):
+    Path("a.csv").write_text(TABLE)
+    assert convert("a.csv", between) == 0
+    assert convert(between, "b.csv") == 0
+    assert Path("b.csv").read_text() == TABLE
+    assert "written b.csv: 3 poses" in capsys.readouterr().out
+    message = Path(between).read_bytes()
+    direct = check(load_cell(tmp_path, door=TABLE)).record
+    change = {between.replace(".", "__"): message}
+    back = check(load_cell(tmp_path, "moves: door.csv", f"moves: {between}", **change)).record
+    assert direct.clearances.tobytes() == back.clearances.tobytes()
+    assert direct.certificate.lower_bound.tobytes() == back.certificate.lower_bound.tobytes()
+    assert direct.steps.equals(back.steps)
+
+
+def test_frames_and_stamps_are_kept_between_messages_and_told_of_tables(capsys):
+    Path("a.yaml").write_text(STAMPED)
+    assert convert("a.yaml", "b.json") == 0
+    assert convert("b.json", "c.yaml") == 0
+    back = samples_in(Path("c.yaml").read_bytes(), "c.yaml")
+    assert (back.frame, back.child, back.stamp) == ("map", "", 1_700_000_000_100_000_000)
+    capsys.readouterr()
+    assert convert("c.yaml", "d.csv") == 0
+    told = capsys.readouterr().out
+    assert "in frame 'map', taken for what the poses are seen from" in told
+    assert "d.csv: the first was stamped 1700000000.100000000 s, which a table does not say" in told
+    assert convert("d.csv", "e.yaml") == 0
+    assert "e.yaml: frame_id is empty" in capsys.readouterr().out
+
+
+def test_transforms_stay_transforms(capsys):
+    where = {
+        "translation": {"x": 1.0, "y": 0, "z": 0},
+        "rotation": {"x": 0, "y": 0, "z": 0, "w": 1},
+    }
+    moved = [pose(0.0, t) | {"child_frame_id": "door", "transform": where} for t in (1, 2)]
+    Path("a.json").write_text(json.dumps({"transforms": moved}))
+    assert convert("a.json", "b.yaml") == 0
+    back = samples_in(Path("b.yaml").read_bytes(), "b.yaml")
+    assert (back.frame, back.child, back.times.tolist()) == ("map", "door", [0.0, 1.0])
+    assert convert("b.yaml", "c.csv") == 0
+    assert "the poses are of frame 'door', which a table does not say" in capsys.readouterr().out
+
+
+def test_times_that_messages_keep_otherwise_are_told(capsys):
+    rows = TABLE.replace("0.4,", "0.3333333333333333,").replace("\n0.0,", "\n0.25,")
+    Path("a.csv").write_text(rows)
+    assert convert("a.csv", "b.yaml") == 0
+    told = capsys.readouterr().out
+    assert "note: b.yaml: 1 of 3 times are rounded to nanoseconds" in told
+    assert "count from their first, here at 0.25 s: moves: {file: …, start: 0.25}" in told
+    assert convert("b.yaml", "c.csv") == 0
+    assert Path("c.csv").read_text().splitlines()[2].startswith("0.083333333,4.0")
+    Path("a.csv").write_text(TABLE.replace("0.4,", "1e-10,"))
+    assert convert("a.csv", "d.yaml") == 2
+    assert "less than a nanosecond after the one before" in capsys.readouterr().err
+    assert not Path("d.yaml").exists()
+
+
+def test_what_was_taken_how_is_told(capsys):
+    Path("a.csv").write_text("time [ms];x_mm;y;z;qx;qy;qz;qw\n0;4000;0;0;0;0;0,6;0,8\n")
+    assert convert("a.csv", "b.csv") == 0
+    assert (
+        "note: a.csv: read in millimetres: 'x'; in milliseconds: 'time'" in capsys.readouterr().out
+    )
+    assert Path("b.csv").read_text().splitlines()[1] == "0.0,4.0,0.0,0.0,0.0,0.0,0.6,0.8"
+
+
+NUMBERS = st.floats(-1e3, 1e3)
+TIMES = st.lists(st.integers(1, 10**13), max_size=4, unique=True)
+QUATERNIONS = st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda q: np.linalg.norm(q) > 0.1)
+
+
+@examples(60)
+@given(st.data(), TIMES, st.sampled_from(SUFFIXES), st.sampled_from(["", "map", "a: b", "~", "1"]))
+def test_any_poses_come_back_bit_for_bit(data, nanoseconds, suffix, child):
+    times = np.array([whole / 10**9 for whole in (0, *sorted(nanoseconds))])
+    positions = np.array([[data.draw(NUMBERS) for _ in "xyz"] for _ in times])
+    turned = np.array([data.draw(QUATERNIONS) for _ in times])
+    turned /= np.linalg.norm(turned, axis=1)[:, None]
+    stamp = 0 if suffix == ".csv" else 17_000_000_000
+    names = ("", "") if suffix == ".csv" else ("o'e", child)
+    samples = PoseSamples(times, positions, turned, *names, stamp)
+    content, notes = written_poses(samples, f"door{suffix}")
+    back = samples_in(content, f"door{suffix}")
+    assert not notes and (back.frame, back.child, back.stamp) == (*names, stamp)
+    for one, other in (
+        (back.times, times), (back.positions, positions), (back.quaternions, turned),
+    ):  # fmt: skip
+        assert one.tobytes() == other.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["a.yaml", "b.txt"], "has no suffix to write for poses; one of .csv, .json, .yaml, .yml"),
+        (["a.yaml", "b.csv", "--topic", "/a"], "a.yaml: --topic says nothing about poses"),
+        (["a.yaml", "a.yaml", "--force"], "would overwrite"),
+        (["a.yaml", "there.csv"], "there.csv: is there already"),
+        (["far.csv", "b.yaml"], "far.csv: line 4: a position is 1e+160 m away"),
+        (["off.yaml", "b.csv"], "off.yaml: the quaternion"),
+        (["a.yaml", "b.csv", "--kind", "trajectory"], "a.yaml: "),
+    ],
+)
+def test_a_mistake_is_one_line_and_leaves_nothing(capsys, words, says):
+    Path("a.yaml").write_text(STAMPED)
+    Path("off.yaml").write_text(STAMPED.replace("w: 1.0", "w: 0.5"))
+    Path("far.csv").write_text(TABLE.replace("1e-07", "1e160"))
+    Path("there.csv").write_text("mine")
+    before = sorted(Path().rglob("*"))
+    assert convert(*words) == 2
+    told = capsys.readouterr().err.strip()
+    assert says in told and told.count("\n") == 0
+    assert sorted(Path().rglob("*")) == before and Path("there.csv").read_text() == "mine"
