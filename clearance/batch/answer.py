@@ -15,6 +15,7 @@ import pyarrow.compute as pc
 
 from clearance.batch.rows import ERROR, VERDICT, error_row
 from clearance.batch.run import Outcome
+from clearance.batch.shared_waivers import stale_waivers
 from clearance.batch.store import Store
 
 FAULT = 70
@@ -22,7 +23,9 @@ FAULT = 70
 
 VIOLATED, BAD_INPUT = 1, 2
 
-STATUSES = ("clear", "near", "stale waiver", "violated", "contact", "suspect", ERROR)
+STALE = "stale waiver"
+
+STATUSES = ("clear", "near", STALE, "violated", "contact", "suspect", ERROR)
 """As a case's status can be, the better before the worse."""
 
 
@@ -35,10 +38,12 @@ class BatchAnswer:
             has no answer, its status is "error", its text says why, and most columns are null.
         findings: one row a finding, in order of the cases, the worst of a case first: `case`, then the columns of
             `rows.FINDING`.
+        stale: what is wrong with waivers that the cases share, one line each.
     """
 
     cases: pa.Table
     findings: pa.Table
+    stale: tuple[str, ...] = ()
 
     @property
     def counts(self) -> dict[str, int]:
@@ -48,8 +53,14 @@ class BatchAnswer:
 
     @property
     def exit_code(self) -> int:
-        """The greatest of all cases."""
-        return max(self.cases["exit_code"].to_pylist(), default=0)
+        """The greatest of all cases, and 1 for a waiver that should go."""
+        return max([*self.cases["exit_code"].to_pylist(), VIOLATED if self.stale else 0])
+
+    @property
+    def status(self) -> str:
+        """The worst of all cases; "stale waiver" where that is all that fails."""
+        worst = next(reversed(self.counts), "clear")
+        return STALE if self.stale and worst in ("clear", "near") else worst
 
     @property
     def bases(self) -> dict[str, int]:
@@ -93,7 +104,15 @@ def answer_of(outcome: Outcome, store: Store, *, strict: bool = False) -> BatchA
     table = table.take(pa.array([place[item.number] for item in items], type=pa.int64()))
     names = pa.array([item.name for item in items], type=pa.string())
     findings = _findings(table, names)
-    return BatchAnswer(table.drop_columns(["findings"]).add_column(0, "case", names), findings)
+    cases = table.drop_columns(["findings"]).add_column(0, "case", names)
+    return BatchAnswer(cases, findings, _stale(outcome, cases) if outcome.is_answered else ())
+
+
+def _stale(outcome: Outcome, cases: pa.Table) -> tuple[str, ...]:
+    if not outcome.waivers:
+        return ()
+    needed = {waiver for own in cases["waivers"].to_pylist() for waiver in own or ()}
+    return stale_waivers(outcome.items, outcome.waivers, needed, outcome.items[0].options.day)
 
 
 def _findings(table: pa.Table, names: pa.Array) -> pa.Table:

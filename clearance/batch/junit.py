@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from itertools import accumulate, takewhile
 from typing import Any
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 from clearance.batch.answer import FAULT, BatchAnswer
 from clearance.batch.rows import ERROR
@@ -23,7 +23,7 @@ MOST_TEXT = 2000
 
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
-_COLUMNS = ("case", "status", "exit_code", "text", "reasons", "clearance", "body_a", "body_b")
+_COLUMNS = ("case", "status", "exit_code", "text", "reasons", "waived")
 
 
 def junit_of(answer: BatchAnswer, name: str) -> bytes:
@@ -33,18 +33,19 @@ def junit_of(answer: BatchAnswer, name: str) -> bytes:
         name: of the suite.
     """
     rows = answer.cases.select(_COLUMNS).to_pylist()
-    failing = [_case(row) for row in rows if row["exit_code"]]
+    stale = [_stale(text) for text in answer.stale]
+    failing = [*stale, *(_case(row) for row in rows if row["exit_code"])]
     passing = [_case(row) for row in rows if not row["exit_code"]]
     if _length([*failing, *passing]) <= MOST_BYTES:
-        shown = [_case(row) for row in rows]
+        shown = [*stale, *map(_case, rows)]
     else:
         shown = list(_that_fit([*failing, *passing]))
     n_errors = sum(row["status"] == ERROR for row in rows)
-    n_failed = sum(bool(row["exit_code"]) for row in rows) - n_errors
+    n_failed = sum(bool(row["exit_code"]) for row in rows) - n_errors + len(stale)
     told = f'tests="{len(shown)}" failures="{n_failed}" errors="{n_errors}" skipped="0"'
     lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<testsuites {told}>"]
     lines.append(f"<testsuite name={_quoted(name)} {told}>")
-    left_out = f'<property name="left_out" value="{len(rows) - len(shown)}"/>'
+    left_out = f'<property name="left_out" value="{len(stale) + len(rows) - len(shown)}"/>'
     code = f'<property name="exit_code" value="{answer.exit_code}"/>'
     lines.append(f"<properties>{code}{left_out}</properties>")
     return "\n".join([*lines, *shown, "</testsuite>", "</testsuites>", ""]).encode()
@@ -63,7 +64,9 @@ def _that_fit(cases: list[str]) -> Iterator[str]:
 def _case(row: dict[str, Any]) -> str:
     begin = f'<testcase classname="batch" name={_quoted(row["case"])}'
     if not row["exit_code"]:
-        return f"{begin}/>"
+        waived = "; ".join(f"waived: {line}" for line in row["waived"] or ())[:MOST_TEXT]
+        told = f"<system-out>{escape(clean(waived))}</system-out>"
+        return f"{begin}>{told}</testcase>" if waived else f"{begin}/>"
     tag = "error" if row["status"] == ERROR else "failure"
     kind = {ERROR: "BadInput", "suspect": "SuspectInput"}.get(row["status"], "NotPassed")
     kind = "Fault" if row["exit_code"] == FAULT else kind
@@ -71,10 +74,19 @@ def _case(row: dict[str, Any]) -> str:
     return f'{begin}><{tag} type="{kind}" message={_quoted(text)}/></testcase>'
 
 
+def _stale(text: str) -> str:
+    """The case of a waiver that should go."""
+    name, failure = (
+        _quoted(text[:MOST_TEXT]),
+        f'<failure type="StaleWaiver" message={_quoted(text)}/>',
+    )
+    return f'<testcase classname="waiver" name={name}>{failure}</testcase>'
+
+
 def _quoted(text: str) -> str:
-    return quoteattr(_clean(text), {"\n": "&#10;", "\t": "&#9;", "\r": "&#13;"})
+    return quoteattr(clean(text), {"\n": "&#10;", "\t": "&#9;", "\r": "&#13;"})
 
 
-def _clean(text: str) -> str:
+def clean(text: str) -> str:
     """The text with characters that XML cannot hold as their escapes."""
     return _NO_XML.sub(lambda found: found[0].encode("unicode_escape").decode(), text)

@@ -18,6 +18,7 @@ from pathlib import PurePath
 from clearance.batch.item import Item
 from clearance.extras import is_installed
 from clearance.import_closure import PACKAGE, digest_of
+from clearance.world.case import LOOKUP
 
 FORMAT = 1
 """Of the rows; another one makes all keys new."""
@@ -63,11 +64,13 @@ def key_of(item: Item, files: Iterable[tuple[str, str]]) -> str:
     """The key of an item.
 
     Args:
-        files: path as shown and sha256 of each file that was read.
+        files: path as shown and sha256 of each file that was read; where a search led is no part of the key, since
+            the files that it led to are.
     """
     given, path = item.trajectory, PurePath(item.file)
     told: tuple[object, ...] = (path.parent.name, path.name)  # a case without a name takes theirs
     if given is not None:
         told = (item.name, given.reading, given.robot)
-    asked = (program(), told, item.options, sorted(set(files)))
+    read = sorted({one for one in files if not one[0].startswith(LOOKUP)})
+    asked = (program(), told, item.options, read)
     return hashlib.sha256(repr(asked).encode()).hexdigest()

@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
+from datetime import date
 from pathlib import Path
 
 from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.options import Options
 from clearance.errors import BadInput, MissingFile, nearest_name
 from clearance.report.folder import write_file
+from clearance.world.waiver import Waiver
 
 FILE_NAME = "batch.json"
 
@@ -27,7 +29,13 @@ def write_list(place: Path, items: Sequence[Item]) -> None:
     options = list(dict.fromkeys(item.options for item in items))
     number = {one: i for i, one in enumerate(options)}
     rows = [_told(item) | {"options": number[item.options]} for item in items]
-    content = {"options": [asdict(one) for one in options], "cases": rows}
+    waivers = list(dict.fromkeys(waiver for one in options for waiver in one.waivers))
+    index = {waiver: i for i, waiver in enumerate(waivers)}
+    content = {
+        "waivers": [_waiver_told(waiver) for waiver in waivers],
+        "options": [_options_told(one, index) for one in options],
+        "cases": rows,
+    }
     write_file(place / FILE_NAME, (json.dumps(content, indent=0) + "\n").encode())
 
 
@@ -40,13 +48,14 @@ def read_list(place: Path) -> list[Item]:
     path = place / FILE_NAME
     try:
         told = json.loads(path.read_text(encoding="utf-8"))
-        options = [Options(**one | {"accept": tuple(one["accept"])}) for one in told["options"]]
+        waivers = [_waiver(one) for one in told["waivers"]]
+        options = [_options(one, waivers) for one in told["options"]]
         return [_item(i, row, options) for i, row in enumerate(told["cases"])]
     except FileNotFoundError:
         raise MissingFile(
             "no batch was begun here", where=str(place), valid="`clearance batch … --out` first"
         ) from None
-    except (OSError, ValueError, KeyError, TypeError, IndexError):
+    except (OSError, ValueError, KeyError, TypeError, IndexError, BadInput):
         raise BadInput(
             "the list of cases is damaged", where=str(path), valid="`clearance batch` once more"
         ) from None
@@ -74,3 +83,25 @@ def _item(number: int, row: dict, options: Sequence[Options]) -> Item:
     given = row.get("trajectory")
     trajectory = None if given is None else GivenTrajectory(**given)
     return Item(number, row["name"], row["file"], trajectory, options[row["options"]])
+
+
+def _options_told(one: Options, index: dict[Waiver, int]) -> dict[str, object]:
+    told = {field.name: getattr(one, field.name) for field in fields(one)}
+    return told | {"waivers": [index[waiver] for waiver in one.waivers]}
+
+
+def _options(told: dict, waivers: Sequence[Waiver]) -> Options:
+    own = tuple(waivers[i] for i in told["waivers"])
+    return Options(**told | {"accept": tuple(told["accept"]), "waivers": own})
+
+
+_WAIVER = ("between", "at_least", "reason", "by", "case", "rule", "where", "shared")
+
+
+def _waiver_told(waiver: Waiver) -> dict[str, object]:
+    return {name: getattr(waiver, name) for name in _WAIVER} | {"until": waiver.until.isoformat()}
+
+
+def _waiver(told: dict) -> Waiver:
+    one, other = told["between"]
+    return Waiver(**told | {"between": (one, other), "until": date.fromisoformat(told["until"])})

@@ -19,12 +19,13 @@ from clearance.errors import BadInput, DuplicateName, MissingFile, at
 from clearance.load.input_files import read_bytes
 from clearance.load.manifest_schema import Manifest, Reading, is_manifest, load_manifest
 from clearance.world.names import checked_name
+from clearance.world.waiver import Waiver
 
 
 @dataclass(frozen=True)
 class Changes:
     """What the command line says instead of the manifests; None where it says nothing. Lengths in metres; `today`
-    as in `run.Question`.
+    as in `run.Question`; `waivers` beside those of the cases.
     """
 
     need: str | None = None
@@ -34,6 +35,7 @@ class Changes:
     warn: float | None = None
     accept: tuple[str, ...] = ()
     today: date | None = None
+    waivers: tuple[Waiver, ...] = ()
 
 
 def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
@@ -62,7 +64,23 @@ def items_of(arguments: Sequence[str], changes: Changes) -> list[Item]:
         found.setdefault(_identity(item), item)
     items = [replace(item, number=i) for i, item in enumerate(found.values())]
     _require_own_names(items)
-    return items
+    return [*_waived(items, changes.waivers)] if changes.waivers else items
+
+
+def _waived(items: Sequence[Item], waivers: Sequence[Waiver]) -> Iterator[Item]:
+    """The items with the waivers that may be of them: a change of one is no change of what it is not of."""
+    shared = [replace(waiver, shared=True) for waiver in waivers]
+    known: dict[tuple[Options, tuple[int, ...]], Options] = {}
+    for item in items:  # the name of a case that is a file of its own is not known yet
+        own = tuple(
+            i
+            for i, one in enumerate(shared)
+            if item.trajectory is None or one.is_of_case(item.name)
+        )
+        if (item.options, own) not in known:
+            made = item.options.waived_by(tuple(shared[i] for i in own))
+            known[item.options, own] = made
+        yield replace(item, options=known[item.options, own])
 
 
 def _identity(item: Item) -> tuple[object, ...]:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass, field, replace
-from datetime import date
+from datetime import UTC, date, datetime
 
 from clearance.run import Question
 from clearance.run.question import with_levels
 from clearance.tolerance import CERTIFY_GAP
 from clearance.world.case import Case
+from clearance.world.waiver import Waiver
 
 
 @dataclass(frozen=True)
@@ -19,6 +21,8 @@ class Options:
         need, certify, certify_gap: as in `run.Question`.
         fail, warn: [m] limits instead of the case's, as `with_levels` takes them.
         accept: kinds of suspect input that decide no verdict, beside the case's.
+        waivers: beside those of each case, `shared` by many. waivers_key: sha256 of what they are on that day; in
+            the `repr` in place of them.
         today: the day that waivers are held against, as 2027-03-31; it decides only cases that have some, so it is
             not in the `repr`. Empty for the day that it is.
     """
@@ -29,7 +33,9 @@ class Options:
     fail: float | None = None
     warn: float | None = None
     accept: tuple[str, ...] = ()
+    waivers_key: str = ""
     today: str = field(default="", repr=False)
+    waivers: tuple[Waiver, ...] = field(default=(), repr=False, compare=False)
 
     def question(self, case: Case) -> Question:
         """The question about a case.
@@ -40,12 +46,29 @@ class Options:
         limits = with_levels(case.limits, self.fail, self.warn)
         accepted = tuple(dict.fromkeys([*case.accept, *self.accept]))
         return Question(
-            replace(case, limits=limits, accept=accepted),
+            replace(
+                case,
+                limits=limits,
+                accept=accepted,
+                waivers=(*case.waivers, *self.waivers),
+            ),
             need=self.need,
             certify=self.certify,
             certify_gap=self.certify_gap,
-            today=date.fromisoformat(self.today) if self.today else None,
+            today=self.day,
         )
+
+    @property
+    def day(self) -> date | None:
+        """That which waivers are held against; None for the day that it is."""
+        return date.fromisoformat(self.today) if self.today else None
+
+    def waived_by(self, waivers: tuple[Waiver, ...]) -> Options:
+        """The same with waivers."""
+        today = self.day or datetime.now(UTC).date()
+        told = [(waiver, waiver.is_expired(today)) for waiver in waivers]
+        key = hashlib.sha256(repr(told).encode()).hexdigest() if waivers else ""
+        return replace(self, waivers=waivers, waivers_key=key)
 
     def of_report(self) -> Options:
         """The same for a full report, which shows every step."""

@@ -121,7 +121,7 @@
     chosen = i;
     byId("chosen").hidden = false;
     byId("chosen-name").textContent = data.names[i];
-    const lines = [...data.reasons[i], ...data.warnings[i].map((line) => `warning: ${line}`)];
+    const lines = [...data.reasons[i], ...data.beside[i]];
     byId("chosen-reasons").replaceChildren(
       ...lines.map((line) => {
         const made = document.createElement("li");

@@ -44,21 +44,26 @@ def page_of(answer: BatchAnswer, place: Path) -> str:
         style=style + _own("page.css"),
         name=escape(place.name),
         verdict=escape(_counted(answer)),
-        worst=_worst_status(answer),
-        basis=escape(_basis(answer)),
+        worst=answer.status.split()[0],
+        basis=escape("; ".join([_basis(answer), *answer.stale])),
         version=escape(__version__),
         data=json.dumps(_data(answer, place), allow_nan=False).replace("<", "\\u003c"),
         script=re.sub(r"</(?=script)", r"<\\/", _own("page.js"), flags=re.IGNORECASE),
     )
 
 
+def unfinished_page(name: str, text: str) -> str:
+    """The page of a batch that has no answer yet."""
+    style = (_HERE.parent / "report" / "page.css").read_text(encoding="utf-8")
+    title, told = escape(f"{name}: not finished"), escape(text)
+    return Template(_own("unfinished.html")).substitute(
+        title=title, style=style, name=escape(name), text=told, version=escape(__version__)
+    )
+
+
 def _counted(answer: BatchAnswer) -> str:
     told = ", ".join(f"{n:,} {status}" for status, n in reversed(answer.counts.items()))
     return f"{count(answer.cases.num_rows, 'case')}: {told or 'none'}"
-
-
-def _worst_status(answer: BatchAnswer) -> str:
-    return next(reversed(answer.counts), "clear")
 
 
 def _basis(answer: BatchAnswer) -> str:
@@ -91,12 +96,18 @@ def _data(answer: BatchAnswer, place: Path) -> dict[str, Any]:
         "bodies": bodies.texts,
         "rules": rules.texts,
         "reasons": [lines or [] for lines in table["reasons"].to_pylist()],
-        "warnings": [lines or [] for lines in table["warnings"].to_pylist()],
+        "beside": [*map(_beside, *(table[name].to_pylist() for name in ("warnings", "waived")))],
         "levels": _levels(table["fail"].to_pylist(), table["warn"].to_pylist()),
         "curves": _curves(table["curve"].to_pylist(), table["warn"].to_pylist()),
         "n_curve": CURVE,
         "pages": [folder if folder.rpartition("/")[2] in written else "" for folder in folders],
     }
+
+
+def _beside(warnings: list[str] | None, waived: list[str] | None) -> list[str]:
+    return [f"warning: {line}" for line in warnings or ()] + [
+        f"waived: {line}" for line in waived or ()
+    ]
 
 
 class _Texts:

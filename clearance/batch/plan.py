@@ -1,8 +1,7 @@
 """Which cases of a batch the store has answered already, without reading a case: by the hashes of its files.
 
-A case whose files are all as they were when they were last read is what it was then. A file that was not there
-then, and would now be found before another (a mesh in an earlier package folder), goes unnoticed unless `fresh`
-asks for more. Not for: measuring the others (`measuring`).
+A case whose files are all as they were when they were last read is what it was then, if all that was looked for in
+several places is still found where it was. Not for: measuring the others (`measuring`).
 """
 
 from __future__ import annotations
@@ -17,7 +16,9 @@ from clearance.batch.item import GivenTrajectory, Item
 from clearance.batch.keys import DAY, key_of, value_digest, variable_of
 from clearance.batch.store import Store
 from clearance.load.input_files import InputFiles
+from clearance.load.lookups import leads_to
 from clearance.load.rosbag_file import files_of
+from clearance.world.case import LOOKUP
 
 Files = tuple[tuple[str, str], ...]
 """Path as shown and sha256."""
@@ -62,6 +63,7 @@ class _Look:
     hashes: FileHashes
     _shared: dict[str, Files | None] = field(default_factory=dict)
     _of_folder: dict[str, InputFiles] = field(default_factory=dict)
+    _led_to: dict[str, str] = field(default_factory=dict)
 
     def key(self, item: Item) -> str | None:
         """The key of an item that the store has; None where it has none, or a file is another."""
@@ -86,17 +88,25 @@ class _Look:
         return self._hashed((files.shown(path), str(path)) for path in _paths(given))
 
     def _as_before(self, inputs: str, today: str) -> Files | None:
-        """The files that a case was made from, if each is as it was, and so are the day and the variables that it
-        depends on.
+        """The files that a case was made from, if each is as it was, and so are the day, the variables and the
+        searches that it depends on.
         """
         if inputs not in self._shared:
             told = json.loads(inputs)
-            found = self._hashed((shown, path) for shown, path, _ in told if path)
-            files = tuple((shown, sha256) for shown, path, sha256 in told if path)
-            others = tuple((shown, value) for shown, path, value in told if not path)
+            searches = [row for row in told if row[0].startswith(LOOKUP)]
+            rest = [row for row in told if not row[0].startswith(LOOKUP)]
+            found = self._hashed((shown, path) for shown, path, _ in rest if path)
+            files = tuple((shown, sha256) for shown, path, sha256 in rest if path)
+            others = tuple((shown, value) for shown, path, value in rest if not path)
             same = found == files and all(_is_so(*one, today) for one in others)
+            same = same and all(self._leads_to(asked) == value for _, asked, value in searches)
             self._shared[inputs] = (*files, *others) if same else None
         return self._shared[inputs]
+
+    def _leads_to(self, asked: str) -> str:
+        if asked not in self._led_to:
+            self._led_to[asked] = leads_to(asked)
+        return self._led_to[asked]
 
     def _hashed(self, paths: Iterable[tuple[str, str]]) -> Files | None:
         found = []

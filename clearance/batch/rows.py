@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 
 from clearance.findings.finding import Finding
+from clearance.findings.judgement import judgement_of
 from clearance.findings.of_record import why_incomplete
 from clearance.run import Run
 from clearance.simulate.record import Record
@@ -81,6 +82,8 @@ VERDICT = pa.schema(
         ("reasons", _TEXTS),
         ("warnings", _TEXTS),
         ("not_checked", _TEXTS),
+        ("waived", _TEXTS),
+        ("waivers", _TEXTS),
         ("curve", pa.list_(pa.float32())),
         ("n_findings", pa.int64()),
         ("incomplete", pa.string()),
@@ -121,11 +124,21 @@ def row_of(run: Run) -> dict[str, Any]:
         "reasons": list(verdict.reasons),
         "warnings": list(verdict.warnings),
         "not_checked": list(verdict.not_checked),
+        "waived": list(verdict.waived),
+        "waivers": _needed(record),
         "curve": curve_of(record),
         "n_findings": len(findings),
         "incomplete": _incomplete(record, len(findings)),
         "findings": [_told(finding) for finding in findings[:MOST_FINDINGS]],
     }
+
+
+def _needed(record: Record) -> list[str]:
+    """Of waivers that many cases share, those that this one needs."""
+    if not any(waiver.shared for waiver in record.case.waivers):
+        return []
+    uses = judgement_of(record).uses
+    return [str(use.waiver) for use in uses if use.waiver.shared and use.used]
 
 
 def _incomplete(record: Record, n_findings: int) -> str:

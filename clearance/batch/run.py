@@ -17,6 +17,7 @@ from clearance.batch.item import Item
 from clearance.batch.measuring import Done, Fault, Measured
 from clearance.batch.plan import planned
 from clearance.batch.store import Store
+from clearance.world.waiver import Waiver
 
 
 class Watch(Protocol):
@@ -35,13 +36,21 @@ class Outcome:
 
     Attributes:
         items: in order. keys: of those that have a row, by number. faults: of those that cannot have one.
-        n_cached: of the keys, how many the store had.
+        n_cached: of the keys, how many the store had. waivers: that the cases share.
+        whole: False for a part of a batch.
     """
 
     items: Sequence[Item]
     keys: dict[int, str] = field(default_factory=dict)
     faults: dict[int, Fault] = field(default_factory=dict)
     n_cached: int = 0
+    waivers: tuple[Waiver, ...] = ()
+    whole: bool = True
+
+    @property
+    def is_answered(self) -> bool:
+        """True if it is whole and each case has a row."""
+        return self.whole and len(self.keys) == len(self.items)
 
 
 Opener = Callable[[int], AbstractContextManager[Engine]]

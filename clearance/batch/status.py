@@ -1,13 +1,19 @@
-"""How far the last batch of a store is: what of it is done, missing or failed. Not for: the answer (`answer`)."""
+"""How far the last batch of a store is: what of it is done, failed, unreadable or missing.
+
+Not for: the answer (`answer`).
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from clearance.batch.answer import BatchAnswer, answer_of
+from clearance.batch.faults import faults_in
 from clearance.batch.file_hashes import FileHashes
 from clearance.batch.listed import read_list
+from clearance.batch.output import CASES
 from clearance.batch.plan import planned
+from clearance.batch.rows import ERROR
 from clearance.batch.run import Outcome
 from clearance.batch.store import Store
 
@@ -18,18 +24,29 @@ class BatchStatus:
 
     Attributes:
         n_cases: of the batch. n_rows: all that the store keeps, of other batches and versions too.
-        answered: those that are done.
+        has_answer: whether page and tables of it are there.
+        answered: those that are done, and those that could not be read or answered when they were last tried.
     """
 
     n_cases: int
     n_rows: int
+    has_answer: bool
     answered: BatchAnswer
 
     @property
     def n_missing(self) -> int:
-        """Cases that are to be measured, for the first time or since a file is another; bad input is among
-        them."""
+        """Cases that are to be measured, for the first time or since a file is another."""
         return self.n_cases - self.answered.cases.num_rows
+
+    @property
+    def n_unreadable(self) -> int:
+        """Cases that could not be read or answered when they were last tried."""
+        return self.answered.counts.get(ERROR, 0)
+
+    @property
+    def n_done(self) -> int:
+        """Cases that have a row."""
+        return self.answered.cases.num_rows - self.n_unreadable
 
 
 def status_of(store: Store) -> BatchStatus:
@@ -38,7 +55,9 @@ def status_of(store: Store) -> BatchStatus:
     Raises:
         MissingFile: there was none.
     """
-    items = read_list(store.place)
-    plan = planned(items, store, FileHashes(store.hashes()))
-    answered = answer_of(Outcome(items, plan.keys), store)
-    return BatchStatus(len(items), len(store), answered)
+    items, hashes = read_list(store.place), FileHashes(store.hashes())
+    plan = planned(items, store, hashes)
+    faults = faults_in(store.place, plan.todo, hashes)
+    answered = answer_of(Outcome(items, plan.keys, faults), store)
+    has_answer = (store.place / CASES).is_file()
+    return BatchStatus(len(items), len(store), has_answer, answered)

@@ -90,6 +90,14 @@ class _Shard(click.ParamType):
     help=f"Let no suspect input of this kind decide a verdict ({', '.join(KINDS)}).",
 )
 @click.option(
+    "--waivers",
+    "waiver_files",
+    metavar="FILE",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="Waivers that all cases share, beside those of each; each must be needed by one case at least.",
+)
+@click.option(
     "--today",
     type=Day(),
     help="The day that the cases' waivers are held against.  [default: today, in UTC]",
@@ -110,6 +118,7 @@ def check(
     fail_mm: float | None,
     warn_mm: float | None,
     accept: tuple[str, ...],
+    waiver_files: tuple[Path, ...],
     today: date | None,
     quiet: bool,
 ) -> int:
@@ -117,31 +126,38 @@ def check(
 
     Every row is kept in STORE as soon as it is there, so the same command goes on where an
     interrupted one was, and measures only what has changed. Exit code: the greatest of all cases,
-    as of `clearance check`; 1 for one that cannot be read (2 with --strict); 4 where some are not
-    measured, as on a full disk.
+    as of `clearance check`; 1 for one that cannot be read (2 with --strict), and for a waiver of
+    --waivers that is expired or that no case needs; 4 where some are not measured, as on a full
+    disk.
     """
     from clearance.batch.manifest import Changes, items_of
+    from clearance.batch.output import ANSWER
     from clearance.batch.store import open_store
     from clearance.cli.batch_run import Asked, run_asked
+    from clearance.cli.places import refuse_inputs
+    from clearance.load.waiver_file import load_waivers
 
     if samples_only and certify_mm is not None:
         raise click.UsageError("--samples-only proves nothing; leave out --certify-mm")
     if jobs is not None and scheduler is not None:
         raise click.UsageError("--jobs are of this machine; leave it out with --scheduler")
     certify = False if samples_only else None
-    changes = Changes(need, certify, certify_mm, fail_mm, warn_mm, accept, today)
+    waivers = tuple(waiver for path in waiver_files for waiver in load_waivers(path))
+    changes = Changes(need, certify, certify_mm, fail_mm, warn_mm, accept, today, waivers)
     items = items_of(arguments, changes)
-    asked = Asked(jobs, scheduler, shard, fresh, rehash, strict, quiet)
+    refuse_inputs([place / name for name in ANSWER], waiver_files)
+    asked = Asked(jobs, scheduler, shard, fresh, rehash, strict, quiet, waivers)
     return run_asked(items, open_store(place, fresh=fresh), asked)
 
 
 @batch.command()
 @click.argument("place", metavar="STORE", type=click.Path(path_type=Path))
 def status(place: Path) -> int:
-    """How far the last batch of STORE is: done, missing, failed, and the worst.
+    """How far the last batch of STORE is: done, missing, unreadable, failed, and the worst.
 
-    Missing is what was never measured, and what is of files that have changed since. Exit code: the
-    greatest of the cases that are done; 4 where some are missing.
+    Missing is what was never measured, and what is of files that have changed since; unreadable is
+    what was bad input when it was last tried. Exit code: the greatest of the cases that are done, 1
+    for one that is unreadable; 4 where some are missing.
     """
     from clearance.batch.status import status_of
     from clearance.batch.store import open_store

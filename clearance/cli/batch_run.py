@@ -4,21 +4,24 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 from clearance.batch.answer import answer_of
 from clearance.batch.engine import Engine, InThisProcess
+from clearance.batch.faults import keep_faults
 from clearance.batch.item import Item
 from clearance.batch.listed import write_list
-from clearance.batch.output import write_answer
+from clearance.batch.output import withdraw_answer, write_answer
 from clearance.batch.run import Opener, Outcome, run_batch, shard_of
 from clearance.batch.store import Store
 from clearance.cli import ExitCode
 from clearance.cli.batch_progress import shown_progress
 from clearance.cli.batch_verdict import print_answer
+from clearance.errors import Unwritable
 from clearance.extras import LIBRARIES, is_installed
 from clearance.simulate.parts import usable_cores
+from clearance.world.waiver import Waiver
 
 FEW = 32
 """Cases that one process has measured before others are ready to help."""
@@ -35,6 +38,7 @@ class Asked:
     rehash: bool
     strict: bool
     quiet: bool
+    waivers: tuple[Waiver, ...] = ()
 
 
 def run_asked(items: Sequence[Item], store: Store, asked: Asked) -> int:
@@ -48,12 +52,16 @@ def run_asked(items: Sequence[Item], store: Store, asked: Asked) -> int:
         say(f"damaged rows of {store.n_damaged} segments are dropped, and measured again")
     with store.locked():
         write_list(store.place, items)
+    withdraw_answer(store, len(items))
     own = list(items) if asked.shard is None else shard_of(items, asked.shard)
-    outcome = Outcome(own)
+    outcome = Outcome(own, waivers=asked.waivers, whole=asked.shard is None)
     try:
-        with shown_progress(asked.quiet) as watch:
-            open_engine = _opener(asked, say)
-            run_batch(outcome, store, open_engine, watch, fresh=asked.fresh, rehash=asked.rehash)
+        try:
+            with shown_progress(asked.quiet) as watch:
+                opened, fresh = _opener(asked, say), asked.fresh
+                run_batch(outcome, store, opened, watch, fresh=fresh, rehash=asked.rehash)
+        finally:
+            _keep_faults(store, outcome)
         answer = answer_of(outcome, store, strict=asked.strict)
         if asked.shard is None:
             write_answer(answer, store)
@@ -63,6 +71,13 @@ def run_asked(items: Sequence[Item], store: Store, asked: Asked) -> int:
     if not asked.quiet:
         print_answer(answer, store, outcome.n_cached, asked.shard)
     return answer.exit_code
+
+
+def _keep_faults(store: Store, outcome: Outcome) -> None:
+    """Keeps which cases could not be answered, for `status`; of those that were not tried nothing changes."""
+    tried = [i for i in outcome.items if i.number in outcome.keys or i.number in outcome.faults]
+    with suppress(Unwritable), store.locked():  # where there is no room, they count as missing
+        keep_faults(store.place, tried, outcome.faults)
 
 
 def _opener(asked: Asked, say: Callable[[str], None]) -> Opener:

@@ -38,16 +38,22 @@ def print_answer(
 def print_status(status: BatchStatus) -> None:
     """Prints how far a batch is on stdout."""
     answer = status.answered
-    click.echo(f"{answer.cases.num_rows:,} of {count(status.n_cases, 'case')} done")
+    click.echo(f"{status.n_done:,} of {count(status.n_cases, 'case')} done")
     click.echo(f"  missing     {status.n_missing:,}")
-    click.echo(f"  failed      {len(answer.worst_first()):,}")
+    tried = ", when last tried" if status.n_unreadable else ""
+    click.echo(f"  unreadable  {status.n_unreadable:,}{tried}")
+    click.echo(f"  failed      {len(answer.worst_first()) - status.n_unreadable:,}")
     click.echo(f"  kept        {count(status.n_rows, 'row')} in all")
+    if not status.has_answer:
+        click.echo(
+            "  answer      not written yet; the same `clearance batch` does, without --shard"
+        )
     _print_facts(answer)
     _print_worst(answer)
 
 
 def _headline(answer: BatchAnswer) -> str:
-    worst = next(reversed(answer.counts), "nothing").upper()
+    worst = answer.status.upper() if answer.counts else "NOTHING"
     return f"{worst}  {count(answer.cases.num_rows, 'case')}: {_counted(answer)}"
 
 
@@ -56,6 +62,8 @@ def _counted(answer: BatchAnswer) -> str:
 
 
 def _print_facts(answer: BatchAnswer) -> None:
+    for text in answer.stale:
+        click.echo(shown(f"  waivers     {text}"))
     for basis, n in answer.bases.items():
         click.echo(f"  basis       {count(n, 'case')} {_BASES[basis]}")
     least = answer.least

@@ -179,6 +179,7 @@ def _answer(
     from clearance.cli.progress import shown_progress
     from clearance.run import Resources, answer
 
+    outputs.withdraw_older()
     ahead = outputs.more.made_ahead(question.case, question.motion)
     with kept_rows(outputs.out, terminal.quiet) as rows:
         with shown_progress(not terminal.has_words, _passes(question)) as progress:

@@ -65,6 +65,19 @@ class Outputs:
 
         refuse_inputs_of_cases([case], self.files)
 
+    def withdraw_older(self) -> None:
+        """Writes over an older JUnit file that there is no answer yet; a run that is stopped leaves nothing green.
+
+        Raises:
+            Unwritable: it cannot be written.
+        """
+        if self.junit is not None and self.junit.is_file():
+            from clearance.report.folder import write_file
+            from clearance.report.unfinished_junit import unfinished_junit
+
+            told = "this run has not come to an end; the same command goes on"
+            write_file(self.junit, unfinished_junit("clearance", told))
+
     @property
     def files(self) -> list[Path]:
         """The files that may be written; no two are the same.

@@ -26,11 +26,21 @@ def print_comparison(comparison: Comparison) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text
+    from clearance.report.comparison_text import (
+        HEADS,
+        comparison_cells,
+        comparison_text,
+        doubt_lines,
+    )
 
     console = Console()
     console = console if console.is_terminal else Console(width=160)
     console.print(Text(f"  {comparison_text(comparison)}"), soft_wrap=True)
+    lines = doubt_lines(comparison)
+    for line in lines[:MOST_ROWS]:
+        console.print(Text(f"  {line}"), soft_wrap=True)
+    if len(lines) > MOST_ROWS:
+        console.print(Text(f"  and {len(lines) - MOST_ROWS} more lines"))
     table = Table(box=None, pad_edge=False, padding=(0, 2))
     for i, head in enumerate(HEADS):
         shown = head if i else f"  {head}"
@@ -53,13 +63,17 @@ def print_comparison(comparison: Comparison) -> None:
 def compare(before: Path, now: Path, out: Path | None, quiet: bool) -> int:
     """Compares two runs of a case: report folders, or their findings.json.
 
-    Says what is new, worse, unchanged, better, gone, or not comparable and why. Exit code: 0 if B
-    breaks no rule that it is not known to have broken as much in A; 1 if it does, without a
-    waiver; 2 bad input.
+    Says what is new, worse, unchanged, better, gone, or not comparable and why. Exit code: 1 if B
+    breaks a rule, without a waiver, that it is not known to have broken as much in A, if its input
+    is suspect, not checked or warned of as that of A was not, or if less is proven or measured;
+    else 0. 2 bad input, 4 if the run into A or B was interrupted.
     """
+    from clearance.cli.kept import require_finished
     from clearance.findings.comparison import compared
     from clearance.findings.findings_file import read_findings
 
+    for place in (before, now):
+        require_finished(place)
     comparison = compared(read_findings(before), read_findings(now))
     if out is not None:
         _write(comparison, before, now, out)

@@ -107,14 +107,17 @@ def baseline_of(path: Path | None, outputs: Sequence[Path]) -> FindingList | Non
     """The findings that a run is held against; None where no baseline is given.
 
     Raises:
-        BadInput: no findings.json, or a damaged one. Unwritable: this run would overwrite it.
+        BadInput: no findings.json, or a damaged one. Incomplete: the run that was to write it was interrupted.
+        Unwritable: this run would overwrite it.
     """
     if path is None:
         return None
+    from clearance.cli.kept import require_finished
     from clearance.cli.places import refuse_inputs
     from clearance.findings.findings_file import FILE_NAME, read_findings
 
     refuse_inputs(outputs, [path / FILE_NAME if path.is_dir() else path])
+    require_finished(path)
     return read_findings(path)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from clearance.errors import Incomplete
 from clearance.simulate.resumable_rows import IN_MEMORY, MeasuredRows, open_resumable_rows
 
 SUFFIX = ".unfinished"
@@ -38,6 +39,21 @@ def place_of(out: Path) -> Path:
     parent = out.parent
     beside = os.access(parent, os.W_OK) and os.stat(parent).st_dev == os.stat(out).st_dev
     return parent / f".{out.name}{SUFFIX}" if beside and parent != out else out / SUFFIX
+
+
+def require_finished(report: Path) -> None:
+    """Refuses a report, or a file of one, whose folder a run was to write anew and has not.
+
+    Raises:
+        Incomplete: what is there is of an older run.
+    """
+    folder = report if report.is_dir() else report.parent
+    if place_of(folder).is_dir():
+        raise Incomplete(
+            "a run into this folder was interrupted, or goes on; what is there is older",
+            where=str(folder),
+            valid=f"the same check again, or none of {place_of(folder).name!r}",
+        )
 
 
 def _say(line: str) -> None:

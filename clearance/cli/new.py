@@ -184,7 +184,9 @@ def _write(made: NewCase, out_dir: Path, force: bool) -> None:
         raise Unwritable(
             "is there already", where=str(out_dir / there[0]), valid="--force overwrites it"
         )
-    refuse_inputs([out_dir / name for name in there], [one.read_from for one in made.sources])
+    refuse_inputs(
+        [out_dir / name for name in there], [one.read_from for one in made.sources if one.is_file]
+    )
 
     def fill(folder: Path) -> None:
         for name, content in made.files.items():

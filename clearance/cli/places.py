@@ -49,7 +49,7 @@ def refuse_inputs(outputs: Iterable[Path], inputs: Iterable[str | Path]) -> None
 
 def refuse_inputs_of_cases(cases: Iterable[Case], outputs: Iterable[Path]) -> None:
     """Raises `Unwritable` if one of the files `outputs` is one that the cases were made from."""
-    refuse_inputs(outputs, [source.read_from for case in cases for source in case.sources])
+    refuse_inputs(outputs, [one.read_from for case in cases for one in case.sources if one.is_file])
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

@@ -6,6 +6,7 @@ form is compiled (`ready_kernel`).
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 
 import numpy as np
@@ -13,6 +14,9 @@ import numpy as np
 from clearance.compile.heap import HeapHandle
 
 _WHOLE = 2**63
+
+_C_CONTIGUOUS, _F_CONTIGUOUS, _ALIGNED, _WRITEABLE = 0x1, 0x2, 0x100, 0x400
+"""Bits of `ndarray.flags.num`, as numpy's C interface documents them (`NPY_ARRAY_…`)."""
 
 
 class _Unknown(Exception):
@@ -34,16 +38,29 @@ def _form(value: object) -> object:
     if issubclass(kind, tuple):
         if kind is tuple:
             return ("", *map(_form, value))
-        return (f"{kind.__module__}.{kind.__qualname__}", *map(_form, value))
+        return (_name_of(kind), *map(_form, value))
     return _scalar(value)
 
 
+@functools.cache
+def _name_of(kind: type) -> str:
+    return f"{kind.__module__}.{kind.__qualname__}"
+
+
 def _array(value: np.ndarray) -> tuple:
-    flags = value.flags
-    if value.dtype.kind not in "biuf" or not value.dtype.isnative or not flags.aligned:
+    found = _array_of(value.dtype, value.ndim, value.flags.num)
+    if found is None:
         raise _Unknown
-    layout = "C" if flags.c_contiguous else "F" if flags.f_contiguous else "A"
-    return value.dtype.char, value.ndim, layout, flags.writeable
+    return found
+
+
+@functools.lru_cache(maxsize=4096)
+def _array_of(dtype: np.dtype, n_dimensions: int, flags: int) -> tuple | None:
+    """The form of an array, by numpy's own flags, of which there are few; None where only the compiler can say."""
+    if dtype.kind not in "biuf" or not dtype.isnative or not flags & _ALIGNED:
+        return None
+    layout = "C" if flags & _C_CONTIGUOUS else "F" if flags & _F_CONTIGUOUS else "A"
+    return dtype.char, n_dimensions, layout, bool(flags & _WRITEABLE)
 
 
 def _scalar(value: object) -> str:

@@ -1,7 +1,7 @@
 """A run held against a baseline: what is new, worse, unchanged, better, gone or not comparable.
 
-Findings are matched by kind, rule, bodies and occurrence. Not for: files (`findings_file`), nor how it is shown
-(`report.findings`).
+Findings are matched by kind, rule, bodies and occurrence. Not for: what stands beside them (`doubts_compared`),
+files (`findings_file`), nor how it is shown (`report.findings`).
 """
 
 from __future__ import annotations
@@ -12,6 +12,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
+from clearance.findings.doubts_compared import (
+    DoubtCompared,
+    doubts_compared,
+    known_less,
+    slack_text,
+)
 from clearance.findings.finding import UNPROVEN, Finding
 from clearance.findings.findings_file import FindingList
 from clearance.findings.measured_as import MeasuredAs
@@ -69,12 +75,16 @@ class Comparison:
     Attributes:
         before, now: the cases' names. rows: new ones first, of each change the worst first.
         whole: why nothing is comparable, where that is so.
+        doubts: what stands beside the findings of either run, what alarms first.
+        less: what is not known any more that was known before, one line each.
     """
 
     before: str
     now: str
     rows: tuple[Compared, ...]
     whole: str = ""
+    doubts: tuple[DoubtCompared, ...] = ()
+    less: tuple[str, ...] = ()
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -84,8 +94,9 @@ class Comparison:
 
     @property
     def passed(self) -> bool:
-        """True if nothing alarms."""
-        return not any(row.alarms for row in self.rows)
+        """True if nothing alarms, and as much is known as before."""
+        alarms = any(row.alarms for row in self.rows) or any(one.alarms for one in self.doubts)
+        return not (alarms or self.less)
 
 
 def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE) -> Comparison:
@@ -98,7 +109,8 @@ def compared(before: FindingList, now: FindingList, tolerance: float = TOLERANCE
     rows = list(_Comparing(before, now, tolerance, whole).rows())
     order = list(Change)
     rows.sort(key=lambda row: (order.index(row.change), row.finding.standing))
-    return Comparison(before.case, now.case, tuple(rows), whole)
+    doubts, less = doubts_compared(before, now), known_less(before, now)
+    return Comparison(before.case, now.case, tuple(rows), whole, doubts, less)
 
 
 def _measured_otherwise(before: MeasuredAs, now: MeasuredAs) -> str:
@@ -107,6 +119,8 @@ def _measured_otherwise(before: MeasuredAs, now: MeasuredAs) -> str:
         one, other = getattr(before, what), getattr(now, what)
         if one != other:
             return f"{what.replace('_', ' ')} was {one}, and is {other}"
+    if before.clock_slack != now.clock_slack:
+        return f"clock slack was {slack_text(before)}, and is {slack_text(now)}"
     if before.need != now.need and not {before.need, now.need} <= _ALIKE:
         return f"need was {before.need}, and is {now.need}"
     return ""

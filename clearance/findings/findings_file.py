@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from clearance.errors import BadInput, BadSyntax
+from clearance.findings.doubts import Doubt, doubts_of
 from clearance.findings.finding import Finding
 from clearance.findings.measured_as import MeasuredAs, measured_as
 from clearance.findings.of_record import findings_of, why_incomplete
@@ -20,11 +21,14 @@ from clearance.simulate.record import Record
 
 FILE_NAME = "findings.json"
 
-FORMAT = 1
+FORMAT = 2
 """Which keys there are: `NOTES.md`."""
 
 MOST_LISTED = 10_000
 """Most findings in a file, the worst; how many more there are is said."""
+
+MOST_UNMEASURED = 2_000_000
+"""Pairs of a file that is read."""
 
 MOST_BYTES = 64 * 2**20
 """Of a file that is read."""
@@ -37,6 +41,7 @@ class FindingList:
     Attributes:
         incomplete: why a pair below its warn limit may have no finding; empty where each has one.
         not_listed: how many findings are left out, none worse than those that are there.
+        doubts: what a reader must know beside the findings, those that fail the run first.
         findings: the worst first.
     """
 
@@ -44,6 +49,7 @@ class FindingList:
     incomplete: str
     not_listed: int
     measured: MeasuredAs
+    doubts: tuple[Doubt, ...]
     findings: tuple[Finding, ...]
     format: int = FORMAT
 
@@ -56,6 +62,7 @@ def finding_list_of(record: Record, findings: tuple[Finding, ...] | None = None)
         incomplete=why_incomplete(record),
         not_listed=max(0, len(found) - MOST_LISTED),
         measured=measured_as(record),
+        doubts=doubts_of(record),
         findings=found[:MOST_LISTED],
     )
 
@@ -88,9 +95,8 @@ def _parsed(data: bytes, shown: str) -> dict[str, Any]:
         raise BadSyntax(f"not JSON: {error}", where=shown, valid="findings.json of a run") from None
     number = raw.get("format") if isinstance(raw, dict) else None
     if number != FORMAT:
-        raise BadInput(
-            f"format {number!r:.40}", where=shown, valid=f"findings.json of format {FORMAT}"
-        )
+        valid = f"findings.json of format {FORMAT}, which the same check writes anew"
+        raise BadInput(f"format {number!r:.40}", where=shown, valid=valid)
     return raw
 
 
@@ -102,7 +108,7 @@ def _checked(raw: dict[str, Any], shown: str) -> FindingList:
     from pydantic import TypeAdapter, ValidationError
 
     try:
-        return TypeAdapter(FindingList).validate_python(raw)
+        found = TypeAdapter(FindingList).validate_python(raw)
     except ValidationError as error:
         first = error.errors()[0]
         raise BadInput(
@@ -110,3 +116,11 @@ def _checked(raw: dict[str, Any], shown: str) -> FindingList:
             where=f"{shown}: {place(tuple(first['loc']))}",
             valid="findings.json as a run writes it",
         ) from None
+    n_pairs = sum(len(block.a) * len(block.b) for block in found.measured.unmeasured)
+    if n_pairs > MOST_UNMEASURED:
+        raise BadInput(
+            f"{n_pairs:,} pairs that are not measured",
+            where=f"{shown}: measured.unmeasured",
+            valid=f"at most {MOST_UNMEASURED:,}",
+        )
+    return found

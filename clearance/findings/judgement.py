@@ -148,11 +148,12 @@ class _Waiving:
     def _use(self, i: int, broken: bool) -> WaiverUse:
         waiver = self.waivers[i]
         if self._expired(i):
-            return WaiverUse(waiver, fault=f"{waiver} has expired on {waiver.until}")
+            return WaiverUse(waiver, fault=_stale(waiver, f"has expired on {waiver.until}"))
         answers = self._of_pairs(lambda *pair: self._owner(*pair) == i) if broken else ()
         findings = [f for rule in answers for f in self._covered(waiver, rule)]
         if not any(finding.broken for finding in findings):
-            return WaiverUse(waiver, fault=f"{waiver} is not needed: {self._why_not_needed(i)}")
+            why = f"is not needed: {self._why_not_needed(i)}"
+            return WaiverUse(waiver, fault=_stale(waiver, why))
         failing = [finding for finding in findings if finding.fails]
         fault = _fault(waiver, failing[0]) if failing else ""
         return WaiverUse(waiver, answers, tuple(findings), fault)
@@ -176,6 +177,11 @@ class _Waiving:
 
         told = unknown_name(self.record, self.waivers[i])
         return told or "what it is of keeps to its rule, or a later waiver is of it"
+
+
+def _stale(waiver: Waiver, why: str) -> str:
+    """Why a waiver should go; empty for one that other cases may need."""
+    return "" if waiver.shared else f"{waiver} {why}"
 
 
 def _waived(finding: Finding, waiver: Waiver) -> Finding:

@@ -7,8 +7,11 @@ comparison is about. Not for: comparing (`comparison`).
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+import itertools
+import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Literal
 from weakref import WeakKeyDictionary
 
 from clearance.simulate.fingerprint import robot_digest
@@ -40,10 +43,13 @@ class MeasuredRule:
 
 @dataclass(frozen=True)
 class MeasuredPairs:
-    """Each of some bodies was measured against each of others."""
+    """Each of some bodies with each of others."""
 
     a: tuple[str, ...]
     b: tuple[str, ...]
+
+    def __iter__(self) -> Iterator[tuple[str, str]]:
+        return itertools.product(self.a, self.b)
 
 
 @dataclass(frozen=True)
@@ -53,7 +59,9 @@ class MeasuredAs:
     Attributes:
         need, method, motion: as in `run.Question`. basis: "motion" or "samples", what the verdict rests on.
         certify_gap: [m] how far the bound may be below a distance that occurs; None at the samples only.
-        pairs: all that were measured at some time.
+        clock_slack: [s] how far the actors' clocks may be apart; "not tied" where nothing bounds that.
+        pairs: all that were measured at some time. unmeasured: those that were not, or not always; "*" stands for
+            all that a link could meet.
     """
 
     need: str
@@ -61,9 +69,11 @@ class MeasuredAs:
     motion: str
     basis: str
     certify_gap: float | None
+    clock_slack: float | Literal["not tied"]
     robots: tuple[MeasuredRobot, ...]
     rules: tuple[MeasuredRule, ...]
     pairs: tuple[MeasuredPairs, ...]
+    unmeasured: tuple[MeasuredPairs, ...]
 
     def has_pair(self, one: str, other: str) -> bool:
         """True if two bodies were measured against each other."""
@@ -73,19 +83,26 @@ class MeasuredAs:
             for block in self.pairs
         )
 
+    def has_body(self, name: str) -> bool:
+        """True if a body was measured against another."""
+        return any(name in block.a or name in block.b for block in self.pairs)
+
 
 def measured_as(record: Record) -> MeasuredAs:
     """How a record was measured."""
-    certificate = record.certificate
+    certificate, slack = record.certificate, record.case.clock.slack
+    left_out = sorted({(one.link, one.obstacle) for one in record.unmeasured})
     return MeasuredAs(
         need=record.need,
         method=record.method,
         motion=record.motion_kind,
         basis="samples" if certificate is None else "motion",
         certify_gap=None if certificate is None else float(certificate.gap),
+        clock_slack="not tied" if math.isinf(slack) else float(slack),
         robots=tuple(_robot(record, placed) for placed in record.case.robots),
         rules=tuple(_rules(record.case.limits)),
-        pairs=tuple(_pairs(record)),
+        pairs=tuple(_blocks(_pair_names(record))),
+        unmeasured=tuple(_blocks(left_out)),
     )
 
 
@@ -114,10 +131,10 @@ def _rules(limits: Limits) -> Iterator[MeasuredRule]:
         yield MeasuredRule(rule.name, rule.between, rule.when, own.fail, own.warn)
 
 
-def _pairs(record: Record) -> Iterator[MeasuredPairs]:
-    """The pairs of a record; first bodies that have the same second ones together."""
+def _blocks(pairs: Iterable[tuple[str, str]]) -> Iterator[MeasuredPairs]:
+    """Pairs of names; first bodies that have the same second ones together."""
     seconds: dict[str, dict[str, None]] = {}
-    for a, b in _pair_names(record):
+    for a, b in pairs:
         seconds.setdefault(a, {})[b] = None
     blocks: dict[tuple[str, ...], list[str]] = {}
     for a, others in seconds.items():

@@ -8,8 +8,9 @@ pairs are near when (`simulate.rule_pairs`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -46,7 +47,8 @@ class NearCourse:
         least = touching[0] if len(touching) else np.argmin(self.clearances[rows])
         return rows.start + int(least)
 
-    def stretches(self) -> Iterator[slice]:
+    @cached_property
+    def stretches(self) -> tuple[slice, ...]:
         """The rows of each longest stretch without a break."""
         steps = np.union1d(self.positions[self.positions % 2 == 0], self.bridges)
         passed = steps[:-1][np.diff(steps) == 2] + 1  # between two steps at which it is near
@@ -54,16 +56,17 @@ class NearCourse:
         group = np.cumsum(np.diff(covered, prepend=covered[:1]) > 1)
         own = group[np.searchsorted(covered, self.positions)]
         edges = [0, *(np.flatnonzero(np.diff(own)) + 1).tolist(), len(own)]
-        for start, stop in zip(edges, edges[1:], strict=False):
-            yield slice(start, stop)
+        return tuple(slice(*ends) for ends in pairwise(edges))
 
     @property
     def nearest_stretch(self) -> slice:
         """The rows of the stretch in which the pair is nearest."""
         worst = self.worst(slice(0, len(self.positions)))
-        return next(rows for rows in self.stretches() if rows.start <= worst < rows.stop)
+        return next(rows for rows in self.stretches if rows.start <= worst < rows.stop)
 
     def broken(self, fail: float) -> list[slice]:
         """The rows of each stretch in which the pair is below the fail limit [m], or at 0."""
         below = (self.clearances < fail) | (self.clearances <= 0.0) | self.touching
-        return [rows for rows in self.stretches() if below[rows].any()]
+        if not below.any():
+            return []
+        return [rows for rows in self.stretches if below[rows].any()]

@@ -68,6 +68,11 @@ class RuleFindings:
         return NearRows(steps, found.pair[steps], found.clearance[steps], touching, only)
 
     @cached_property
+    def _bridges(self) -> np.ndarray:
+        """The positions of steps of which only the nearest pair is known."""
+        return 2 * np.unique(self._rows.steps[self._rows.nearest_only])
+
+    @cached_property
     def _between(self) -> np.ndarray:
         """(k,) the intervals in which a pair is seen below the release level nearer than at their ends."""
         certificate = self.rule.certificate
@@ -94,8 +99,7 @@ class RuleFindings:
             np.concatenate(column) for column in zip(*parts, strict=True)
         )
         order = np.argsort(positions)
-        bridges = 2 * np.unique(rows.steps[rows.nearest_only])
-        return NearCourse(positions[order], clearances[order], touching[order], bridges)
+        return NearCourse(positions[order], clearances[order], touching[order], self._bridges)
 
     def _of_stretch(self, pair: int, course: NearCourse, rows: slice, occurrence: int) -> Finding:
         place = course.worst(rows)

@@ -25,6 +25,7 @@ from clearance.errors import (
     NotFinite,
 )
 from clearance.load.input_files import SHORT
+from clearance.load.plain_table import plain_numbers
 from clearance.world.names import checked_name
 
 if TYPE_CHECKING:
@@ -132,6 +133,9 @@ def columns_of(
     Raises:
         BadShape, BadSyntax, NotFinite: with the line in the file.
     """
+    plain = _plain(table, n_bytes, len(names))
+    if plain is not None:
+        return [plain.take([names.index(name) for name in part], axis=1) for part in parts]
     most = (
         n_bytes // (2 * len(names)) + 2
     )  # a cell is a digit and a comma; what is not filled takes no memory
@@ -151,6 +155,16 @@ def columns_of(
         )  # gives the rest back, without a copy
     _refuse_not_finite(found, parts, names, table)
     return found
+
+
+def _plain(table: TextTable, n_bytes: int, n_columns: int) -> np.ndarray | None:
+    """(n, `n_columns`) all numbers of a short table that holds nothing else; None of others, or without a row."""
+    if n_bytes > SHORT:
+        return None
+    with table.opened() as file:
+        content = file.read()
+    found = plain_numbers(content, _header_line(table), n_columns, table.delimiter, table.decimal)
+    return found if found is not None and len(found) else None
 
 
 def _batches(table: TextTable, names: list[str]) -> Iterator[pa.RecordBatch]:

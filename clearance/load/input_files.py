@@ -39,8 +39,10 @@ class InputFiles:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        self._place = os.path.abspath(folder)
         self._contents: dict[Path, bytes] = {}
         self._sources: dict[Path, Source] = {}
+        self._lookups: dict[str, Source] = {}
         self._held: set[Path] = set()
 
     @cached_property
@@ -49,8 +51,9 @@ class InputFiles:
 
     @property
     def sources(self) -> tuple[Source, ...]:
-        """Every file read so far, sorted by its shown path."""
-        return tuple(sorted(self._sources.values(), key=lambda source: source.path))
+        """Every file read so far, sorted by its shown path, and what was looked for."""
+        found = [*self._sources.values(), *self._lookups.values()]
+        return tuple(sorted(found, key=lambda source: source.path))
 
     def read(self, path: Path) -> bytes:
         """The content of a file; a second call gives the same bytes without reading again.
@@ -105,6 +108,11 @@ class InputFiles:
     def add_sources(self, others: InputFiles) -> None:
         """Takes over the checksums of files that were read through others."""
         self._sources |= others._sources
+        self._lookups |= others._lookups
+
+    def note(self, source: Source) -> None:
+        """Keeps what is no file and decides what is read all the same."""
+        self._lookups[source.read_from] = source
 
     def _note(self, path: Path, digest: str, n_bytes: int) -> None:
         from clearance.world.case import Source
@@ -113,11 +121,11 @@ class InputFiles:
 
     def shown(self, path: Path) -> str:
         """How a path is written in messages and summaries: the same on every machine."""
-        path = Path(os.path.abspath(path))
-        brought = self._brought
-        if brought is not None and path.is_relative_to(brought):
-            return PYBULLET_DATA + path.relative_to(brought).as_posix()
-        return relative_path(path, self.folder)
+        whole = os.path.abspath(path)
+        brought = None if self._brought is None else _below(whole, str(self._brought))
+        if brought is not None:
+            return PYBULLET_DATA + brought
+        return _below(whole, self._place) or relative_path(Path(whole), self.folder)
 
 
 def read_bytes(path: Path, shown: str) -> bytes:
@@ -190,6 +198,14 @@ def relative_path(path: Path, folder: Path) -> str:
     if shared == Path(shared.anchor) and folder != shared:
         return path.name
     return Path(os.path.relpath(path, folder)).as_posix()
+
+
+def _below(path: str, folder: str) -> str | None:
+    """What follows a folder in a path below it, with `/`, or None for another path; both absolute."""
+    before = os.path.join(folder, "")
+    if not path.startswith(before) or path == before:
+        return None
+    return path[len(before) :].replace(os.sep, "/")
 
 
 def resolved(given: str, folder: Path) -> Path:

@@ -8,6 +8,7 @@ from typing import Any
 
 from clearance.errors import BadDimension, BadInput, BadShape, nearest_name
 from clearance.load.found_files import FoundFiles
+from clearance.load.lookups import MESH, note_lookup
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.moveit_values import Message, items, number, text
 from clearance.load.octree_file import file_of_message, octree_of
@@ -117,7 +118,9 @@ class SceneMeshes:
         """
         if 0.0 in scale:
             raise BadDimension(f"scale {scale}", valid="a scale is not zero")
-        found = mesh_path(uri, self._asked.path.parent, self._asked.package_dirs)
+        place = uri, self._asked.path.parent, self._asked.package_dirs
+        found = mesh_path(*place)
+        note_lookup(self._asked.files, MESH, *place, found.path)
         shown = self._asked.files.shown(found.path)
         self.found.add(uri, found, shown)
         axis = {"collada_up_axis": "ros"} if uri.lower().endswith(".dae") else {}

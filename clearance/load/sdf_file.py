@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from clearance.errors import BadInput, at
 from clearance.load.found_files import FoundFiles
+from clearance.load.lookups import MESH, note_lookup
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.plausibility import angle_notices, odd_angles
 from clearance.load.pose_row import pose_row
@@ -82,6 +83,7 @@ class _Files:
 
     def _file(self, uri: str, folder: Path) -> str:
         found = mesh_path(uri, folder, self._asked.package_dirs)
+        note_lookup(self._asked.files, MESH, uri, folder, self._asked.package_dirs, found.path)
         shown = self._asked.files.shown(found.path)
         self._known.add(uri, found, shown)
         return os.path.relpath(found.path, self._asked.path.parent)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from clearance.errors import BadInput, MissingFile, at
 from clearance.load.found_files import FoundFiles
+from clearance.load.lookups import MODEL, OPTIONAL, note_lookup
 from clearance.load.mesh_paths import model_path
 from clearance.load.scene_request import SceneRequest
 from clearance.load.sdf_document import NEWEST, sdf_element, text_of
@@ -61,13 +62,16 @@ class IncludeReader:
             chain: the files that lead here, as they are shown.
         """
         uri = text_of(element, "uri")
+        asked = uri, folder, self._asked.package_dirs
         try:
-            found = model_path(uri, folder, self._asked.package_dirs)
+            found = model_path(*asked)
         except MissingFile:
             if uri.rstrip("/") != SUN:
                 raise
+            note_lookup(self._asked.files, MODEL, *asked, None)
             self.missing_suns += 1
             return Included(None, folder, uri)
+        note_lookup(self._asked.files, MODEL, *asked, found.path)
         path = _file_of(found.path, self._asked)
         shown = self._asked.files.shown(path)
         self.found.add(uri, found, shown)
@@ -83,6 +87,7 @@ def _file_of(path: Path, asked: SceneRequest) -> Path:
         return path
     config = path / "model.config"
     if not config.is_file():
+        note_lookup(asked.files, OPTIONAL, config.name, path, (), None)
         return path / "model.sdf"
     with at(asked.files.shown(config)):
         return path / _newest(asked.files.read(config))

@@ -13,6 +13,7 @@ import numpy as np
 from clearance.geometry.polyhedron import Polyhedron
 from clearance.geometry.shapes import SHAPES
 from clearance.load.found_files import FoundFiles
+from clearance.load.lookups import MESH, note_lookup
 from clearance.load.mesh_paths import mesh_path
 from clearance.load.mesh_store import MeshStore, Scale
 from clearance.load.notes import grouped, short
@@ -50,7 +51,9 @@ class ShapeReader:
     def mesh_file(self, mesh: Element) -> tuple[Path, Scale]:
         """Where a mesh element's file lies, and its scale."""
         given = mesh.get("filename")
-        found = mesh_path(given, self.request.path.parent, self.request.package_dirs)
+        asked = given, self.request.path.parent, self.request.package_dirs
+        found = mesh_path(*asked)
+        note_lookup(self.meshes.files, MESH, *asked, found.path)
         shown = self.meshes.files.shown(found.path)
         self._found.add(given, found, shown)
         scale = tuple(np.broadcast_to(numbers(mesh, "scale", (1.0,)), 3).tolist())

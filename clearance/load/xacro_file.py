@@ -25,6 +25,7 @@ from clearance.errors import (
 from clearance.extras import install, is_installed
 from clearance.load.found_files import notes_on_variables
 from clearance.load.input_files import InputFiles
+from clearance.load.lookups import PACKAGE, note_lookup
 from clearance.load.robot_element import ALLOW_XACRO
 from clearance.load.robot_request import RobotRequest
 from clearance.world.notice import listed
@@ -68,6 +69,9 @@ def expanded(request: RobotRequest, files: InputFiles) -> Expanded:
         _refuse(done, shown, files)
     given = dict(request.xacro_args)
     _require_asked(given, done["asked"], shown)
+    for package, folder in done["packages"].items():
+        asked = package, request.path.parent, request.package_dirs
+        note_lookup(files, PACKAGE, *asked, Path(folder))
     others = [files.shown(Path(name)) for name in done["files"]]
     found = {
         variable: {f"$(find {name})": files.shown(Path(path)) for name, path in names.items()}

@@ -80,6 +80,7 @@ class _Packages:
     def __init__(self, folder: Path, package_dirs: list[Path], watch: Watch) -> None:
         self._folder, self._dirs, self._watch = folder, package_dirs, watch
         self.by_variable: dict[str, dict[str, str]] = {}
+        self.found: dict[str, str] = {}
 
     def find(self, name: str, *_: object, **__: object) -> str:
         """The folder of a package."""
@@ -92,7 +93,8 @@ class _Packages:
             self._watch.on = True
         if found.variable:
             self.by_variable.setdefault(found.variable, {})[str(name)] = str(found.path)
-        return os.path.abspath(found.path)
+        self.found[str(name)] = os.path.abspath(found.path)
+        return self.found[str(name)]
 
     def install(self) -> None:
         """Makes this the module that xacro asks."""
@@ -125,7 +127,11 @@ def _answer(asked: dict[str, Any]) -> dict[str, Any]:
     sys.addaudithook(watch)
     _limit_work(asked["seconds"], asked["bytes"])
     made = evaluated(path, asked["args"], watch)
-    return made | {"files": [*watch.opened], "variables": packages.by_variable}
+    return (
+        made
+        | {"files": [*watch.opened], "variables": packages.by_variable}
+        | {"packages": packages.found}
+    )
 
 
 def evaluated(path: Path, given: dict[str, str], watch: Watch) -> dict[str, Any]:

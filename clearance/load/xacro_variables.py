@@ -5,6 +5,7 @@ Not for: evaluating them (`xacro_process`), nor names that are themselves put to
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable
 from functools import lru_cache
@@ -20,7 +21,7 @@ _ASKED = re.compile(rb"\$\(\s*(?:opt)?env\s+([A-Za-z_]\w*)")
 
 def variables_asked(sources: Iterable[Source]) -> tuple[str, ...]:
     """The names of the variables that some files ask for, sorted."""
-    files = [one for one in sources if Path(one.read_from).suffix.lower() in _SUFFIXES]
+    files = [one for one in sources if os.path.splitext(one.read_from)[1].lower() in _SUFFIXES]
     return tuple(sorted({name for one in files for name in _in_file(one.read_from, one.sha256)}))
 
 

@@ -15,7 +15,7 @@ from clearance import __version__
 from clearance.errors import BadInput
 from clearance.findings.comparison import Change, Compared, Comparison
 from clearance.report.comparison_chart import Curve, chart
-from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text
+from clearance.report.comparison_text import HEADS, comparison_cells, comparison_text, doubt_lines
 from clearance.report.folder import write_file
 from clearance.report.markup import element, section, table
 
@@ -58,9 +58,12 @@ def page_of(comparison: Comparison, curves: list[Curve], names: tuple[str, str])
 def _header(comparison: Comparison, text: str) -> Markup:
     kicker = element("p", "Clearance comparison", class_="kicker")
     title = element("div", kicker, element("h1", comparison.now))
-    badge = "nothing new is broken" if comparison.passed else "new or worse"
+    badge = "nothing is new or worse" if comparison.passed else "new or worse"
     classes = f"verdict {'clear' if comparison.passed else 'violated'}"
-    told = element("ul", element("li", text[0].upper() + text[1:]), class_="beside")
+    lines = [text, *doubt_lines(comparison)[:MOST_ROWS]]
+    told = element(
+        "ul", *(element("li", line[0].upper() + line[1:]) for line in lines), class_="beside"
+    )
     return element("div", title, element("p", badge, class_=classes), class_="title") + told
 
 

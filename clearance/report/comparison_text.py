@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from clearance.findings.comparison import Compared, Comparison
+from clearance.findings.doubts import ACCEPTED, NOTE, Doubt
+from clearance.findings.doubts_compared import DoubtCompared
 from clearance.report.finding_text import bodies_text
 from clearance.report.rules import name_shown
 from clearance.report.wording import mm
@@ -12,13 +14,61 @@ HEADS = ("change", "before", "now", "before, mm", "now, mm", "rule", "between", 
 
 
 def comparison_text(comparison: Comparison) -> str:
-    """How many findings are new, worse, and so on: `1 new, 2 unchanged`."""
+    """How many findings are new, worse, and so on: `1 new, 2 unchanged`; what puts that in doubt goes before."""
     told = ", ".join(f"{number} {what}" for what, number in comparison.counts.items())
     why = f"; not comparable: {comparison.whole}" if comparison.whole else ""
     other = ""
     if comparison.before != comparison.now:
         other = f" ({comparison.before!r} against {comparison.now!r})"
-    return f"since the baseline{other}: {told or 'nothing to compare'}{why}"
+    doubt = "".join(f"{text}; " for text in _in_doubt(comparison))
+    return f"since the baseline{other}: {doubt}{told or 'no finding to compare'}{why}"
+
+
+def _in_doubt(comparison: Comparison) -> list[str]:
+    """What of a comparison is in doubt whatever its findings say, a few words each."""
+    rows = comparison.doubts
+    kinds = dict.fromkeys(row.doubt.kind for row in rows if row.alarms)
+    told = [
+        f"NEW {_many(kind, [r for r in rows if r.alarms and r.doubt.kind == kind])}"
+        for kind in kinds
+    ]
+    told += ["LESS IS KNOWN"] * bool(comparison.less)
+    kept = [row for row in rows if row.doubt.fails and row.before and row.now]
+    kinds = dict.fromkeys(row.doubt.kind for row in kept)
+    told += [
+        f"{_many(kind, [r for r in kept if r.doubt.kind == kind])} as before" for kind in kinds
+    ]
+    return told
+
+
+def _many(kind: str, rows: list[DoubtCompared]) -> str:
+    name = _NAMES.get(kind, kind)
+    return name if len(rows) == 1 else f"{name} ({len(rows)})"
+
+
+_NAMES = {
+    "suspect": "suspect input",
+    "disputed": "dispute with a peer",
+    "not checked": "part not checked",
+}
+"""Kinds of doubts as a headline calls them."""
+
+
+def doubt_lines(comparison: Comparison) -> list[str]:
+    """What is known less, then each doubt that is new, gone, or fails the run as before, one line each."""
+    lines = [f"less is known: {text}" for text in comparison.less]
+    for row in comparison.doubts:
+        if row.before and row.now and not row.doubt.fails:
+            continue
+        change = "as before" if row.before and row.now else "new" if row.now else "gone"
+        lines.append(f"{change}: {doubt_text(row.doubt)}")
+    return lines
+
+
+def doubt_text(doubt: Doubt) -> str:
+    """A doubt in one line, its kind before."""
+    about = f" {doubt.about}" if doubt.about and doubt.kind not in (ACCEPTED, NOTE) else ""
+    return f"{doubt.kind}{about}: {doubt.text}"
 
 
 def comparison_cells(row: Compared) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from clearance.findings.comparison import Compared, Comparison
 from clearance.findings.finding import Finding
-from clearance.report.comparison_text import comparison_text, gone_text, since_text
+from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
 from clearance.report.finding_text import bodies_text, stretch_text, waived_text, when_text
 from clearance.report.markup import element, section, table
 from clearance.report.rules import name_shown
@@ -56,11 +56,13 @@ def _notes(found: Sequence[Finding]) -> list[str]:
 def _since(comparison: Comparison) -> list[Markup]:
     """What became of the findings of the baseline; those that this run has not, as a list."""
     text = comparison_text(comparison)
-    return [element("p", f"{text[0].upper()}{text[1:]}."), *_gone(comparison)]
+    return [element("p", f"{text[0].upper()}{text[1:]}."), *_beside(comparison)]
 
 
-def _gone(comparison: Comparison) -> list[Markup]:
-    lines = [gone_text(row) for row in comparison.rows if row.now is None]
+def _beside(comparison: Comparison) -> list[Markup]:
+    """What stands beside the findings, and those that are gone."""
+    lines = doubt_lines(comparison)
+    lines += [gone_text(row) for row in comparison.rows if row.now is None]
     items = [element("li", line) for line in lines[:MOST_ROWS]]
     return [element("ul", *items, class_="beside")] if items else []
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from clearance.findings.comparison import Comparison
 from clearance.findings.finding import Finding
-from clearance.report.comparison_text import comparison_text, gone_text, since_text
+from clearance.report.comparison_text import comparison_text, doubt_lines, gone_text, since_text
 from clearance.report.finding_text import (
     bodies_text,
     finding_line,
@@ -49,6 +49,7 @@ def markdown(
     lines += [f"- {plain(text)}" for text in _told(verdict)]
     if comparison is not None:
         lines += [f"- {plain(comparison_text(comparison))}"]
+        lines += [f"- {plain(text)}" for text in doubt_lines(comparison)[:MOST_ROWS]]
         lines += [f"- {plain(gone_text(row))}" for row in comparison.rows if row.now is None][
             :MOST_ROWS
         ]

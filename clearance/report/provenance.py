@@ -40,6 +40,7 @@ def inputs(case: Case) -> list[dict[str, object]]:
     return [
         {"path": public_path(source.path, home), "sha256": source.sha256, "n_bytes": source.n_bytes}
         for source in case.sources
+        if source.is_file
     ]
 
 
@@ -65,7 +66,7 @@ def public_path(path: str, home: Path | None) -> str:
 
 
 def _home(case: Case) -> Path | None:
-    first = Path(case.sources[0].path) if case.sources else None
+    first = next((Path(source.path) for source in case.sources if source.is_file), None)
     return first.parent if first is not None and first.is_absolute() else None
 
 

@@ -5,12 +5,13 @@ Not for: measuring, and the words around it (`wording`, `cli.verdict`).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from clearance.findings.doubts import SUSPECT, not_checked, open_suspects
 from clearance.report.finding_text import waived_lines
 from clearance.report.wording import (
     clock_text,
@@ -27,26 +28,17 @@ from clearance.simulate.record import ProfileAnswer, Record
 from clearance.simulate.replay_frames import codes_of
 from clearance.simulate.rule_answer import RuleAnswer, worst_of
 from clearance.simulate.status import STATUSES, Status
-from clearance.world.case import Case
 from clearance.world.notice import Notice, Severity
 from clearance.world.rules import DEFAULT
 
 if TYPE_CHECKING:
     from clearance.findings.judgement import Judgement
 
-SUSPECT = "suspect"
-"""The status where the input is in doubt, whatever was measured."""
-
 MOTION, SAMPLES = "motion", "samples"
 """What a verdict rests on: a proof for the continuous motion, or the samples of the trajectory only."""
 
-SURROUNDINGS = "surroundings (the scene is empty)"
-
 STALE = "stale waiver"
 """The status where all would be well, but for a waiver that has expired or that nothing needs."""
-
-SELF_COLLISION = "self-collision"
-"""What is not measured unless the case asks for it."""
 
 _PASSING = (Status.CLEAR, Status.NEAR)
 
@@ -135,8 +127,7 @@ def verdict_text(
 def verdict_of(record: Record) -> Verdict:
     """The verdict of a record."""
     notices = record.notices
-    suspects = [notice for notice in notices if notice.severity is Severity.SUSPECT]
-    open_suspects = tuple(one for one in suspects if one.kind not in record.case.accept)
+    suspects = open_suspects(record)
     judgement = _judgement(record)
     measured = _measured(record, judgement)
     check = record.cross_check
@@ -149,20 +140,20 @@ def verdict_of(record: Record) -> Verdict:
     reasons += [profile_text(answer) for answer in record.profiles if not answer.passed]
     broken = [f"{one.kind}: {one.text}" for one in notices if one.severity is Severity.VIOLATED]
     reasons += broken
-    reasons += [f"suspect {one.kind}: {one.text}" for one in open_suspects]
+    reasons += [f"suspect {one.kind}: {one.text}" for one in suspects]
     if disputing is not None:
         n_steps = count(len(disputing.disagreements), "step")
         reasons.append(f"{disputing.peer} disagrees at {n_steps}")
     return Verdict(
-        status=SUSPECT if open_suspects else STALE if stale and measured in _PASSING else measured,
+        status=SUSPECT if suspects else STALE if stale and measured in _PASSING else measured,
         measured=measured,
         basis=SAMPLES if record.certificate is None else MOTION,
         reasons=tuple(reasons),
         unproven=unproven,
-        suspects=open_suspects,
+        suspects=suspects,
         warnings=tuple(_warnings(record, notices)),
         disputed_by=None if disputing is None else disputing.peer,
-        not_checked=tuple(_not_checked(record.case)),
+        not_checked=tuple(not_checked(record.case)),
         broken=tuple(broken),
         nearest=_nearest(record),
         clocks=clock_text(record.case.clock.slack),
@@ -179,17 +170,6 @@ def _judgement(record: Record) -> Judgement | None:
     from clearance.findings.judgement import judgement_of
 
     return judgement_of(record)
-
-
-def _not_checked(case: Case) -> Iterator[str]:
-    """That nothing stands around the robots, and those whose links are not measured against one another."""
-    if not case.obstacles:
-        yield SURROUNDINGS
-    left_out = [placed.robot.name for placed in case.robots if not placed.self_clearance]
-    if len(left_out) == len(case.robots):
-        yield SELF_COLLISION
-    else:
-        yield from (f"{SELF_COLLISION} of {name}" for name in left_out)
 
 
 def _measured(record: Record, judgement: Judgement | None) -> str:

@@ -7,13 +7,14 @@ pairs where a winding number decides (`kernels.search.containment`); those are i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from clearance.geometry.polyhedron import Polyhedron
+from clearance.kernels.search.boxes_on_a_way import CarriedBoxes, steps_together
 from clearance.query.distance import distance
 from clearance.query.inside import Doubt, doubt_of
-from clearance.simulate.names import pair_names
 from clearance.simulate.sections import Section, SectionPlan
 from clearance.world.case import Case
 from clearance.world.cell import once_a_cell
@@ -41,18 +42,72 @@ def notices(plan: SectionPlan) -> tuple[Notice, ...]:
 def _of_section(section: Section) -> Iterator[tuple[int, Notice]]:
     """The same of a section, each with the place of the pair in the run."""
     case, motions, pairs = section.phase.case, section.phase.motions, section.pairs
-    names = pair_names(case, pairs)
-    waiting = doubts_of(case, pairs)
+    open_pairs = _open_pairs(case, pairs)
+    waiting = dict(enumerate(open_pairs.places))
     for start in range(0, section.phase.n_steps if waiting else 0, AT_ONCE):
-        poses = BodyPoses(case, link_poses_at(case, motions, slice(start, start + AT_ONCE)))
-        for i, doubt in list(waiting.items()):
-            step = _first_in_doubt(case, pairs[i], doubt, poses)
+        link_poses = link_poses_at(case, motions, slice(start, start + AT_ONCE))
+        poses = BodyPoses(case, link_poses)
+        for k, span in open_pairs.spans(link_poses):
+            if k not in waiting:
+                continue
+            place = waiting[k]
+            step = _first_in_doubt(case, pairs[place], open_pairs.doubts[k], poses, span)
             if step is not None:
                 step += start
                 when = float(section.phase.times[step])
-                text = _text(names[0][i], names[1][i], step + section.phase.first, when)
-                yield int(section.places[i]), Notice(Severity.SUSPECT, "inside", text)
-                del waiting[i]
+                names = (body.name_in(case) for body in pairs[place])
+                text = _text(*names, step + section.phase.first, when)
+                yield int(section.places[place]), Notice(Severity.SUSPECT, "inside", text)
+                del waiting[k]
+
+
+@dataclass(frozen=True)
+class _OpenPairs:
+    """Pairs of which something can be in doubt.
+
+    Attributes:
+        places: of them among all pairs. doubts: of each, what can be.
+        boxes: of their bodies. pairs: (k, 2) of these bodies.
+    """
+
+    places: tuple[int, ...]
+    doubts: tuple[Doubt, ...]
+    boxes: CarriedBoxes
+    pairs: np.ndarray
+
+    def spans(self, link_poses: np.ndarray) -> Iterator[tuple[int, slice]]:
+        """The pairs, by number, whose boxes may overlap at some step, and from which step to which.
+
+        Args:
+            link_poses: (n, links, 4, 4) `world_from_link` [m] of the case's forest.
+        """
+        spans = np.empty((len(self.pairs), 2), dtype=np.int64)
+        steps_together(self.boxes, self.pairs, link_poses, spans)
+        for k in np.flatnonzero(spans[:, 1]).tolist():
+            yield k, slice(*spans[k].tolist())
+
+
+def _open_pairs(case: Case, pairs: Sequence[Pair]) -> _OpenPairs:
+    return _found_open(case, tuple(pairs))
+
+
+@once_a_cell(16)
+def _found_open(case: Case, pairs: tuple[Pair, ...]) -> _OpenPairs:
+    doubts = doubts_of(case, pairs)
+    bodies = sorted({body for i in doubts for body in pairs[i]})
+    number = {body: k for k, body in enumerate(bodies)}
+    standing = [
+        case.obstacles[body.i_body].world_from_body if body.is_obstacle else np.eye(4)
+        for body in bodies
+    ]
+    boxes = CarriedBoxes(
+        np.array([body.shape_in(case).bounds for body in bodies]).reshape(-1, 2, 3),
+        np.array([body.frame_in(case) for body in bodies], dtype=np.int64),
+        np.array(standing).reshape(-1, 4, 4),
+    )
+    of_bodies = [[number[body] for body in pairs[i]] for i in doubts]
+    numbered = np.array(of_bodies, dtype=np.int64).reshape(-1, 2)
+    return _OpenPairs(tuple(doubts), tuple(doubts.values()), boxes, numbered)
 
 
 def doubts_of(case: Case, pairs: Sequence[Pair]) -> dict[int, Doubt]:
@@ -69,7 +124,7 @@ def _doubts_of(case: Case, pairs: tuple[Pair, ...]) -> dict[int, Doubt]:
 def is_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: np.ndarray) -> np.ndarray:
     """(n,) whether a pair is in doubt and not in contact, at `poses` (n, links, 4, 4) of all links."""
     found = np.zeros(len(poses), dtype=bool)
-    for k in _in_doubt(case, pair, doubt, BodyPoses(case, poses)):
+    for k in _in_doubt(case, pair, doubt, BodyPoses(case, poses), slice(0, len(poses))):
         found[k] = True
     return found
 
@@ -104,19 +159,21 @@ class BodyPoses:
         return self._of[body]
 
 
-def _first_in_doubt(case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses) -> int | None:
-    """The first of the steps, of which `poses` are given, at which a pair is in doubt and not in contact."""
-    return next(_in_doubt(case, pair, doubt, poses, along_a_way=True), None)
+def _first_in_doubt(
+    case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses, span: slice
+) -> int | None:
+    """The first of some steps, of which `poses` are given, at which a pair is in doubt and not in contact."""
+    return next(_in_doubt(case, pair, doubt, poses, span, along_a_way=True), None)
 
 
 def _in_doubt(
-    case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses, along_a_way: bool = False
+    case: Case, pair: Pair, doubt: Doubt, poses: BodyPoses, span: slice, along_a_way: bool = False
 ) -> Iterator[int]:
-    of_one, of_other = poses.of(pair.a), poses.of(pair.b)
+    of_one, of_other = poses.of(pair.a)[span], poses.of(pair.b)[span]
     open_at = doubt.at(of_one, of_other, along_a_way)
     if not open_at.any():
         return
     one, other = _shapes(case, pair)
     for k in np.flatnonzero(open_at):
         if not distance(one, other, pose_a=of_one[k], pose_b=of_other[k]).contact:
-            yield int(k)
+            yield int(k) + span.start

@@ -7,6 +7,7 @@ names there are (`names`, `status`).
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import repeat
 
 import numpy as np
 import pyarrow as pa
@@ -22,7 +23,8 @@ def names_of(codes: np.ndarray, names: Sequence[str]) -> pa.Array:
     """(n,) the name of each code, null where that is negative."""
     if len(codes) < FEW:
         known = [*names, None]  # of which -1 is the last
-        return pa.array([known[max(code, -1)] for code in codes.tolist()], type=pa.string())
+        places = np.maximum(codes, -1).tolist()
+        return pa.array([*map(known.__getitem__, places)], type=pa.string())
     return pa.array(names, type=pa.string()).take(pa.array(codes, mask=codes < 0))
 
 
@@ -32,8 +34,8 @@ def codes_of(column: pa.Array | pa.ChunkedArray, names: Sequence[str]) -> np.nda
         place = {name: code for code, name in enumerate(names)}
         found = np.empty(len(column), dtype=np.int64)
         for start in range(0, len(column), _AT_ONCE):
-            part = column.slice(start, _AT_ONCE).to_pylist()
-            found[start : start + _AT_ONCE] = [place.get(name, -1) for name in part]
+            part = column.slice(start, _AT_ONCE).to_numpy(zero_copy_only=False).tolist()
+            found[start : start + _AT_ONCE] = [*map(place.get, part, repeat(-1))]
         return found
     import pyarrow.compute
 

@@ -138,16 +138,22 @@ def _add(
     """Adds the sections of a selection whose pairs are tied, or are of two clocks that are not."""
     if other is not None and _apart(phase, other) > phase.case.clock.slack:
         return
-    alike: dict[tuple[int, float], list[Pair]] = {}
-    for pair, rule, padding in zip(
-        selection.pairs, selection.rules, selection.paddings, strict=True
-    ):
-        if clock_pair(phase.case, pair.a, pair.b) == clocks:
-            alike.setdefault((rule, padding), []).append(pair)
-    for (rule, padding), pairs in sorted(alike.items()):
+    for (rule, padding), alike in selection.alike.items():
+        pairs = _of_clocks(phase.case, alike, clocks)
+        if not pairs:
+            continue
         own = [places.setdefault(pair, len(places)) for pair in pairs]
-        numbered = len(found), phase, rule, padding, tuple(pairs)
+        numbered = len(found), phase, rule, padding, pairs
         found.append(Section(*numbered, np.array(own, dtype=np.int64), other))
+
+
+def _of_clocks(
+    case: Case, pairs: tuple[Pair, ...], clocks: tuple[int, int] | None
+) -> tuple[Pair, ...]:
+    """Those of some pairs that are of two clocks, or that are tied where none are given."""
+    if case.clock.slack == 0.0:
+        return pairs if clocks is None else ()
+    return tuple(pair for pair in pairs if clock_pair(case, pair.a, pair.b) == clocks)
 
 
 def _apart(phase: Phase, other: Phase) -> float:

@@ -41,7 +41,11 @@ def status_codes(
 
 def status_of(clearance: float, limits: Limits, touches: bool | None = None) -> str:
     """How one clearance [m] stands against the limits."""
-    return str(STATUSES[int(status_codes(np.array(clearance), limits, touches))])
+    if touches or (touches is None and clearance <= 0.0):
+        return str(Status.CONTACT)
+    if clearance < limits.fail or clearance <= 0.0:
+        return str(Status.VIOLATED)
+    return str(Status.NEAR if clearance < limits.warn else Status.CLEAR)
 
 
 def sample_codes(found: Measurement, limits: Limits, steps: slice | np.ndarray) -> np.ndarray:

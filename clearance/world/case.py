@@ -91,19 +91,29 @@ class Limits:
         return Limits(*self.rules[i_rule - 1].levels(self.fail), self.joints)
 
 
+LOOKUP = "(lookup) "
+"""How the path of a source begins that is no file, but what was looked for in several places."""
+
+
 @dataclass(frozen=True)
 class Source:
-    """A file that the case was made from.
+    """A file that the case was made from, or a search that led to one.
 
     Attributes:
-        path: as it is shown, the same on every machine.
-        read_from: where it was found, for nobody but who must not overwrite it.
+        path: as it is shown, the same on every machine; of a search `LOOKUP` and what was looked for.
+        sha256: of its content; of a search that of where it led.
+        read_from: where it was found, for nobody but who must not overwrite it; of a search what repeats it.
     """
 
     path: str
     sha256: str
     n_bytes: int
     read_from: str = field(default="", compare=False, repr=False)
+
+    @property
+    def is_file(self) -> bool:
+        """False for a search."""
+        return not self.path.startswith(LOOKUP)
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,8 @@ class Knots:
     @cached_property
     def jumps(self) -> np.ndarray:
         """The times [s] at which a value or a velocity changes at once."""
+        if self.before is self.after and self.rates_before is self.rates_after:
+            return self.times[:0]
         at_once = (self.before != self.after).any(axis=1)
         if self.rates_before is not None and self.rates_after is not None:
             at_once |= (self.rates_before != self.rates_after).any(axis=1)

@@ -26,6 +26,8 @@ def checked_name(name: str) -> str:
     Raises:
         BadInput: with what it holds, the name escaped.
     """
+    if name.isascii() and name.isprintable():
+        return name  # as most are
     for letter in name:
         fault = _fault(letter)
         if fault:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -115,6 +116,14 @@ class Selection:
     rules: list[int] = field(default_factory=list)
     paddings: list[float] = field(default_factory=list)
     unmeasured: list[Omission] = field(default_factory=list)
+
+    @cached_property
+    def alike(self) -> dict[tuple[int, float], tuple[Pair, ...]]:
+        """The pairs that one rule judges, with one padding [m]; by rule, then padding."""
+        found: dict[tuple[int, float], list[Pair]] = {}
+        for pair, rule, padding in zip(self.pairs, self.rules, self.paddings, strict=True):
+            found.setdefault((rule, padding), []).append(pair)
+        return {key: tuple(pairs) for key, pairs in sorted(found.items())}
 
 
 def measured_pairs(case: Case) -> tuple[list[Pair], list[Omission]]:

@@ -14,6 +14,7 @@ from clearance.errors import BadDimension
 from clearance.tolerance import REACH, TURNS
 from clearance.world.body import Body
 from clearance.world.case import Case
+from clearance.world.cell import once_a_cell
 from clearance.world.cubic import extremes_between
 from clearance.world.forest import owner_of, resolved_mount
 from clearance.world.mimics import followers
@@ -56,30 +57,44 @@ def _reaches(case: Case, motions: tuple[Motion, ...]) -> list[tuple[str, float]]
 
 def _each_reach(case: Case, motions: Sequence[Motion]) -> Iterator[tuple[str, float]]:
     frames = _Frames(case, motions)
-    for i, obstacle in enumerate(case.obstacles):
-        yield f"obstacle {obstacle.name!r}", _reach(obstacle.body, frames.of_obstacle(i))
+    of_obstacles, of_links = _corners(case)
+    for i, (obstacle, own) in enumerate(zip(case.obstacles, of_obstacles, strict=True)):
+        yield f"obstacle {obstacle.name!r}", own + frames.of_obstacle(i)
     for i, motion in enumerate(motions):
         farthest = frames.of_robot(i)
-        for body in motion.placed.robot.bodies:
-            yield f"link {body.name!r}", _reach(body, farthest)
+        for body, own in zip(motion.placed.robot.bodies, of_links[i], strict=True):
+            yield f"link {body.name!r}", own + farthest
+
+
+@once_a_cell(16)
+def _corners(case: Case) -> tuple[list[float], list[list[float]]]:
+    """[m] how far the corners of each obstacle, and of each robot's links, get from their frame along an axis."""
+    of_links = [[_reach(body) for body in placed.robot.bodies] for placed in case.robots]
+    return [_reach(obstacle.body) for obstacle in case.obstacles], of_links
+
+
+@once_a_cell(16)
+def _origins(case: Case) -> list[float]:
+    """[m] the same of each obstacle's own frame from what it stands on, where it has no table."""
+    return [_farthest_along(obstacle.world_from_body) for obstacle in case.obstacles]
 
 
 class _Frames:
     """How far the frames of robots and obstacles get from the origin along an axis at most [m]."""
 
     def __init__(self, case: Case, motions: Sequence[Motion]) -> None:
-        self._case, self._motions = case, motions
+        self._case, self._motions, self._origins = case, motions, _origins(case)
 
     def of_robot(self, i: int) -> float:
         """Of all links of a robot."""
         placed = self._case.robots[i]
-        base = float(np.abs(placed.world_from_base[:3, 3]).max())
+        base = _farthest_along(placed.world_from_base)
         return base + _slide(self._motions[i]) + self._below(placed.mount)
 
     def of_obstacle(self, i: int) -> float:
         """Of an obstacle, whoever has carried it."""
         obstacle = self._case.obstacles[i]
-        own = float(np.abs(obstacle.world_from_body[:3, 3]).max())
+        own = self._origins[i]
         if obstacle.moves is not None:
             own += float(np.abs(obstacle.moves.positions).sum(axis=1).max())
         return own + self._below(obstacle.mount)
@@ -104,14 +119,16 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
         BadDimension: the first joint that does, with the times between which it does.
     """
     columns = {name: i for i, name in enumerate(names)}
+    ways = _ways(moves)
+    farthest = ways.max(axis=0, initial=0.0)
     for joint, name, factor, offset in followers(robot):
         if joint.kind not in (JointKind.REVOLUTE, JointKind.CONTINUOUS):
             continue
         _require_offset(joint, offset)
         if name not in columns:
             continue
-        way = abs(factor) * _ways(moves, columns[name])
-        if way.size and not way.max() <= TURNS * 2.0 * np.pi:
+        if not abs(factor) * farthest[columns[name]] <= TURNS * 2.0 * np.pi:
+            way = abs(factor) * ways[:, columns[name]]
             i = int(np.argmax(way))
             raise BadDimension(
                 f"joint {joint.name!r} turns by {way[i]:g} rad between {moves.times[i]:g} s and "
@@ -120,12 +137,12 @@ def require_few_turns(robot: Robot, names: Sequence[str], moves: Motion | Trajec
             )
 
 
-def _ways(moves: Motion | Trajectory, i_joint: int) -> np.ndarray:
-    """(n - 1,) [rad or m] how far a joint goes between samples, or would at its speed at one of them."""
-    ways = np.abs(np.diff(moves.positions[:, i_joint]))
+def _ways(moves: Motion | Trajectory) -> np.ndarray:
+    """(n - 1, k) [rad or m] how far joints go between samples, or would at their speed at one of them."""
+    ways = np.abs(np.diff(moves.positions, axis=0))
     if moves.velocities is not None:
-        speeds = np.abs(moves.velocities[:, i_joint])
-        ways = np.maximum(ways, np.maximum(speeds[1:], speeds[:-1]) * np.diff(moves.times))
+        speeds, spans = np.abs(moves.velocities), np.diff(moves.times)[:, None]
+        ways = np.maximum(ways, np.maximum(speeds[1:], speeds[:-1]) * spans)
     return ways
 
 
@@ -140,12 +157,18 @@ def _require_offset(joint: Joint, offset: float) -> None:
 def _slide(motion: Motion) -> float:
     """[m] how far the sliding joints go, and the frames of the joints are apart, in sum."""
     robot = motion.placed.robot
-    apart = sum(float(np.abs(joint.parent_from_joint[:3, 3]).sum()) for joint in robot.joints)
+    apart = _between_joints(robot)
     columns = {joint.name: i for i, joint in enumerate(robot.moving_joints)}
     slides = [one for one in followers(robot) if one.joint.kind is JointKind.PRISMATIC]
     return apart + sum(
         abs(one.factor) * _farthest(motion, columns[one.master]) + abs(one.offset) for one in slides
     )
+
+
+@lru_cache(maxsize=8)
+def _between_joints(robot: Robot) -> float:
+    """[m] how far the frames of the joints are apart, in sum."""
+    return sum(float(np.abs(joint.parent_from_joint[:3, 3]).sum()) for joint in robot.joints)
 
 
 def _farthest(motion: Motion, i_joint: int) -> float:
@@ -157,5 +180,9 @@ def _farthest(motion: Motion, i_joint: int) -> float:
     return max(float(max(part.max(), -part.min())) for part in reached if part.size)
 
 
-def _reach(body: Body, origin: float) -> float:
-    return float(np.abs(body.shape.bounds).max()) + origin
+def _reach(body: Body) -> float:
+    return float(np.abs(body.shape.bounds).max())
+
+
+def _farthest_along(pose: np.ndarray) -> float:
+    return float(np.abs(pose[:3, 3]).max())

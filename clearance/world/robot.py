@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -77,7 +78,7 @@ class Robot:
     excluded: tuple[tuple[str, str], ...] = ()
     states: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def moving_joints(self) -> tuple[Joint, ...]:
         """The joints that a trajectory can name: not fixed and not mimicking."""
         return tuple(j for j in self.joints if j.kind is not JointKind.FIXED and j.mimic is None)

@@ -247,8 +247,9 @@ def _steps(laid: Sequence[Knots], cuts: np.ndarray, start: float, end: float) ->
 
 def _resampled(motion: Motion, knots: Knots, times: np.ndarray) -> Motion:
     """The motion at other times."""
-    if np.array_equal(times, motion.times) and not np.isin(knots.jumps, times[1:-1]).any():
-        return motion
+    if np.array_equal(times, motion.times):
+        if not len(knots.jumps) or not np.isin(knots.jumps, times[1:-1]).any():
+            return motion
     return replace(
         motion,
         times=times,

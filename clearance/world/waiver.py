@@ -20,7 +20,8 @@ class Waiver(PairPattern):
     Attributes:
         at_least: [m] what they must keep. reason: why that will do. by: who says so.
         until: the last day that it holds. case, rule: patterns of the names of cases and rules; "*" for all.
-        where: its file and row, for messages.
+        where: its file and row, for messages. shared: given for many cases at once, and not all of them need it:
+            whether any does is for whoever gives it to say, and no case fails by that it does not.
 
     Raises:
         BadDimension: a level that is below 0 or not finite. BadInput: nobody, or no reason.
@@ -33,6 +34,7 @@ class Waiver(PairPattern):
     case: str = "*"
     rule: str = "*"
     where: str = ""
+    shared: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "at_least", checked_level(self.at_least, "at_least"))

@@ -267,6 +267,32 @@ def test_a_package_that_a_variable_finds_elsewhere_is_measured_again(
     assert statuses(before)["t003"] == "clear" and statuses(now)["t003"] == "contact"
 
 
+@pytest.mark.parametrize("nearer", ["in/pk/m.stl", "first/pk/m.stl", "first/m.stl"])
+def test_a_mesh_that_appears_nearer_is_measured(nearer, manifest, tmp_path):
+    """In the file's folder, in an earlier package folder, or in one that its manifest makes the package."""
+    urdf, cell = manifest.parent / "cart.urdf", manifest.parent / "cell.yaml"
+    urdf.write_text(
+        URDF.replace('<box size="0.2 0.2 0.2"/>', '<mesh filename="package://pk/m.stl"/>')
+    )
+    dirs = "[../first, ../last]" if nearer.startswith("first") else "[]"
+    cell.write_text(CELL.replace("cart.urdf", f"cart.urdf, package_dirs: {dirs}"))
+    (tmp_path / "first").mkdir()
+    for folder in ("last/pk", "pk"):  # the last package folder, and the folder above the file's
+        (tmp_path / folder).mkdir(parents=True)
+        trimesh.creation.box([0.2] * 3).export(tmp_path / folder / "m.stl")
+    _, before = run_here(manifest, tmp_path / "out")
+    assert run_here(manifest, tmp_path / "out")[0].measured == []
+    (tmp_path / nearer).parent.mkdir(exist_ok=True)
+    trimesh.creation.box([1.0] * 3).export(tmp_path / nearer)
+    (tmp_path / "first" / "package.xml").write_text("<package><name>pk</name></package>")
+    told, now = run_here(manifest, tmp_path / "out")
+    assert len(told.measured) == len(NEAREST)
+    assert statuses(before)["t003"] == "clear" and statuses(now)["t003"] == "contact"
+    (tmp_path / nearer).unlink()
+    told, again = run_here(manifest, tmp_path / "out")
+    assert told.measured == [] and statuses(again) == statuses(before)
+
+
 @pytest.mark.cold  # xacro runs in a process of its own
 @pytest.mark.slow  # and is started twice
 def test_a_variable_that_xacro_asks_for_is_an_input(manifest, tmp_path, monkeypatch):

@@ -46,10 +46,12 @@ def test_status_tells_what_is_missing(folder, capsys):
     batch("batch.yaml", "--out", "store")
     capsys.readouterr()
     assert run(["batch", "status", "store"]) == 1
-    assert capsys.readouterr().out.startswith("3 of 3 cases done\n  missing     0\n  failed      1")
+    told = "3 of 3 cases done\n  missing     0\n  unreadable  0\n  failed      1"
+    assert capsys.readouterr().out.startswith(told)
     (folder / "t000.csv").write_text("time,rail\n0,0\n1,0.1\n")
     assert run(["batch", "status", "store"]) == 4
-    assert capsys.readouterr().out.startswith("2 of 3 cases done\n  missing     1\n  failed      1")
+    told = "2 of 3 cases done\n  missing     1\n  unreadable  0\n  failed      1"
+    assert capsys.readouterr().out.startswith(told)
 
 
 def test_view_writes_the_page_of_one_case_and_links_it(folder, capsys):

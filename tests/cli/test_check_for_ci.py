@@ -140,3 +140,48 @@ def test_the_hook_checks_each_file_and_what_it_lists(place, capsys):
     assert run(["pre-commit", "bad.clearance.yaml", "broken/case.yaml"]) == 2
     out, err = capsys.readouterr()
     assert "broken/case.yaml: VIOLATED" in out and "no list of cases" in err
+
+
+def test_a_comparison_with_what_an_interrupted_run_left_behind_is_incomplete(place, capsys):
+    check("clear/case.yaml", "--out", "of_clear", "--quiet")
+    check("broken/case.yaml", "--out", "of_broken", "--quiet")
+    assert run(["compare", "of_broken", "of_clear", "--quiet"]) == 0
+    (place / ".of_clear.unfinished").mkdir()  # where rows are kept until the report is there
+    for arguments in (
+        ["compare", "of_broken", "of_clear"],
+        ["compare", "of_clear/findings.json", "of_broken"],
+        ["check", "broken/case.yaml", "--baseline", "of_clear"],
+    ):
+        assert run(arguments) == 4
+        told = capsys.readouterr()
+        assert told.err.startswith("incomplete: of_clear: a run into this folder was interrupted")
+        assert told.out == ""
+
+
+def test_a_comparison_fails_by_suspect_input_alone(place, capsys):
+    check("clear/case.yaml", "--out", "of_clear", "--quiet")
+    text = (place / "clear" / "case.yaml").read_text()
+    (place / "clear" / "case.yaml").write_text(text.replace("xyz: [0.5,", "xyz: [5000,"))
+    assert check("clear/case.yaml", "--out", "of_suspect", "--baseline", "of_clear") == 2
+    told = capsys.readouterr().out
+    assert told.startswith("SUSPECT") and "since the baseline: NEW suspect input" in told
+    assert run(["compare", "of_clear", "of_suspect"]) == 1
+    told = capsys.readouterr().out
+    assert told.lstrip().startswith("since the baseline: NEW suspect input; ")
+    assert "new: suspect units: CHECK UNITS" in told
+    assert run(["compare", "of_suspect", "of_clear", "--quiet"]) == 0
+
+
+def test_a_run_that_is_stopped_leaves_no_older_junit(place, monkeypatch):
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    asked = ("clear/case.yaml", "--junit", "junit.xml", "--quiet")
+    assert check(*asked) == 0
+    first = (place / "junit.xml").read_bytes()
+    monkeypatch.setattr("clearance.run.answer", stopped)
+    assert check(*asked) == 130
+    assert b'<error type="Incomplete"' in (place / "junit.xml").read_bytes()
+    monkeypatch.undo()
+    monkeypatch.chdir(place)
+    assert check(*asked) == 0 and (place / "junit.xml").read_bytes() == first

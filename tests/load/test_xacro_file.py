@@ -62,7 +62,9 @@ def test_modules_that_are_not_compiled_yet_are_no_fault(tmp_path, monkeypatch):
 
 def test_what_it_reads_is_hashed_and_what_it_did_is_told(tmp_path):
     case = load_case(write_case(tmp_path))
-    paths = [source.path for source in case.sources]
+    searched = [source.path for source in case.sources if not source.is_file]
+    assert searched == ["(lookup) package arm_description"]
+    paths = [source.path for source in case.sources if source.is_file]
     assert paths == [
         "arm/urdf/arm.urdf.xacro", "arm/urdf/parts.xacro", "arm/urdf/sizes.yaml", "case.yaml", "path.csv",
     ]  # fmt: skip

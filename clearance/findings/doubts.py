@@ -1,0 +1,100 @@
+"""What stands beside the findings of a run and bears on its answer: suspect input, what was not checked, warnings.
+
+Kept in `findings.json`, so that a comparison knows of a run that is in doubt and has no finding for it. Not for:
+the verdict that is drawn from it (`report.verdict`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from clearance.simulate.record import Record
+from clearance.world.case import Case
+from clearance.world.notice import Notice, Severity
+
+SUSPECT, DISPUTED, STALE_WAIVER = "suspect", "disputed", "stale waiver"
+NOT_CHECKED, WARNING, ACCEPTED, NOTE = "not checked", "warning", "accepted", "note"
+
+FAILING = (SUSPECT, DISPUTED, STALE_WAIVER)
+"""Those by which a run is not passed, whatever was measured."""
+
+KINDS = (*FAILING, NOT_CHECKED, WARNING, ACCEPTED, NOTE)
+
+SURROUNDINGS = "surroundings (the scene is empty)"
+
+SELF_COLLISION = "self-collision"
+"""What is not measured unless the case asks for it."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """One thing that a reader must know beside the findings.
+
+    Attributes:
+        kind: one of `KINDS`. about: of suspect and accepted input its kind ("units", …), of a warning its subject.
+        text: one line.
+    """
+
+    kind: str
+    about: str
+    text: str
+
+    @property
+    def fails(self) -> bool:
+        """True if the run is not passed by it."""
+        return self.kind in FAILING
+
+
+def doubts_of(record: Record) -> tuple[Doubt, ...]:
+    """All of a record, those that fail it first; each once."""
+    found = [*_of_input(record), *_of_answer(record)]
+    return tuple(sorted(dict.fromkeys(found), key=lambda one: KINDS.index(one.kind)))
+
+
+def open_suspects(record: Record) -> tuple[Notice, ...]:
+    """The notices of suspect input that the case does not accept."""
+    suspects = (one for one in record.notices if one.severity is Severity.SUSPECT)
+    return tuple(one for one in suspects if one.kind not in record.case.accept)
+
+
+def not_checked(case: Case) -> Iterator[str]:
+    """That nothing stands around the robots, and those whose links are not measured against one another."""
+    if not case.obstacles:
+        yield SURROUNDINGS
+    left_out = [placed.robot.name for placed in case.robots if not placed.self_clearance]
+    if len(left_out) == len(case.robots):
+        yield SELF_COLLISION
+    else:
+        yield from (f"{SELF_COLLISION} of {name}" for name in left_out)
+
+
+def _of_input(record: Record) -> Iterator[Doubt]:
+    unaccepted = open_suspects(record)
+    for notice in record.notices:
+        if notice.severity is Severity.SUSPECT:
+            kind = SUSPECT if notice in unaccepted else ACCEPTED
+            yield Doubt(kind, notice.kind, notice.text)
+        elif notice.severity is Severity.WARNING:
+            yield Doubt(WARNING, notice.kind, notice.text)
+    robots = (note for placed in record.case.robots for note in placed.robot.notes)
+    yield from _notes([*record.case.notes, *robots, *record.notes])
+
+
+def _notes(texts: Iterable[str]) -> Iterator[Doubt]:
+    return (Doubt(NOTE, "", text) for text in texts)
+
+
+def _of_answer(record: Record) -> Iterator[Doubt]:
+    yield from (Doubt(NOT_CHECKED, "", text) for text in not_checked(record.case))
+    check = record.cross_check
+    if check is not None and not check.agrees:
+        n_steps = len({row.step for row in check.disagreements})
+        yield Doubt(
+            DISPUTED, check.peer, f"{check.peer} disagrees at {n_steps} of {check.n_steps} steps"
+        )
+    if record.case.waivers:
+        from clearance.findings.judgement import judgement_of
+
+        for fault in judgement_of(record).faults:
+            yield Doubt(STALE_WAIVER, "", fault)

@@ -1,0 +1,187 @@
+"""When two bodies may overlap on their way, by the boxes about them: of most pairs, at no step.
+
+Boxes that are beside each other along an axis of either stay so until they have moved and turned as far against
+each other, so that most steps are passed over. Not for: bounds of the distance (`motion.sweep`), and what is
+inside what (`doubt`).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from clearance.compile.jit import inline, kernel
+from clearance.kernels.arithmetic.double_double import size
+from clearance.kernels.arithmetic.vec3 import (
+    Vec3,
+    add,
+    dot,
+    gap_sq,
+    move,
+    relative,
+    rigid,
+    row,
+    sub,
+)
+
+ROOM = 1e-4
+"""[-] Of the coordinates, by which boxes must be beside each other: rotations may be off orthonormal by 1e-6."""
+
+
+class CarriedBoxes(NamedTuple):
+    """The boxes of bodies, and what carries each.
+
+    Attributes:
+        bounds: (b, 2, 3) [m] of each body, in its own frame.
+        links: (b,) that each is fixed to, at the link's own pose, or -1 for one that stands.
+        standing: (b, 4, 4) [m] poses of those that stand.
+    """
+
+    bounds: np.ndarray
+    links: np.ndarray
+    standing: np.ndarray
+
+
+class Ways(NamedTuple):
+    """How far boxes have moved in all up to each step, (b, n).
+
+    Attributes:
+        middles: [m] their middles. turns: [-] by the norm of the change of their rotation.
+    """
+
+    middles: np.ndarray
+    turns: np.ndarray
+
+
+class Beside(NamedTuple):
+    """Two boxes at a step, each seen from the other.
+
+    Attributes:
+        of_a, of_b: [m] how far they are apart along the axes of either; negative if not at all.
+        between: [m] their middles. half_a, half_b: [m] half of their diagonals.
+    """
+
+    of_a: float
+    of_b: float
+    between: float
+    half_a: float
+    half_b: float
+
+
+@inline(force=True)
+def _pose(boxes, body, poses, step):
+    link = boxes.links[body]
+    return rigid(boxes.standing[body] if link < 0 else poses[step, link])
+
+
+@inline(force=True)
+def _half(bounds):
+    d = sub(row(bounds, 1), row(bounds, 0))
+    return Vec3(0.5 * d.x, 0.5 * d.y, 0.5 * d.z)
+
+
+@inline(force=True)
+def _apart(m, middle, half, middle_of_other, half_of_other):
+    """[m] how far a box, seen by `m`, is from another along the axes of the latter."""
+    away = sub(move(m, middle_of_other), middle)
+    x = abs(m.xx) * half_of_other.x + abs(m.xy) * half_of_other.y + abs(m.xz) * half_of_other.z
+    y = abs(m.yx) * half_of_other.x + abs(m.yy) * half_of_other.y + abs(m.yz) * half_of_other.z
+    z = abs(m.zx) * half_of_other.x + abs(m.zy) * half_of_other.y + abs(m.zz) * half_of_other.z
+    by_x, by_y, by_z = abs(away.x) - half.x - x, abs(away.y) - half.y - y, abs(away.z) - half.z - z
+    return max(by_x, max(by_y, by_z))
+
+
+@inline(force=True)
+def _beside(bounds_a, bounds_b, frame_a, frame_b):
+    half_a, half_b = _half(bounds_a), _half(bounds_b)
+    middle_a, middle_b = add(row(bounds_a, 0), half_a), add(row(bounds_b, 0), half_b)
+    room = ROOM * (
+        size(frame_a.t) + size(frame_b.t) + size(middle_a) + size(middle_b)
+        + size(half_a) + size(half_b)
+    )  # fmt: skip
+    return Beside(
+        _apart(relative(frame_a, frame_b), middle_a, half_a, middle_b, half_b) - room,
+        _apart(relative(frame_b, frame_a), middle_b, half_b, middle_a, half_a) - room,
+        np.sqrt(gap_sq(move(frame_a, middle_a), move(frame_b, middle_b))) + room,
+        np.sqrt(dot(half_a, half_a)),
+        np.sqrt(dot(half_b, half_b)),
+    )
+
+
+@inline(force=True)
+def _stay_beside(found, moved, turned_a, turned_b):
+    """True if two boxes are still beside each other along the axes of the same box as they were.
+
+    A point of one box moves against the frame of the other by what both have moved, by its own turn about its
+    middle, and by the turn of the other about that one's middle.
+
+    Args:
+        moved: [m] both middles since. turned_a, turned_b: [-] since.
+    """
+    between = found.between + moved
+    of_a = moved + turned_b * found.half_b + turned_a * (between + found.half_b)
+    of_b = moved + turned_a * found.half_a + turned_b * (between + found.half_a)
+    return of_a < found.of_a or of_b < found.of_b
+
+
+@inline(force=True)
+def _turned(before, after):
+    """[-] the norm of the change of a rotation: no point turns by more than that many times its distance."""
+    return np.sqrt(
+        (after.xx - before.xx) ** 2 + (after.xy - before.xy) ** 2 + (after.xz - before.xz) ** 2
+        + (after.yx - before.yx) ** 2 + (after.yy - before.yy) ** 2 + (after.yz - before.yz) ** 2
+        + (after.zx - before.zx) ** 2 + (after.zy - before.zy) ** 2 + (after.zz - before.zz) ** 2
+    )  # fmt: skip
+
+
+@inline
+def _fill_ways(boxes, poses, ways):
+    for body in range(len(boxes.links)):
+        if boxes.links[body] < 0:
+            continue
+        middle = add(row(boxes.bounds[body], 0), _half(boxes.bounds[body]))
+        before = _pose(boxes, body, poses, 0)
+        for step in range(1, len(poses)):
+            after = _pose(boxes, body, poses, step)
+            moved = np.sqrt(gap_sq(move(before, middle), move(after, middle)))
+            ways.middles[body, step] = ways.middles[body, step - 1] + moved
+            ways.turns[body, step] = ways.turns[body, step - 1] + _turned(before, after)
+            before = after
+
+
+@kernel
+def steps_together(boxes, pairs, poses, spans):
+    """Fills the first step at which the boxes of each pair may overlap, and the one after the last; 0, 0 if none.
+
+    Args:
+        boxes: a `CarriedBoxes`. pairs: (p, 2) of its bodies.
+        poses: (n, links, 4, 4) [m] of the links at each of n steps.
+        spans: (p, 2) where they are written.
+    """
+    n_steps, n_bodies = len(poses), len(boxes.links)
+    ways = Ways(np.zeros((n_bodies, n_steps)), np.zeros((n_bodies, n_steps)))
+    _fill_ways(boxes, poses, ways)
+    middles, turns = ways.middles, ways.turns
+    for pair in range(len(pairs)):
+        a, b = pairs[pair, 0], pairs[pair, 1]
+        spans[pair, 0] = spans[pair, 1] = 0
+        step = 0
+        while step < n_steps:
+            found = _beside(
+                boxes.bounds[a],
+                boxes.bounds[b],
+                _pose(boxes, a, poses, step),
+                _pose(boxes, b, poses, step),
+            )
+            if not max(found.of_a, found.of_b) > 0.0:
+                if spans[pair, 1] == 0:
+                    spans[pair, 0] = step
+                spans[pair, 1] = step + 1
+            here = step
+            step += 1
+            while step < n_steps and _stay_beside(
+                found,
+                middles[a, step] - middles[a, here] + middles[b, step] - middles[b, here],
+                turns[a, step] - turns[a, here],
+                turns[b, step] - turns[b, here],
+            ):
+                step += 1

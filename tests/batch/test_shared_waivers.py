@@ -1,0 +1,140 @@
+"""Waivers that all cases of a batch share, as a truth table: each must be needed by one case, not by all."""
+
+from datetime import date
+
+import pyarrow.parquet as pq
+import pytest
+
+from clearance.batch.listed import read_list
+from clearance.batch.manifest import Changes, items_of
+from clearance.cli import run
+from clearance.load.waiver_file import load_waivers
+from tests.batch.batches import answer_bytes, write_cell
+from tests.report.junit_schema import valid_suite
+
+DAY = "2026-11-01"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    write_cell(tmp_path, [0.5, 0.6, 0.04])
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def waiver(between="[slider, wall]", at_least=0.03, until="2027-03-31", **more):
+    told = {
+        "between": between,
+        "at_least": at_least,
+        "until": until,
+        "reason": "soft",
+        "by": "N. N.",
+    }
+    return "- {" + ", ".join(f"{key}: {value}" for key, value in (told | more).items()) + "}\n"
+
+
+def batch(*arguments, day=DAY):
+    common = ["--out", "store", "--jobs", "1", "--today", day, "--waivers", "waivers.yaml"]
+    return run(["batch", "batch.yaml", *common, *arguments])
+
+
+TABLE = {
+    # what: waivers, exit code, headline, a line
+    "one case needs it": (waiver(), 0, "CLEAR  3 cases: 3 clear", ""),
+    "expired": (
+        waiver(until="2026-10-31"), 1, "VIOLATED  3 cases: 1 violated, 2 clear",
+        "waivers     waiver slider - wall (waivers.yaml: waivers[0]) has expired on 2026-10-31",
+    ),
+    "no case needs it": (
+        waiver() + waiver("[slider, floor]"), 1, "STALE WAIVER  3 cases: 3 clear",
+        "waivers     waiver slider - floor (waivers.yaml: waivers[1]) is not needed: what it is of keeps",
+    ),
+    "worse than it": (waiver(at_least=0.045), 1, "VIOLATED", "is of at least 45 mm, and less occurs"),
+    "of a case": (waiver(case="t002"), 0, "CLEAR  3 cases: 3 clear", ""),
+    "of another case": (
+        waiver() + waiver(case="t000"), 1, "STALE WAIVER", "waivers[1]) is not needed: what it is of keeps",
+    ),
+    "of no case": (
+        waiver() + waiver(case="t02"), 1, "STALE WAIVER", "no case is called 't02'; did you mean 't002'?",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", TABLE)
+def test_truth_table(what, folder, capsys):
+    text, code, headline, line = TABLE[what]
+    (folder / "waivers.yaml").write_text(text)
+    assert batch() == code
+    told = capsys.readouterr().out
+    assert told.startswith(headline)
+    assert line in told + (folder / "store" / "batch.html").read_text()
+    suite = valid_suite(folder / "store" / "junit.xml")
+    assert (suite.get("failures") == "0") == (code == 0)
+    page = (folder / "store" / "batch.html").read_text()
+    assert ("is not needed" in page) == ("is not needed" in told)
+    assert ("waived: " in page) == ("with 1 waiver" in str(_texts(folder)))
+    first = answer_bytes(folder / "store")
+    assert batch("--quiet") == code and answer_bytes(folder / "store") == first
+    assert run(["view", "store", "t000"]) == 0  # writes the page once more, of the tables
+    again = (folder / "store" / "batch.html").read_text()
+    assert ("is not needed" in again) == ("is not needed" in page)
+
+
+def _texts(folder):
+    return pq.read_table(folder / "store" / "cases.parquet")["text"].to_pylist()
+
+
+def test_what_is_waived_stays_in_sight(folder):
+    (folder / "waivers.yaml").write_text(waiver())
+    assert batch("--quiet") == 0
+    row = pq.read_table(folder / "store" / "cases.parquet").to_pylist()[2]
+    assert row["text"] == "clear with 1 waiver" and "39.99 mm" in row["waived"][0]
+    assert row["waivers"] == ["waiver slider - wall (waivers.yaml: waivers[0])"]
+    (told,) = valid_suite(folder / "store" / "junit.xml").iter("system-out")
+    assert told.text.startswith("waived: 39.99 mm, below the fail limit")
+    found = pq.read_table(folder / "store" / "findings.parquet").to_pylist()
+    assert [one["waived"] for one in found if one["case"] == "t002"] == ["soft (N. N.)"]
+
+
+def test_what_is_not_answered_may_need_it(folder, capsys):
+    (folder / "waivers.yaml").write_text(waiver(case="t002"))
+    (folder / "t002.csv").write_text("time,rail\n0,x\n")
+    assert batch() == 1
+    assert "is not needed" not in capsys.readouterr().out
+    assert batch("--shard", "1/3") == 0
+    assert "is not needed" not in capsys.readouterr().out
+
+
+def test_a_waiver_is_a_change_of_its_cases_alone(folder, capsys):
+    (folder / "waivers.yaml").write_text(waiver(case="t002"))
+    batch()
+    (folder / "waivers.yaml").write_text(waiver(case="t002", at_least=0.02))
+    capsys.readouterr()
+    assert batch() == 0
+    assert "cached      2 of 3" in capsys.readouterr().out
+    assert batch(day="2027-03-31") == 0
+    assert "cached      3 of 3" in capsys.readouterr().out
+    assert batch(day="2027-04-01") == 1
+    told = capsys.readouterr().out
+    assert "cached      2 of 3" in told and "has expired on 2027-03-31" in told
+
+
+def test_the_list_keeps_them(folder):
+    (folder / "waivers.yaml").write_text(waiver() + waiver(case="t001"))
+    batch("--quiet")
+    given = load_waivers(folder / "waivers.yaml")
+    items = items_of(["batch.yaml"], Changes(today=date.fromisoformat(DAY), waivers=given))
+    found = read_list(folder / "store")
+    assert found == items
+    assert [one.options.waivers for one in found] == [one.options.waivers for one in items]
+    assert [len(one.options.waivers) for one in found] == [1, 2, 1]
+
+
+def test_mistakes_are_one_line(folder, capsys):
+    (folder / "waivers.yaml").write_text("- {betwen: [a, b]}\n")
+    assert batch() == 2
+    err = capsys.readouterr().err
+    assert "waivers.yaml: waivers[0]" in err and "did you mean 'between'?" in err
+    assert err.count("\n") == 1 and not (folder / "store").exists()
+    assert run(["batch", "batch.yaml", "--out", "store", "--waivers", "none.yaml"]) == 2
+    assert "there is no file 'none.yaml'" in capsys.readouterr().err

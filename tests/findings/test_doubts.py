@@ -1,0 +1,172 @@
+"""What stands beside findings, as a truth table: a run in doubt is not as good as one that finds as little."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from clearance.errors import BadInput
+from clearance.findings.comparison import Comparison, compared
+from clearance.findings.doubts import DISPUTED, NOT_CHECKED, Doubt, doubts_of
+from clearance.findings.findings_file import (
+    FindingList,
+    finding_list_of,
+    findings_text,
+    read_findings,
+)
+from clearance.report.comparison_page import page_of
+from clearance.report.comparison_text import comparison_text, doubt_lines
+from clearance.report.markdown import markdown
+from clearance.run import Question, Run, answer
+from clearance.simulate.record import CrossCheck, Disagreement
+from clearance.world.case import Clock
+from clearance.world.notice import Notice, Severity
+from tests.findings.gates import load_gates
+from tests.findings.test_waivers import TODAY, waiver
+
+A = "gate_a"
+CLEAR = {A: (-0.5, 0.05), "gate_b": (0.5, 0.05)}
+BROKEN = {A: (-0.5, 0.003), "gate_b": (0.5, 0.05)}
+
+SUSPECT = Notice(Severity.SUSPECT, "units", "CHECK UNITS: gate_a is 1000 m long")
+OTHER = Notice(Severity.SUSPECT, "units", "CHECK UNITS: gate_b is 1000 m long")
+WARNING = Notice(Severity.WARNING, "geometry", "2 solids are left out")
+
+
+def run_of(folder, gates=CLEAR, *extra: str, certify=True, method="exact", **changes) -> Run:
+    case = dataclasses.replace(load_gates(folder, gates, *extra), **changes)
+    return answer(Question(case, today=TODAY, certify=certify, method=method))
+
+
+def listed(folder, *given, **changes) -> FindingList:
+    return finding_list_of(run_of(folder, *given, **changes).record)
+
+
+TABLE = {
+    # what: before, now, passed, word of the headline, line
+    "nothing": ({}, {}, True, "", ""),
+    "suspect now": ({}, {"notices": (SUSPECT,)}, False, "NEW suspect input;", "new: suspect units: CHECK UNITS"),
+    "suspect before": ({"notices": (SUSPECT,)}, {}, True, "", "gone: suspect units: CHECK UNITS"),
+    "suspect as before": (
+        {"notices": (SUSPECT,)}, {"notices": (SUSPECT,)}, True, "suspect input as before", "as before: suspect",
+    ),
+    "suspect otherwise": ({"notices": (SUSPECT,)}, {"notices": (OTHER,)}, False, "NEW suspect input", "gate_b"),
+    "two suspect": ({}, {"notices": (SUSPECT, OTHER)}, False, "NEW suspect input (2)", "gate_b"),
+    "suspect and accepted": (
+        {}, {"notices": (SUSPECT,), "accept": ("units",)}, True, "", "new: accepted: CHECK UNITS",
+    ),
+    "accepted no more": (
+        {"notices": (SUSPECT,), "accept": ("units",)}, {"notices": (SUSPECT,)}, False, "NEW suspect input",
+        "gone: accepted",
+    ),
+    "input dropped": ({}, {"notices": (WARNING,)}, False, "NEW warning", "new: warning geometry: 2 solids"),
+    "input dropped before": ({"notices": (WARNING,)}, {}, True, "", "gone: warning"),
+    "input dropped in both": ({"notices": (WARNING,)}, {"notices": (WARNING,)}, True, "", ""),
+    "a note": ({}, {"notes": ("units are mm",)}, True, "", "new: note: units are mm"),
+    "proven no more": ({}, {"certify": False}, False, "LESS IS KNOWN", "less is known: the motion was proven"),
+    "proven now": ({"certify": False}, {}, True, "", ""),
+    "by the paper's method": (
+        {}, {"method": "paper", "certify": False}, False, "LESS IS KNOWN", "without guarantee",
+    ),
+    "clocks are let go": ({}, {"clock": Clock(0.5)}, True, "", ""),
+    "clocks are tied": ({"clock": Clock(0.5)}, {}, False, "LESS IS KNOWN", "clock slack was 0.5 s, and is 0 s"),
+    "clocks are bounded": (
+        {"clock": Clock(float("inf"))}, {"clock": Clock(0.5)}, False, "LESS IS KNOWN",
+        "was not tied, and is 0.5 s",
+    ),
+    "a pair is let off": (
+        {}, {"extra": "allow: [[box, gate_b]]"}, False, "LESS IS KNOWN",
+        "not measured as before: box - gate_b",
+    ),
+    "a waiver is stale": ({}, {"waivers": (waiver(),)}, False, "NEW stale waiver", "is not needed"),
+    "a waiver is as stale": (
+        {"waivers": (waiver(),)}, {"waivers": (waiver(),)}, True, "stale waiver as before", "is not needed",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("what", TABLE)
+def test_what_stands_beside_the_findings_of_two_runs(what, tmp_path):
+    before, now, passed, word, line = TABLE[what]
+    lists = []
+    for name, given in (("before", before), ("now", now)):
+        extra = [given[key] for key in given if key == "extra"]
+        changes = {key: value for key, value in given.items() if key != "extra"}
+        run = run_of(tmp_path / name, CLEAR, *extra, **changes)
+        lists.append(finding_list_of(run.record))
+        assert run.passed is not (
+            any(one.fails for one in (*lists[-1].doubts, *lists[-1].findings))
+        )
+    comparison = compared(*lists)
+    assert comparison.passed is passed
+    assert word in comparison_text(comparison)
+    assert line in "\n".join(doubt_lines(comparison))
+    assert bool(line) == bool(doubt_lines(comparison))
+    _is_told_everywhere(comparison, run)
+
+
+def _is_told_everywhere(comparison: Comparison, run: Run) -> None:
+    page = page_of(comparison, [], ("a", "b"))
+    assert ("nothing is new or worse" in page) is comparison.passed
+    summary = markdown(run.record, run.verdict, run.findings, comparison)
+    for line in doubt_lines(comparison):
+        assert line.split(":")[1].strip().split(" ")[0] in page
+        assert line.split(":")[0] in summary
+
+
+def test_a_dispute_and_a_part_that_is_not_checked_are_new_once(tmp_path):
+    before = listed(tmp_path)
+    for doubt, word in (
+        (Doubt(DISPUTED, "FCL", "FCL disagrees at 2 of 9 steps"), "NEW dispute with a peer"),
+        (Doubt(NOT_CHECKED, "", "surroundings (the scene is empty)"), "NEW part not checked"),
+    ):
+        now = dataclasses.replace(before, doubts=(doubt, *before.doubts))
+        assert not compared(before, now).passed and word in comparison_text(compared(before, now))
+        assert compared(now, before).passed and compared(now, now).passed
+
+
+def test_a_dispute_is_among_the_doubts(tmp_path):
+    record = run_of(tmp_path).record
+    row = Disagreement(3, 0.1, 0.2, "box", A, "box", A, "differs")
+    check = CrossCheck("FCL", 41, 0.1, 3, 1e-9, 0.0, (row,))
+    doubts = doubts_of(dataclasses.replace(record, cross_check=check))
+    assert doubts[0] == Doubt(DISPUTED, "FCL", "FCL disagrees at 1 of 41 steps") and doubts[0].fails
+
+
+def test_what_is_not_listed_hides_what_is_broken(tmp_path):
+    before, now = listed(tmp_path / "a"), listed(tmp_path / "b", BROKEN)
+    as_broken = dataclasses.replace(before, findings=now.findings)
+    assert compared(as_broken, now).passed
+    for cut in (
+        dataclasses.replace(now, incomplete="only the least"),
+        dataclasses.replace(now, not_listed=7),
+    ):
+        assert not compared(as_broken, cut).passed and compared(cut, cut).passed
+
+
+def test_a_link_that_is_left_out_is_not_measured_as_before(tmp_path):
+    before = listed(tmp_path)
+    left_out = dataclasses.replace(before.measured.pairs[0], a=("box",), b=("*",))
+    measured = dataclasses.replace(before.measured, unmeasured=(left_out,))
+    (told,) = compared(before, dataclasses.replace(before, measured=measured)).less
+    assert told == "not measured as before: box - *"
+
+
+def test_doubts_read_back_as_they_were_written(tmp_path):
+    found = listed(tmp_path, notices=(SUSPECT, WARNING), clock=Clock(float("inf")))
+    (tmp_path / "findings.json").write_text(findings_text(found))
+    assert read_findings(tmp_path) == found and found.measured.clock_slack == "not tied"
+    assert [one.kind for one in found.doubts][:2] == ["suspect", "not checked"]
+
+
+def test_pairs_beyond_any_cell_are_refused(tmp_path):
+    found = listed(tmp_path)
+    names = tuple(map(str, range(1500)))
+    block = dataclasses.replace(found.measured.pairs[0], a=names, b=names)
+    measured = dataclasses.replace(found.measured, unmeasured=(block,))
+    (tmp_path / "findings.json").write_text(
+        findings_text(dataclasses.replace(found, measured=measured))
+    )
+    with pytest.raises(BadInput, match=r"measured\.unmeasured.*2,250,000 pairs"):
+        read_findings(tmp_path)
