@@ -6,6 +6,8 @@ holds them. Not for: shapes and distances.
 
 from __future__ import annotations
 
+import functools
+
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial.transform import Rotation, Slerp
@@ -124,7 +126,13 @@ def positions_at(placed: PlacedRobot, t: float, *, left: bool) -> np.ndarray:
     u = own_time(placed.timing, asked.times, t, left=left)
     if asked.velocities is None:
         return np.array([np.interp(u, asked.times, column) for column in asked.positions.T])
-    return CubicHermiteSpline(asked.times, asked.positions, asked.velocities)(u)
+    return spline_through(asked)(u)
+
+
+@functools.lru_cache(64)
+def spline_through(asked: Trajectory) -> CubicHermiteSpline:
+    """The positions of a table by time."""
+    return CubicHermiteSpline(asked.times, asked.positions, asked.velocities)
 
 
 def link_at(case: Case, name: str, t: float, *, left: bool) -> np.ndarray:
@@ -153,7 +161,18 @@ def table_at(table: PoseTable, t: float, *, left: bool) -> np.ndarray:
 
 
 def pose_at(case: Case, name: str, t: float, *, left: bool = False) -> np.ndarray:
-    """(4, 4) where a body is at a time of the run; `left` is the moment before."""
+    """(4, 4) where a body is at a time of the run; `left` is the moment before. Not to be written to."""
+    return _pose_at(case, name, t, left)
+
+
+@functools.lru_cache(20_000)
+def _pose_at(case: Case, name: str, t: float, left: bool) -> np.ndarray:
+    found = _pose_worked_out(case, name, t, left=left)
+    found.setflags(write=False)
+    return found
+
+
+def _pose_worked_out(case: Case, name: str, t: float, *, left: bool) -> np.ndarray:
     if "/" in name:
         return link_at(case, name, t, left=left)
     thing = next(one for one in case.obstacles if one.name == name)
@@ -172,4 +191,4 @@ def pose_at(case: Case, name: str, t: float, *, left: bool = False) -> np.ndarra
         return table_at(thing.moves, t, left=left)
     if thing.mount is not None:
         return pose_at(case, thing.mount.on, t, left=left) @ thing.mount.pose
-    return thing.world_from_body
+    return thing.world_from_body.copy()

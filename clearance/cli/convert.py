@@ -12,7 +12,7 @@ from clearance.cli.options import OutputPath
 from clearance.errors import shown
 
 if TYPE_CHECKING:
-    from clearance.load.conversion import Conversion, Converted
+    from clearance.load.conversion import Converted
 
 _KINDS = ("trajectory", "scene", "poses")
 
@@ -60,19 +60,21 @@ def convert(
     each; warnings stand in a scene, so that each check tells them. Meshes that are written out in a scene get
     files beside OUT. Exit code: 0, or 2 for bad input.
     """
+    from clearance.cli.written_files import refuse_there, write_files
     from clearance.load.conversion import Conversion, converted
     from clearance.load.file_kind import FileKind, kind_of
     from clearance.load.input_files import InputFiles
     from clearance.load.trajectory_request import Choice
 
     _require_place(in_file, out_file)
-    _refuse_there([out_file], force)
+    refuse_there([out_file], force=force)
     asked = Conversion(
         in_file, out_file, InputFiles(in_file.parent), Choice(which, topic=topic), package_dirs
     )
     found = kind_of(in_file, asked.files) if kind is None else FileKind(kind)
     made = converted(asked, found)
-    _write(asked, made, force)
+    read: list[str | Path] = [in_file, *(one.read_from for one in asked.files.sources)]
+    write_files(out_file.parent, made.files, read, force=force)
     _print(out_file, made)
     return ExitCode.CLEAR
 
@@ -87,33 +89,6 @@ def _require_place(in_file: Path, out_file: Path) -> None:
         )
     require_file_place(out_file, "OUT")
     refuse_inputs([out_file], [in_file])
-
-
-def _refuse_there(files: list[Path], force: bool) -> None:
-    from clearance.errors import Unwritable
-
-    for file in files:
-        if file.is_dir():
-            raise Unwritable("is a folder", where=str(file), valid="another name for OUT")
-        if file.exists() and not force:
-            raise Unwritable("is there already", where=str(file), valid="--force overwrites it")
-
-
-def _write(asked: Conversion, made: Converted, force: bool) -> None:
-    """Writes all files or none."""
-    from clearance.cli.places import refuse_inputs
-    from clearance.report.folder import fill_folder
-
-    folder = asked.target.parent
-    files = [folder / name for name in made.files]
-    refuse_inputs(files, [asked.source, *(one.read_from for one in asked.files.sources)])
-    _refuse_there(files, force)
-
-    def fill(fresh: Path) -> None:
-        for name, content in made.files.items():
-            (fresh / name).write_bytes(content)
-
-    fill_folder(folder, fill, set(made.files))
 
 
 def _print(out_file: Path, made: Converted) -> None:

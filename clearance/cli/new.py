@@ -171,28 +171,15 @@ def _only_one(states: list[str] | None, keys: list[str]) -> str:
 
 def _write(made: NewCase, out_dir: Path, force: bool) -> None:
     """Writes all files or none."""
-    from clearance.cli.places import refuse_inputs
+    from clearance.cli.written_files import write_files
     from clearance.errors import Unwritable
     from clearance.load.new_case import CASE, TRAJECTORY
     from clearance.load.new_scene import SCENE
-    from clearance.report.folder import fill_folder
 
     if out_dir.exists() and not out_dir.is_dir():
         raise Unwritable("is a file", where=str(out_dir), valid="a folder is needed")
-    there = [name for name in (CASE, TRAJECTORY, SCENE, *made.files) if (out_dir / name).exists()]
-    if there and not force:
-        raise Unwritable(
-            "is there already", where=str(out_dir / there[0]), valid="--force overwrites it"
-        )
-    refuse_inputs(
-        [out_dir / name for name in there], [one.read_from for one in made.sources if one.is_file]
-    )
-
-    def fill(folder: Path) -> None:
-        for name, content in made.files.items():
-            (folder / name).write_bytes(content)
-
-    fill_folder(out_dir, fill, {CASE, TRAJECTORY, SCENE, *made.files})
+    read = [one.read_from for one in made.sources]
+    write_files(out_dir, made.files, read, force=force, others=(CASE, TRAJECTORY, SCENE))
 
 
 def _print(made: NewCase, out_dir: Path, at_once: bool) -> None:

@@ -85,7 +85,8 @@ def _along_z(element: Element) -> Geometry:
 
 def _plane(element: Element) -> Geometry:
     normal = np.array(numbers_of(element, "normal", 3, "0 0 1"))
-    length = float(np.linalg.norm(normal))
+    with np.errstate(over="ignore"):
+        length = float(np.linalg.norm(normal))
     if not 1e-9 < length < 1e9:
         raise BadDimension(f"<normal> is {normal.tolist()}", valid="a vector that is not zero")
     pose = np.eye(4)

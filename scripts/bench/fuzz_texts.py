@@ -52,7 +52,8 @@ MJCF = b"""<mujoco model="arm"><compiler autolimits="true" angle="radian"/>
 <replicate count="3" offset="0 1 0"><body name="post" pos="3 0 0"><geom type="box" size="0.1 0.1 1"/></body>
 </replicate>
 </worldbody><equality><joint joint1="slide" joint2="shoulder" polycoef="0 0.1 0 0 0"/></equality>
-<contact><exclude body1="upper" body2="tip"/></contact></mujoco>
+<contact><exclude body1="upper" body2="tip"/></contact>
+<keyframe><key name="home" qpos="0.2 0.1 1 0 0 0" ctrl="1"/></keyframe></mujoco>
 """
 
 CASE = b"""name: small

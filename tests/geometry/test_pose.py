@@ -45,11 +45,13 @@ def test_a_pose_is_rigid_and_undone_by_its_inverse(quaternion, xyz):
     assert np.array_equal(inverse(np.stack([pose, pose]))[1], inverse(pose))
 
 
+@pytest.mark.filterwarnings("error")  # a warning would be a second line
 @pytest.mark.parametrize(
     ("make", "fault"),
     [
         (lambda: pose_from_quaternion([0, 0, 0], [0, 0, 0, 0]), BadPose),
         (lambda: pose_from_quaternion([0, 0, 0], [0, 0, 0, 1.00001]), BadPose),
+        (lambda: pose_from_quaternion([0, 0, 0], [0, 0, 1e200, 0]), BadPose),
         (lambda: pose_from_quaternion([0, 0, 0], [0, 0, 1]), BadShape),
         (lambda: pose_from_quaternion([0, 0], [0, 0, 0, 1]), BadShape),
         (lambda: pose_from_quaternion([0, 0, np.nan], [0, 0, 0, 1]), NotFinite),

@@ -77,8 +77,8 @@ def test_bodies_are_where_mujoco_has_them_in_a_keyframe(tmp_path, turn):
     poses = link_poses(PlacedRobot(robot), np.array([list(state.values())]))[0]
     for i in range(model.nbody):
         ours = poses[robot.link_names.index(model.body(i).name or f"body{i}")]
-        assert np.abs(ours[:3, 3] - data.xpos[i]).max() < 1e-7
-        assert np.abs(ours[:3, :3] - data.xmat[i].reshape(3, 3)).max() < 1e-7
+        assert np.abs(ours[:3, 3] - data.xpos[i]).max() < 1e-8
+        assert np.abs(ours[:3, :3] - data.xmat[i].reshape(3, 3)).max() < 1e-8
 
 
 def test_a_new_case_moves_between_keyframes_and_rests_in_one(tmp_path, monkeypatch, capsys):

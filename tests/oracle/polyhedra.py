@@ -1,13 +1,14 @@
 """Whole surfaces and solids: brute force over all pairs of faces, and containment by rays.
 
-The only shortcut is the order: pairs of faces are taken by a float lower bound of their boxes'
-gap, and the loop ends where the bound exceeds the best exact distance. The bound is proven in
+The only shortcut is the order: pairs of faces are taken by a float lower bound of their gap along
+some directions, and the loop ends where the bound exceeds the best exact distance. The bound is proven in
 `_lower_bounds`.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
 
@@ -18,6 +19,13 @@ from tests.oracle.rationals import Point, cross, dot, exact_points, minus, on_gr
 from tests.oracle.simplices import point_triangle_sq, volume
 
 Faces = Sequence[Sequence[int]]
+
+DIRECTIONS = [(1, 0, 0), (0, 1, 0), (0, 0, 1)] + [
+    d
+    for d in itertools.product((-2, -1, 0, 1, 2), repeat=3)
+    if d > (0, 0, 0) and sum(map(abs, d)) > 1 and math.gcd(*d) == 1
+]
+"""The axes, then others: along each the gap of two faces bounds their distance."""
 
 
 def polyhedron_distance_sq(
@@ -170,26 +178,30 @@ def _by_lower_bound(
 
 
 def _lower_bounds(fans_a: list[Fan], fans_b: list[Fan], scale: int) -> np.ndarray:
-    """(n, m) floats, none above the true distance of the boxes of two faces.
+    """(n, m) floats, none above the true distance of two faces: their greatest gap along a direction.
 
-    With u = 2^-53 and all |x| <= M: Python's int / int rounds correctly, so each box coordinate is
-    off by at most u M, their difference by 2 u M and its own rounding by u 2 M (1 + u): less than
-    8 u M in all. The greatest of the three gaps is no more than the distance of the boxes.
-    Underflow adds less than 1e-320.
+    A gap along d is at most |d| times the distance. With u = 2^-53, all coordinates |x| <= M and |d|_1 <= 6:
+    x . d is an integer on the grid, Python's int / int rounds it correctly, so it is off by at most 6 u M, the
+    difference of two by 12 u M and its own rounding by u 12 M (1 + u). To divide by |d| >= 1 and to take the
+    margin off round by less than 24 u M. Underflow adds less than 1e-320.
     """
-    low_a, high_a = _float_boxes(fans_a, scale)
-    low_b, high_b = _float_boxes(fans_b, scale)
-    largest = max(np.abs(x).max() for x in (low_a, high_a, low_b, high_b))
+    low_a, high_a = _extents(fans_a, scale)
+    low_b, high_b = _extents(fans_b, scale)
+    largest = max(np.abs(x[:3]).max() for x in (low_a, high_a, low_b, high_b))
     bounds = np.zeros((len(fans_a), len(fans_b)))
-    for axis in range(3):
-        np.maximum(bounds, low_b[:, axis] - high_a[:, axis, None], out=bounds)
-        np.maximum(bounds, low_a[:, axis, None] - high_b[:, axis], out=bounds)
-    return np.maximum(bounds - (8 * 2.0**-53 * largest + 1e-320), 0.0)
+    for k, direction in enumerate(DIRECTIONS):
+        gaps = np.maximum(low_b[k] - high_a[k][:, None], low_a[k][:, None] - high_b[k])
+        np.maximum(bounds, gaps / math.hypot(*direction), out=bounds)
+    return np.maximum(bounds - (64 * 2.0**-53 * largest + 1e-320), 0.0)
 
 
-def _float_boxes(fans: list[Fan], scale: int) -> tuple[np.ndarray, np.ndarray]:
-    low = np.array([[x / scale for x in one.box[0]] for one in fans])
-    high = np.array([[x / scale for x in one.box[1]] for one in fans])
+def _extents(fans: list[Fan], scale: int) -> tuple[np.ndarray, np.ndarray]:
+    """(k, n) the least and the greatest x . d of each face, for each direction."""
+    along = [
+        [[dot(x, direction) for _, x in one.corners] for one in fans] for direction in DIRECTIONS
+    ]
+    low = np.array([[min(each) / scale for each in faces] for faces in along])
+    high = np.array([[max(each) / scale for each in faces] for faces in along])
     assert np.isfinite(low).all() and np.isfinite(high).all()
     return low, high
 

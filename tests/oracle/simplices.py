@@ -8,6 +8,7 @@ others cover their points.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Iterable
 from fractions import Fraction
 
@@ -20,6 +21,11 @@ def segment_distance_sq(p0: Iterable, p1: Iterable, q0: Iterable, q1: Iterable) 
     return segments_sq(*ends) / scale**2
 
 
+once = functools.lru_cache(2**15)
+"""Faces share corners and edges, so that most candidates come up several times."""
+
+
+@once
 def point_segment_sq(x: Point, a: Point, b: Point) -> Fraction:
     """Squared distance of the point x from the segment a b."""
     along, to_x = minus(b, a), minus(x, a)
@@ -32,6 +38,7 @@ def point_segment_sq(x: Point, a: Point, b: Point) -> Fraction:
     return Fraction(dot(to_x, to_x) * length_sq - foot * foot, length_sq)
 
 
+@once
 def segments_sq(p0: Point, p1: Point, q0: Point, q1: Point) -> Fraction:
     """Squared distance of two segments: both feet inside, or one of the four ends takes part."""
     ends = min(
@@ -49,6 +56,7 @@ def segments_sq(p0: Point, p1: Point, q0: Point, q1: Point) -> Fraction:
     return ends
 
 
+@once
 def point_triangle_sq(x: Point, a: Point, b: Point, c: Point) -> Fraction:
     """Squared distance of the point x from the hull of a, b, c."""
     normal = cross(minus(b, a), minus(c, a))
